@@ -1,0 +1,144 @@
+use crate::Orientation;
+use core::fmt;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// Why an [`Ahrs`] refused a sample. Its state is as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error {
+    /// A component of the angular rate, the specific force or the interval is not finite.
+    NotFinite,
+    /// The interval is negative.
+    NegativeInterval,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a component of the sample is not finite",
+            Self::NegativeInterval => "the interval is negative",
+        })
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// How fast gravity corrects what the gyroscope integrates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Gains<T> {
+    /// Tilt correction (1/s): 1/gain is the time within which gravity wins over the gyroscope.
+    pub tilt: T,
+    /// Gyro bias correction (1/s²): the integral term; zero keeps the bias as it was given.
+    pub bias: T,
+    /// How far |f|/g may be from 1 for the force to be taken for gravity.
+    pub gate: T,
+}
+
+impl<T: Scalar> Default for Gains<T> {
+    /// 1 s for the tilt, half a minute for the bias, ±10 % of g.
+    fn default() -> Self {
+        Self { tilt: T::ONE, bias: T::from_f64(0.03), gate: T::from_f64(0.1) }
+    }
+}
+
+/// An attitude and heading reference: gyroscope and accelerometer fused in a quaternion.
+///
+/// The explicit complementary filter of Mahony, Hamel & Pflimlin (IEEE TAC 2008, eq. 48), whose
+/// tilt error is e = f̂ × ĝ in body axes: the angular rate is corrected by `tilt·e`, the gyro bias by
+/// `−bias·e`. The accelerometer only speaks while its magnitude is near g; the heading is the gyroscope's
+/// alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Ahrs<T: Scalar> {
+    orientation: Orientation<T>,
+    gyro_bias: SVector<T, 3>,
+    gains: Gains<T>,
+}
+
+impl<T: Scalar> Ahrs<T> {
+    /// Standard gravity (m/s²).
+    const GRAVITY: f64 = 9.80665;
+
+    /// A reference that starts at `orientation` with a known or zero gyro bias (rad/s, body).
+    pub fn new(orientation: Orientation<T>, gyro_bias: SVector<T, 3>, gains: Gains<T>) -> Self {
+        Self { orientation, gyro_bias, gains }
+    }
+
+    /// Body → earth, after the last sample.
+    pub fn orientation(&self) -> &Orientation<T> {
+        &self.orientation
+    }
+
+    /// What is subtracted from the gyroscope (rad/s, body).
+    pub fn gyro_bias(&self) -> &SVector<T, 3> {
+        &self.gyro_bias
+    }
+
+    /// Turns the reference by a correction found elsewhere, a rotation vector in earth axes (rad).
+    pub fn turn_in_earth(&mut self, correction: &SVector<T, 3>) {
+        self.orientation = self.orientation.turned_in_earth(correction);
+    }
+
+    /// Takes one sample: angular rate (rad/s) and specific force (m/s²), both in body axes, held for
+    /// `interval` seconds. Without a force, or with one that is no measure of gravity, the gyroscope speaks
+    /// alone.
+    ///
+    /// # Errors
+    /// [`Error`]; the state is untouched.
+    pub fn update(
+        &mut self,
+        angular_rate: &SVector<T, 3>,
+        specific_force: Option<&SVector<T, 3>>,
+        interval: T,
+    ) -> Result<(), Error> {
+        if !interval.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if interval < T::ZERO {
+            return Err(Error::NegativeInterval);
+        }
+        let mut bias = self.gyro_bias;
+        let mut rate = angular_rate - bias;
+        if let Some(force) = specific_force {
+            let error = self.tilt_error(force).ok_or(Error::NotFinite)?;
+            let learnt = error * (self.gains.bias * interval);
+            bias -= learnt;
+            rate += learnt + error * self.gains.tilt;
+        }
+        let turn = rate * interval;
+        if !turn.iter().copied().all(T::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        self.gyro_bias = bias;
+        self.orientation = self.orientation.turned_in_body(&turn);
+        Ok(())
+    }
+
+    /// f̂ × ĝ in body axes (rad for small tilts); zero where the force is no measure of gravity, `None` where
+    /// it is not finite.
+    fn tilt_error(&self, specific_force: &SVector<T, 3>) -> Option<SVector<T, 3>> {
+        let force = specific_force * T::from_f64(1.0 / Self::GRAVITY);
+        let [x, y, z] = force.data.0[0];
+        let magnitude = x.hypot(y).hypot(z);
+        if !magnitude.is_finite() {
+            return None;
+        }
+        if (magnitude - T::ONE).abs() > self.gains.gate {
+            return Some(SVector::zeros());
+        }
+        let up = self.orientation.to_body(&SVector::from([T::ZERO, T::ZERO, T::ONE])).data.0[0];
+        Some(SVector::from([y * up[2] - z * up[1], z * up[0] - x * up[2], x * up[1] - y * up[0]]))
+    }
+}

@@ -1,0 +1,8 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod ahrs;
+mod orientation;
+
+pub use ahrs::{Ahrs, Error, Gains};
+pub use orientation::Orientation;

@@ -1,0 +1,160 @@
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// A unit quaternion that turns vectors of the **body** into vectors of the **earth**.
+///
+/// Earth is right-handed with z up; its x axis points wherever heading zero was declared. The
+/// quaternion follows Hamilton's convention, w first; q and −q are the same orientation.
+///
+/// Every operation brings the norm back towards 1, so that rounding does not add up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Orientation<T> {
+    w: T,
+    x: T,
+    y: T,
+    z: T,
+}
+
+impl<T: Scalar> Orientation<T> {
+    /// The body's axes are the earth's.
+    #[inline]
+    pub fn identity() -> Self {
+        Self { w: T::ONE, x: T::ZERO, y: T::ZERO, z: T::ZERO }
+    }
+
+    /// The orientation with quaternion `[w, x, y, z]`, brought to norm 1; `None` where that is
+    /// impossible because it is zero or not finite.
+    pub fn from_quaternion([w, x, y, z]: [T; 4]) -> Option<Self> {
+        let norm = w.hypot(x).hypot(y.hypot(z));
+        if !norm.is_finite() || norm <= T::ZERO {
+            return None;
+        }
+        Some(Self { w: w / norm, x: x / norm, y: y / norm, z: z / norm })
+    }
+
+    /// The quaternion `[w, x, y, z]`.
+    #[inline]
+    pub fn quaternion(&self) -> [T; 4] {
+        [self.w, self.x, self.y, self.z]
+    }
+
+    /// The shortest turn that brings a specific force measured at rest (body, any unit) upright.
+    ///
+    /// Its heading means nothing yet: it is whatever the shortest turn leaves. `None` where the
+    /// force is zero or not finite and so has no direction.
+    pub fn from_specific_force(force: &SVector<T, 3>) -> Option<Self> {
+        let [x, y, z] = force.data.0[0];
+        let norm = x.hypot(y).hypot(z);
+        if !norm.is_finite() || norm <= T::ZERO {
+            return None;
+        }
+        let (x, y, z) = (x / norm, y / norm, z / norm);
+        // Upside down, the shortest turn is ill-defined: half a turn about x goes first.
+        if z < T::ZERO {
+            let upright = Self::shortest_to_up(x, -y, -z)?;
+            return Some(upright.then_body(&Self {
+                w: T::ZERO,
+                x: T::ONE,
+                y: T::ZERO,
+                z: T::ZERO,
+            }));
+        }
+        Self::shortest_to_up(x, y, z)
+    }
+
+    /// The shortest turn of the unit vector (x, y, z), z ≥ 0, to (0, 0, 1).
+    fn shortest_to_up(x: T, y: T, z: T) -> Option<Self> {
+        Self::from_quaternion([T::ONE + z, y, -x, T::ZERO])
+    }
+
+    /// The body turned on by a rotation vector given in **body** axes (rad): what a gyroscope
+    /// measures, angular rate × time.
+    #[inline]
+    pub fn turned_in_body(&self, rotation: &SVector<T, 3>) -> Self {
+        self.then_body(&Self::from_rotation_vector(rotation)).renormalised()
+    }
+
+    /// The body turned on by a rotation vector given in **earth** axes (rad): how an estimator
+    /// corrects tilt and heading.
+    #[inline]
+    pub fn turned_in_earth(&self, rotation: &SVector<T, 3>) -> Self {
+        Self::from_rotation_vector(rotation).then_body(self).renormalised()
+    }
+
+    /// A vector of the body, in earth axes.
+    #[inline]
+    pub fn to_earth(&self, body: &SVector<T, 3>) -> SVector<T, 3> {
+        self.rotate(body, self.w)
+    }
+
+    /// A vector of the earth, in body axes.
+    #[inline]
+    pub fn to_body(&self, earth: &SVector<T, 3>) -> SVector<T, 3> {
+        self.rotate(earth, -self.w)
+    }
+
+    /// Which way the body's x axis points, seen from above, anticlockwise from earth's x (rad, −π..=π).
+    pub fn heading(&self) -> T {
+        let sine = T::TWO * (self.w * self.z + self.x * self.y);
+        let cosine = T::ONE - T::TWO * (self.y * self.y + self.z * self.z);
+        sine.atan2(cosine)
+    }
+
+    /// v + 2·w·(q × v) + 2·q × (q × v): 15 multiplications; −w turns the other way.
+    #[inline]
+    fn rotate(&self, v: &SVector<T, 3>, w: T) -> SVector<T, 3> {
+        let q = [self.x, self.y, self.z];
+        let v = v.data.0[0];
+        let t = cross(&q, &v).map(|component| component + component);
+        let u = cross(&q, &t);
+        SVector::from([v[0] + w * t[0] + u[0], v[1] + w * t[1] + u[1], v[2] + w * t[2] + u[2]])
+    }
+
+    /// exp(φ/2): by its power series up to half a radian, which a sample period seldom exceeds, and by
+    /// sine and cosine beyond.
+    #[inline]
+    fn from_rotation_vector(rotation: &SVector<T, 3>) -> Self {
+        let [x, y, z] = rotation.data.0[0].map(|component| component * T::HALF);
+        let square = T::dot(&[x, y, z], &[x, y, z]);
+        let (w, scale) = if square < T::from_f64(0.0625) {
+            (
+                T::ONE - square * (T::HALF - square * T::from_f64(1.0 / 24.0)),
+                T::ONE - square * (T::from_f64(1.0 / 6.0) - square * T::from_f64(1.0 / 120.0)),
+            )
+        } else {
+            let angle = x.hypot(y).hypot(z);
+            let (sine, cosine) = angle.sin_cos();
+            (cosine, sine / angle)
+        };
+        Self { w, x: x * scale, y: y * scale, z: z * scale }
+    }
+
+    /// The Hamilton product self ⊗ other: first `other` within the body, then self.
+    #[inline]
+    fn then_body(&self, other: &Self) -> Self {
+        let (a, b) = (self, other);
+        Self {
+            w: T::dot(&[a.w, -a.x, -a.y, -a.z], &[b.w, b.x, b.y, b.z]),
+            x: T::dot(&[a.w, a.x, a.y, -a.z], &[b.x, b.w, b.z, b.y]),
+            y: T::dot(&[a.w, -a.x, a.y, a.z], &[b.y, b.z, b.w, b.x]),
+            z: T::dot(&[a.w, a.x, -a.y, a.z], &[b.z, b.y, b.x, b.w]),
+        }
+    }
+
+    /// One Newton step of 1/√(norm²) from 1: exact to the square of the deviation, and the product
+    /// of two unit quaternions deviates by rounding only.
+    #[inline]
+    fn renormalised(&self) -> Self {
+        let q = [self.w, self.x, self.y, self.z];
+        let scale = T::from_f64(1.5) - T::HALF * T::dot(&q, &q);
+        let [w, x, y, z] = q.map(|component| component * scale);
+        Self { w, x, y, z }
+    }
+}
+
+#[inline]
+fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

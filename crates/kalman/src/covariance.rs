@@ -1,0 +1,201 @@
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// A symmetric N × N covariance P, of which one triangle is kept.
+///
+/// The other triangle is never written nor read, so P cannot lose its symmetry, whatever the
+/// rounding. The storage is a plain [`SMatrix`]: [`Covariance::to_matrix`] gives the whole P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Covariance<T: Scalar, const N: usize> {
+    /// Entries with row ≥ column hold P; the others stay zero.
+    lower: SMatrix<T, N, N>,
+}
+
+impl<T: Scalar, const N: usize> Covariance<T, N> {
+    /// P = 0: everything is known.
+    #[inline]
+    pub fn zero() -> Self {
+        Self { lower: SMatrix::zeros() }
+    }
+
+    /// Independent states with these variances (unit: the state's, squared).
+    #[inline]
+    pub fn from_variances(variances: &[T; N]) -> Self {
+        let mut covariance = Self::zero();
+        for (index, &variance) in variances.iter().enumerate() {
+            *covariance.entry(index, index) = variance;
+        }
+        covariance
+    }
+
+    /// P from a full matrix, whose lower triangle (row ≥ column) is taken.
+    #[inline]
+    pub fn from_lower_triangle(matrix: &SMatrix<T, N, N>) -> Self {
+        let mut covariance = Self::zero();
+        for column in 0..N {
+            for row in column..N {
+                covariance.lower.data.0[column][row] = matrix.data.0[column][row];
+            }
+        }
+        covariance
+    }
+
+    /// The whole of P.
+    #[inline]
+    pub fn to_matrix(&self) -> SMatrix<T, N, N> {
+        let mut matrix = self.lower;
+        for column in 0..N {
+            for row in column..N {
+                matrix.data.0[row][column] = matrix.data.0[column][row];
+            }
+        }
+        matrix
+    }
+
+    /// P\[i, j\], or `None` beyond the state.
+    #[inline]
+    pub fn get(&self, i: usize, j: usize) -> Option<T> {
+        self.lower.data.0.get(i.min(j))?.get(i.max(j)).copied()
+    }
+
+    /// The N variances, the diagonal of P.
+    #[inline]
+    pub fn variances(&self) -> SVector<T, N> {
+        let mut variances = SVector::zeros();
+        for index in 0..N {
+            variances.data.0[0][index] = self.lower.data.0[index][index];
+        }
+        variances
+    }
+
+    /// Whether no kept entry is NaN, infinite or on a rail.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.lower.data.0.as_flattened().iter().all(|entry| entry.is_finite())
+    }
+
+    /// P ← P + Q.
+    #[inline]
+    pub fn add(&mut self, noise: &Self) {
+        for column in 0..N {
+            for row in column..N {
+                self.lower.data.0[column][row] += noise.lower.data.0[column][row];
+            }
+        }
+    }
+
+    /// Adds process noise to state `I` alone (unit: the state's, squared).
+    #[inline]
+    pub fn add_variance<const I: usize>(&mut self, variance: T) {
+        const { assert!(I < N, "the state has no such component") };
+        *self.entry(I, I) += variance;
+    }
+
+    /// P ← E P Eᵀ with E = 1 + a·e_I·e_Jᵀ: state `I` becomes `I + a·J`.
+    ///
+    /// A transition that moves a few states by others is a product of such shears. A constant
+    /// velocity model is one a dimension (`position += dt·velocity`), each N multiplications,
+    /// where the dense F P Fᵀ takes 2N³. The order is that of the states' own update: a state is
+    /// read before it is itself sheared when the transition reads its old value.
+    #[inline(always)]
+    pub fn shear<const I: usize, const J: usize>(&mut self, a: T) {
+        const { assert!(I < N && J < N && I != J, "a shear joins two different components") };
+        let cross = self.at(I, J);
+        for other in 0..N {
+            if other != I {
+                let step = a * self.at(J, other);
+                *self.entry(I, other) += step;
+            }
+        }
+        // E P Eᵀ adds a·P[I,J] with the old and once more with the new cross term.
+        let sheared = self.at(I, J);
+        *self.entry(I, I) += a * (cross + sheared);
+    }
+
+    /// Forgets all that ties state `I` to the others and sets its variance.
+    #[inline]
+    pub fn reset_component<const I: usize>(&mut self, variance: T) {
+        const { assert!(I < N, "the state has no such component") };
+        for other in 0..N {
+            *self.entry(I, other) = T::ZERO;
+        }
+        *self.entry(I, I) = variance;
+    }
+
+    /// F P Fᵀ for any F; each entry is rounded twice in fixed point.
+    #[inline]
+    pub fn transformed(&self, f: &SMatrix<T, N, N>) -> Self {
+        let p = self.to_matrix();
+        let mut fp = SMatrix::<T, N, N>::zeros();
+        for row in 0..N {
+            for column in 0..N {
+                let mut sum = T::accumulator();
+                for k in 0..N {
+                    sum = T::mac(sum, f.data.0[k][row], p.data.0[column][k]);
+                }
+                fp.data.0[column][row] = T::finish(sum);
+            }
+        }
+        let mut result = Self::zero();
+        for column in 0..N {
+            for row in column..N {
+                let mut sum = T::accumulator();
+                for k in 0..N {
+                    sum = T::mac(sum, fp.data.0[k][row], f.data.0[k][column]);
+                }
+                result.lower.data.0[column][row] = T::finish(sum);
+            }
+        }
+        result
+    }
+
+    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
+    #[inline(always)]
+    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
+        for column in 0..N {
+            for row in column..N {
+                self.lower.data.0[column][row] -= gain[row] * g[column];
+            }
+        }
+    }
+
+    /// The same for all but row and column `I`.
+    #[inline(always)]
+    pub(crate) fn downdate_beside<const I: usize>(&mut self, gain: &[T; N], g: &[T; N]) {
+        for column in 0..N {
+            for row in column..N {
+                if row != I && column != I {
+                    self.lower.data.0[column][row] -= gain[row] * g[column];
+                }
+            }
+        }
+    }
+
+    /// Scales row and column `I` by `factor`.
+    #[inline(always)]
+    pub(crate) fn scale_component<const I: usize>(&mut self, factor: T) {
+        for other in 0..N {
+            *self.entry(I, other) *= factor;
+        }
+    }
+
+    /// P\[i, j\] for indices known to be below N.
+    #[inline(always)]
+    pub(crate) fn at(&self, i: usize, j: usize) -> T {
+        if i >= j { self.lower.data.0[j][i] } else { self.lower.data.0[i][j] }
+    }
+
+    #[inline(always)]
+    fn entry(&mut self, i: usize, j: usize) -> &mut T {
+        if i >= j { &mut self.lower.data.0[j][i] } else { &mut self.lower.data.0[i][j] }
+    }
+}

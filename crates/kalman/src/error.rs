@@ -1,0 +1,29 @@
+use core::fmt;
+
+/// Why a predict or an update was refused. The estimate is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument, or what would have become of the estimate, is NaN, infinite or on a rail of
+    /// fixed point.
+    NotFinite,
+    /// A variance is negative, or the innovation's variance is not positive: nothing can be
+    /// weighed with it.
+    NotPositive,
+    /// A measurement row names a state that the estimate does not have.
+    IndexOutOfRange,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::NotPositive => "a variance is not positive",
+            Self::IndexOutOfRange => "a measurement row names a state that does not exist",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

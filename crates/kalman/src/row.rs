@@ -1,0 +1,37 @@
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// One row of a measurement matrix H, of which only `K` entries are not zero.
+///
+/// A range to an anchor touches two or three of the states, a zero velocity one: what is zero is
+/// neither stored nor multiplied. When the indices are literals, the compiler resolves every
+/// access.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SparseRow<T, const K: usize> {
+    entries: [(usize, T); K],
+}
+
+impl<T: Scalar, const K: usize> SparseRow<T, K> {
+    /// A row from pairs of a state's index and ∂h/∂(that state). An index given twice counts twice.
+    #[inline]
+    pub const fn new(entries: [(usize, T); K]) -> Self {
+        Self { entries }
+    }
+
+    /// The pairs of index and derivative.
+    #[inline]
+    pub const fn entries(&self) -> &[(usize, T); K] {
+        &self.entries
+    }
+
+    /// h·x, what a linear measurement model expects to see; `None` where an index is beyond the state.
+    #[inline]
+    pub fn dot<const N: usize>(&self, state: &SVector<T, N>) -> Option<T> {
+        let mut sum = T::accumulator();
+        for &(index, value) in &self.entries {
+            sum = T::mac(sum, value, *state.data.0[0].get(index)?);
+        }
+        Some(T::finish(sum))
+    }
+}

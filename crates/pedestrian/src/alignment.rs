@@ -1,0 +1,189 @@
+use crate::ImuSample;
+use crate::sensor::{Noise, SensorClass};
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// Standard gravity (m/s²).
+pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// Gyro bias and local gravity, learnt from standstill.
+///
+/// The stream is cut into quarters of a second. Four in a row whose mean rates and forces agree are a
+/// standstill of a second; a stance of walking never lasts that long. What the second says is weighted by
+/// its own spread against what the class of the sensor promises: people sway, and a good gyroscope knows
+/// its zero better than a swaying second does, whereas a bare chip's may be off by a hundred times that.
+#[derive(Clone, Copy, Debug)]
+pub struct Alignment<T: Scalar> {
+    gyro_bias: SVector<T, 3>,
+    /// Of each axis, (mrad/s)²: one number, since sway turns about every axis.
+    bias_variance: T,
+    /// The accelerometer's magnitude at rest, in units of standard gravity.
+    gravity: T,
+    gravity_variance: T,
+    /// 1/(gravity · g₀), s²/m: a division that only a standstill needs.
+    force_to_g: T,
+    block: Block<T>,
+    standstill: Standstill<T>,
+}
+
+/// Sums over a quarter of a second.
+#[derive(Clone, Copy, Debug)]
+struct Block<T: Scalar> {
+    begun_us: Option<u64>,
+    count: i32,
+    rate: SVector<T, 3>,
+    force: SVector<T, 3>,
+}
+
+/// Deviations of a run of blocks from the first of them.
+#[derive(Clone, Copy, Debug)]
+struct Standstill<T: Scalar> {
+    blocks: i32,
+    rate: SVector<T, 3>,
+    force: SVector<T, 3>,
+    rate_sum: SVector<T, 3>,
+    rate_square: T,
+    force_sum: SVector<T, 3>,
+}
+
+impl<T: Scalar> Block<T> {
+    fn new() -> Self {
+        Self { begun_us: None, count: 0, rate: SVector::zeros(), force: SVector::zeros() }
+    }
+}
+
+impl<T: Scalar> Standstill<T> {
+    fn from_block(rate: SVector<T, 3>, force: SVector<T, 3>) -> Self {
+        Self {
+            blocks: 1,
+            rate,
+            force,
+            rate_sum: SVector::zeros(),
+            rate_square: T::ZERO,
+            force_sum: SVector::zeros(),
+        }
+    }
+}
+
+impl<T: Scalar> Alignment<T> {
+    const BLOCK_US: u64 = 250_000;
+    const BLOCKS: i32 = 4;
+    /// Blocks further apart than this are no standstill (rad/s) …
+    const RATE_SPREAD: f64 = 0.03;
+    /// … nor is a rate that no bias explains (rad/s), however steady …
+    const LARGEST_BIAS: f64 = 0.35;
+    /// … nor forces further apart than this (g).
+    const FORCE_SPREAD: f64 = 0.04;
+    /// The gyroscope's own noise over a second (mrad/s), below which no spread is believed.
+    const RATE_FLOOR: f64 = 0.7;
+    /// The accelerometer's, relative to g.
+    const FORCE_FLOOR: f64 = 0.001;
+    /// How far a bias wanders in a second (mrad/s).
+    const WANDER: f64 = 0.1;
+
+    /// Nothing seen yet but the class of the sensor.
+    pub(crate) fn new(sensor: SensorClass) -> Self {
+        let Noise { gyro_bias, gravity, .. } = sensor.noise::<T>();
+        let milli = gyro_bias * T::from_f64(1000.0);
+        // Squares of tenths of a radian, in mrad: the largest a Q12.20 holds is 45².
+        let bias_variance = (milli * milli).min(T::MAX * T::HALF);
+        Self {
+            gyro_bias: SVector::zeros(),
+            bias_variance,
+            gravity: T::ONE,
+            gravity_variance: gravity * gravity,
+            force_to_g: T::from_f64(1.0 / STANDARD_GRAVITY),
+            block: Block::new(),
+            standstill: Standstill::from_block(SVector::zeros(), SVector::zeros()),
+        }
+    }
+
+    /// The gyro bias (rad/s, body).
+    pub fn gyro_bias(&self) -> &SVector<T, 3> {
+        &self.gyro_bias
+    }
+
+    /// What the accelerometer shows at rest, in units of standard gravity.
+    pub fn gravity(&self) -> T {
+        self.gravity
+    }
+
+    /// What turns a force in m/s² into one in units of the local gravity.
+    pub(crate) fn force_to_g(&self) -> T {
+        self.force_to_g
+    }
+
+    /// Keeps what was learnt and forgets the stream, to begin it again.
+    pub(crate) fn rewound(mut self) -> Self {
+        self.block = Block::new();
+        self.standstill.blocks = 0;
+        self
+    }
+
+    /// Takes the next sample; `Some(|f|/g₀)` when a standstill has just refined the estimates.
+    pub(crate) fn update(&mut self, sample: &ImuSample<T>) -> Option<T> {
+        let begun_us = *self.block.begun_us.get_or_insert(sample.time_us);
+        self.block.rate += sample.angular_rate;
+        self.block.force += sample.specific_force * T::from_f64(1.0 / STANDARD_GRAVITY);
+        self.block.count += 1;
+        if sample.time_us.saturating_sub(begun_us) < Self::BLOCK_US {
+            return None;
+        }
+        let reciprocal = T::ONE / T::from_micro(self.block.count.saturating_mul(1_000_000));
+        let (rate, force) = (self.block.rate * reciprocal, self.block.force * reciprocal);
+        self.block = Block { begun_us: Some(sample.time_us), ..Block::new() };
+        self.join(rate, force)
+    }
+
+    fn join(&mut self, rate: SVector<T, 3>, force: SVector<T, 3>) -> Option<T> {
+        let (rate_step, force_step) = (rate - self.standstill.rate, force - self.standstill.force);
+        let still = largest(&rate_step) < T::from_f64(Self::RATE_SPREAD)
+            && largest(&force_step) < T::from_f64(Self::FORCE_SPREAD)
+            && largest(&rate) < T::from_f64(Self::LARGEST_BIAS);
+        if self.standstill.blocks == 0 || !still {
+            self.standstill = Standstill::from_block(rate, force);
+            return None;
+        }
+        let milli = rate_step * T::from_f64(1000.0);
+        let run = &mut self.standstill;
+        run.blocks += 1;
+        run.rate_sum += milli;
+        run.rate_square += T::dot(&milli.data.0[0], &milli.data.0[0]);
+        run.force_sum += force_step;
+        if run.blocks < Self::BLOCKS {
+            return None;
+        }
+        let magnitude = self.learn();
+        self.standstill.blocks = 0;
+        Some(magnitude)
+    }
+
+    /// One scalar update of the bias and one of gravity from a whole standstill.
+    fn learn(&mut self) -> T {
+        let run = &self.standstill;
+        let share = T::from_f64(0.25);
+        let mean_step = run.rate_sum * share;
+        let square = T::dot(&mean_step.data.0[0], &mean_step.data.0[0]);
+        let spread = (run.rate_square * share - square).max(T::ZERO) * T::from_f64(1.0 / 3.0);
+        let rate = run.rate + mean_step * T::from_f64(0.001);
+        let [x, y, z] = (run.force + run.force_sum * share).data.0[0];
+        let magnitude = x.hypot(y).hypot(z);
+
+        let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
+        self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
+        let gain = self.bias_variance / (self.bias_variance + spread + floor);
+        self.gyro_bias += (rate - self.gyro_bias) * gain;
+        self.bias_variance *= T::ONE - gain;
+
+        let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
+        let gain = self.gravity_variance / (self.gravity_variance + noise);
+        self.gravity += (magnitude - self.gravity) * gain;
+        self.gravity_variance *= T::ONE - gain;
+        self.force_to_g = T::from_f64(1.0 / STANDARD_GRAVITY) / self.gravity;
+        magnitude
+    }
+}
+
+fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {
+    vector.data.0[0].iter().fold(T::ZERO, |largest, component| largest.max(component.abs()))
+}

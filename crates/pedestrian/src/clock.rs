@@ -1,0 +1,42 @@
+use crate::Error;
+use kestirim_scalar::Scalar;
+
+/// What the time stamp of a new sample means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Tick<T> {
+    /// The first sample: nothing to integrate yet.
+    First,
+    /// The same time again: the recorder wrote a row twice.
+    Duplicate,
+    /// Seconds since the sample before, and whether samples are missing between.
+    Elapsed { interval: T, gap: bool },
+}
+
+/// Real time steps from time stamps.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Clock {
+    last_us: Option<u64>,
+}
+
+impl Clock {
+    /// Steps beyond this are missing samples (µs): a tenth of a second spans half a swing.
+    const GAP_US: u64 = 100_000;
+    /// No step is integrated for longer (µs): what the foot did meanwhile is not known.
+    const LONGEST_US: u64 = 200_000;
+
+    /// The step to `time_us`, without taking it.
+    pub(crate) fn tick<T: Scalar>(&self, time_us: u64) -> Result<Tick<T>, Error> {
+        let Some(last_us) = self.last_us else { return Ok(Tick::First) };
+        let elapsed = time_us.checked_sub(last_us).ok_or(Error::TimeBackwards)?;
+        if elapsed == 0 {
+            return Ok(Tick::Duplicate);
+        }
+        let interval = T::from_micro(elapsed.min(Self::LONGEST_US) as i32);
+        Ok(Tick::Elapsed { interval, gap: elapsed > Self::GAP_US })
+    }
+
+    /// Takes the step.
+    pub(crate) fn set(&mut self, time_us: u64) {
+        self.last_us = Some(time_us);
+    }
+}

@@ -1,0 +1,119 @@
+use super::{Motion, Shoe, StanceDetector, Verdict};
+use kestirim_scalar::Scalar;
+
+/// The default detector: SHOE without a threshold to choose.
+///
+/// Every stride has a stance, so the smallest T of the last 1.4 s was one, whoever walks: the foot
+/// stands where T < max(T₀, 2·min T). Where no stance comes for a while, the walker has begun to run or the
+/// minimum was a standstill's, and the bound grows with the time since.
+#[derive(Clone, Copy, Debug)]
+pub struct Adaptive<T> {
+    shoe: Shoe<T>,
+    minimum: RecentMinimum<T>,
+    last_stance_us: Option<u32>,
+}
+
+impl<T: Scalar> Default for Adaptive<T> {
+    fn default() -> Self {
+        Self {
+            shoe: Shoe::default(),
+            minimum: RecentMinimum::new(Self::MEMORY_BINS),
+            last_stance_us: None,
+        }
+    }
+}
+
+impl<T: Scalar> Adaptive<T> {
+    /// 1.4 s, longer than a slow stride.
+    const MEMORY_BINS: usize = 14;
+    /// The bound begins to grow this long after a stance (µs) …
+    const PATIENCE_US: u32 = 800_000;
+    /// … and time since then is counted no further than this (µs).
+    const IMPATIENCE_US: u32 = 10_000_000;
+}
+
+impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
+    #[inline]
+    fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
+        let unrest = self.shoe.update(motion);
+        let minimum = self.minimum.push(motion.time_us, unrest);
+        let last_us = *self.last_stance_us.get_or_insert(motion.time_us);
+        let since = motion.time_us.wrapping_sub(last_us);
+        let waited = since.saturating_sub(Self::PATIENCE_US).min(Self::IMPATIENCE_US);
+        let growth = T::ONE + T::from_micro(waited as i32);
+        let stance = is_below(unrest, minimum, growth);
+        if stance {
+            self.last_stance_us = Some(motion.time_us);
+        }
+        Verdict { stance, unrest }
+    }
+}
+
+/// T < growth·max(T₀, 2·min T), and near the minimum where that is far below T₀.
+#[inline]
+pub(crate) fn is_below<T: Scalar>(unrest: T, minimum: T, growth: T) -> bool {
+    // T₀ in (rad/s)²: below 0.4 rad/s of unrest the foot always stands.
+    let floor = T::from_f64(0.15);
+    let scaled = T::TWO * minimum * growth;
+    unrest < scaled.max(floor * growth) && unrest <= scaled + floor
+}
+
+/// How many bins there is room for.
+const CAPACITY: usize = 16;
+
+/// The smallest value of the recent past, in bins of a tenth of a second.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RecentMinimum<T> {
+    bins: [T; CAPACITY],
+    newest: usize,
+    begun_us: Option<u32>,
+    /// The smallest of all bins but the newest.
+    older: T,
+    memory: usize,
+}
+
+impl<T> RecentMinimum<T> {
+    /// A bin's length (µs).
+    pub(crate) const BIN_US: u32 = 100_000;
+}
+
+impl<T: Scalar> RecentMinimum<T> {
+    /// Remembers `memory` bins and the one being filled; at most 15.
+    pub(crate) fn new(memory: usize) -> Self {
+        Self {
+            bins: [T::MAX; CAPACITY],
+            newest: 0,
+            begun_us: None,
+            older: T::MAX,
+            memory: memory.min(CAPACITY - 1),
+        }
+    }
+
+    /// Takes the value at `time_us` and returns the smallest remembered.
+    #[inline]
+    pub(crate) fn push(&mut self, time_us: u32, value: T) -> T {
+        let mut begun_us = *self.begun_us.get_or_insert(time_us);
+        let mut passed = 0;
+        // A long gap empties every bin; there is no need to pass more of them.
+        while time_us.wrapping_sub(begun_us) >= Self::BIN_US && passed < CAPACITY {
+            self.newest = (self.newest + 1) % CAPACITY;
+            self.bins[self.newest] = T::MAX;
+            begun_us = begun_us.wrapping_add(Self::BIN_US);
+            passed += 1;
+        }
+        if passed > 0 {
+            self.begun_us = Some(if passed < CAPACITY { begun_us } else { time_us });
+            self.older = (1..=self.memory).fold(T::MAX, |smallest, age| {
+                smallest.min(self.bins[self.newest.wrapping_sub(age) % CAPACITY])
+            });
+        }
+        self.bins[self.newest] = self.bins[self.newest].min(value);
+        self.smallest()
+    }
+
+    /// The smallest value remembered.
+    #[inline]
+    pub(crate) fn smallest(&self) -> T {
+        self.bins[self.newest].min(self.older)
+    }
+}

@@ -1,0 +1,71 @@
+use kestirim_scalar::Scalar;
+
+/// How many samples a window can hold: 50 ms at up to 640 Hz; of a faster stream it holds the newest.
+const CAPACITY: usize = 32;
+
+/// Means of `K` features over the last stretch of time, O(1) a sample.
+///
+/// Taking the oldest sample off a running sum leaves a float's rounding behind for ever. So a
+/// second sum is begun afresh now and then: once it covers the whole window, it becomes the sum.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlidingMean<T, const K: usize> {
+    ring: [(u32, [T; K]); CAPACITY],
+    newest: usize,
+    count: usize,
+    sums: [T; K],
+    fresh: [T; K],
+    fresh_count: usize,
+    span_us: u32,
+    /// 1/count, kept because a division is dear and the count seldom changes.
+    reciprocal: T,
+}
+
+impl<T: Scalar, const K: usize> SlidingMean<T, K> {
+    /// An empty window of `span_us` microseconds.
+    pub(crate) fn new(span_us: u32) -> Self {
+        Self {
+            ring: [(0, [T::ZERO; K]); CAPACITY],
+            newest: 0,
+            count: 0,
+            sums: [T::ZERO; K],
+            fresh: [T::ZERO; K],
+            fresh_count: 0,
+            span_us,
+            reciprocal: T::ONE,
+        }
+    }
+
+    /// Adds a sample's features and returns the means.
+    #[inline]
+    pub(crate) fn push(&mut self, time_us: u32, features: [T; K]) -> [T; K] {
+        let before = self.count;
+        while self.count > 0 {
+            let (oldest_us, oldest) =
+                self.ring[self.newest.wrapping_sub(self.count - 1) % CAPACITY];
+            if self.count < CAPACITY && time_us.wrapping_sub(oldest_us) < self.span_us {
+                break;
+            }
+            for k in 0..K {
+                self.sums[k] -= oldest[k];
+            }
+            self.count -= 1;
+        }
+        self.newest = (self.newest + 1) % CAPACITY;
+        self.ring[self.newest] = (time_us, features);
+        self.count += 1;
+        self.fresh_count += 1;
+        for k in 0..K {
+            self.sums[k] += features[k];
+            self.fresh[k] += features[k];
+        }
+        if self.fresh_count >= self.count {
+            self.sums = self.fresh;
+            self.fresh = [T::ZERO; K];
+            self.fresh_count = 0;
+        }
+        if self.count != before {
+            self.reciprocal = T::ONE / T::from_micro(self.count as i32 * 1_000_000);
+        }
+        self.sums.map(|sum| sum * self.reciprocal)
+    }
+}

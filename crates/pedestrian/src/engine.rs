@@ -1,0 +1,142 @@
+use crate::alignment::STANDARD_GRAVITY;
+use crate::clock::{Clock, Tick};
+use crate::detector::{Motion, Verdict};
+use crate::health::Health;
+use crate::navigator::{Navigator, Step, ZeroVelocity, velocity_of_rolling};
+use crate::stride::Strides;
+use crate::{Alignment, Config, Error, Estimate, ImuSample, Stride, Warnings};
+use kestirim_attitude::Orientation;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// All of a tracker but the decision when the foot stands, which the caller brings.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Engine<T: Scalar, N> {
+    config: Config<T>,
+    clock: Clock,
+    pub(crate) alignment: Alignment<T>,
+    navigator: Option<N>,
+    strides: Strides<T>,
+    health: Health<T>,
+    was_stance: bool,
+}
+
+impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
+    pub(crate) fn new(config: Config<T>) -> Self {
+        Self {
+            config,
+            clock: Clock::default(),
+            alignment: Alignment::new(config.sensor),
+            navigator: None,
+            strides: Strides::new(),
+            health: Health::new(),
+            was_stance: false,
+        }
+    }
+
+    /// Whether the sample can be taken, and what its time means. Changes nothing.
+    #[inline]
+    pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<Tick<T>, Error> {
+        sample.check()?;
+        self.clock.tick(sample.time_us)
+    }
+
+    /// The sample as a detector wants it.
+    #[inline]
+    pub(crate) fn motion(&self, sample: &ImuSample<T>) -> Motion<T> {
+        let scale = self.alignment.force_to_g();
+        Motion {
+            time_us: sample.time_us as u32,
+            force_g: sample.specific_force * scale,
+            angular_rate: sample.angular_rate - self.alignment.gyro_bias(),
+        }
+    }
+
+    /// Takes an examined sample with the verdict on it. The first stance levels the foot.
+    #[inline]
+    pub(crate) fn advance(
+        &mut self,
+        sample: &ImuSample<T>,
+        tick: Tick<T>,
+        verdict: Verdict<T>,
+    ) -> Estimate<T> {
+        self.clock.set(sample.time_us);
+        self.health.sample(sample);
+        if let Some(gravity) = self.alignment.update(sample) {
+            self.health.standstill(gravity, self.config.sensor);
+        }
+        if self.navigator.is_none() && verdict.stance {
+            self.navigator = Orientation::from_specific_force(&sample.specific_force)
+                .map(|orientation| N::start(self.config.sensor, orientation));
+        }
+        let mut stride = None;
+        if let Some(navigator) = &mut self.navigator {
+            if let Tick::Elapsed { interval, gap } = tick {
+                if gap {
+                    self.health.gap();
+                }
+                let step = Step {
+                    interval,
+                    specific_force: sample.specific_force,
+                    angular_rate: sample.angular_rate - self.alignment.gyro_bias(),
+                    gravity: self.alignment.gravity() * T::from_f64(STANDARD_GRAVITY),
+                };
+                navigator.propagate(&step, verdict.stance);
+                if verdict.stance {
+                    if !self.was_stance {
+                        self.health.landing(&navigator.velocity());
+                    }
+                    let velocity = velocity_of_rolling(
+                        &navigator.orientation(),
+                        &step.angular_rate,
+                        self.config.contact_height,
+                    );
+                    navigator.zero_velocity(&ZeroVelocity {
+                        velocity,
+                        unrest: verdict.unrest,
+                        interval,
+                    });
+                } else if self.was_stance {
+                    navigator.swing_begins();
+                }
+            }
+            stride = self.strides.update(sample.time_us, navigator.position(), verdict.stance);
+        }
+        self.was_stance = verdict.stance;
+        self.estimate(sample.time_us, verdict.stance, stride)
+    }
+
+    /// The state after the last sample, again.
+    #[inline]
+    pub(crate) fn estimate(
+        &self,
+        time_us: u64,
+        stance: bool,
+        stride: Option<Stride<T>>,
+    ) -> Estimate<T> {
+        let (position, velocity, orientation) = match &self.navigator {
+            Some(navigator) => {
+                (navigator.position(), navigator.velocity(), navigator.orientation())
+            }
+            None => (SVector::zeros(), SVector::zeros(), Orientation::identity()),
+        };
+        Estimate { time_us, position, velocity, orientation, stance, stride }
+    }
+
+    #[inline]
+    pub(crate) fn was_stance(&self) -> bool {
+        self.was_stance
+    }
+
+    pub(crate) fn finish(&mut self) -> Option<Stride<T>> {
+        self.strides.finish()
+    }
+
+    pub(crate) fn path_length(&self) -> T {
+        self.strides.path_length()
+    }
+
+    pub(crate) fn warnings(&self) -> Warnings {
+        self.health.warnings()
+    }
+}

@@ -1,0 +1,30 @@
+use core::fmt;
+
+/// Why a sample was refused. The tracker is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// A component is NaN, infinite or on a rail of fixed point.
+    NotFinite,
+    /// No sensor can have measured this: beyond 1000 g or 10⁵ °/s.
+    Implausible,
+    /// The time stamp is before that of the last sample.
+    TimeBackwards,
+    /// The working memory has fewer entries than the recording has samples.
+    NoMemory,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a component of the sample is not finite",
+            Self::Implausible => "no sensor measures beyond 1000 g or 100000 degrees a second",
+            Self::TimeBackwards => "the sample is older than the one before it",
+            Self::NoMemory => "the working memory is shorter than the recording",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

@@ -1,0 +1,119 @@
+use crate::{ImuSample, SensorClass};
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// What is suspicious about a stream. Flags once raised stay raised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+// One flag a finding is what a reader wants to ask for by name.
+#[allow(clippy::struct_excessive_bools)]
+pub struct Warnings {
+    /// An axis of the accelerometer showed the same large value three times in a row: its range is too small.
+    pub accelerometer_saturated: bool,
+    /// The same of the gyroscope.
+    pub gyroscope_saturated: bool,
+    /// At rest the accelerometer does not show 9.8 m/s²: its unit is wrong (g?) or it needs calibration.
+    pub gravity_implausible: bool,
+    /// Angular rates beyond any foot: degrees a second taken for radians?
+    pub rate_implausible: bool,
+    /// Stride after stride ends with metres a second left over: axes are swapped or mirrored between the
+    /// two sensors, or a unit is wrong.
+    pub axes_inconsistent: bool,
+    /// Samples are missing (more than a tenth of a second).
+    pub gaps: bool,
+    /// The stream showed no second of standstill: the gyro bias is unknown.
+    pub never_still: bool,
+}
+
+/// Watches a stream for what no filter can mend.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Health<T: Scalar> {
+    warnings: Warnings,
+    force: Repeats<T>,
+    rate: Repeats<T>,
+    bad_landings: u8,
+}
+
+/// How often in a row each axis has shown the same value.
+#[derive(Clone, Copy, Debug)]
+struct Repeats<T: Scalar> {
+    last: SVector<T, 3>,
+    counts: [u8; 3],
+}
+
+impl<T: Scalar> Repeats<T> {
+    /// Whether an axis has now shown the same value of at least `large` three times.
+    #[inline]
+    fn update(&mut self, value: &SVector<T, 3>, large: T) -> bool {
+        let mut saturated = false;
+        for axis in 0..3 {
+            let (new, old) = (value.data.0[0][axis], &mut self.last.data.0[0][axis]);
+            let again = new == *old && new.abs() > large;
+            self.counts[axis] = if again { self.counts[axis].saturating_add(1) } else { 0 };
+            *old = new;
+            saturated |= self.counts[axis] >= 2;
+        }
+        saturated
+    }
+}
+
+impl<T: Scalar> Health<T> {
+    /// A little below the smallest range of an accelerometer, 2 g (m/s²).
+    const LARGE_FORCE: f64 = 18.0;
+    /// A little below the smallest range of a gyroscope, 250 °/s (rad/s).
+    const LARGE_RATE: f64 = 4.2;
+    /// Beyond the widest range of a gyroscope, 2000 °/s (rad/s).
+    const LARGEST_RATE: f64 = 45.0;
+    /// A stride that ends with so much velocity left over (m/s) was not measured by this IMU …
+    const LANDING: f64 = 2.0;
+    /// … if it happens so often.
+    const LANDINGS: u8 = 4;
+
+    pub(crate) fn new() -> Self {
+        let nothing = Repeats { last: SVector::zeros(), counts: [0; 3] };
+        let warnings = Warnings { never_still: true, ..Warnings::default() };
+        Self { warnings, force: nothing, rate: nothing, bad_landings: 0 }
+    }
+
+    pub(crate) fn warnings(&self) -> Warnings {
+        self.warnings
+    }
+
+    /// A sample came.
+    #[inline]
+    pub(crate) fn sample(&mut self, sample: &ImuSample<T>) {
+        let warnings = &mut self.warnings;
+        warnings.accelerometer_saturated |=
+            self.force.update(&sample.specific_force, T::from_f64(Self::LARGE_FORCE));
+        warnings.gyroscope_saturated |=
+            self.rate.update(&sample.angular_rate, T::from_f64(Self::LARGE_RATE));
+        let limit = T::from_f64(Self::LARGEST_RATE);
+        warnings.rate_implausible |= self.rate.last.data.0[0].iter().any(|rate| rate.abs() > limit);
+    }
+
+    /// Samples are missing.
+    pub(crate) fn gap(&mut self) {
+        self.warnings.gaps = true;
+    }
+
+    /// A standstill showed gravity (in units of standard gravity).
+    pub(crate) fn standstill(&mut self, gravity: T, sensor: SensorClass) {
+        self.warnings.never_still = false;
+        // A bare chip's zero is off by up to 80 mg an axis.
+        let tolerance = match sensor {
+            SensorClass::Industrial => 0.05,
+            SensorClass::Consumer => 0.12,
+        };
+        self.warnings.gravity_implausible |= (gravity - T::ONE).abs() > T::from_f64(tolerance);
+    }
+
+    /// A swing ended with this velocity (m/s, earth) where there should be none.
+    pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>) {
+        let limit = T::from_f64(Self::LANDING);
+        if velocity.data.0[0].iter().any(|component| component.abs() > limit) {
+            self.bad_landings = self.bad_landings.saturating_add(1);
+        }
+        self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;
+    }
+}

@@ -1,0 +1,25 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod alignment;
+mod clock;
+pub mod detector;
+mod engine;
+mod error;
+mod health;
+mod navigator;
+mod offline;
+mod sample;
+mod sensor;
+mod stride;
+mod tracker;
+
+pub use alignment::Alignment;
+pub use error::Error;
+pub use health::Warnings;
+pub use navigator::{Ekf, Lite, Navigator, Step, ZeroVelocity};
+pub use offline::OfflineTracker;
+pub use sample::ImuSample;
+pub use sensor::SensorClass;
+pub use stride::Stride;
+pub use tracker::{Config, EkfTracker, Estimate, LiteTracker, Tracker};

@@ -1,0 +1,79 @@
+use super::strapdown::Strapdown;
+use super::{Navigator, Step, ZeroVelocity};
+use crate::SensorClass;
+use kestirim_attitude::{Ahrs, Gains, Orientation};
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// The paper's own architecture: an attitude reference, integration, and the drift of each stride taken
+/// back when it ends.
+///
+/// A velocity that is wrong by e at the end of a swing of T seconds drifted there linearly: the position
+/// is e·T/2 too far, and the tilt was wrong by about e/(g·T). Both are put right, the latter by half.
+#[derive(Clone, Copy, Debug)]
+pub struct Lite<T: Scalar> {
+    ahrs: Ahrs<T>,
+    strapdown: Strapdown<T>,
+    /// Since the last zero velocity (s).
+    drifted: T,
+    swinging: bool,
+}
+
+impl<T: Scalar> Lite<T> {
+    /// How much of the tilt that would explain a stride's drift is believed.
+    const TILT_SHARE: f64 = 0.5;
+    /// A drift within less than this (s) says nothing of the tilt.
+    const SHORTEST_SWING: f64 = 0.3;
+    /// Longest drift that is still taken to be linear (s).
+    const LONGEST_SWING: f64 = 10.0;
+}
+
+impl<T: Scalar> Navigator<T> for Lite<T> {
+    fn start(_: SensorClass, orientation: Orientation<T>) -> Self {
+        // In stance gravity corrects the tilt within a second; the bias is the alignment's business.
+        let gains = Gains { tilt: T::ONE, bias: T::ZERO, gate: T::from_f64(0.2) };
+        Self {
+            ahrs: Ahrs::new(orientation, SVector::zeros(), gains),
+            strapdown: Strapdown::at_rest(),
+            drifted: T::ZERO,
+            swinging: false,
+        }
+    }
+
+    #[inline]
+    fn propagate(&mut self, step: &Step<T>, stance: bool) {
+        self.strapdown.integrate(self.ahrs.orientation(), step);
+        let gravity = if stance { Some(&step.specific_force) } else { None };
+        // Steps are checked: bounded rates over at most a fifth of a second.
+        let _ = self.ahrs.update(&step.angular_rate, gravity, step.interval);
+        self.drifted = (self.drifted + step.interval).min(T::from_f64(Self::LONGEST_SWING));
+    }
+
+    #[inline]
+    fn zero_velocity(&mut self, zero: &ZeroVelocity<T>) {
+        let error = self.strapdown.velocity - zero.velocity;
+        self.strapdown.position -= error * (self.drifted * T::HALF);
+        self.strapdown.velocity = zero.velocity;
+        if self.swinging {
+            let swing = self.drifted.max(T::from_f64(Self::SHORTEST_SWING));
+            let share = T::from_f64(Self::TILT_SHARE / crate::alignment::STANDARD_GRAVITY) / swing;
+            let [x, y, _] = error.data.0[0];
+            self.ahrs.turn_in_earth(&SVector::from([y * share, -x * share, T::ZERO]));
+            self.swinging = false;
+        }
+        self.drifted = T::ZERO;
+    }
+
+    fn swing_begins(&mut self) {
+        self.swinging = true;
+    }
+    fn position(&self) -> SVector<T, 3> {
+        self.strapdown.position
+    }
+    fn velocity(&self) -> SVector<T, 3> {
+        self.strapdown.velocity
+    }
+    fn orientation(&self) -> Orientation<T> {
+        *self.ahrs.orientation()
+    }
+}

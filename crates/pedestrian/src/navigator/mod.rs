@@ -1,0 +1,58 @@
+//! From specific force and angular rate to position, held by the foot's own standstills.
+
+mod ekf;
+mod lite;
+mod strapdown;
+
+pub use ekf::Ekf;
+pub use lite::Lite;
+pub(crate) use strapdown::velocity_of_rolling;
+
+use crate::SensorClass;
+use kestirim_attitude::Orientation;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// One step of time with what moved the foot in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<T: Scalar> {
+    /// Its length (s).
+    pub interval: T,
+    /// Specific force (m/s², body), held over the step.
+    pub specific_force: SVector<T, 3>,
+    /// Angular rate without its bias (rad/s, body), held over the step.
+    pub angular_rate: SVector<T, 3>,
+    /// What the accelerometer shows at rest (m/s²).
+    pub gravity: T,
+}
+
+/// The foot is known to stand: its velocity is known.
+#[derive(Clone, Copy, Debug)]
+pub struct ZeroVelocity<T: Scalar> {
+    /// The sensor's velocity (m/s, earth): zero, or that of a foot which rolls on the ground.
+    pub velocity: SVector<T, 3>,
+    /// The unrest T of the detector's verdict, (rad/s)².
+    pub unrest: T,
+    /// The step that ends in this sample (s).
+    pub interval: T,
+}
+
+/// Navigates a foot by dead reckoning and zero velocities.
+///
+/// Steps are checked before they come here: finite, bounded, of positive length.
+pub trait Navigator<T: Scalar> {
+    /// At the origin, at rest.
+    fn start(sensor: SensorClass, orientation: Orientation<T>) -> Self;
+    /// Moves by one step.
+    fn propagate(&mut self, step: &Step<T>, stance: bool);
+    /// The foot stands at the end of this step.
+    fn zero_velocity(&mut self, zero: &ZeroVelocity<T>);
+    /// The stance that was is over.
+    fn swing_begins(&mut self);
+    /// Where the sensor is (m, earth, from the start).
+    fn position(&self) -> SVector<T, 3>;
+    /// How it moves (m/s, earth).
+    fn velocity(&self) -> SVector<T, 3>;
+    /// How it is turned, body → earth.
+    fn orientation(&self) -> Orientation<T>;
+}

@@ -1,0 +1,60 @@
+use super::Step;
+use kestirim_attitude::Orientation;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// Position and velocity by integration of the specific force (earth axes).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strapdown<T: Scalar> {
+    pub(super) position: SVector<T, 3>,
+    pub(super) velocity: SVector<T, 3>,
+}
+
+impl<T: Scalar> Strapdown<T> {
+    pub(super) fn at_rest() -> Self {
+        Self { position: SVector::zeros(), velocity: SVector::zeros() }
+    }
+
+    /// Integrates one step from the orientation at its beginning; returns the force's velocity change
+    /// ∫f dt (m/s, earth), gravity not taken off.
+    ///
+    /// The body turns by φ = ω·dt meanwhile: ∫f dt ≈ R·(f + ½·φ × f)·dt (Savage 1998, rotation
+    /// compensation). The velocity changes linearly over the step.
+    #[inline]
+    pub(super) fn integrate(
+        &mut self,
+        orientation: &Orientation<T>,
+        step: &Step<T>,
+    ) -> SVector<T, 3> {
+        let dt = step.interval;
+        let half_turn = step.angular_rate * (dt * T::HALF);
+        let force = step.specific_force + cross(&half_turn, &step.specific_force);
+        let pushed = orientation.to_earth(&(force * dt));
+        let mut change = pushed;
+        change.data.0[0][2] -= step.gravity * dt;
+        self.position += (self.velocity + change * T::HALF) * dt;
+        self.velocity += change;
+        pushed
+    }
+}
+
+/// The velocity (m/s, earth) of a sensor on a foot that rolls over its ball.
+///
+/// In stance the foot is not at rest: its heel is on the way up already, and a sensor `height` above the
+/// point of contact moves at ω × (0, 0, height). Taken for zero, those few centimetres a second are
+/// missing from every stride: 1.7 % of the path of the walks we measured.
+#[inline]
+pub(crate) fn velocity_of_rolling<T: Scalar>(
+    orientation: &Orientation<T>,
+    angular_rate: &SVector<T, 3>,
+    height: T,
+) -> SVector<T, 3> {
+    let [x, y, _] = orientation.to_earth(angular_rate).data.0[0];
+    SVector::from([y * height, -x * height, T::ZERO])
+}
+
+#[inline]
+fn cross<T: Scalar>(a: &SVector<T, 3>, b: &SVector<T, 3>) -> SVector<T, 3> {
+    let (a, b) = (a.data.0[0], b.data.0[0]);
+    SVector::from([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}

@@ -1,0 +1,133 @@
+use crate::clock::Tick;
+use crate::detector::{RecentMinimum, Shoe, Verdict, is_below};
+use crate::engine::Engine;
+use crate::navigator::Navigator;
+use crate::{Config, Error, Estimate, ImuSample, Stride, Warnings};
+use kestirim_scalar::Scalar;
+
+/// Tracks a foot through a recorded walk, looking ahead.
+///
+/// Two things are better known afterwards: gyro bias and gravity from the quietest moments of the whole
+/// start, and the stances, whose unrest is compared with the smallest of 0.6 s before and after. An
+/// iterator over the estimates, one a sample; memory is the recording and one number a sample, both the
+/// caller's.
+#[derive(Debug)]
+pub struct OfflineTracker<'a, T: Scalar, N> {
+    engine: Engine<T, N>,
+    samples: &'a [ImuSample<T>],
+    unrest: &'a [T],
+    minimum: RecentMinimum<T>,
+    next: usize,
+    ahead: usize,
+}
+
+impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
+    /// How far the start is searched for standstills (µs).
+    const START_US: u64 = 20_000_000;
+    /// Half of the span over which the smallest unrest is sought (µs).
+    const LOOK_US: u64 = 600_000;
+    /// The same to both sides, in bins.
+    const LOOK_BINS: usize = 12;
+
+    /// Prepares a walk. `unrest` is working memory, an entry a sample.
+    ///
+    /// # Errors
+    /// The index of the first sample that no tracker can take, and why. (The entries of `unrest` that are
+    /// missing count as such a sample: [`Error::NoMemory`].)
+    pub fn new(
+        config: Config<T>,
+        samples: &'a [ImuSample<T>],
+        unrest: &'a mut [T],
+    ) -> Result<Self, (usize, Error)> {
+        if unrest.len() < samples.len() {
+            return Err((unrest.len(), Error::NoMemory));
+        }
+        let mut engine = Engine::<T, N>::new(config);
+        let start_us = samples.first().map_or(0, |sample| sample.time_us);
+        let mut last_us = start_us;
+        for (index, sample) in samples.iter().enumerate() {
+            sample.check().map_err(|error| (index, error))?;
+            if sample.time_us < last_us {
+                return Err((index, Error::TimeBackwards));
+            }
+            if sample.time_us != last_us && sample.time_us - start_us < Self::START_US {
+                engine.alignment.update(sample);
+            }
+            last_us = sample.time_us;
+        }
+        engine.alignment = engine.alignment.rewound();
+        centred_unrest(&engine, samples, unrest);
+        let minimum = RecentMinimum::new(Self::LOOK_BINS);
+        Ok(Self { engine, samples, unrest, minimum, next: 0, ahead: 0 })
+    }
+
+    /// Ends the walk: the stride that led to the stance the foot is in, if any.
+    pub fn finish(&mut self) -> Option<Stride<T>> {
+        self.engine.finish()
+    }
+
+    /// The horizontal path walked so far, from stance to stance (m).
+    pub fn path_length(&self) -> T {
+        self.engine.path_length()
+    }
+
+    /// What is suspicious about the stream so far.
+    pub fn warnings(&self) -> Warnings {
+        self.engine.warnings()
+    }
+
+    /// The smallest unrest around `time_us`.
+    fn minimum_around(&mut self, time_us: u64) -> T {
+        while let (Some(sample), Some(&unrest)) =
+            (self.samples.get(self.ahead), self.unrest.get(self.ahead))
+        {
+            if sample.time_us > time_us.saturating_add(Self::LOOK_US) {
+                break;
+            }
+            self.minimum.push(sample.time_us as u32, unrest);
+            self.ahead += 1;
+        }
+        self.minimum.smallest()
+    }
+}
+
+impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
+    type Item = Estimate<T>;
+
+    fn next(&mut self) -> Option<Estimate<T>> {
+        let (sample, &unrest) = (self.samples.get(self.next)?, self.unrest.get(self.next)?);
+        self.next += 1;
+        let minimum = self.minimum_around(sample.time_us);
+        // Every sample was examined when the walk was prepared.
+        let tick = self.engine.examine(sample).ok()?;
+        if tick == Tick::Duplicate {
+            return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
+        }
+        let verdict = Verdict { stance: is_below(unrest, minimum, T::ONE), unrest };
+        Some(self.engine.advance(sample, tick, verdict))
+    }
+}
+
+/// The statistic T of the window around each sample, instead of the one that ends in it.
+fn centred_unrest<T: Scalar, N: Navigator<T>>(
+    engine: &Engine<T, N>,
+    samples: &[ImuSample<T>],
+    unrest: &mut [T],
+) {
+    let mut shoe = Shoe::default();
+    let mut centred = 0;
+    let mut last = T::MAX;
+    for sample in samples {
+        last = shoe.update(&engine.motion(sample));
+        let middle_us = sample.time_us.saturating_sub(u64::from(Shoe::<T>::WINDOW_US / 2));
+        while samples.get(centred).is_some_and(|sample| sample.time_us <= middle_us) {
+            if let Some(entry) = unrest.get_mut(centred) {
+                *entry = last;
+            }
+            centred += 1;
+        }
+    }
+    for entry in unrest.iter_mut().skip(centred) {
+        *entry = last;
+    }
+}

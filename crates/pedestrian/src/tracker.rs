@@ -1,0 +1,114 @@
+use crate::clock::Tick;
+use crate::detector::{Adaptive, StanceDetector};
+use crate::engine::Engine;
+use crate::navigator::{Ekf, Lite, Navigator};
+use crate::{Alignment, Error, ImuSample, SensorClass, Stride, Warnings};
+use kestirim_attitude::Orientation;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// What is known of sensor and foot beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Config<T> {
+    /// The class of the IMU.
+    pub sensor: SensorClass,
+    /// How high the sensor is above the ball of the foot, about which the foot rolls in stance (m). Zero
+    /// takes the foot for motionless.
+    pub contact_height: T,
+}
+
+impl<T: Scalar> Default for Config<T> {
+    /// A consumer IMU on the instep, 7 cm up.
+    fn default() -> Self {
+        Self { sensor: SensorClass::default(), contact_height: T::from_f64(0.07) }
+    }
+}
+
+/// Where the foot is after a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Estimate<T: Scalar> {
+    /// Of the sample (µs, the samples' clock).
+    pub time_us: u64,
+    /// Where the sensor is (m, earth: z up, from the start).
+    pub position: SVector<T, 3>,
+    /// How it moves (m/s, earth).
+    pub velocity: SVector<T, 3>,
+    /// How it is turned, body → earth.
+    pub orientation: Orientation<T>,
+    /// Whether the foot stands.
+    pub stance: bool,
+    /// The stride that this sample completed, if any.
+    pub stride: Option<Stride<T>>,
+}
+
+/// Tracks a foot, strictly causally: an estimate knows the samples up to its own and no later one.
+#[derive(Clone, Copy, Debug)]
+pub struct Tracker<T: Scalar, N, D = Adaptive<T>> {
+    engine: Engine<T, N>,
+    detector: D,
+}
+
+/// A [`Tracker`] in the paper's architecture: no covariance, half the cost.
+pub type LiteTracker<T> = Tracker<T, Lite<T>>;
+/// A [`Tracker`] with an error-state Kalman filter.
+pub type EkfTracker<T> = Tracker<T, Ekf<T>>;
+
+impl<T: Scalar, N: Navigator<T>> Tracker<T, N> {
+    /// A tracker with the adaptive detector.
+    pub fn new(config: Config<T>) -> Self {
+        Self::with_detector(config, Adaptive::default())
+    }
+}
+
+impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
+    /// A tracker with a detector of your choice.
+    pub fn with_detector(config: Config<T>, detector: D) -> Self {
+        Self { engine: Engine::new(config), detector }
+    }
+
+    /// Takes the next sample. One with the same time as the last is taken for a row written twice and
+    /// changes nothing.
+    ///
+    /// # Errors
+    /// [`Error`] if the sample cannot have been measured or is out of order; the tracker is as it was.
+    #[inline]
+    pub fn update(&mut self, sample: &ImuSample<T>) -> Result<Estimate<T>, Error> {
+        let tick = self.engine.examine(sample)?;
+        if tick == Tick::Duplicate {
+            return Ok(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
+        }
+        let verdict = self.detector.update(&self.engine.motion(sample));
+        Ok(self.engine.advance(sample, tick, verdict))
+    }
+
+    /// Ends the walk: the stride that led to the stance the foot is in, if any.
+    pub fn finish(&mut self) -> Option<Stride<T>> {
+        self.engine.finish()
+    }
+
+    /// The horizontal path walked, from stance to stance (m).
+    pub fn path_length(&self) -> T {
+        self.engine.path_length()
+    }
+
+    /// What is suspicious about the stream so far.
+    pub fn warnings(&self) -> Warnings {
+        self.engine.warnings()
+    }
+
+    /// What standstills have shown of gyro bias and gravity.
+    pub fn alignment(&self) -> &Alignment<T> {
+        &self.engine.alignment
+    }
+}

@@ -1,0 +1,83 @@
+//! Arithmetic: rounding to nearest, saturating, never panicking.
+
+use super::Fixed;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use num_traits::{One, Zero};
+
+impl<const FRAC: u32> Add for Fixed<FRAC> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+}
+
+impl<const FRAC: u32> Sub for Fixed<FRAC> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+}
+
+impl<const FRAC: u32> Neg for Fixed<FRAC> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self(self.0.saturating_neg())
+    }
+}
+
+impl<const FRAC: u32> Mul for Fixed<FRAC> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let product = i64::from(self.0) * i64::from(other.0);
+        Self::saturate((product + i64::from(Self::SCALE >> 1)) >> FRAC)
+    }
+}
+
+impl<const FRAC: u32> Div for Fixed<FRAC> {
+    type Output = Self;
+    /// Rounds half away from zero; by zero it gives the rail of the dividend's sign, the lower one for 0/0.
+    #[inline]
+    fn div(self, divisor: Self) -> Self {
+        if divisor.0 == 0 {
+            return Self(if self.0 > 0 { i32::MAX } else { i32::MIN });
+        }
+        let dividend = i64::from(self.0) << FRAC;
+        let half = i64::from(divisor.0.unsigned_abs() >> 1);
+        let towards = if dividend < 0 { dividend - half } else { dividend + half };
+        Self::saturate(towards.wrapping_div(i64::from(divisor.0)))
+    }
+}
+
+macro_rules! impl_assign {
+    ($($assign:ident $method:ident $operator:tt),*) => {$(
+        impl<const FRAC: u32> $assign for Fixed<FRAC> {
+            #[inline]
+            fn $method(&mut self, other: Self) {
+                *self = *self $operator other;
+            }
+        }
+    )*};
+}
+impl_assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
+
+impl<const FRAC: u32> Zero for Fixed<FRAC> {
+    #[inline]
+    fn zero() -> Self {
+        Self(0)
+    }
+    #[inline]
+    fn is_zero(&self) -> bool {
+        self.0 == 0
+    }
+}
+
+impl<const FRAC: u32> One for Fixed<FRAC> {
+    #[inline]
+    fn one() -> Self {
+        Self(Self::SCALE)
+    }
+}

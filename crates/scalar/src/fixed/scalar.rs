@@ -1,0 +1,136 @@
+//! The trait for fixed point.
+
+use super::{Fixed, FixedDivisor};
+use crate::Scalar;
+
+impl<const FRAC: u32> Fixed<FRAC> {
+    /// 2ᶠᴿᴬᶜ as doubles: factors of conversion.
+    const TO_BITS: f64 = Self::SCALE as f64;
+
+    #[inline(always)]
+    const fn rounded(value: f64) -> Self {
+        let scaled = value * Self::TO_BITS;
+        if value.is_nan() {
+            return Self(i32::MIN);
+        }
+        Self((if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32)
+    }
+}
+
+impl<const FRAC: u32> Scalar for Fixed<FRAC> {
+    /// The sum in units of 2⁻²ᶠᴿᴬᶜ: two products of rails fit; beyond them it saturates.
+    type Accumulator = i64;
+    type Divisor = FixedDivisor<FRAC>;
+
+    const ZERO: Self = Self(0);
+    const ONE: Self = Self(Self::SCALE);
+    const HALF: Self = Self(Self::SCALE >> 1);
+    const TWO: Self = Self::saturate(2 * Self::SCALE as i64);
+    const PI: Self = Self::rounded(core::f64::consts::PI);
+    const EPSILON: Self = Self(1);
+    const MIN: Self = Self(i32::MIN);
+    const MAX: Self = Self(i32::MAX);
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self::rounded(value)
+    }
+    #[inline]
+    fn to_f64(self) -> f64 {
+        f64::from(self.0) / Self::TO_BITS
+    }
+    #[inline]
+    fn from_f32(value: f32) -> Self {
+        if value.is_nan() {
+            return Self(i32::MIN);
+        }
+        // A power of two loses nothing; adding the half may, but only where a float has no fraction left.
+        let scaled = value * Self::SCALE as f32;
+        if scaled.abs() >= 8_388_608.0 {
+            return Self(scaled as i32);
+        }
+        Self((if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32)
+    }
+    #[inline]
+    fn to_f32(self) -> f32 {
+        self.0 as f32 / Self::SCALE as f32
+    }
+    #[inline]
+    fn from_micro(value: i32) -> Self {
+        // 10⁻⁶ · 2⁵¹ is exact to 2·10⁻¹⁰; FRAC ≤ 30 leaves at least 21 bits to round away.
+        const MICRO_Q51: i64 = 2_251_799_814;
+        let shift = 51 - FRAC;
+        Self::saturate((i64::from(value) * MICRO_Q51 + (1 << (shift - 1))) >> shift)
+    }
+
+    #[inline]
+    fn is_finite(self) -> bool {
+        self.0 != i32::MIN && self.0 != i32::MAX
+    }
+    #[inline]
+    fn abs(self) -> Self {
+        Self(self.0.saturating_abs())
+    }
+    #[inline]
+    fn min(self, other: Self) -> Self {
+        Ord::min(self, other)
+    }
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        Ord::max(self, other)
+    }
+    #[inline]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        Ord::min(Ord::max(self, low), high)
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.square_root()
+    }
+    #[inline]
+    fn hypot(self, other: Self) -> Self {
+        self.hypotenuse(other)
+    }
+    #[inline]
+    fn recip(self) -> Self {
+        if self.0 == 0 { Self(i32::MAX) } else { Self::ONE / self }
+    }
+    #[inline]
+    fn divisor(self) -> FixedDivisor<FRAC> {
+        FixedDivisor::new(self)
+    }
+    #[inline]
+    fn divided_by(self, divisor: FixedDivisor<FRAC>) -> Self {
+        divisor.divide(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        self.sine_cosine()
+    }
+    #[inline]
+    fn atan2(self, other: Self) -> Self {
+        Self::arc_tangent(self, other)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        self.exponential()
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.logarithm()
+    }
+
+    #[inline]
+    fn accumulator() -> i64 {
+        0
+    }
+    #[inline]
+    fn mac(sum: i64, a: Self, b: Self) -> i64 {
+        sum.saturating_add(i64::from(a.0) * i64::from(b.0))
+    }
+    #[inline]
+    fn finish(sum: i64) -> Self {
+        Self::saturate(sum.saturating_add(i64::from(Self::SCALE >> 1)) >> FRAC)
+    }
+}

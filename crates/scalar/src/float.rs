@@ -1,0 +1,136 @@
+//! The trait for floats: arithmetic is the machine's, functions are libm's, so that host and target
+//! agree bit for bit.
+
+use crate::{Scalar, single};
+
+macro_rules! impl_scalar_for_float {
+    ($float:ident, $sqrt:path, $hypot:path, $sin_cos:path, $atan2:path, $exp:path, $ln:path) => {
+        impl Scalar for $float {
+            type Accumulator = $float;
+            type Divisor = $float;
+
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const HALF: Self = 0.5;
+            const TWO: Self = 2.0;
+            const PI: Self = core::$float::consts::PI;
+            const EPSILON: Self = $float::EPSILON;
+            const MIN: Self = $float::MIN;
+            const MAX: Self = $float::MAX;
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
+            #[inline]
+            fn to_f64(self) -> f64 {
+                self as f64
+            }
+            #[inline]
+            fn from_f32(value: f32) -> Self {
+                value as Self
+            }
+            #[inline]
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+            #[inline]
+            fn from_micro(value: i32) -> Self {
+                value as Self * 1e-6
+            }
+
+            #[inline]
+            fn is_finite(self) -> bool {
+                $float::is_finite(self)
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+            #[inline]
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+            #[inline]
+            fn max(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+            #[inline]
+            fn clamp(self, low: Self, high: Self) -> Self {
+                Scalar::min(Scalar::max(self, low), high)
+            }
+
+            #[inline]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            #[inline]
+            fn hypot(self, other: Self) -> Self {
+                $hypot(self, other)
+            }
+            #[inline]
+            fn recip(self) -> Self {
+                $float::recip(self)
+            }
+            #[inline]
+            fn divisor(self) -> Self {
+                self.recip()
+            }
+            #[inline]
+            fn divided_by(self, divisor: Self) -> Self {
+                self * divisor
+            }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                $sin_cos(self)
+            }
+            #[inline]
+            fn atan2(self, other: Self) -> Self {
+                $atan2(self, other)
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+
+            #[inline]
+            fn accumulator() -> Self {
+                // −0 + x is x to the bit, so that the compiler drops the addition.
+                -0.0
+            }
+            #[inline]
+            fn mac(sum: Self, a: Self, b: Self) -> Self {
+                sum + a * b
+            }
+            #[inline]
+            fn finish(sum: Self) -> Self {
+                sum
+            }
+        }
+    };
+}
+
+// libm's single-precision sine and hypotenuse compute in double precision, which a target without
+// it emulates at ten times the cost: those two are our own.
+impl_scalar_for_float!(
+    f32,
+    libm::sqrtf,
+    single::hypot,
+    single::sin_cos,
+    libm::atan2f,
+    libm::expf,
+    libm::logf
+);
+impl_scalar_for_float!(
+    f64,
+    libm::sqrt,
+    libm::hypot,
+    libm::sincos,
+    libm::atan2,
+    libm::exp,
+    libm::log
+);

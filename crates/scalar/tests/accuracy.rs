@@ -1,0 +1,151 @@
+//! Every elementary function against f64 over its whole domain, edges included. The bounds asserted are
+//! those of the crate's documentation.
+
+use kestirim_scalar::{Fixed, Scalar};
+
+/// Bits over the whole range of an i32: both rails, every power of two and its neighbours, small numbers one
+/// by one, and 200 000 spread evenly.
+fn all_sizes() -> impl Iterator<Item = i32> {
+    let edges = [i32::MIN, i32::MIN + 1, i32::MAX, i32::MAX - 1];
+    let powers = (0..31).flat_map(|k| [(1 << k) - 1, 1 << k, (1 << k) + 1]).flat_map(|b| [b, -b]);
+    let small = -3000..3000;
+    let spread = (0..200_000_i64).map(|k| (i64::from(i32::MIN) + k * 21_475) as i32);
+    edges.into_iter().chain(powers).chain(small).chain(spread)
+}
+
+/// Asserts |ours − exact| ≤ absolute + relative·|exact| + ½ LSB; what is out of range must be on its rail.
+#[track_caller]
+fn assert_near<const FRAC: u32>(
+    ours: Fixed<FRAC>,
+    exact: f64,
+    absolute: f64,
+    relative: f64,
+    what: f64,
+) {
+    let lsb = Fixed::<FRAC>::EPSILON.to_f64();
+    let bound = absolute + relative * exact.abs() + 0.500_001 * lsb;
+    if exact >= Fixed::<FRAC>::MAX.to_f64() + bound {
+        assert_eq!(ours, Fixed::MAX, "f({what}) = {exact} must saturate");
+    } else if exact <= Fixed::<FRAC>::MIN.to_f64() - bound {
+        assert_eq!(ours, Fixed::MIN, "f({what}) = {exact} must saturate");
+    } else {
+        let error = (ours.to_f64() - exact).abs();
+        assert!(error <= bound, "f({what}) = {exact}, ours {ours}, error {error} > {bound}");
+    }
+}
+
+fn check_one_argument<const FRAC: u32>() {
+    for bits in all_sizes() {
+        let x = Fixed::<FRAC>::from_bits(bits);
+        let exact = x.to_f64();
+        let (sine, cosine) = x.sin_cos();
+        // 1/2π is rounded to 2⁻³³.
+        let reduction = exact.abs() * 2.0_f64.powi(-30);
+        assert_near(sine, exact.sin(), 2.5e-5 + reduction, 0.0, exact);
+        assert_near(cosine, exact.cos(), 2.5e-5 + reduction, 0.0, exact);
+        assert_near(x.exp(), exact.exp(), 0.0, 2e-5, exact);
+        if bits > 0 {
+            assert_near(x.ln(), exact.ln(), 1.5e-5, 0.0, exact);
+            assert_near(x.sqrt(), exact.sqrt(), 0.0, 0.0, exact);
+        } else {
+            assert_eq!(x.ln(), Fixed::MIN);
+            assert_eq!(x.sqrt(), if bits == 0 { Fixed::ZERO } else { Fixed::MIN });
+        }
+        if bits != 0 {
+            assert_near(x.recip(), 1.0 / exact, 0.0, 0.0, exact);
+        }
+    }
+}
+
+fn check_two_arguments<const FRAC: u32>() {
+    let mut bits = all_sizes().step_by(7);
+    let others: Vec<i32> = all_sizes().step_by(211).collect();
+    for &other in others.iter().cycle().take(60_000) {
+        let Some(bits) = bits.next() else { break };
+        for (a, b) in [(bits, other), (other, bits), (bits, bits), (0, bits), (bits, 0)] {
+            let (y, x) = (Fixed::<FRAC>::from_bits(a), Fixed::<FRAC>::from_bits(b));
+            let (ey, ex) = (y.to_f64(), x.to_f64());
+            assert_near(y.atan2(x), ey.atan2(ex), 3e-5, 0.0, ey);
+            assert_near(y.hypot(x), ey.hypot(ex), 0.0, 0.0, ey);
+            if b != 0 {
+                let lsb = Fixed::<FRAC>::EPSILON.to_f64();
+                assert_near(y / x, ey / ex, 0.0, 0.0, ey);
+                assert_near(y.divided_by(x.divisor()), ey / ex, 0.5 * lsb, 2.0_f64.powi(-31), ey);
+            }
+        }
+    }
+}
+
+#[test]
+fn fixed_functions_keep_their_bounds() {
+    check_one_argument::<4>();
+    check_one_argument::<8>();
+    check_one_argument::<16>();
+    check_one_argument::<20>();
+    check_one_argument::<24>();
+    check_one_argument::<30>();
+}
+
+#[test]
+fn fixed_functions_of_two_arguments_keep_their_bounds() {
+    check_two_arguments::<8>();
+    check_two_arguments::<16>();
+    check_two_arguments::<20>();
+    check_two_arguments::<24>();
+    check_two_arguments::<30>();
+}
+
+#[test]
+fn single_precision_functions_keep_their_bounds() {
+    for k in -400_000..=400_000_i32 {
+        let x = k as f32 * 0.020_479;
+        let (sine, cosine) = Scalar::sin_cos(x);
+        assert!((f64::from(sine) - f64::from(x).sin()).abs() < 1.3e-7, "sin {x}");
+        assert!((f64::from(cosine) - f64::from(x).cos()).abs() < 1.3e-7, "cos {x}");
+    }
+    for x in [8193.0_f32, 1e5, 1e6, 1e7, 3e7, -1e6] {
+        let (sine, cosine) = Scalar::sin_cos(x);
+        let bound = f64::from(x).abs() * 6e-8;
+        assert!((f64::from(sine) - f64::from(x).sin()).abs() < bound, "sin {x}");
+        assert!((f64::from(cosine) - f64::from(x).cos()).abs() < bound, "cos {x}");
+    }
+    for exponent in -126..127 {
+        let x = 1.7 * 2.0_f32.powi(exponent);
+        for y in [x, 0.3 * x, -2e-5 * x, 0.0] {
+            let exact = f64::from(x).hypot(f64::from(y));
+            assert!((f64::from(Scalar::hypot(x, y)) / exact - 1.0).abs() < 2e-7, "hypot {x} {y}");
+        }
+        let ln = f64::from(x).ln();
+        assert!((f64::from(Scalar::ln(x)) - ln).abs() < 1e-7 * ln.abs().max(1.0), "ln {x}");
+        for y in [x, -x, 3.0 * x, 0.0] {
+            let exact = f64::from(y).atan2(f64::from(x));
+            assert!((f64::from(Scalar::atan2(y, x)) - exact).abs() < 3e-7, "atan2 {y} {x}");
+        }
+    }
+    for k in -8_700..8_800 {
+        let x = k as f32 * 0.01;
+        assert!((f64::from(Scalar::exp(x)) / f64::from(x).exp() - 1.0).abs() < 1.2e-7, "exp {x}");
+    }
+}
+
+#[test]
+fn floats_have_their_ieee_edges() {
+    assert!(Scalar::sqrt(-1.0_f32).is_nan());
+    assert!(Scalar::sin_cos(f32::INFINITY).0.is_nan() && Scalar::sin_cos(f32::NAN).1.is_nan());
+    assert_eq!(Scalar::ln(0.0_f32), f32::NEG_INFINITY);
+    assert_eq!(Scalar::hypot(f32::INFINITY, 1.0), f32::INFINITY);
+    assert_eq!(Scalar::hypot(0.0_f32, 0.0), 0.0);
+    assert!(Scalar::hypot(f32::MAX, f32::MAX).is_infinite());
+    assert_eq!(Scalar::exp(f64::NEG_INFINITY), 0.0);
+}
+
+#[test]
+fn microseconds_become_seconds() {
+    for micro in [0, 1, 5000, -5000, 2_500, 999_999, 1_000_000, i32::MAX, i32::MIN] {
+        let exact = f64::from(micro) * 1e-6;
+        assert_near(Fixed::<20>::from_micro(micro), exact, 0.0, 1e-9, exact);
+        assert_near(Fixed::<24>::from_micro(micro), exact, 0.0, 1e-9, exact);
+        assert_near(Fixed::<30>::from_micro(micro), exact, 0.0, 1e-9, exact);
+        assert!((f64::from(f32::from_micro(micro)) - exact).abs() <= 1.2e-7 * exact.abs());
+    }
+}

@@ -1,0 +1,93 @@
+//! Fixed-point arithmetic against wide integers, whatever the bits.
+
+use kestirim_scalar::{Fixed, Q12_20, Q16_16, Scalar};
+use nalgebra::SMatrix;
+use proptest::prelude::*;
+
+fn saturated(bits: i128) -> i32 {
+    bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+}
+
+/// Round half up, as a shift after adding the half does.
+fn rounded_shift(value: i128, shift: u32) -> i128 {
+    if shift == 0 { value } else { (value + (1 << (shift - 1))) >> shift }
+}
+
+fn check_arithmetic<const FRAC: u32>(a: i32, b: i32) {
+    let (x, y) = (Fixed::<FRAC>::from_bits(a), Fixed::<FRAC>::from_bits(b));
+    let (wide_a, wide_b) = (i128::from(a), i128::from(b));
+    assert_eq!((x + y).to_bits(), saturated(wide_a + wide_b));
+    assert_eq!((x - y).to_bits(), saturated(wide_a - wide_b));
+    assert_eq!((x * y).to_bits(), saturated(rounded_shift(wide_a * wide_b, FRAC)));
+    assert_eq!((-x).to_bits(), saturated(-wide_a));
+    let dot = Scalar::dot(&[x, y, x], &[y, y, x]);
+    let sum = wide_a * wide_b + wide_b * wide_b + wide_a * wide_a;
+    assert_eq!(dot.to_bits(), saturated(rounded_shift(sum, FRAC)));
+    if b == 0 {
+        assert!(!(x / y).is_finite());
+    } else {
+        let exact = (wide_a << FRAC) as f64 / wide_b as f64;
+        assert!(
+            ((x / y).to_bits() as f64 - exact.clamp(-2_147_483_648.0, 2_147_483_647.0)).abs()
+                <= 0.5
+        );
+    }
+}
+
+proptest! {
+    #[test]
+    fn arithmetic_rounds_once_and_saturates(a in any::<i32>(), b in any::<i32>(), small in -9_i32..9) {
+        check_arithmetic::<8>(a, b);
+        check_arithmetic::<16>(a, small);
+        check_arithmetic::<20>(a, b);
+        check_arithmetic::<24>(small, b);
+        check_arithmetic::<30>(a, b);
+    }
+
+    #[test]
+    fn doubles_and_singles_go_there_and_back(bits in any::<i32>()) {
+        let x = Q12_20::from_bits(bits);
+        prop_assert_eq!(Q12_20::from_f64(x.to_f64()), x);
+        let single = Q12_20::from_f32(x.to_f32());
+        prop_assert!((single.to_f64() - x.to_f64()).abs() <= x.to_f64().abs() * 6e-8);
+    }
+
+    #[test]
+    fn any_float_converts(value in any::<f64>(), single in any::<f32>()) {
+        let fixed = Q16_16::from_f64(value);
+        prop_assert!(fixed.is_finite() == (value.abs() < 32_767.999));
+        prop_assert_eq!(Q16_16::from_f32(single), Q16_16::from_f64(f64::from(single)));
+    }
+
+    #[test]
+    fn a_matrix_of_fixed_point_is_a_matrix(entries in proptest::array::uniform16(-20.0..20.0f64)) {
+        let exact = SMatrix::<f64, 4, 4>::from_row_slice(&entries);
+        let ours: SMatrix<Q12_20, 4, 4> = exact.map(Q12_20::from_f64);
+        let error = |ours: SMatrix<Q12_20, 4, 4>, exact: SMatrix<f64, 4, 4>| {
+            (ours.map(Scalar::to_f64) - exact).abs().max()
+        };
+        // Each entry is off by half a unit before it is multiplied by 20, four times.
+        prop_assert!(error(ours * ours.transpose(), exact * exact.transpose()) < 4.0 * 40.0 * 5e-7 + 4e-6);
+        prop_assert!(error(ours + ours - ours, exact) < 1e-6);
+    }
+}
+
+#[test]
+fn division_by_zero_goes_to_a_rail() {
+    assert_eq!(Q16_16::ONE / Q16_16::ZERO, Q16_16::MAX);
+    assert_eq!(-Q16_16::ONE / Q16_16::ZERO, Q16_16::MIN);
+    assert_eq!(Q16_16::ZERO / Q16_16::ZERO, Q16_16::MIN);
+    assert_eq!(Q16_16::ONE.divided_by(Q16_16::ZERO.divisor()), Q16_16::MAX);
+    assert_eq!(Q16_16::ZERO.recip(), Q16_16::MAX);
+    assert_eq!(Q16_16::from_f64(f64::NAN), Q16_16::MIN);
+}
+
+#[cfg(feature = "fixed")]
+#[test]
+fn the_fixed_crate_has_the_same_bits() {
+    use fixed::types::I12F20;
+    let theirs = I12F20::from_num(-3.25);
+    let ours = Q12_20::from(theirs);
+    assert_eq!(ours.to_f64(), -3.25);
+    assert_eq!(I12F20::from(ours), theirs);
+}

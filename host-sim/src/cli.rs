@@ -1,0 +1,107 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::systems::{System, pedestrian};
+
+/// Estimators on synthetic and recorded streams.
+///
+/// Without arguments every system runs on its synthetic streams.
+#[derive(Debug, Parser)]
+#[command(name = "host-sim", version)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// What the program can be asked to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a system on its synthetic streams and print published beside own results
+    Run(Run),
+    /// Run a system on a recorded log
+    #[command(subcommand)]
+    Replay(Replay),
+    /// List systems, scenarios and log formats
+    List,
+}
+
+/// `host-sim run`.
+#[derive(Debug, Args)]
+pub struct Run {
+    /// Which system
+    pub system: System,
+    /// Options that all systems share.
+    #[command(flatten)]
+    pub options: RunOptions,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of a synthetic experiment.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Args)]
+pub struct RunOptions {
+    /// Repetitions of the experiment [default: as many as take a few seconds]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub trials: Option<u32>,
+    /// Seed of all randomness; the same seed gives the same answer
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Number type of the estimator [default: the system's own]
+    #[arg(long, value_name = "TYPE")]
+    pub scalar: Option<ScalarKind>,
+}
+
+/// `host-sim replay`: every system has a log format and options of its own.
+#[derive(Debug, Subcommand)]
+pub enum Replay {
+    /// A walk recorded by a foot-mounted IMU
+    Pedestrian(pedestrian::replay::Replay),
+}
+
+/// Number type in which an estimator computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ScalarKind {
+    /// Single precision
+    F32,
+    /// Double precision
+    F64,
+    /// Fixed point
+    Fixed,
+}
+
+/// Clap's complaint about a wrong command line, folded into one plain sentence.
+pub fn sentence(error: &clap::Error) -> String {
+    let rendered = error.render().to_string();
+    let complaint = rendered.lines().take_while(|line| !line.trim().is_empty());
+    let joined = complaint.map(str::trim).collect::<Vec<_>>().join(" ");
+    format!("{} (see --help)", joined.trim_start_matches("error: "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_usage_error_is_one_sentence() {
+        for arguments in [
+            &["host-sim", "fly"][..],
+            &["host-sim", "run"],
+            &["host-sim", "run", "pedestrian", "--trials", "0"],
+            &["host-sim", "replay", "pedestrian"],
+            &["host-sim", "replay", "pedestrian", "--log", "a", "--tracker", "best"],
+        ] {
+            let sentence = sentence(&Cli::try_parse_from(arguments).unwrap_err());
+            assert!(!sentence.contains('\n') && !sentence.starts_with("error"), "{sentence}");
+        }
+    }
+}

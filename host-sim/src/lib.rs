@@ -1,0 +1,19 @@
+//! Feeds the estimators with synthetic and recorded streams and shows what comes out.
+//!
+//! A sample flows one way: a recorded [log](systems::pedestrian::log) or a seeded
+//! [scenario](systems::pedestrian::scenario) → the system's estimator → a report of plain data, which
+//! [`output::show`] prints as a table or as one JSON object.
+//!
+//! Everything inside is SI and radians; other units are converted where a file is read.
+//! Every system lives in its own folder below [`systems`] and knows nothing of the others.
+
+pub mod cli;
+mod error;
+pub mod metrics;
+pub mod output;
+pub mod published;
+pub mod random;
+pub mod systems;
+pub mod text;
+
+pub use error::Error;

@@ -1,0 +1,125 @@
+//! Where results go: standard output in one piece, files whole or not at all.
+
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+
+use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::Error;
+
+/// Prints a report on standard output: for people, or as one JSON object.
+///
+/// # Errors
+/// [`Error::Stdout`] if it cannot be written; a reader that went away (`| head`) is no error.
+pub fn show(report: &(impl Serialize + Display), json: bool) -> Result<(), Error> {
+    let text = if json {
+        serde_json::to_string(report).map_err(|error| Error::Stdout(error.into()))?
+    } else {
+        report.to_string()
+    };
+    print(&text)
+}
+
+/// Prints a text and a line break on standard output.
+///
+/// # Errors
+/// As [`show`].
+pub fn print(text: &str) -> Result<(), Error> {
+    let mut stdout = io::stdout().lock();
+    match writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Stdout(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Says something on standard error that is not a result.
+pub fn warn(message: &str) {
+    // There is nobody left to tell if standard error is closed.
+    let _ = writeln!(io::stderr(), "{message}");
+}
+
+/// An empty table in the house style.
+pub fn table() -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED);
+    table
+}
+
+/// A progress bar on standard error, invisible unless that is a terminal.
+pub fn progress(steps: u64) -> ProgressBar {
+    let bar = ProgressBar::new(steps);
+    // The template is a constant; an unknown key would merely leave the default style.
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} walks {eta}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Writes a file so that it is never seen half-written: beside it first, then renamed.
+///
+/// # Errors
+/// [`Error::Write`] if anything fails; then whatever stood at `path` is untouched.
+pub fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
+    let failed = |source| Error::Write { path: path.to_path_buf(), source };
+    let draft = draft_path(path).map_err(failed)?;
+    let written = write_new(&draft, write).and_then(|()| fs::rename(&draft, path));
+    written.map_err(|source| {
+        // The draft may not even exist; the first failure is the one worth reporting.
+        let _ = fs::remove_file(&draft);
+        failed(source)
+    })
+}
+
+/// A name beside `path` that nobody else uses.
+fn draft_path(path: &Path) -> io::Result<PathBuf> {
+    // Renaming over a device such as /dev/null would replace the device.
+    if path.exists() && !path.is_file() {
+        return Err(io::Error::new(ErrorKind::InvalidInput, "it exists and is not a regular file"));
+    }
+    let name = path.file_name().ok_or_else(|| io::Error::from(ErrorKind::InvalidFilename))?;
+    let mut draft = std::ffi::OsString::from(".");
+    draft.push(name);
+    draft.push(format!(".{}.tmp", process::id()));
+    Ok(path.with_file_name(draft))
+}
+
+fn write_new(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create_new(path)?);
+    write(&mut file)?;
+    file.into_inner()?.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_no_draft() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let path = folder.path().join("track.csv");
+        fs::write(&path, "old")?;
+        let failed = write_file(&path, |file| {
+            file.write_all(b"half")?;
+            Err(io::Error::other("full"))
+        });
+        assert!(failed.is_err());
+        assert_eq!(fs::read_to_string(&path)?, "old");
+        assert_eq!(fs::read_dir(folder.path())?.count(), 1);
+        Ok(())
+    }
+
+    #[test]
+    fn only_regular_files_are_replaced() {
+        assert!(write_file(Path::new("/dev/null"), |_| Ok(())).is_err());
+        assert!(write_file(Path::new("/"), |_| Ok(())).is_err());
+        assert!(write_file(Path::new("no/such/folder/track.csv"), |_| Ok(())).is_err());
+    }
+}

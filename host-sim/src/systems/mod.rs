@@ -1,0 +1,76 @@
+//! The systems, one folder each.
+
+pub mod pedestrian;
+
+use crate::Error;
+use crate::cli::{RunOptions, ScalarKind};
+use crate::output;
+
+/// A system that can be run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum System {
+    /// Foot-mounted IMU with zero-velocity updates
+    Pedestrian,
+}
+
+impl System {
+    /// Every system, in the order in which they run.
+    pub const ALL: [Self; 1] = [Self::Pedestrian];
+
+    /// Runs the system on its synthetic streams and prints the report.
+    ///
+    /// # Errors
+    /// Whatever keeps the experiment from running or its report from being printed.
+    pub fn run(self, options: RunOptions, json: bool) -> Result<(), Error> {
+        match self {
+            Self::Pedestrian => output::show(&pedestrian::experiment::run(options)?, json),
+        }
+    }
+
+    /// What it is, which scenarios it runs and which logs it reads.
+    fn description(self) -> &'static str {
+        match self {
+            Self::Pedestrian => pedestrian::DESCRIPTION,
+        }
+    }
+}
+
+/// The text of `host-sim list`.
+pub fn list() -> String {
+    System::ALL.map(System::description).join("\n")
+}
+
+/// The number type to compute in: the one asked for, or else the `default`.
+///
+/// # Errors
+/// [`Error::Usage`] if the system does not support what was asked for.
+pub fn choose_scalar(
+    system: &str,
+    asked: Option<ScalarKind>,
+    supported: &[ScalarKind],
+    default: ScalarKind,
+) -> Result<ScalarKind, Error> {
+    let chosen = asked.unwrap_or(default);
+    if supported.contains(&chosen) {
+        return Ok(chosen);
+    }
+    let names: Vec<_> = supported.iter().map(|kind| format!("{kind:?}").to_lowercase()).collect();
+    let chosen = format!("{chosen:?}").to_lowercase();
+    let names = names.join(" or ");
+    Err(Error::Usage(format!("{system} computes in {names}, not in {chosen} (--scalar)")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unsupported_scalar_is_refused_with_a_sentence() {
+        let floats = [ScalarKind::F32, ScalarKind::F64];
+        let choose = |asked| choose_scalar("robot", asked, &floats, ScalarKind::F32);
+        assert_eq!(choose(None).unwrap(), ScalarKind::F32);
+        assert_eq!(choose(Some(ScalarKind::F64)).unwrap(), ScalarKind::F64);
+        let sentence = choose(Some(ScalarKind::Fixed)).unwrap_err().to_string();
+        assert_eq!(sentence, "robot computes in f32 or f64, not in fixed (--scalar)");
+    }
+}

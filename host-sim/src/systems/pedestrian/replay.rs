@@ -1,0 +1,192 @@
+//! `host-sim replay pedestrian`: a recorded walk becomes a path.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::accuracy::{self, Accuracy};
+use super::options::{DetectorKind, Options, SensorClass, TrackerKind, parse_detector};
+use super::run::{self, Walk};
+use super::track::TrackPoint;
+use super::{log, options, resample, truth};
+use crate::cli::ScalarKind;
+use crate::systems::choose_scalar;
+use crate::text::printable_path;
+use crate::{Error, output};
+
+/// Options of the command.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Replay {
+    /// The recorded walk: CSV or Razor text (see `host-sim list`)
+    #[arg(long, value_name = "FILE")]
+    log: PathBuf,
+    /// Measured footprints: CSV with columns t,x,y; replaces a truth that the log carries
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Average the log down to this rate first
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+    /// Architecture of the tracker
+    #[arg(long, value_enum, default_value_t)]
+    tracker: TrackerKind,
+    /// How stance is recognised: adaptive, magnitude, variance, angular-rate or shoe; the
+    /// threshold of magnitude is in g, those of the others in SI
+    #[arg(long, value_name = "NAME[:THRESHOLD]", value_parser = parse_detector, default_value = "adaptive")]
+    detector: DetectorKind,
+    /// Class of the sensor
+    #[arg(long, value_enum, default_value_t)]
+    sensor: SensorClass,
+    /// Look only backwards, as firmware must
+    #[arg(long)]
+    causal: bool,
+    /// Number type of the tracker [default: f32]
+    #[arg(long, value_name = "TYPE")]
+    scalar: Option<ScalarKind>,
+    /// Write t,x,y,z of every (averaged) sample to this file
+    #[arg(long, value_name = "OUT.csv")]
+    track: Option<PathBuf>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Replay {
+    /// Reads, tracks, compares, writes and prints.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the options or the files; then nothing is printed.
+    pub fn run(&self) -> Result<(), Error> {
+        let report = self.report()?;
+        for warning in &report.warnings {
+            output::warn(&format!("warning: {}: {warning}", printable_path(&self.log)));
+        }
+        output::show(&report, self.json)
+    }
+
+    fn report(&self) -> Result<Report, Error> {
+        let options = self.options()?;
+        self.refuse_overwriting_input()?;
+        let recorded = log::read(&self.log)?;
+        let footprints =
+            self.truth.as_deref().map(|path| truth::read(path, &recorded)).transpose()?;
+        let log = match self.rate {
+            Some(rate_hz) => resample::average_down(&recorded, rate_hz)?,
+            None => recorded,
+        };
+        let walk = run::walk(&log.samples, &options)
+            .map_err(|source| Error::Walk { path: self.log.clone(), source })?;
+        let accuracy = match (&footprints, &log.truth) {
+            (Some(footprints), _) => Some(accuracy::against_footprints(&walk, footprints)),
+            (None, Some(truth)) => Some(accuracy::against_truth(&walk, truth)),
+            (None, None) => None,
+        };
+        if let Some(path) = &self.track {
+            write_track(path, &walk.track)?;
+        }
+        Ok(Report::new(&log, walk, accuracy))
+    }
+
+    fn options(&self) -> Result<Options, Error> {
+        let scalar =
+            choose_scalar("pedestrian", self.scalar, &options::SCALARS, Options::default().scalar)?;
+        Ok(Options {
+            tracker: self.tracker,
+            detector: self.detector,
+            sensor: self.sensor,
+            causal: self.causal,
+            scalar,
+        })
+    }
+
+    fn refuse_overwriting_input(&self) -> Result<(), Error> {
+        let real = |path: &Path| path.canonicalize().ok();
+        let Some(track) = self.track.as_deref().and_then(real) else { return Ok(()) };
+        let inputs = [Some(&self.log), self.truth.as_ref()];
+        match inputs.into_iter().flatten().find(|&path| real(path).as_ref() == Some(&track)) {
+            Some(input) => Err(Error::Usage(format!(
+                "--track {} would overwrite an input file",
+                printable_path(input)
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+fn write_track(path: &Path, track: &[TrackPoint]) -> Result<(), Error> {
+    output::write_file(path, |file| {
+        let mut table = csv::Writer::from_writer(file);
+        table.write_record(["t", "x", "y", "z"])?;
+        for point in track {
+            let time = format!("{}.{:06}", point.time_us / 1_000_000, point.time_us % 1_000_000);
+            let [x, y, z] = point.position.map(|metres| format!("{metres:.6}"));
+            table.write_record([time, x, y, z])?;
+        }
+        table.flush()
+    })
+}
+
+/// What the command prints.
+#[derive(Debug, Clone, Serialize)]
+struct Report {
+    system: &'static str,
+    samples: usize,
+    duration_s: f64,
+    path_length_m: f64,
+    closure_m: f64,
+    strides: Vec<StrideReport>,
+    warnings: Vec<String>,
+    accuracy: Option<Accuracy>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct StrideReport {
+    t: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+    length_m: f64,
+}
+
+impl Report {
+    fn new(log: &log::Log, walk: Walk, accuracy: Option<Accuracy>) -> Self {
+        let strides = walk.strides.iter().map(|stride| {
+            let [x, y, z] = stride.position;
+            StrideReport { t: stride.time_us as f64 / 1e6, x, y, z, length_m: stride.length_m }
+        });
+        Self {
+            system: "pedestrian",
+            samples: log.samples.len(),
+            duration_s: log.duration_s(),
+            path_length_m: walk.path_length_m,
+            closure_m: walk.closure_m,
+            strides: strides.collect(),
+            warnings: log.warnings.iter().cloned().chain(walk.warnings).collect(),
+            accuracy,
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        let mut row = |name: &str, value: String| {
+            table.add_row([name, value.as_str()]);
+        };
+        row("samples", format!("{} in {:.1} s", self.samples, self.duration_s));
+        row("strides", self.strides.len().to_string());
+        row("path length", format!("{:.2} m", self.path_length_m));
+        row("start to end", format!("{:.2} m", self.closure_m));
+        if let Some(accuracy) = self.accuracy {
+            let percent = |value: Option<f64>| match value {
+                Some(value) => format!("{value:+.2} %"),
+                None => "—".to_owned(),
+            };
+            row("RMSE", format!("{:.3} m", accuracy.rmse_m));
+            row("error at the end", format!("{:.3} m", accuracy.final_error_m));
+            row("  of the path", percent(accuracy.final_error_percent));
+            row("path length error", percent(accuracy.path_length_error_percent));
+        }
+        table.fmt(f)
+    }
+}

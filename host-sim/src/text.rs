@@ -1,0 +1,216 @@
+//! Text files of numbers, read so that every complaint names the file and the line.
+//!
+//! Lines are split here rather than by the `csv` crate, whose line numbers are off after blank
+//! lines; a log of numbers needs no quoting.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::Error;
+
+/// A text file in memory.
+#[derive(Debug, Clone)]
+pub struct TextFile {
+    path: PathBuf,
+    text: String,
+}
+
+impl TextFile {
+    /// Reads a file as UTF-8.
+    ///
+    /// # Errors
+    /// [`Error::Read`] if the file cannot be read, [`Error::Line`] where it is not text.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let bytes =
+            fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+        Self::from_bytes(path, bytes)
+    }
+
+    /// Takes the contents of the file `path`; a byte order mark is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Line`] where the bytes are not UTF-8.
+    pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, Error> {
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            let line = valid.split(|&byte| byte == b'\n').count();
+            let problem = "expected text, found bytes that are not UTF-8".to_owned();
+            Error::Line { path: path.to_path_buf(), line, problem }
+        })?;
+        let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+        Ok(Self { path: path.to_path_buf(), text })
+    }
+
+    /// The lines that are not blank, trimmed.
+    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        let numbered = self.text.lines().enumerate();
+        let trimmed =
+            numbered.map(|(i, text)| Line { file: self, number: i + 1, text: text.trim() });
+        trimmed.filter(|line| !line.text.is_empty())
+    }
+
+    /// Whether the last line is complete: a logger that is interrupted leaves none.
+    pub fn ends_with_line_break(&self) -> bool {
+        self.text.ends_with('\n')
+    }
+
+    /// A complaint about the file as a whole.
+    pub fn error(&self, problem: impl Into<String>) -> Error {
+        Error::File { path: self.path.clone(), problem: problem.into() }
+    }
+}
+
+/// A line of a [`TextFile`].
+#[derive(Debug, Clone, Copy)]
+pub struct Line<'a> {
+    file: &'a TextFile,
+    number: usize,
+    /// The line without its surrounding blanks.
+    pub text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    /// A complaint about this line.
+    pub fn error(&self, problem: impl Into<String>) -> Error {
+        let path = self.file.path.clone();
+        Error::Line { path, line: self.number, problem: problem.into() }
+    }
+
+    /// The fields between commas, trimmed.
+    pub fn comma_separated(&self) -> Vec<&'a str> {
+        self.text.split(',').map(str::trim).collect()
+    }
+
+    /// The fields between blanks.
+    pub fn blank_separated(&self) -> Vec<&'a str> {
+        self.text.split_whitespace().collect()
+    }
+
+    /// Whether the first field is a number, as in a line of data.
+    pub fn starts_with_number(&self) -> bool {
+        let first = self.text.split([',', ' ', '\t']).next();
+        first.is_some_and(|field| field.parse::<f64>().is_ok())
+    }
+
+    /// Reads `field`, which stands in `column`, as a finite number.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if it is anything else.
+    pub fn number(&self, column: &str, field: &str) -> Result<f64, Error> {
+        match field.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.error(format!(
+                "expected a finite number in column {column}, found {}",
+                printable(field)
+            ))),
+        }
+    }
+}
+
+/// The header of a comma-separated table.
+#[derive(Debug, Clone)]
+pub struct Header<'a> {
+    line: Line<'a>,
+    names: Vec<&'a str>,
+}
+
+impl<'a> Header<'a> {
+    /// Takes the names from the first line of a table.
+    pub fn new(line: Line<'a>) -> Self {
+        Self { line, names: line.comma_separated() }
+    }
+
+    /// Where the column `name` stands, if there is one. Upper and lower case differ: `T` may well
+    /// be a temperature.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|&column| column == name)
+    }
+
+    /// Where the columns `names` stand.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if one is missing or stands there twice.
+    pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[usize; N], Error> {
+        let mut places = [0; N];
+        for (place, name) in places.iter_mut().zip(names) {
+            let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
+            *place = found.next().ok_or_else(|| {
+                self.line.error(format!("expected a header with a column {name}, found none"))
+            })?;
+            if found.next().is_some() {
+                return Err(self.line.error(format!("expected one column {name}, found two")));
+            }
+        }
+        Ok(places)
+    }
+
+    /// The fields of a row of this table, as many as the header has names.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if their number differs.
+    pub fn fields<'b>(&self, row: &Line<'b>) -> Result<Vec<&'b str>, Error> {
+        let fields = row.comma_separated();
+        if fields.len() == self.names.len() {
+            Ok(fields)
+        } else {
+            let (expected, found) = (self.names.len(), fields.len());
+            Err(row.error(format!("expected {expected} fields as in the header, found {found}")))
+        }
+    }
+}
+
+/// A piece of a file, quoted so that it stays on one line of a terminal, and short.
+pub fn printable(text: &str) -> String {
+    const LONGEST: usize = 24;
+    if text.is_empty() {
+        return "nothing".to_owned();
+    }
+    let start: String = text.chars().take(LONGEST).collect();
+    let dots = if text.chars().nth(LONGEST).is_some() { "…" } else { "" };
+    format!("\"{}{dots}\"", start.escape_debug())
+}
+
+/// A path as a user would write it, on one line whatever its name holds.
+pub fn printable_path(path: &Path) -> String {
+    path.display().to_string().replace(char::is_control, "?")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(bytes: &[u8]) -> Result<TextFile, Error> {
+        TextFile::from_bytes(Path::new("walk.csv"), bytes.to_vec())
+    }
+
+    #[test]
+    fn blank_lines_are_skipped_but_counted() -> Result<(), Error> {
+        let file = file(b"\xef\xbb\xbfa\r\n\r\n  \n b \n")?;
+        let lines: Vec<_> = file.lines().map(|line| (line.number, line.text)).collect();
+        assert_eq!(lines, [(1, "a"), (4, "b")]);
+        Ok(())
+    }
+
+    #[test]
+    fn invalid_text_is_located() {
+        let error = file(b"t\n1\n\xff").unwrap_err().to_string();
+        assert_eq!(error, "walk.csv, line 3: expected text, found bytes that are not UTF-8");
+    }
+
+    #[test]
+    fn complaints_stay_on_one_short_line() {
+        assert_eq!(printable("a\nb\0"), r#""a\nb\0""#);
+        assert_eq!(printable(&"x".repeat(1000)).chars().count(), 27);
+        assert_eq!(printable_path(Path::new("a\nb")), "a?b");
+    }
+
+    #[test]
+    fn a_column_must_stand_exactly_once() -> Result<(), Error> {
+        let file = file(b"t, x ,t\n")?;
+        let header = Header::new(file.lines().next().unwrap());
+        assert_eq!(header.require(["x"])?, [1]);
+        assert!(header.require(["y"]).unwrap_err().to_string().contains("column y"));
+        assert!(header.require(["t"]).unwrap_err().to_string().contains("found two"));
+        Ok(())
+    }
+}

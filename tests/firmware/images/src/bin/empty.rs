@@ -1,0 +1,33 @@
+//! The harness alone: what the flash of a replaying image is counted from.
+
+#![no_std]
+#![no_main]
+
+use images::replay::{Tracker, run};
+use images::stream::Sample;
+use support::{Class, image};
+
+/// Believes what it was told last, so that all of the replay is linked.
+#[derive(Default)]
+struct Nothing([f32; 3]);
+
+impl Tracker for Nothing {
+    const NAME: &str = "empty";
+    const SCALAR: &str = "f32";
+    type Input = Sample;
+
+    fn input(sample: &Sample) -> Sample {
+        *sample
+    }
+
+    fn step(&mut self, input: &Sample) -> Class {
+        self.0 = input.specific_force;
+        Class::Predict
+    }
+
+    fn position(&self) -> [f32; 3] {
+        self.0
+    }
+}
+
+image!(run::<Nothing>);

@@ -1,0 +1,20 @@
+//! A step longer than the SysTick can count: the image must fail, not tell a wrong number.
+
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use support::{Class, Meter, image, known};
+
+fn run() {
+    let turns = black_box(5_000_000);
+    let mut meter = Meter::new();
+    meter.measure(|| {
+        known::spin(turns);
+        Class::Predict
+    });
+    meter.report("overrun");
+}
+
+image!(run);

@@ -1,0 +1,9 @@
+//! What the images share: a recorded stream and the loop that replays it through a tracker.
+//!
+//! An image is a binary of a few lines in `src/bin`: it names a workload and hands it to
+//! [`support::image!`].
+
+#![no_std]
+
+pub mod replay;
+pub mod stream;

@@ -1,0 +1,63 @@
+//! Replays the recorded stream through a tracker, measuring every step and telling the host where
+//! the tracker believes to be.
+
+use support::{Class, Meter, line, line_of_text};
+
+use crate::stream::{Sample, Stream};
+
+/// A position is told every so many samples, and after the last.
+const SAMPLES_A_POSITION: u32 = 50;
+
+/// A tracker of any kind and scalar, as the replay sees it.
+pub trait Tracker: Default {
+    /// The name of the workload in tables.
+    const NAME: &str;
+    /// The name of the scalar in tables: `f32`, `q12.20` …
+    const SCALAR: &str;
+    /// A sample in the tracker's own scalar.
+    type Input;
+
+    /// Converts a sample. Not measured: a driver would deliver the tracker's scalar.
+    fn input(sample: &Sample) -> Self::Input;
+
+    /// Takes in a sample. Measured.
+    fn step(&mut self, input: &Self::Input) -> Class;
+
+    /// Where the tracker believes to be, in metres.
+    fn position(&self) -> [f32; 3];
+}
+
+/// Runs a tracker over the whole stream. Tells the host
+///
+/// - `name`, `scalar` and `object_bytes` (size of the tracker);
+/// - `position=µs µm µm µm` every [`SAMPLES_A_POSITION`] samples and after the last;
+/// - `samples`, and the meter's report as `step`.
+pub fn run<T: Tracker>() {
+    line_of_text("name", T::NAME);
+    line_of_text("scalar", T::SCALAR);
+    line("object_bytes", &[size_of::<T>() as i64]);
+
+    let mut tracker = T::default();
+    let mut meter = Meter::new();
+    let mut samples = 0_u32;
+    let mut time_us = 0;
+    for sample in Stream::open() {
+        let input = T::input(&sample);
+        meter.measure(|| tracker.step(&input));
+        samples += 1;
+        time_us = sample.time_us;
+        if samples.is_multiple_of(SAMPLES_A_POSITION) {
+            tell(time_us, tracker.position());
+        }
+    }
+    if !samples.is_multiple_of(SAMPLES_A_POSITION) {
+        tell(time_us, tracker.position());
+    }
+    line("samples", &[samples.into()]);
+    meter.report("step");
+}
+
+fn tell(time_us: u64, position: [f32; 3]) {
+    let [x, y, z] = position.map(|metres| i64::from((metres * 1e6) as i32));
+    line("position", &[time_us as i64, x, y, z]);
+}

@@ -1,0 +1,23 @@
+//! Puts the memory map of the target's board where the linker looks for `memory.x`, and tells the
+//! crate which board it is built for: no built-in `cfg` tells one Cortex-M from another.
+
+use std::{env, fs, path::PathBuf};
+
+fn main() {
+    let target = env::var("TARGET").expect("cargo sets TARGET");
+    let board = match target.as_str() {
+        "thumbv6m-none-eabi" => "microbit",
+        "thumbv7em-none-eabihf" => "mps2-an386",
+        "riscv32imc-unknown-none-elf" => "virt",
+        other => panic!("no board for target {other}; see tests/firmware/README.md"),
+    };
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let map = format!("memory/{board}.x");
+    fs::copy(&map, out.join("memory.x")).expect("the memory map can be copied to OUT_DIR");
+
+    println!("cargo::rustc-link-search={}", out.display());
+    println!("cargo::rustc-check-cfg=cfg(board, values(\"microbit\", \"mps2-an386\", \"virt\"))");
+    println!("cargo::rustc-cfg=board=\"{board}\"");
+    println!("cargo::rerun-if-changed={map}");
+    println!("cargo::rerun-if-changed=build.rs");
+}

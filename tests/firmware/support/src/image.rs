@@ -1,0 +1,59 @@
+//! How an image begins and ends.
+
+use core::panic::PanicInfo;
+
+use semihosting::process;
+
+use crate::line::{line, line_of_text};
+
+/// Makes a bootable image of `$run`, a `fn()`: the run-time crate of either processor family
+/// initialises memory and calls the symbol `main`.
+#[macro_export]
+macro_rules! image {
+    ($run:path) => {
+        #[allow(unsafe_code)] // The symbol is claimed once: an image has one `main`.
+        #[unsafe(export_name = "main")]
+        extern "C" fn main() -> ! {
+            $run();
+            $crate::exit()
+        }
+    };
+}
+
+/// Ends the emulation: all went well.
+pub fn exit() -> ! {
+    process::exit(0)
+}
+
+/// Tells the host `failed=reason` and ends the emulation as a failure.
+pub fn fail(reason: &str) -> ! {
+    line_of_text("failed", reason);
+    process::exit(1)
+}
+
+/// A panic is a failure that names its place. (Its message is left out: formatting would cost more
+/// flash than most workloads.)
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    if let Some(place) = info.location() {
+        line_of_text("panicked_in", place.file());
+        line("panicked_at_line", &[place.line().into()]);
+    }
+    fail("panic")
+}
+
+/// A fault of the processor, by the name that `cortex-m-rt` looks for.
+#[cfg(target_arch = "arm")]
+#[allow(unsafe_code)] // Overrides the weak default, which would spin until the host's patience ends.
+#[unsafe(export_name = "HardFault")]
+extern "C" fn hard_fault() -> ! {
+    fail("hard fault")
+}
+
+/// A fault of the processor, by the name that `riscv-rt` looks for.
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)] // Overrides the weak default, which would spin until the host's patience ends.
+#[unsafe(export_name = "ExceptionHandler")]
+extern "C" fn exception() -> ! {
+    fail("exception")
+}

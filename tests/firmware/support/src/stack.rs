@@ -1,0 +1,74 @@
+//! How deep a call reaches into the stack: paint the free stack, call, look how much paint is left.
+//!
+//! A frame whose lowest words are reserved but never written shows too small by those words.
+
+use core::arch::asm;
+use core::ptr;
+
+/// How far below the stack pointer is painted, in bytes, where there is that much free memory: the
+/// deepest call that can be measured. Painting is done for every step, so more takes longer.
+const REACH: usize = 8 * 1024;
+
+const PAINT: u32 = 0xC0DE_7E57;
+const WORD: usize = size_of::<u32>();
+
+/// The painted part of the stack: from `bottom` up to the stack pointer `top`.
+pub(crate) struct Painted {
+    bottom: usize,
+    top: usize,
+}
+
+impl Painted {
+    /// Paints the free stack below the caller's frame. Inlined, so that the stack pointer is the
+    /// caller's.
+    #[inline(always)]
+    pub(crate) fn below() -> Self {
+        let top = stack_pointer();
+        let bottom = end_of_statics().max(top.saturating_sub(REACH));
+        for address in (bottom..top).step_by(WORD) {
+            let word = ptr::with_exposed_provenance_mut::<u32>(address);
+            #[allow(unsafe_code)] // Free memory: between the static variables and the stack.
+            unsafe {
+                ptr::write_volatile(word, PAINT);
+            }
+        }
+        Self { bottom, top }
+    }
+
+    /// Bytes of the paint that have been used since, counted from the top; `None` if all of them.
+    #[inline(always)]
+    pub(crate) fn used(&self) -> Option<u32> {
+        let is_clean = |address: &usize| {
+            let word = ptr::with_exposed_provenance::<u32>(*address);
+            #[allow(unsafe_code)] // The memory that `below` painted.
+            let word = unsafe { ptr::read_volatile(word) };
+            word == PAINT
+        };
+        let clean = (self.bottom..self.top).step_by(WORD).take_while(is_clean).count() * WORD;
+        (clean > 0).then_some((self.top - self.bottom - clean) as u32)
+    }
+}
+
+/// Where the static variables end, by the name that both run-time crates give it.
+#[inline(always)]
+fn end_of_statics() -> usize {
+    #[allow(unsafe_code)] // Declares a symbol of the linker script; only its address is taken.
+    unsafe extern "C" {
+        static __sheap: u8;
+    }
+    (&raw const __sheap).expose_provenance()
+}
+
+/// The stack pointer of the function this is inlined into.
+#[inline(always)]
+fn stack_pointer() -> usize {
+    let address: usize;
+    #[allow(unsafe_code)] // Copies a register.
+    unsafe {
+        #[cfg(target_arch = "arm")]
+        asm!("mov {}, sp", out(reg) address, options(nomem, nostack, preserves_flags));
+        #[cfg(target_arch = "riscv32")]
+        asm!("mv {}, sp", out(reg) address, options(nomem, nostack, preserves_flags));
+    }
+    address
+}

@@ -1,0 +1,29 @@
+//! Count, smallest, largest and sum of the costs of one class of steps.
+
+/// Instructions of the steps of one class. The host divides for the mean.
+#[derive(Clone, Copy)]
+pub(crate) struct Statistics {
+    steps: u32,
+    min: u32,
+    max: u32,
+    total: u64,
+}
+
+impl Statistics {
+    /// No step yet.
+    pub(crate) const EMPTY: Self = Self { steps: 0, min: u32::MAX, max: 0, total: 0 };
+
+    /// Takes in a step.
+    pub(crate) fn add(&mut self, instructions: u32) {
+        self.steps = self.steps.wrapping_add(1);
+        self.min = self.min.min(instructions);
+        self.max = self.max.max(instructions);
+        self.total = self.total.wrapping_add(instructions.into());
+    }
+
+    /// `[steps, min, max, total]`, or `None` without a step.
+    pub(crate) fn summary(&self) -> Option<[i64; 4]> {
+        let Self { steps, min, max, total } = *self;
+        (steps > 0).then(|| [steps.into(), min.into(), max.into(), total as i64])
+    }
+}

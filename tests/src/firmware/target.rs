@@ -1,0 +1,37 @@
+//! The table of targets.
+
+/// A bare-metal target and the machine that QEMU plays it on.
+#[derive(Debug)]
+pub struct Target {
+    /// The full triple.
+    pub triple: &'static str,
+    /// The emulator's program.
+    pub(crate) qemu: &'static str,
+    /// The emulator's arguments that choose the machine.
+    pub(crate) machine: &'static [&'static str],
+}
+
+/// Every instruction takes 2⁸ ns of virtual time: the images count instructions by a clock. The images
+/// hold the same shift (and why it is 8) in `support/src/counter.rs`.
+pub(crate) const ICOUNT: &str = "shift=8,sleep=off";
+
+/// BBC micro:bit: 16 MHz, 256 KiB of flash, 16 KiB of RAM.
+pub static CORTEX_M0: Target = Target {
+    triple: "thumbv6m-none-eabi",
+    qemu: "qemu-system-arm",
+    machine: &["-machine", "microbit"],
+};
+
+/// Arm MPS2 with application note 386: 25 MHz, a single-precision floating-point unit.
+pub static CORTEX_M4F: Target = Target {
+    triple: "thumbv7em-none-eabihf",
+    qemu: "qemu-system-arm",
+    machine: &["-machine", "mps2-an386"],
+};
+
+/// QEMU's own RISC-V machine, with the instruction set of an ESP32-C3.
+pub static RV32IMC: Target = Target {
+    triple: "riscv32imc-unknown-none-elf",
+    qemu: "qemu-system-riscv32",
+    machine: &["-machine", "virt", "-bios", "none"],
+};
