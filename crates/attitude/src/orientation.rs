@@ -114,7 +114,7 @@ impl<T: Scalar> Orientation<T> {
 
     /// exp(φ/2): by its power series up to half a radian, which a sample period seldom exceeds, and by
     /// sine and cosine beyond.
-    #[inline]
+    #[inline(always)]
     fn from_rotation_vector(rotation: &SVector<T, 3>) -> Self {
         let [x, y, z] = rotation.data.0[0].map(|component| component * T::HALF);
         let square = T::dot(&[x, y, z], &[x, y, z]);
@@ -124,9 +124,7 @@ impl<T: Scalar> Orientation<T> {
                 T::ONE - square * (T::from_f64(1.0 / 6.0) - square * T::from_f64(1.0 / 120.0)),
             )
         } else {
-            let angle = x.hypot(y).hypot(z);
-            let (sine, cosine) = angle.sin_cos();
-            (cosine, sine / angle)
+            cos_and_sinc(x.hypot(y).hypot(z))
         };
         Self { w, x: x * scale, y: y * scale, z: z * scale }
     }
@@ -152,6 +150,14 @@ impl<T: Scalar> Orientation<T> {
         let [w, x, y, z] = q.map(|component| component * scale);
         Self { w, x, y, z }
     }
+}
+
+/// (cos a, sin a / a), kept apart because it is seldom needed and long.
+#[cold]
+#[inline(never)]
+fn cos_and_sinc<T: Scalar>(angle: T) -> (T, T) {
+    let (sine, cosine) = angle.sin_cos();
+    (cosine, sine / angle)
 }
 
 #[inline]

@@ -141,7 +141,8 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
             gain[i] = weighed.divide(g[i]);
             mean[i] += gain[i] * weighed.innovation;
         }
-        if !(is_finite(&mean) && is_finite(&gain)) {
+        // A gain that is not finite makes its mean not finite, even where the innovation is zero.
+        if !is_finite(&mean) {
             return Err(Error::NotFinite);
         }
         self.mean.data.0[0] = mean;

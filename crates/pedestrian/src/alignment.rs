@@ -1,5 +1,5 @@
 use crate::ImuSample;
-use crate::sensor::{Noise, SensorClass};
+use crate::sensor::{Prior, SensorClass};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
@@ -31,7 +31,9 @@ pub struct Alignment<T: Scalar> {
 struct Block<T: Scalar> {
     begun_us: Option<u64>,
     count: i32,
+    /// rad/s.
     rate: SVector<T, 3>,
+    /// m/s².
     force: SVector<T, 3>,
 }
 
@@ -83,15 +85,13 @@ impl<T: Scalar> Alignment<T> {
 
     /// Nothing seen yet but the class of the sensor.
     pub(crate) fn new(sensor: SensorClass) -> Self {
-        let Noise { gyro_bias, gravity, .. } = sensor.noise::<T>();
-        let milli = gyro_bias * T::from_f64(1000.0);
-        // Squares of tenths of a radian, in mrad: the largest a Q12.20 holds is 45².
-        let bias_variance = (milli * milli).min(T::MAX * T::HALF);
+        let Prior { gyro_bias, gravity } = sensor.prior();
         Self {
             gyro_bias: SVector::zeros(),
-            bias_variance,
+            // (100 mrad/s)² saturates in Q12.20, which changes nothing: it is far beyond any spread.
+            bias_variance: T::from_f64(gyro_bias * gyro_bias * 1e6).min(T::MAX * T::HALF),
             gravity: T::ONE,
-            gravity_variance: gravity * gravity,
+            gravity_variance: T::from_f64(gravity * gravity),
             force_to_g: T::from_f64(1.0 / STANDARD_GRAVITY),
             block: Block::new(),
             standstill: Standstill::from_block(SVector::zeros(), SVector::zeros()),
@@ -124,13 +124,14 @@ impl<T: Scalar> Alignment<T> {
     pub(crate) fn update(&mut self, sample: &ImuSample<T>) -> Option<T> {
         let begun_us = *self.block.begun_us.get_or_insert(sample.time_us);
         self.block.rate += sample.angular_rate;
-        self.block.force += sample.specific_force * T::from_f64(1.0 / STANDARD_GRAVITY);
+        self.block.force += sample.specific_force;
         self.block.count += 1;
         if sample.time_us.saturating_sub(begun_us) < Self::BLOCK_US {
             return None;
         }
         let reciprocal = T::ONE / T::from_micro(self.block.count.saturating_mul(1_000_000));
-        let (rate, force) = (self.block.rate * reciprocal, self.block.force * reciprocal);
+        let rate = self.block.rate * reciprocal;
+        let force = self.block.force * reciprocal * T::from_f64(1.0 / STANDARD_GRAVITY);
         self.block = Block { begun_us: Some(sample.time_us), ..Block::new() };
         self.join(rate, force)
     }

@@ -3,6 +3,7 @@ use crate::clock::{Clock, Tick};
 use crate::detector::{Motion, Verdict};
 use crate::health::Health;
 use crate::navigator::{Navigator, Step, ZeroVelocity, velocity_of_rolling};
+use crate::sample::Size;
 use crate::stride::Strides;
 use crate::{Alignment, Config, Error, Estimate, ImuSample, Stride, Warnings};
 use kestirim_attitude::Orientation;
@@ -36,9 +37,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
 
     /// Whether the sample can be taken, and what its time means. Changes nothing.
     #[inline]
-    pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<Tick<T>, Error> {
-        sample.check()?;
-        self.clock.tick(sample.time_us)
+    pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<(Tick<T>, Size), Error> {
+        Ok((self.clock.tick(sample.time_us)?, sample.check()?))
     }
 
     /// The sample as a detector wants it.
@@ -52,16 +52,22 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         }
     }
 
-    /// Takes an examined sample with the verdict on it. The first stance levels the foot.
+    /// Takes an examined sample, as a motion and with the verdict on it. The first stance levels the foot.
     #[inline]
     pub(crate) fn advance(
         &mut self,
         sample: &ImuSample<T>,
-        tick: Tick<T>,
+        (tick, size): (Tick<T>, Size),
+        motion: &Motion<T>,
         verdict: Verdict<T>,
     ) -> Estimate<T> {
         self.clock.set(sample.time_us);
-        self.health.sample(sample);
+        if size.large_force {
+            self.health.large_force(&sample.specific_force);
+        }
+        if size.large_rate {
+            self.health.large_rate(&sample.angular_rate);
+        }
         if let Some(gravity) = self.alignment.update(sample) {
             self.health.standstill(gravity, self.config.sensor);
         }
@@ -78,7 +84,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 let step = Step {
                     interval,
                     specific_force: sample.specific_force,
-                    angular_rate: sample.angular_rate - self.alignment.gyro_bias(),
+                    angular_rate: motion.angular_rate,
                     gravity: self.alignment.gravity() * T::from_f64(STANDARD_GRAVITY),
                 };
                 navigator.propagate(&step, verdict.stance);
@@ -95,9 +101,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         velocity,
                         unrest: verdict.unrest,
                         interval,
+                        landing: !self.was_stance,
                     });
-                } else if self.was_stance {
-                    navigator.swing_begins();
                 }
             }
             stride = self.strides.update(sample.time_us, navigator.position(), verdict.stance);

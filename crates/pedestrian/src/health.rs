@@ -43,26 +43,25 @@ struct Repeats<T: Scalar> {
 }
 
 impl<T: Scalar> Repeats<T> {
-    /// Whether an axis has now shown the same value of at least `large` three times.
+    /// Whether an axis has now shown the same value three times.
     #[inline]
     fn update(&mut self, value: &SVector<T, 3>, large: T) -> bool {
         let mut saturated = false;
         for axis in 0..3 {
-            let (new, old) = (value.data.0[0][axis], &mut self.last.data.0[0][axis]);
-            let again = new == *old && new.abs() > large;
-            self.counts[axis] = if again { self.counts[axis].saturating_add(1) } else { 0 };
-            *old = new;
-            saturated |= self.counts[axis] >= 2;
+            let (new, old) = (value.data.0[0][axis], self.last.data.0[0][axis]);
+            if new != old {
+                self.last.data.0[0][axis] = new;
+                self.counts[axis] = 0;
+            } else if new.abs() > large {
+                self.counts[axis] = self.counts[axis].saturating_add(1);
+                saturated |= self.counts[axis] >= 2;
+            }
         }
         saturated
     }
 }
 
 impl<T: Scalar> Health<T> {
-    /// A little below the smallest range of an accelerometer, 2 g (m/s²).
-    const LARGE_FORCE: f64 = 18.0;
-    /// A little below the smallest range of a gyroscope, 250 °/s (rad/s).
-    const LARGE_RATE: f64 = 4.2;
     /// Beyond the widest range of a gyroscope, 2000 °/s (rad/s).
     const LARGEST_RATE: f64 = 45.0;
     /// A stride that ends with so much velocity left over (m/s) was not measured by this IMU …
@@ -80,16 +79,21 @@ impl<T: Scalar> Health<T> {
         self.warnings
     }
 
-    /// A sample came.
+    /// A force came that may be at the end of a range. (Those between two such are not shown; a range that
+    /// is reached three times at the very same value is reached, with a pause or without.)
     #[inline]
-    pub(crate) fn sample(&mut self, sample: &ImuSample<T>) {
-        let warnings = &mut self.warnings;
-        warnings.accelerometer_saturated |=
-            self.force.update(&sample.specific_force, T::from_f64(Self::LARGE_FORCE));
-        warnings.gyroscope_saturated |=
-            self.rate.update(&sample.angular_rate, T::from_f64(Self::LARGE_RATE));
+    pub(crate) fn large_force(&mut self, force: &SVector<T, 3>) {
+        let large = T::from_f64(ImuSample::<T>::LARGE_FORCE);
+        self.warnings.accelerometer_saturated |= self.force.update(force, large);
+    }
+
+    /// The same for an angular rate.
+    #[inline]
+    pub(crate) fn large_rate(&mut self, rate: &SVector<T, 3>) {
+        let large = T::from_f64(ImuSample::<T>::LARGE_RATE);
+        self.warnings.gyroscope_saturated |= self.rate.update(rate, large);
         let limit = T::from_f64(Self::LARGEST_RATE);
-        warnings.rate_implausible |= self.rate.last.data.0[0].iter().any(|rate| rate.abs() > limit);
+        self.warnings.rate_implausible |= rate.data.0[0].iter().any(|rate| rate.abs() > limit);
     }
 
     /// Samples are missing.

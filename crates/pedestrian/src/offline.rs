@@ -99,12 +99,13 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
         self.next += 1;
         let minimum = self.minimum_around(sample.time_us);
         // Every sample was examined when the walk was prepared.
-        let tick = self.engine.examine(sample).ok()?;
-        if tick == Tick::Duplicate {
+        let examined = self.engine.examine(sample).ok()?;
+        if examined.0 == Tick::Duplicate {
             return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
         }
         let verdict = Verdict { stance: is_below(unrest, minimum, T::ONE), unrest };
-        Some(self.engine.advance(sample, tick, verdict))
+        let motion = self.engine.motion(sample);
+        Some(self.engine.advance(sample, examined, &motion, verdict))
     }
 }
 

@@ -27,18 +27,39 @@ impl<T: Scalar> ImuSample<T> {
     const MAX_FORCE: f64 = 9806.65;
     /// 10⁵ °/s, in rad/s.
     const MAX_RATE: f64 = 1745.33;
+    /// A little below the smallest range of an accelerometer, 2 g (m/s²).
+    pub(crate) const LARGE_FORCE: f64 = 18.0;
+    /// A little below the smallest range of a gyroscope, 250 °/s (rad/s).
+    pub(crate) const LARGE_RATE: f64 = 4.2;
 
     /// Refuses what no sensor can have measured.
     #[inline]
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        let force = within(&self.specific_force, T::from_f64(Self::MAX_FORCE));
-        let rate = within(&self.angular_rate, T::from_f64(Self::MAX_RATE));
-        if force && rate {
-            return Ok(());
-        }
-        let mut components = self.specific_force.iter().chain(self.angular_rate.iter());
-        Err(if components.all(|c| c.is_finite()) { Error::Implausible } else { Error::NotFinite })
+    pub(crate) fn check(&self) -> Result<Size, Error> {
+        Ok(Size {
+            large_force: is_large(&self.specific_force, Self::LARGE_FORCE, Self::MAX_FORCE)?,
+            large_rate: is_large(&self.angular_rate, Self::LARGE_RATE, Self::MAX_RATE)?,
+        })
     }
+}
+
+/// Which of a sample's vectors are so large that a sensor's range may end there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size {
+    pub(crate) large_force: bool,
+    pub(crate) large_rate: bool,
+}
+
+/// Whether a component is at least `large`; most are not, and then nothing else needs to be asked.
+#[inline]
+fn is_large<T: Scalar>(vector: &SVector<T, 3>, large: f64, max: f64) -> Result<bool, Error> {
+    if within(vector, T::from_f64(large)) {
+        return Ok(false);
+    }
+    if within(vector, T::from_f64(max)) {
+        return Ok(true);
+    }
+    let finite = vector.data.0[0].iter().all(|component| component.is_finite());
+    Err(if finite { Error::Implausible } else { Error::NotFinite })
 }
 
 /// Whether every component is a number of at most this size; a NaN is not.

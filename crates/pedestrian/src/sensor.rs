@@ -12,30 +12,41 @@ pub enum SensorClass {
     Consumer,
 }
 
-/// Noise densities and priors of a class, in SI units.
+/// What is expected of a class before its stream has said anything.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prior {
+    /// Standard deviation of the gyro bias at power-on (rad/s).
+    pub(crate) gyro_bias: f64,
+    /// Standard deviation of the accelerometer's magnitude at rest, relative to g.
+    pub(crate) gravity: f64,
+}
+
+/// How fast the uncertainty of an error-state filter grows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Noise<T> {
-    /// Standard deviation of the gyro bias at power-on (rad/s).
-    pub(crate) gyro_bias: T,
-    /// Standard deviation of the accelerometer's magnitude at rest, relative to g.
-    pub(crate) gravity: T,
-    /// Velocity random walk, with scale and mounting errors in a swing absorbed (m/s²/√Hz).
-    pub(crate) specific_force: T,
-    /// Angle random walk, with the same absorbed (rad/s/√Hz).
-    pub(crate) angular_rate: T,
+    /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.
+    pub(crate) velocity_variance: T,
+    /// Angle random walk, with the same absorbed: 0.01 or 0.03 rad/s/√Hz squared, scaled.
+    pub(crate) attitude_variance: T,
 }
 
 impl SensorClass {
-    pub(crate) fn noise<T: Scalar>(self) -> Noise<T> {
-        let (gyro_bias, gravity, angular_rate) = match self {
-            Self::Industrial => (0.003, 0.01, 0.01),
-            Self::Consumer => (0.1, 0.05, 0.03),
+    pub(crate) fn prior(self) -> Prior {
+        match self {
+            Self::Industrial => Prior { gyro_bias: 0.003, gravity: 0.01 },
+            Self::Consumer => Prior { gyro_bias: 0.1, gravity: 0.05 },
+        }
+    }
+
+    /// Variances a second, multiplied by `scale`.
+    pub(crate) fn noise<T: Scalar>(self, scale: f64) -> Noise<T> {
+        let attitude = match self {
+            Self::Industrial => 0.01,
+            Self::Consumer => 0.03,
         };
         Noise {
-            gyro_bias: T::from_f64(gyro_bias),
-            gravity: T::from_f64(gravity),
-            specific_force: T::from_f64(0.3),
-            angular_rate: T::from_f64(angular_rate),
+            velocity_variance: T::from_f64(0.3 * 0.3 * scale),
+            attitude_variance: T::from_f64(attitude * attitude * scale),
         }
     }
 }

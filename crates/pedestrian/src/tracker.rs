@@ -84,12 +84,13 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
     /// [`Error`] if the sample cannot have been measured or is out of order; the tracker is as it was.
     #[inline]
     pub fn update(&mut self, sample: &ImuSample<T>) -> Result<Estimate<T>, Error> {
-        let tick = self.engine.examine(sample)?;
-        if tick == Tick::Duplicate {
+        let examined = self.engine.examine(sample)?;
+        if examined.0 == Tick::Duplicate {
             return Ok(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
         }
-        let verdict = self.detector.update(&self.engine.motion(sample));
-        Ok(self.engine.advance(sample, tick, verdict))
+        let motion = self.engine.motion(sample);
+        let verdict = self.detector.update(&motion);
+        Ok(self.engine.advance(sample, examined, &motion, verdict))
     }
 
     /// Ends the walk: the stride that led to the stance the foot is in, if any.

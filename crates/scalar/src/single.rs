@@ -2,7 +2,9 @@
 
 use core::f32::consts::{FRAC_2_PI, TAU};
 
-/// √(x² + y²); the squares are scaled where they would overflow or vanish.
+/// √(x² + y²); the squares are scaled where they would overflow or vanish. Never inlined: three square roots
+/// at every place of use would be half a kilobyte each.
+#[inline(never)]
 pub(crate) fn hypot(x: f32, y: f32) -> f32 {
     const SCALE: f32 = 18_446_744_073_709_551_616.0; // 2⁶⁴
     let square = x * x + y * y;

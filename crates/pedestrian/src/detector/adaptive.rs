@@ -92,28 +92,37 @@ impl<T: Scalar> RecentMinimum<T> {
     /// Takes the value at `time_us` and returns the smallest remembered.
     #[inline]
     pub(crate) fn push(&mut self, time_us: u32, value: T) -> T {
-        let mut begun_us = *self.begun_us.get_or_insert(time_us);
-        let mut passed = 0;
-        // A long gap empties every bin; there is no need to pass more of them.
-        while time_us.wrapping_sub(begun_us) >= Self::BIN_US && passed < CAPACITY {
-            self.newest = (self.newest + 1) % CAPACITY;
-            self.bins[self.newest] = T::MAX;
-            begun_us = begun_us.wrapping_add(Self::BIN_US);
-            passed += 1;
+        let begun_us = *self.begun_us.get_or_insert(time_us);
+        if time_us.wrapping_sub(begun_us) >= Self::BIN_US {
+            self.next_bin(begun_us, time_us);
         }
-        if passed > 0 {
-            self.begun_us = Some(if passed < CAPACITY { begun_us } else { time_us });
-            self.older = (1..=self.memory).fold(T::MAX, |smallest, age| {
-                smallest.min(self.bins[self.newest.wrapping_sub(age) % CAPACITY])
-            });
-        }
-        self.bins[self.newest] = self.bins[self.newest].min(value);
+        let bin = &mut self.bins[self.newest % CAPACITY];
+        *bin = bin.min(value);
         self.smallest()
     }
 
     /// The smallest value remembered.
     #[inline]
     pub(crate) fn smallest(&self) -> T {
-        self.bins[self.newest].min(self.older)
+        self.bins[self.newest % CAPACITY].min(self.older)
+    }
+
+    /// Begins the bin that `time_us` is in; those passed over stay empty.
+    #[inline(never)]
+    fn next_bin(&mut self, mut begun_us: u32, time_us: u32) {
+        // A long gap empties every bin; there is no need to pass more of them.
+        for _ in 0..CAPACITY {
+            self.newest = (self.newest + 1) % CAPACITY;
+            self.bins[self.newest] = T::MAX;
+            begun_us = begun_us.wrapping_add(Self::BIN_US);
+            if time_us.wrapping_sub(begun_us) < Self::BIN_US {
+                break;
+            }
+        }
+        let inside = time_us.wrapping_sub(begun_us) < Self::BIN_US;
+        self.begun_us = Some(if inside { begun_us } else { time_us });
+        self.older = (1..=self.memory).fold(T::MAX, |smallest, age| {
+            smallest.min(self.bins[self.newest.wrapping_sub(age) % CAPACITY])
+        });
     }
 }

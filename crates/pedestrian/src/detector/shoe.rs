@@ -36,7 +36,8 @@ impl<T: Scalar> Shoe<T> {
         let [x, y, z, force_square, rate_square] =
             self.window.push(motion.time_us, [x, y, z, force_square, rate_square]);
         let mean_square = T::dot(&[x, y, z], &[x, y, z]);
-        let excess = mean_square.sqrt() - T::ONE;
+        // |f̄| − 1 = (|f̄|² − 1)/(|f̄| + 1), near a stance half of the numerator: no square root.
+        let excess = (mean_square - T::ONE) * T::HALF;
         let spread = (force_square - mean_square).max(T::ZERO);
         rate_square.max(T::ZERO) + T::from_f64(Self::FORCE_WEIGHT) * (spread + excess * excess)
     }

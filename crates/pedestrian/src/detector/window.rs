@@ -5,16 +5,14 @@ const CAPACITY: usize = 32;
 
 /// Means of `K` features over the last stretch of time, O(1) a sample.
 ///
-/// Taking the oldest sample off a running sum leaves a float's rounding behind for ever. So a
-/// second sum is begun afresh now and then: once it covers the whole window, it becomes the sum.
+/// Taking the oldest sample off a running sum leaves a float's rounding behind for ever, so each time the
+/// ring comes round the sum is made anew.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlidingMean<T, const K: usize> {
     ring: [(u32, [T; K]); CAPACITY],
     newest: usize,
     count: usize,
     sums: [T; K],
-    fresh: [T; K],
-    fresh_count: usize,
     span_us: u32,
     /// 1/count, kept because a division is dear and the count seldom changes.
     reciprocal: T,
@@ -28,8 +26,6 @@ impl<T: Scalar, const K: usize> SlidingMean<T, K> {
             newest: 0,
             count: 0,
             sums: [T::ZERO; K],
-            fresh: [T::ZERO; K],
-            fresh_count: 0,
             span_us,
             reciprocal: T::ONE,
         }
@@ -40,8 +36,7 @@ impl<T: Scalar, const K: usize> SlidingMean<T, K> {
     pub(crate) fn push(&mut self, time_us: u32, features: [T; K]) -> [T; K] {
         let before = self.count;
         while self.count > 0 {
-            let (oldest_us, oldest) =
-                self.ring[self.newest.wrapping_sub(self.count - 1) % CAPACITY];
+            let (oldest_us, oldest) = self.ring[self.index(self.count - 1)];
             if self.count < CAPACITY && time_us.wrapping_sub(oldest_us) < self.span_us {
                 break;
             }
@@ -53,19 +48,33 @@ impl<T: Scalar, const K: usize> SlidingMean<T, K> {
         self.newest = (self.newest + 1) % CAPACITY;
         self.ring[self.newest] = (time_us, features);
         self.count += 1;
-        self.fresh_count += 1;
-        for k in 0..K {
-            self.sums[k] += features[k];
-            self.fresh[k] += features[k];
-        }
-        if self.fresh_count >= self.count {
-            self.sums = self.fresh;
-            self.fresh = [T::ZERO; K];
-            self.fresh_count = 0;
+        if self.newest == 0 {
+            self.sum_anew();
+        } else {
+            for k in 0..K {
+                self.sums[k] += features[k];
+            }
         }
         if self.count != before {
             self.reciprocal = T::ONE / T::from_micro(self.count as i32 * 1_000_000);
         }
         self.sums.map(|sum| sum * self.reciprocal)
+    }
+
+    /// Where the sample of this age is, the newest being of age 0.
+    #[inline]
+    fn index(&self, age: usize) -> usize {
+        self.newest.wrapping_sub(age) % CAPACITY
+    }
+
+    #[inline(never)]
+    fn sum_anew(&mut self) {
+        self.sums = [T::ZERO; K];
+        for age in 0..self.count {
+            let (_, features) = &self.ring[self.index(age)];
+            for k in 0..K {
+                self.sums[k] += features[k];
+            }
+        }
     }
 }

@@ -16,7 +16,6 @@ pub struct Lite<T: Scalar> {
     strapdown: Strapdown<T>,
     /// Since the last zero velocity (s).
     drifted: T,
-    swinging: bool,
 }
 
 impl<T: Scalar> Lite<T> {
@@ -36,7 +35,6 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
             ahrs: Ahrs::new(orientation, SVector::zeros(), gains),
             strapdown: Strapdown::at_rest(),
             drifted: T::ZERO,
-            swinging: false,
         }
     }
 
@@ -54,19 +52,15 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         let error = self.strapdown.velocity - zero.velocity;
         self.strapdown.position -= error * (self.drifted * T::HALF);
         self.strapdown.velocity = zero.velocity;
-        if self.swinging {
+        if zero.landing {
             let swing = self.drifted.max(T::from_f64(Self::SHORTEST_SWING));
             let share = T::from_f64(Self::TILT_SHARE / crate::alignment::STANDARD_GRAVITY) / swing;
             let [x, y, _] = error.data.0[0];
             self.ahrs.turn_in_earth(&SVector::from([y * share, -x * share, T::ZERO]));
-            self.swinging = false;
         }
         self.drifted = T::ZERO;
     }
 
-    fn swing_begins(&mut self) {
-        self.swinging = true;
-    }
     fn position(&self) -> SVector<T, 3> {
         self.strapdown.position
     }

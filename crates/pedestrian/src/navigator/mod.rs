@@ -35,6 +35,8 @@ pub struct ZeroVelocity<T: Scalar> {
     pub unrest: T,
     /// The step that ends in this sample (s).
     pub interval: T,
+    /// The first of its stance: a swing ends.
+    pub landing: bool,
 }
 
 /// Navigates a foot by dead reckoning and zero velocities.
@@ -47,8 +49,6 @@ pub trait Navigator<T: Scalar> {
     fn propagate(&mut self, step: &Step<T>, stance: bool);
     /// The foot stands at the end of this step.
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>);
-    /// The stance that was is over.
-    fn swing_begins(&mut self);
     /// Where the sensor is (m, earth, from the start).
     fn position(&self) -> SVector<T, 3>;
     /// How it moves (m/s, earth).

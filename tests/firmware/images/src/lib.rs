@@ -5,5 +5,6 @@
 
 #![no_std]
 
+pub mod pedestrian;
 pub mod replay;
 pub mod stream;
