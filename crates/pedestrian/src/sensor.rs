@@ -26,7 +26,7 @@ pub(crate) struct Prior {
 pub(crate) struct Noise<T> {
     /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.
     pub(crate) velocity_variance: T,
-    /// Angle random walk, with the same absorbed: 0.01 or 0.03 rad/s/√Hz squared, scaled.
+    /// Angle random walk, with the same absorbed: 0.01 or 0.02 rad/s/√Hz squared, scaled.
     pub(crate) attitude_variance: T,
 }
 
@@ -42,7 +42,7 @@ impl SensorClass {
     pub(crate) fn noise<T: Scalar>(self, scale: f64) -> Noise<T> {
         let attitude = match self {
             Self::Industrial => 0.01,
-            Self::Consumer => 0.03,
+            Self::Consumer => 0.02,
         };
         Noise {
             velocity_variance: T::from_f64(0.3 * 0.3 * scale),
