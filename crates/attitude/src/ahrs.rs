@@ -131,14 +131,16 @@ impl<T: Scalar> Ahrs<T> {
     fn tilt_error(&self, specific_force: &SVector<T, 3>) -> Option<SVector<T, 3>> {
         let force = specific_force * T::from_f64(1.0 / Self::GRAVITY);
         let [x, y, z] = force.data.0[0];
-        let magnitude = x.hypot(y).hypot(z);
-        if !magnitude.is_finite() {
+        let square = T::dot(&[x, y, z], &[x, y, z]);
+        if !square.is_finite() {
             return None;
         }
-        if (magnitude - T::ONE).abs() > self.gains.gate {
+        // Squares spare the root: the magnitude is within the gate where its square is within these.
+        let (least, most) = (T::ONE - self.gains.gate, T::ONE + self.gains.gate);
+        if square < least * least || square > most * most {
             return Some(SVector::zeros());
         }
-        let up = self.orientation.to_body(&SVector::from([T::ZERO, T::ZERO, T::ONE])).data.0[0];
-        Some(SVector::from([y * up[2] - z * up[1], z * up[0] - x * up[2], x * up[1] - y * up[0]]))
+        let [ux, uy, uz] = self.orientation.up_in_body().data.0[0];
+        Some(SVector::from([y * uz - z * uy, z * ux - x * uz, x * uy - y * ux]))
     }
 }

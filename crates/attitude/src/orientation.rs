@@ -95,6 +95,17 @@ impl<T: Scalar> Orientation<T> {
         self.rotate(earth, -self.w)
     }
 
+    /// The earth's z axis in body axes: where up is.
+    #[inline]
+    pub fn up_in_body(&self) -> SVector<T, 3> {
+        let Self { w, x, y, z } = *self;
+        SVector::from([
+            T::TWO * (x * z - w * y),
+            T::TWO * (y * z + w * x),
+            T::ONE - T::TWO * (x * x + y * y),
+        ])
+    }
+
     /// Which way the body's x axis points, seen from above, anticlockwise from earth's x (rad, −π..=π).
     pub fn heading(&self) -> T {
         let sine = T::TWO * (self.w * self.z + self.x * self.y);

@@ -35,6 +35,8 @@ fn check_turns<T: Scalar>(first: [f64; 3], second: [f64; 3], v: [f64; 3], tolera
         let earth = orientation.to_earth(&cast(v));
         assert!(distance(&earth, expected) < tolerance, "{earth:?} is not {expected:?}");
         assert!(distance(&orientation.to_body(&earth), v64) < 2.0 * tolerance);
+        let up = orientation.to_body(&cast([0.0, 0.0, 1.0])).map(T::to_f64);
+        assert!(distance(&orientation.up_in_body(), up) < tolerance);
         let norm: f64 = orientation.quaternion().iter().map(|q| q.to_f64() * q.to_f64()).sum();
         assert!((norm - 1.0).abs() < tolerance);
     }

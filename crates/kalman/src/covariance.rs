@@ -100,7 +100,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         *self.entry(I, I) += variance;
     }
 
-    /// P ← E P Eᵀ with E = 1 + a·e_I·e_Jᵀ: state `I` becomes `I + a·J`.
+    /// P ← E P Eᵀ with `E = 1 + a·e_I·e_Jᵀ`: state `I` becomes `I + a·J`.
     ///
     /// A transition that moves a few states by others is a product of such shears. A constant
     /// velocity model is one a dimension (`position += dt·velocity`), each N multiplications,

@@ -107,7 +107,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(weighed.report())
     }
 
-    /// A scalar measurement of state `I` itself: [`Gaussian::update`] with the unit row e_I.
+    /// A scalar measurement of state `I` itself: [`Gaussian::update`] with a unit row.
     ///
     /// The row and column of the measured state are scaled by R/S instead of being subtracted
     /// from, which cannot turn its variance negative.

@@ -85,6 +85,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     interval,
                     specific_force: sample.specific_force,
                     angular_rate: motion.angular_rate,
+                    turn: motion.angular_rate * interval,
                     gravity: self.alignment.gravity() * T::from_f64(STANDARD_GRAVITY),
                 };
                 navigator.propagate(&step, verdict.stance);

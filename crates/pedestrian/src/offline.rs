@@ -103,7 +103,7 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
         if examined.0 == Tick::Duplicate {
             return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
         }
-        let verdict = Verdict { stance: is_below(unrest, minimum, T::ONE), unrest };
+        let verdict = Verdict { stance: is_below(unrest, minimum, None), unrest };
         let motion = self.engine.motion(sample);
         Some(self.engine.advance(sample, examined, &motion, verdict))
     }

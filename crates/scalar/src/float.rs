@@ -48,19 +48,6 @@ macro_rules! impl_scalar_for_float {
                 $float::abs(self)
             }
             #[inline]
-            fn min(self, other: Self) -> Self {
-                if self < other { self } else { other }
-            }
-            #[inline]
-            fn max(self, other: Self) -> Self {
-                if self > other { self } else { other }
-            }
-            #[inline]
-            fn clamp(self, low: Self, high: Self) -> Self {
-                Scalar::min(Scalar::max(self, low), high)
-            }
-
-            #[inline]
             fn sqrt(self) -> Self {
                 $sqrt(self)
             }

@@ -88,7 +88,7 @@ pub trait Scalar:
     fn hypot(self, other: Self) -> Self;
     /// 1/x; of zero an infinity, or the upper rail in fixed point.
     fn recip(self) -> Self;
-    /// Prepares `self` as the divisor of [`Scalar::divided_by`]. (Contract: zero is allowed; see there.)
+    /// Prepares `self` as the divisor of [`Scalar::divided_by`]; any number will do, zero too.
     fn divisor(self) -> Self::Divisor;
     /// `self / divisor`, rounded within one or two units in the last place; by a zero divisor as `/`.
     /// A multiplication, where the division was paid for once in [`Scalar::divisor`].

@@ -40,7 +40,7 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
         let last_us = *self.last_stance_us.get_or_insert(motion.time_us);
         let since = motion.time_us.wrapping_sub(last_us);
         let waited = since.saturating_sub(Self::PATIENCE_US).min(Self::IMPATIENCE_US);
-        let growth = T::ONE + T::from_micro(waited as i32);
+        let growth = (waited > 0).then(|| T::ONE + T::from_micro(waited as i32));
         let stance = is_below(unrest, minimum, growth);
         if stance {
             self.last_stance_us = Some(motion.time_us);
@@ -49,13 +49,19 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
     }
 }
 
-/// T < growth·max(T₀, 2·min T), and near the minimum where that is far below T₀.
+/// T < max(T₀, 2·min T), both multiplied by the growth where there is one; then also near the minimum.
 #[inline]
-pub(crate) fn is_below<T: Scalar>(unrest: T, minimum: T, growth: T) -> bool {
+pub(crate) fn is_below<T: Scalar>(unrest: T, minimum: T, growth: Option<T>) -> bool {
     // T₀ in (rad/s)²: below 0.4 rad/s of unrest the foot always stands.
     let floor = T::from_f64(0.15);
-    let scaled = T::TWO * minimum * growth;
-    unrest < scaled.max(floor * growth) && unrest <= scaled + floor
+    let scaled = minimum + minimum;
+    match growth {
+        None => unrest < scaled.max(floor),
+        Some(growth) => {
+            let scaled = scaled * growth;
+            unrest < scaled.max(floor * growth) && unrest <= scaled + floor
+        }
+    }
 }
 
 /// How many bins there is room for.

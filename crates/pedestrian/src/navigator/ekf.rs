@@ -61,10 +61,6 @@ impl<T: Scalar> Ekf<T> {
         p.shear::<2, 3>(y);
         p.shear::<2, 4>(-x);
 
-        let velocity = self.noise.velocity_variance * dt;
-        p.add_variance::<0>(velocity);
-        p.add_variance::<1>(velocity);
-        p.add_variance::<2>(velocity);
         let attitude = self.noise.attitude_variance * dt;
         p.add_variance::<3>(attitude);
         p.add_variance::<4>(attitude);
@@ -100,7 +96,7 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
     #[inline]
     fn propagate(&mut self, step: &Step<T>, _stance: bool) {
         let pushed = self.strapdown.integrate(&self.orientation, step);
-        self.orientation = self.orientation.turned_in_body(&(step.angular_rate * step.interval));
+        self.orientation = self.orientation.turned_in_body(&step.turn);
         if self.swing < T::from_f64(Self::LONGEST_SWING) {
             self.swing += step.interval;
             self.propagate_covariance(&pushed, step.interval);
@@ -109,6 +105,11 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
 
     #[inline]
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>) {
+        // A velocity that wanders touches no other state: what it gained since the last time is added now.
+        let wandered = self.noise.velocity_variance * self.swing;
+        self.error.covariance.add_variance::<0>(wandered);
+        self.error.covariance.add_variance::<1>(wandered);
+        self.error.covariance.add_variance::<2>(wandered);
         let base = T::from_f64(
             Self::ZERO_VELOCITY * Self::ZERO_VELOCITY * Self::SCALE * Self::REFERENCE_INTERVAL,
         );

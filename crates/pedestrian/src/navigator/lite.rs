@@ -16,6 +16,7 @@ pub struct Lite<T: Scalar> {
     strapdown: Strapdown<T>,
     /// Since the last zero velocity (s).
     drifted: T,
+    until_gravity: u8,
 }
 
 impl<T: Scalar> Lite<T> {
@@ -23,6 +24,8 @@ impl<T: Scalar> Lite<T> {
     const TILT_SHARE: f64 = 0.5;
     /// A drift within less than this (s) says nothing of the tilt.
     const SHORTEST_SWING: f64 = 0.3;
+    /// The reference is shown gravity in one stance sample of so many, with so many times the gain.
+    const GRAVITY_EVERY: u8 = 4;
     /// Longest drift that is still taken to be linear (s).
     const LONGEST_SWING: f64 = 10.0;
 }
@@ -30,18 +33,22 @@ impl<T: Scalar> Lite<T> {
 impl<T: Scalar> Navigator<T> for Lite<T> {
     fn start(_: SensorClass, orientation: Orientation<T>) -> Self {
         // In stance gravity corrects the tilt within a second; the bias is the alignment's business.
-        let gains = Gains { tilt: T::ONE, bias: T::ZERO, gate: T::from_f64(0.2) };
+        let tilt = T::from_f64(f64::from(Self::GRAVITY_EVERY));
+        let gains = Gains { tilt, bias: T::ZERO, gate: T::from_f64(0.2) };
         Self {
             ahrs: Ahrs::new(orientation, SVector::zeros(), gains),
             strapdown: Strapdown::at_rest(),
             drifted: T::ZERO,
+            until_gravity: 1,
         }
     }
 
     #[inline]
     fn propagate(&mut self, step: &Step<T>, stance: bool) {
         self.strapdown.integrate(self.ahrs.orientation(), step);
-        let gravity = if stance { Some(&step.specific_force) } else { None };
+        self.until_gravity =
+            if stance { self.until_gravity.wrapping_sub(1) % Self::GRAVITY_EVERY } else { 1 };
+        let gravity = (stance && self.until_gravity == 0).then_some(&step.specific_force);
         // Steps are checked: bounded rates over at most a fifth of a second.
         let _ = self.ahrs.update(&step.angular_rate, gravity, step.interval);
         self.drifted = (self.drifted + step.interval).min(T::from_f64(Self::LONGEST_SWING));

@@ -22,6 +22,8 @@ pub struct Step<T: Scalar> {
     pub specific_force: SVector<T, 3>,
     /// Angular rate without its bias (rad/s, body), held over the step.
     pub angular_rate: SVector<T, 3>,
+    /// Their product (rad): how the body turns in the step.
+    pub turn: SVector<T, 3>,
     /// What the accelerometer shows at rest (m/s²).
     pub gravity: T,
 }

@@ -27,9 +27,8 @@ impl<T: Scalar> Strapdown<T> {
         step: &Step<T>,
     ) -> SVector<T, 3> {
         let dt = step.interval;
-        let half_turn = step.angular_rate * (dt * T::HALF);
-        let force = step.specific_force + cross(&half_turn, &step.specific_force);
-        let pushed = orientation.to_earth(&(force * dt));
+        let body = step.specific_force * dt;
+        let pushed = orientation.to_earth(&(body + cross(&step.turn, &body) * T::HALF));
         let mut change = pushed;
         change.data.0[0][2] -= step.gravity * dt;
         self.position += (self.velocity + change * T::HALF) * dt;

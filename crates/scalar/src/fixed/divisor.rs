@@ -1,16 +1,17 @@
-//! A division paid for once and used for many quotients.
+//! Division: a reciprocal by Newton's iteration, for one quotient or for many.
 
 use super::Fixed;
+use super::wide::unsigned_product;
 
-/// A fixed-point divisor as reciprocal mantissa, shift and sign.
+/// A fixed-point divisor as reciprocal, shift and sign.
 ///
 /// A plain reciprocal in the same format overflows for small divisors and loses digits for large
-/// ones; the mantissa keeps 32 bits whatever the size.
+/// ones; this one keeps 32 bits whatever the size.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedDivisor<const FRAC: u32> {
     /// 2⁶³ / (the divisor's magnitude, shifted until its top bit is set).
-    mantissa: u32,
-    /// How far it was shifted; 32 marks the divisor zero.
+    reciprocal: u32,
+    /// By how much a product with it is shifted down; 0 marks the divisor zero.
     shift: u32,
     negative: bool,
 }
@@ -19,27 +20,106 @@ impl<const FRAC: u32> FixedDivisor<FRAC> {
     #[inline]
     pub(super) fn new(divisor: Fixed<FRAC>) -> Self {
         let magnitude = divisor.to_bits().unsigned_abs();
-        let shift = magnitude.leading_zeros();
-        // Zero has no top bit to shift into place: any mantissa will do.
-        let normalised = magnitude.wrapping_shl(shift) | 1 << 31;
-        let mantissa = (1_u64 << 63) / u64::from(normalised);
+        if magnitude == 0 {
+            return Self { reciprocal: 0, shift: 0, negative: false };
+        }
+        let zeros = magnitude.leading_zeros();
         Self {
-            mantissa: u32::try_from(mantissa).unwrap_or(u32::MAX),
-            shift,
+            reciprocal: reciprocal(magnitude << zeros),
+            // At least 2, since FRAC ≤ 30 and zeros ≤ 31.
+            shift: 63 - FRAC - zeros,
             negative: divisor.to_bits() < 0,
         }
     }
 
-    /// dividend / divisor, within one unit in the last place plus 2⁻³¹ of itself.
+    /// dividend / divisor, within one and a half units in the last place.
     #[inline]
     pub(super) fn divide(self, dividend: Fixed<FRAC>) -> Fixed<FRAC> {
-        if self.shift == 32 {
-            return dividend / Fixed(0);
+        let Some(half) = self.shift.checked_sub(1) else { return over_zero(dividend) };
+        let product = unsigned_product(dividend.to_bits().unsigned_abs(), self.reciprocal);
+        with_sign(((product >> half) + 1) >> 1, (dividend.to_bits() < 0) != self.negative)
+    }
+}
+
+impl<const FRAC: u32> Fixed<FRAC> {
+    /// self / divisor to the nearest, halves away from zero.
+    #[inline]
+    pub(super) fn quotient(self, divisor: Self) -> Self {
+        let prepared = FixedDivisor::new(divisor);
+        if prepared.shift == 0 {
+            return over_zero(self);
         }
-        let product = i64::from(dividend.to_bits()) * i64::from(self.mantissa);
-        // At least 2 for FRAC ≤ 30, so that half of the last place exists.
-        let shift = 63 - FRAC - self.shift;
-        let quotient = ((product >> (shift - 1)) + 1) >> 1;
-        Fixed::saturate(if self.negative { -quotient } else { quotient })
+        let negative = (self.0 < 0) != prepared.negative;
+        let (dividend, divisor) = (self.0.unsigned_abs(), divisor.0.unsigned_abs());
+        let estimate = unsigned_product(dividend, prepared.reciprocal) >> prepared.shift;
+        let Ok(mut quotient) = u32::try_from(estimate) else {
+            return with_sign(estimate, negative);
+        };
+        // The estimate is never too large and at most three too small.
+        let mut rest =
+            (u64::from(dividend) << FRAC).wrapping_sub(unsigned_product(quotient, divisor));
+        while rest >= u64::from(divisor) {
+            rest -= u64::from(divisor);
+            quotient = quotient.saturating_add(1);
+        }
+        with_sign(u64::from(quotient) + u64::from(2 * rest >= u64::from(divisor)), negative)
+    }
+}
+
+/// What a division by zero gives: the rail of the dividend's sign, the lower one for 0/0.
+fn over_zero<const FRAC: u32>(dividend: Fixed<FRAC>) -> Fixed<FRAC> {
+    Fixed(if dividend.to_bits() > 0 { i32::MAX } else { i32::MIN })
+}
+
+#[inline(always)]
+fn with_sign<const FRAC: u32>(magnitude: u64, negative: bool) -> Fixed<FRAC> {
+    Fixed(match (i32::try_from(magnitude), negative) {
+        (Ok(magnitude), false) => magnitude,
+        (Ok(magnitude), true) => -magnitude,
+        (Err(_), false) => i32::MAX,
+        (Err(_), true) => i32::MIN,
+    })
+}
+
+/// 2⁶³/m for 2³¹ ≤ m < 2³², never above it and at most two below.
+///
+/// A parabola and three Newton steps r ← r + r·(1 − m·r), each with just the bits it needs: a quarter of
+/// the instructions of a 64-bit division on ARMv6-M.
+#[inline(always)]
+pub(super) fn reciprocal(m: u32) -> u32 {
+    let short = m >> 16;
+    // 4.2424 − 5.8182·m + 2.5859·m², within 1 %; 14 fractional bits.
+    let r = 69_508 - (((95_325 - ((42_367 * short) >> 16)) * short) >> 16);
+    // Within 1.4·10⁻⁴; 15 fractional bits.
+    let error = (1 << 30) - (short * r) as i32;
+    let r = (2 * r).wrapping_add_signed((r as i32 * (error >> 13)) >> 16);
+    // Within 2.5·10⁻⁸; 31 fractional bits.
+    let error = (1_u32 << 31).wrapping_sub(short * r + (((m & 0xFFFF) * r) >> 16)) as i32;
+    let r = (r << 16).wrapping_add_signed((r as i32 * (error >> 4)) >> 11);
+    // All bits.
+    let error = ((1_u64 << 63).wrapping_sub(unsigned_product(m, r)) as i64 >> 24) as i32;
+    r.wrapping_add_signed(((r >> 16) as i32 * error) >> 23)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(m: u32) {
+        let exact = (1_u64 << 63) / u64::from(m);
+        let ours = u64::from(reciprocal(m));
+        assert!(ours <= exact && exact - ours <= 2, "1/{m}: {ours}, not {exact}");
+    }
+
+    #[test]
+    fn the_reciprocal_is_never_above_and_hardly_below() {
+        (0..1 << 31).step_by(1019).for_each(|k| check((1 << 31) + k));
+        (0..1000).for_each(|k| check(u32::MAX - k));
+    }
+
+    #[test]
+    #[ignore = "two billion divisions: cargo test --release -p kestirim-scalar -- --ignored"]
+    fn the_reciprocal_is_never_above_and_hardly_below_for_any_mantissa() {
+        ((1 << 31)..=u32::MAX).for_each(check);
     }
 }

@@ -1,167 +1,122 @@
 //! Elementary functions in integers.
 //!
-//! Each reduces its argument to [0, 1), where a short polynomial (fitted by Lawson's iteration towards
-//! the minimax) is evaluated in Q29 by Horner's rule. The multiplications by the reduced argument,
-//! 17 bits of it, are two 32-bit ones ([`scale`]): ARMv6-M has no wider.
+//! Each reduces its argument to an interval around zero, or from zero to one, where a short polynomial
+//! (Remez's minimax) is evaluated by Horner's rule in upper halves of 64-bit products. So the error does
+//! not depend on FRAC, as long as FRAC can show it.
 
 use super::Fixed;
-
-/// π in Q29.
-const PI_Q29: i32 = 1_686_629_713;
-/// 1/(2π) in Q32.
-const TURNS_Q32: i64 = 683_565_276;
-/// log₂ e in Q30.
-const LOG2_E_Q30: i64 = 1_549_082_005;
-/// ln 2 in Q26.
-const LN_2_Q26: i32 = 46_516_320;
-
-const fn q29(value: f64) -> i32 {
-    let scaled = value * (1_u64 << 29) as f64;
-    (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32
-}
-
-/// value · x for x in Q16, 0 ≤ x ≤ 1, |value| ≤ 2³⁰.
-#[inline(always)]
-const fn scale(value: i32, x: u32) -> i32 {
-    let high = (value >> 16).wrapping_mul(x as i32);
-    let low = (value as u32 & 0xffff).wrapping_mul(x) >> 16;
-    high.wrapping_add(low as i32)
-}
-
-/// c₀ + c₁·x + c₂·x² …, in Q29, for x in Q16.
-#[inline(always)]
-fn polynomial<const N: usize>(coefficients: &[i32; N], x: u32) -> i32 {
-    coefficients.iter().rev().fold(0, |sum, &c| c.wrapping_add(scale(sum, x)))
-}
-
-/// ⌊√value⌋, a bit at a time.
-#[inline]
-fn integer_sqrt(value: u64) -> u32 {
-    if value == 0 {
-        return 0;
-    }
-    let mut rest = value;
-    let mut root = 0_u64;
-    let mut bit = 1_u64 << ((63 - value.leading_zeros()) & !1);
-    while bit != 0 {
-        if rest >= root + bit {
-            rest -= root + bit;
-            root = (root >> 1) + bit;
-        } else {
-            root >>= 1;
-        }
-        bit >>= 2;
-    }
-    root as u32
-}
-
-/// The nearest integer to √value: the remainder tells which side of the half the root is on.
-#[inline]
-fn nearest_sqrt(value: u64) -> i64 {
-    let root = u64::from(integer_sqrt(value));
-    (root + u64::from(value - root * root > root)) as i64
-}
-
-/// sin of a phase, a full turn being 2³², in Q29; error 6·10⁻⁷ + rounding.
-#[inline]
-fn sine(phase: u32) -> i32 {
-    const C: [i32; 4] =
-        [q29(1.570_791_01), q29(-0.645_892_85), q29(0.079_434_35), q29(-0.004_333_10)];
-    // sin(½ turn − p) = sin p: folded to a quarter turn on either side of zero.
-    let phase = phase as i32;
-    let folded = if phase ^ (phase << 1) < 0 { i32::MIN.wrapping_sub(phase) } else { phase };
-    let t = folded >> 14;
-    let magnitude = t.unsigned_abs();
-    let square = (magnitude >> 1) * (magnitude >> 1) >> 14;
-    let value = scale(polynomial(&C, square), magnitude);
-    if t < 0 { -value } else { value }
-}
+use super::divisor::reciprocal;
+use super::wide::{high, product, unsigned_high, unsigned_product};
 
 impl<const FRAC: u32> Fixed<FRAC> {
-    #[inline]
-    pub(super) fn square_root(self) -> Self {
-        if self.0 < 0 {
-            return Self(i32::MIN);
-        }
-        Self::saturate(nearest_sqrt((self.0 as u64) << FRAC))
-    }
-
-    #[inline]
-    pub(super) fn hypotenuse(self, other: Self) -> Self {
-        let (x, y) = (u64::from(self.0.unsigned_abs()), u64::from(other.0.unsigned_abs()));
-        Self::saturate(nearest_sqrt(x * x + y * y))
-    }
-
+    /// (sin, cos) within 4·10⁻⁸ and half a unit.
     #[inline]
     pub(super) fn sine_cosine(self) -> (Self, Self) {
-        let phase = ((i64::from(self.0) * TURNS_Q32) >> FRAC) as u32;
-        let cosine = sine(phase.wrapping_add(1 << 30));
-        (Self::from_scaled(sine(phase), 29), Self::from_scaled(cosine, 29))
+        // 2⁶⁴/2π: a full turn is 64 bits, and what wraps around is whole turns.
+        const TURN: u64 = 2_935_890_503_282_001_226;
+        let turn = (TURN >> FRAC) + ((TURN >> (FRAC - 1)) & 1);
+        let x = self.0 as u32;
+        let low = unsigned_product(x, turn as u32);
+        // The sign of x counts −2³² times the constant.
+        let sign = if self.0 < 0 { turn as u32 } else { 0 };
+        let phase = ((low >> 32) as u32)
+            .wrapping_add(x.wrapping_mul((turn >> 32) as u32))
+            .wrapping_sub(sign);
+        let quadrant = phase.wrapping_add(1 << 29) >> 30;
+        // An eighth of a turn to either side of the quadrant's axis, in Q32 quarter turns.
+        let u = (phase.wrapping_sub(quadrant << 30) << 2) as i32;
+        let z = high(u, u);
+        let sine = high(
+            1_686_629_690 + high(-693_597_423 + high(85_551_349 + high(-4_930_933, z), z), z),
+            u,
+        );
+        let cosine =
+            (1 << 30) + high(-1_324_673_091 + high(272_307_758 + high(-21_932_519, z), z), z);
+        let (sine, cosine) = if quadrant & 1 == 0 { (sine, cosine) } else { (cosine, -sine) };
+        let (sine, cosine) = if quadrant & 2 == 0 { (sine, cosine) } else { (-sine, -cosine) };
+        (Self::rescaled(sine, 30), Self::rescaled(cosine, 30))
     }
 
+    /// The angle of (x, y) within 3·10⁻⁷ and half a unit.
     #[inline]
     pub(super) fn arc_tangent(y: Self, x: Self) -> Self {
-        const C: [i32; 5] = [
-            q29(0.999_866_33),
-            q29(-0.330_304_78),
-            q29(0.180_159_21),
-            q29(-0.085_156_19),
-            q29(0.020_845_02),
+        /// π in Q29.
+        const PI: i32 = 1_686_629_713;
+        /// Of odd powers, highest first, in Q30.
+        const C: [i32; 7] = [
+            468_102_589,
+            -1_154_631_809,
+            1_367_924_039,
+            -1_136_735_367,
+            850_739_192,
+            -715_485_030,
+            1_073_737_649,
         ];
         let (ay, ax) = (y.0.unsigned_abs(), x.0.unsigned_abs());
-        let (small, large) = if ay > ax { (ax, ay) } else { (ay, ax) };
+        let steep = ay > ax;
+        let (small, large) = if steep { (ax, ay) } else { (ay, ax) };
         if large == 0 {
             return Self(0);
         }
-        // The ratio in Q16, by the one 32-bit division: 16 bits of the larger are enough for it.
-        let shift = large.leading_zeros();
-        let denominator = (((large << shift) >> 15) + 1) >> 1;
-        let numerator = (small << shift).saturating_add(denominator >> 1);
-        let ratio = numerator.checked_div(denominator).unwrap_or(0).min(1 << 16);
-        let square = (ratio >> 1) * (ratio >> 1) >> 14;
-        let angle = scale(polynomial(&C, square), ratio);
-        let angle = if ay > ax { (PI_Q29 >> 1) - angle } else { angle };
-        let angle = if x.0 < 0 { PI_Q29 - angle } else { angle };
-        Self::from_scaled(if y.0 < 0 { -angle } else { angle }, 29)
+        let zeros = large.leading_zeros();
+        let ratio = unsigned_high(small << zeros, reciprocal(large << zeros));
+        let ratio = ratio.min(i32::MAX as u32) as i32;
+        let z = high(ratio, ratio) << 1;
+        let sum = C.into_iter().fold(0, |sum, c| c + high(sum, z));
+        let angle = high(sum, ratio);
+        let angle = if steep { PI / 2 - angle } else { angle };
+        let angle = if x.0 < 0 { PI - angle } else { angle };
+        Self::rescaled(if y.0 < 0 { -angle } else { angle }, 29)
     }
 
+    /// eˣ within 10⁻⁷ of itself and half a unit.
     #[inline]
     pub(super) fn exponential(self) -> Self {
-        const C: [i32; 5] =
-            [q29(1.0), q29(0.693_044_84), q29(0.241_280_22), q29(0.052_242_45), q29(0.013_426_70)];
-        // x·log₂e = whole + part, then 2^whole is a shift.
-        let power = (i64::from(self.0) * LOG2_E_Q30) >> (FRAC + 14);
-        let whole = (power >> 16) as i32;
-        let value = polynomial(&C, power as u32 & 0xffff);
-        let shift = 29 - FRAC as i32 - whole;
-        if shift > 31 {
-            Self(0)
-        } else if shift > 0 {
-            Self(((value >> (shift - 1)) + 1) >> 1)
-        } else if shift > -2 {
-            Self::saturate(i64::from(value) << -shift)
-        } else {
-            Self(i32::MAX)
-        }
+        /// log₂ e in Q30.
+        const LOG2_E: i32 = 1_549_082_005;
+        /// 2ᵖ − 1 without its factor p, highest power first, in Q31.
+        const C: [i32; 5] = [64_154_107, 154_911_395, 479_317_606, 1_031_498_459, 1_488_531_108];
+        // x·log₂e = whole + part; 2^whole is a shift.
+        let power = product(self.0, LOG2_E);
+        let whole = (power >> (FRAC + 30)) as i32;
+        let part = (power >> (FRAC - 1)) as i32 & i32::MAX;
+        let sum = C.into_iter().fold(0, |sum, c| c + high(sum, part));
+        let value = (1 << 30) + high(sum, part) as u32;
+        let shift = 30 - FRAC as i32 - whole;
+        Self(match shift {
+            ..0 => i32::MAX,
+            0 => i32::try_from(value).unwrap_or(i32::MAX),
+            1..=31 => (((value >> (shift - 1)) + 1) >> 1) as i32,
+            _ => 0,
+        })
     }
 
+    /// ln x within 3·10⁻⁷ and half a unit.
     #[inline]
     pub(super) fn logarithm(self) -> Self {
+        /// ln 2 in Q26.
+        const LN_2: i32 = 46_516_320;
+        /// ln(1 + t) without its factor t, highest power first, in Q30.
         const C: [i32; 7] = [
-            0,
-            q29(0.999_901_64),
-            q29(-0.497_874_98),
-            q29(0.317_648_62),
-            q29(-0.193_760_05),
-            q29(0.085_569_11),
-            q29(-0.018_338_58),
+            126_996_643,
+            -202_958_491,
+            221_240_990,
+            -267_161_345,
+            357_591_443,
+            -536_892_013,
+            1_073_745_311,
         ];
         if self.0 <= 0 {
             return Self(i32::MIN);
         }
-        let shift = self.0.leading_zeros();
-        let part = ((self.0 as u32) << shift << 1) >> 16;
-        let whole = 31 - shift as i32 - FRAC as i32;
-        Self::from_scaled((polynomial(&C, part) >> 3) + whole * LN_2_Q26, 26)
+        let zeros = self.0.leading_zeros();
+        // 1 to 2 in Q31; its logarithm is that of its half, where that is nearer to 1.
+        let mantissa = (self.0 as u32) << zeros;
+        let halved = mantissa >= 3_037_000_500;
+        let t = if halved { mantissa } else { mantissa << 1 } as i32;
+        let whole = 31 - zeros as i32 - FRAC as i32 + i32::from(halved);
+        let sum = C.into_iter().fold(0, |sum, c| c + high(sum, t));
+        let value = ((high(sum, t) + 8) >> 4) + whole * LN_2;
+        Self::rescaled(value, 26)
     }
 }

@@ -3,7 +3,9 @@
 mod divisor;
 mod functions;
 mod ops;
+mod root;
 mod scalar;
+mod wide;
 
 pub use divisor::FixedDivisor;
 
@@ -58,17 +60,6 @@ impl<const FRAC: u32> Fixed<FRAC> {
             Self(i32::MIN)
         } else {
             Self(bits as i32)
-        }
-    }
-
-    /// From a value with `from` fractional bits.
-    #[inline]
-    const fn from_scaled(value: i32, from: u32) -> Self {
-        if from > FRAC {
-            let shift = from - FRAC;
-            Self(((value >> (shift - 1)) + 1) >> 1)
-        } else {
-            Self::saturate((value as i64) << (FRAC - from))
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Arithmetic: rounding to nearest, saturating, never panicking.
 
 use super::Fixed;
+use super::wide::product;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
@@ -32,8 +33,7 @@ impl<const FRAC: u32> Mul for Fixed<FRAC> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
-        let product = i64::from(self.0) * i64::from(other.0);
-        Self::saturate((product + i64::from(Self::SCALE >> 1)) >> FRAC)
+        Self::narrowed(product(self.0, other.0))
     }
 }
 
@@ -42,13 +42,7 @@ impl<const FRAC: u32> Div for Fixed<FRAC> {
     /// Rounds half away from zero; by zero it gives the rail of the dividend's sign, the lower one for 0/0.
     #[inline]
     fn div(self, divisor: Self) -> Self {
-        if divisor.0 == 0 {
-            return Self(if self.0 > 0 { i32::MAX } else { i32::MIN });
-        }
-        let dividend = i64::from(self.0) << FRAC;
-        let half = i64::from(divisor.0.unsigned_abs() >> 1);
-        let towards = if dividend < 0 { dividend - half } else { dividend + half };
-        Self::saturate(towards.wrapping_div(i64::from(divisor.0)))
+        self.quotient(divisor)
     }
 }
 

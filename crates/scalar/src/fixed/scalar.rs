@@ -1,5 +1,6 @@
 //! The trait for fixed point.
 
+use super::wide::product;
 use super::{Fixed, FixedDivisor};
 use crate::Scalar;
 
@@ -41,15 +42,27 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     }
     #[inline]
     fn from_f32(value: f32) -> Self {
+        // Integers only, from the float's own fields: a soft float would cost ten times as much.
+        let (bits, negative) = (value.to_bits() & 0x7FFF_FFFF, value.is_sign_negative());
         if value.is_nan() {
             return Self(i32::MIN);
         }
-        // A power of two loses nothing; adding the half may, but only where a float has no fraction left.
-        let scaled = value * Self::SCALE as f32;
-        if scaled.abs() >= 8_388_608.0 {
-            return Self(scaled as i32);
-        }
-        Self((if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32)
+        // A subnormal rounds to zero all the same.
+        let mantissa = (bits & 0x7F_FFFF) | 0x80_0000;
+        let shift = (bits >> 23) as i32 - 150 + FRAC as i32;
+        let magnitude = match shift {
+            ..-24 => 0,
+            -24..0 => ((mantissa >> (-shift - 1)) + 1) >> 1,
+            0..8 => mantissa << shift,
+            _ => return Self(if negative { i32::MIN } else { i32::MAX }),
+        };
+        let magnitude = i32::try_from(magnitude);
+        Self(match (magnitude, negative) {
+            (Ok(magnitude), false) => magnitude,
+            (Ok(magnitude), true) => -magnitude,
+            (Err(_), false) => i32::MAX,
+            (Err(_), true) => i32::MIN,
+        })
     }
     #[inline]
     fn to_f32(self) -> f32 {
@@ -70,18 +83,6 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     #[inline]
     fn abs(self) -> Self {
         Self(self.0.saturating_abs())
-    }
-    #[inline]
-    fn min(self, other: Self) -> Self {
-        Ord::min(self, other)
-    }
-    #[inline]
-    fn max(self, other: Self) -> Self {
-        Ord::max(self, other)
-    }
-    #[inline]
-    fn clamp(self, low: Self, high: Self) -> Self {
-        Ord::min(Ord::max(self, low), high)
     }
 
     #[inline]
@@ -127,10 +128,10 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     }
     #[inline]
     fn mac(sum: i64, a: Self, b: Self) -> i64 {
-        sum.saturating_add(i64::from(a.0) * i64::from(b.0))
+        sum.saturating_add(product(a.0, b.0))
     }
     #[inline]
     fn finish(sum: i64) -> Self {
-        Self::saturate(sum.saturating_add(i64::from(Self::SCALE >> 1)) >> FRAC)
+        Self::narrowed(sum)
     }
 }

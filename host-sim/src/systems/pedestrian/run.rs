@@ -174,7 +174,7 @@ impl Walk {
         if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
             self.closure_m = x.hypot(*y);
         }
-        self.warnings = sentences(&warnings);
+        self.warnings = sentences(warnings);
     }
 }
 
@@ -202,7 +202,7 @@ fn double<T: Scalar>(vector: &SVector<T, 3>) -> [f64; 3] {
     vector.data.0[0].map(T::to_f64)
 }
 
-fn sentences(warnings: &Warnings) -> Vec<String> {
+fn sentences(warnings: Warnings) -> Vec<String> {
     [
         (
             warnings.accelerometer_saturated,

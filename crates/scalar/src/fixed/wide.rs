@@ -1,0 +1,103 @@
+//! Products of 64 bits, rounded back to 32.
+
+use super::Fixed;
+
+/// ARMv6-M multiplies 32 bits by 32 to 32. There four products of halves cost two thirds of the
+/// compiler's general 64-bit multiplication.
+const BY_HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
+/// a · b, exactly.
+#[inline(always)]
+pub(super) fn product(a: i32, b: i32) -> i64 {
+    if BY_HALVES { product_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
+}
+
+/// a · b, exactly.
+#[inline(always)]
+pub(super) fn unsigned_product(a: u32, b: u32) -> u64 {
+    if BY_HALVES { unsigned_product_by_halves(a, b) } else { u64::from(a) * u64::from(b) }
+}
+
+/// The upper half of a · b.
+#[inline(always)]
+pub(super) fn high(a: i32, b: i32) -> i32 {
+    (product(a, b) >> 32) as i32
+}
+
+/// The upper half of a · b.
+#[inline(always)]
+pub(super) fn unsigned_high(a: u32, b: u32) -> u32 {
+    (unsigned_product(a, b) >> 32) as u32
+}
+
+/// Warren, Hacker's Delight (2nd ed.), 8–2.
+#[inline(always)]
+fn product_by_halves(a: i32, b: i32) -> i64 {
+    let (a_low, a_high) = (a & 0xFFFF, a >> 16);
+    let (b_low, b_high) = (b & 0xFFFF, b >> 16);
+    let lowest = (a_low as u32).wrapping_mul(b_low as u32) >> 16;
+    let middle = a_high * b_low + lowest as i32;
+    let crossed = a_low * b_high + (middle & 0xFFFF);
+    let high = a_high * b_high + (middle >> 16) + (crossed >> 16);
+    (i64::from(high) << 32) | i64::from(a.wrapping_mul(b) as u32)
+}
+
+/// The same without signs.
+#[inline(always)]
+fn unsigned_product_by_halves(a: u32, b: u32) -> u64 {
+    let (a_low, a_high) = (a & 0xFFFF, a >> 16);
+    let (b_low, b_high) = (b & 0xFFFF, b >> 16);
+    let middle = a_high * b_low + ((a_low * b_low) >> 16);
+    let crossed = a_low * b_high + (middle & 0xFFFF);
+    let high = a_high * b_high + (middle >> 16) + (crossed >> 16);
+    (u64::from(high) << 32) | u64::from(a.wrapping_mul(b))
+}
+
+impl<const FRAC: u32> Fixed<FRAC> {
+    /// From a value with 2·FRAC fractional bits: rounded once, saturating.
+    #[inline(always)]
+    pub(super) fn narrowed(sum: i64) -> Self {
+        let rounded = ((sum >> (FRAC - 1)) + 1) >> 1;
+        let (low, high) = (rounded as i32, (rounded >> 32) as i32);
+        // It fits if the upper half is nothing but the sign.
+        Self(if high == low >> 31 { low } else { (high >> 31) ^ i32::MAX })
+    }
+
+    /// From a value with `from` fractional bits: rounded, saturating.
+    #[inline(always)]
+    pub(super) fn rescaled(value: i32, from: u32) -> Self {
+        Self(if FRAC > from {
+            value.saturating_mul(1 << (FRAC - from))
+        } else if FRAC < from {
+            ((value >> (from - FRAC - 1)) + 1) >> 1
+        } else {
+            value
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn halves_make_the_same_product(a in any::<i32>(), b in any::<i32>()) {
+            prop_assert_eq!(product_by_halves(a, b), i64::from(a) * i64::from(b));
+            let (a, b) = (a as u32, b as u32);
+            prop_assert_eq!(unsigned_product_by_halves(a, b), u64::from(a) * u64::from(b));
+        }
+    }
+
+    #[test]
+    fn halves_make_the_same_product_at_the_edges() {
+        for a in [i32::MIN, i32::MIN + 1, -65_536, -1, 0, 1, 65_535, 65_536, i32::MAX] {
+            for b in [i32::MIN, -65_537, -1, 0, 1, 65_535, i32::MAX] {
+                assert_eq!(product_by_halves(a, b), i64::from(a) * i64::from(b));
+                let (a, b) = (a as u32, b as u32);
+                assert_eq!(unsigned_product_by_halves(a, b), u64::from(a) * u64::from(b));
+            }
+        }
+    }
+}
