@@ -8,10 +8,10 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Gyro bias and local gravity, learnt from standstill.
 ///
-/// The stream is cut into quarters of a second. Four in a row whose mean rates and forces agree are a
-/// standstill of a second; a stance of walking never lasts that long. What the second says is weighted by
+/// The stream is cut into eighths of a second. Four in a row whose mean rates and forces agree are a
+/// standstill of half a second; a stance of walking is over sooner. What it says is weighted by
 /// its own spread against what the class of the sensor promises: people sway, and a good gyroscope knows
-/// its zero better than a swaying second does, whereas a bare chip's may be off by a hundred times that.
+/// its zero better than a swaying foot shows it, whereas a bare chip's may be off by a hundred times that.
 #[derive(Clone, Copy, Debug)]
 pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
@@ -26,7 +26,7 @@ pub struct Alignment<T: Scalar> {
     standstill: Standstill<T>,
 }
 
-/// Sums over a quarter of a second.
+/// Sums over an eighth of a second.
 #[derive(Clone, Copy, Debug)]
 struct Block<T: Scalar> {
     begun_us: Option<u64>,
@@ -68,7 +68,7 @@ impl<T: Scalar> Standstill<T> {
 }
 
 impl<T: Scalar> Alignment<T> {
-    const BLOCK_US: u64 = 250_000;
+    const BLOCK_US: u64 = 125_000;
     const BLOCKS: i32 = 4;
     /// Blocks further apart than this are no standstill (rad/s) …
     const RATE_SPREAD: f64 = 0.03;
@@ -76,11 +76,11 @@ impl<T: Scalar> Alignment<T> {
     const LARGEST_BIAS: f64 = 0.35;
     /// … nor forces further apart than this (g).
     const FORCE_SPREAD: f64 = 0.04;
-    /// The gyroscope's own noise over a second (mrad/s), below which no spread is believed.
+    /// The gyroscope's own noise over a standstill (mrad/s), below which no spread is believed.
     const RATE_FLOOR: f64 = 0.7;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
-    /// How far a bias wanders in a second (mrad/s).
+    /// How far a bias wanders between two standstills (mrad/s).
     const WANDER: f64 = 0.1;
 
     /// Nothing seen yet but the class of the sensor.

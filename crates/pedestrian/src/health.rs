@@ -22,7 +22,7 @@ pub struct Warnings {
     pub axes_inconsistent: bool,
     /// Samples are missing (more than a tenth of a second).
     pub gaps: bool,
-    /// The stream showed no second of standstill: the gyro bias is unknown.
+    /// The stream showed no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,
 }
 

@@ -1,5 +1,5 @@
 use crate::clock::Tick;
-use crate::detector::{RecentMinimum, Shoe, Verdict, is_below};
+use crate::detector::{RecentMinimum, Shoe, Verdict};
 use crate::engine::Engine;
 use crate::navigator::Navigator;
 use crate::{Config, Error, Estimate, ImuSample, Stride, Warnings};
@@ -7,8 +7,8 @@ use kestirim_scalar::Scalar;
 
 /// Tracks a foot through a recorded walk, looking ahead.
 ///
-/// Two things are better known afterwards: gyro bias and gravity from the quietest moments of the whole
-/// start, and the stances, whose unrest is compared with the smallest of 0.6 s before and after. An
+/// Two things are better known afterwards: gyro bias and gravity from every standstill of the
+/// recording, and the stances, whose unrest is compared with the smallest of 0.6 s before and after. An
 /// iterator over the estimates, one a sample; memory is the recording and one number a sample, both the
 /// caller's.
 #[derive(Debug)]
@@ -22,8 +22,10 @@ pub struct OfflineTracker<'a, T: Scalar, N> {
 }
 
 impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
-    /// How far the start is searched for standstills (µs).
-    const START_US: u64 = 20_000_000;
+    /// The foot stands below so many times the smallest unrest …
+    const FACTOR: f64 = 1.5;
+    /// … and always below this, (rad/s)².
+    const FLOOR: f64 = 0.15;
     /// Half of the span over which the smallest unrest is sought (µs).
     const LOOK_US: u64 = 600_000;
     /// The same to both sides, in bins.
@@ -43,14 +45,13 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
             return Err((unrest.len(), Error::NoMemory));
         }
         let mut engine = Engine::<T, N>::new(config);
-        let start_us = samples.first().map_or(0, |sample| sample.time_us);
-        let mut last_us = start_us;
+        let mut last_us = 0;
         for (index, sample) in samples.iter().enumerate() {
             sample.check().map_err(|error| (index, error))?;
             if sample.time_us < last_us {
                 return Err((index, Error::TimeBackwards));
             }
-            if sample.time_us != last_us && sample.time_us - start_us < Self::START_US {
+            if sample.time_us != last_us {
                 engine.alignment.update(sample);
             }
             last_us = sample.time_us;
@@ -103,7 +104,8 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
         if examined.0 == Tick::Duplicate {
             return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
         }
-        let verdict = Verdict { stance: is_below(unrest, minimum, None), unrest };
+        let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
+        let verdict = Verdict { stance: unrest < bound, unrest };
         let motion = self.engine.motion(sample);
         Some(self.engine.advance(sample, examined, &motion, verdict))
     }

@@ -26,8 +26,12 @@ impl<T: Scalar> Default for Adaptive<T> {
 impl<T: Scalar> Adaptive<T> {
     /// 1.4 s, longer than a slow stride.
     const MEMORY_BINS: usize = 14;
-    /// The bound begins to grow this long after a stance (µs) …
-    const PATIENCE_US: u32 = 800_000;
+    /// Of the smallest T; any value from 1.5 to 3.5 finds the same strides.
+    const FACTOR: f64 = 2.0;
+    /// T₀, (rad/s)²: below 0.3 rad/s of unrest the foot always stands.
+    const FLOOR: f64 = 0.1;
+    /// The bound begins to grow this long after a stance (µs), threefold a second …
+    const PATIENCE_US: u32 = 500_000;
     /// … and time since then is counted no further than this (µs).
     const IMPATIENCE_US: u32 = 10_000_000;
 }
@@ -39,28 +43,16 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
         let minimum = self.minimum.push(motion.time_us, unrest);
         let last_us = *self.last_stance_us.get_or_insert(motion.time_us);
         let since = motion.time_us.wrapping_sub(last_us);
-        let waited = since.saturating_sub(Self::PATIENCE_US).min(Self::IMPATIENCE_US);
-        let growth = (waited > 0).then(|| T::ONE + T::from_micro(waited as i32));
-        let stance = is_below(unrest, minimum, growth);
+        let mut bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
+        if since > Self::PATIENCE_US {
+            let waited = (since - Self::PATIENCE_US).min(Self::IMPATIENCE_US);
+            bound += bound * T::from_micro(3 * waited as i32);
+        }
+        let stance = unrest < bound;
         if stance {
             self.last_stance_us = Some(motion.time_us);
         }
         Verdict { stance, unrest }
-    }
-}
-
-/// T < max(T₀, 2·min T), both multiplied by the growth where there is one; then also near the minimum.
-#[inline]
-pub(crate) fn is_below<T: Scalar>(unrest: T, minimum: T, growth: Option<T>) -> bool {
-    // T₀ in (rad/s)²: below 0.4 rad/s of unrest the foot always stands.
-    let floor = T::from_f64(0.15);
-    let scaled = minimum + minimum;
-    match growth {
-        None => unrest < scaled.max(floor),
-        Some(growth) => {
-            let scaled = scaled * growth;
-            unrest < scaled.max(floor * growth) && unrest <= scaled + floor
-        }
     }
 }
 

@@ -6,7 +6,7 @@ mod simple;
 mod window;
 
 pub use adaptive::Adaptive;
-pub(crate) use adaptive::{RecentMinimum, is_below};
+pub(crate) use adaptive::RecentMinimum;
 pub use shoe::{FixedShoe, Shoe};
 pub use simple::{AngularRateEnergy, Magnitude, MovingVariance};
 

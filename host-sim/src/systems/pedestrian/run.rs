@@ -225,7 +225,10 @@ fn sentences(warnings: Warnings) -> Vec<String> {
             "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
         ),
         (warnings.gaps, "samples are missing for more than 0.1 s"),
-        (warnings.never_still, "no second of standstill was found: the gyro bias is unknown"),
+        (
+            warnings.never_still,
+            "no standstill of half a second was found: the gyro bias is unknown",
+        ),
     ]
     .into_iter()
     .filter(|(raised, _)| *raised)
