@@ -111,7 +111,9 @@ impl<T: Scalar> Ahrs<T> {
         }
         let mut bias = self.gyro_bias;
         let mut rate = angular_rate - bias;
+        let mut orientation = self.orientation;
         if let Some(force) = specific_force {
+            orientation = orientation.renormalised();
             let error = self.tilt_error(force).ok_or(Error::NotFinite)?;
             let learnt = error * (self.gains.bias * interval);
             bias -= learnt;
@@ -122,7 +124,7 @@ impl<T: Scalar> Ahrs<T> {
             return Err(Error::NotFinite);
         }
         self.gyro_bias = bias;
-        self.orientation = self.orientation.turned_in_body(&turn);
+        self.orientation = orientation.turned_in_body(&turn);
         Ok(())
     }
 

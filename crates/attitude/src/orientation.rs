@@ -6,7 +6,8 @@ use nalgebra::SVector;
 /// Earth is right-handed with z up; its x axis points wherever heading zero was declared. The
 /// quaternion follows Hamilton's convention, w first; q and −q are the same orientation.
 ///
-/// Every operation brings the norm back towards 1, so that rounding does not add up.
+/// Turns leave the norm to their rounding; [`Orientation::renormalised`] brings it back to 1 and is due
+/// every few hundred turns. Corrections in earth axes do so themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -73,7 +74,7 @@ impl<T: Scalar> Orientation<T> {
     /// measures, angular rate × time.
     #[inline]
     pub fn turned_in_body(&self, rotation: &SVector<T, 3>) -> Self {
-        self.then_body(&Self::from_rotation_vector(rotation)).renormalised()
+        self.then_body(&Self::from_rotation_vector(rotation))
     }
 
     /// The body turned on by a rotation vector given in **earth** axes (rad): how an estimator
@@ -127,15 +128,15 @@ impl<T: Scalar> Orientation<T> {
     /// sine and cosine beyond.
     #[inline(always)]
     fn from_rotation_vector(rotation: &SVector<T, 3>) -> Self {
-        let [x, y, z] = rotation.data.0[0].map(|component| component * T::HALF);
+        let [x, y, z] = rotation.data.0[0];
         let square = T::dot(&[x, y, z], &[x, y, z]);
-        let (w, scale) = if square < T::from_f64(0.0625) {
+        let (w, scale) = if square < T::from_f64(0.25) {
             (
-                T::ONE - square * (T::HALF - square * T::from_f64(1.0 / 24.0)),
-                T::ONE - square * (T::from_f64(1.0 / 6.0) - square * T::from_f64(1.0 / 120.0)),
+                T::ONE - square * (T::from_f64(1.0 / 8.0) - square * T::from_f64(1.0 / 384.0)),
+                T::HALF - square * (T::from_f64(1.0 / 48.0) - square * T::from_f64(1.0 / 3840.0)),
             )
         } else {
-            cos_and_sinc(x.hypot(y).hypot(z))
+            half_angle(x.hypot(y).hypot(z))
         };
         Self { w, x: x * scale, y: y * scale, z: z * scale }
     }
@@ -152,10 +153,10 @@ impl<T: Scalar> Orientation<T> {
         }
     }
 
-    /// One Newton step of 1/√(norm²) from 1: exact to the square of the deviation, and the product
-    /// of two unit quaternions deviates by rounding only.
+    /// The norm brought back to 1 by one Newton step of 1/√(norm²): exact to the square of the deviation,
+    /// which is rounding only.
     #[inline]
-    fn renormalised(&self) -> Self {
+    pub fn renormalised(&self) -> Self {
         let q = [self.w, self.x, self.y, self.z];
         let scale = T::from_f64(1.5) - T::HALF * T::dot(&q, &q);
         let [w, x, y, z] = q.map(|component| component * scale);
@@ -163,11 +164,11 @@ impl<T: Scalar> Orientation<T> {
     }
 }
 
-/// (cos a, sin a / a), kept apart because it is seldom needed and long.
+/// (cos a/2, sin(a/2)/a), kept apart because it is seldom needed and long.
 #[cold]
 #[inline(never)]
-fn cos_and_sinc<T: Scalar>(angle: T) -> (T, T) {
-    let (sine, cosine) = angle.sin_cos();
+fn half_angle<T: Scalar>(angle: T) -> (T, T) {
+    let (sine, cosine) = (angle * T::HALF).sin_cos();
     (cosine, sine / angle)
 }
 

@@ -127,7 +127,10 @@ proptest! {
         let before = gaussian::<f32>(&Vector4::zeros(), &Matrix4::identity());
         let mut after = before;
         match after.update(&SparseRow::new([(index, h)]), innovation, variance) {
-            Ok(_) => prop_assert!(after.mean.iter().all(|x| x.is_finite()) && after.covariance.is_finite()),
+            Ok(_) => {
+                prop_assert!(after.mean.iter().all(|x| x.is_finite()));
+                prop_assert!(after.covariance.is_finite());
+            }
             Err(_) => prop_assert_eq!(after, before),
         }
     }

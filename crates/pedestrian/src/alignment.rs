@@ -17,10 +17,11 @@ pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
     /// Of each axis, (mrad/s)²: one number, since sway turns about every axis.
     bias_variance: T,
-    /// The accelerometer's magnitude at rest, in units of standard gravity.
+    /// The accelerometer's magnitude at rest (m/s²).
     gravity: T,
+    /// Relative to g, squared.
     gravity_variance: T,
-    /// 1/(gravity · g₀), s²/m: a division that only a standstill needs.
+    /// 1/gravity, s²/m: a division that only a standstill needs.
     force_to_g: T,
     block: Block<T>,
     standstill: Standstill<T>,
@@ -90,7 +91,7 @@ impl<T: Scalar> Alignment<T> {
             gyro_bias: SVector::zeros(),
             // (100 mrad/s)² saturates in Q12.20, which changes nothing: it is far beyond any spread.
             bias_variance: T::from_f64(gyro_bias * gyro_bias * 1e6).min(T::MAX * T::HALF),
-            gravity: T::ONE,
+            gravity: T::from_f64(STANDARD_GRAVITY),
             gravity_variance: T::from_f64(gravity * gravity),
             force_to_g: T::from_f64(1.0 / STANDARD_GRAVITY),
             block: Block::new(),
@@ -103,7 +104,7 @@ impl<T: Scalar> Alignment<T> {
         &self.gyro_bias
     }
 
-    /// What the accelerometer shows at rest, in units of standard gravity.
+    /// What the accelerometer shows at rest (m/s²).
     pub fn gravity(&self) -> T {
         self.gravity
     }
@@ -178,9 +179,10 @@ impl<T: Scalar> Alignment<T> {
 
         let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
         let gain = self.gravity_variance / (self.gravity_variance + noise);
-        self.gravity += (magnitude - self.gravity) * gain;
+        let standard = T::from_f64(STANDARD_GRAVITY);
+        self.gravity += (magnitude * standard - self.gravity) * gain;
         self.gravity_variance *= T::ONE - gain;
-        self.force_to_g = T::from_f64(1.0 / STANDARD_GRAVITY) / self.gravity;
+        self.force_to_g = T::ONE / self.gravity;
         magnitude
     }
 }

@@ -1,4 +1,3 @@
-use crate::alignment::STANDARD_GRAVITY;
 use crate::clock::{Clock, Tick};
 use crate::detector::{Motion, Verdict};
 use crate::health::Health;
@@ -86,7 +85,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     specific_force: sample.specific_force,
                     angular_rate: motion.angular_rate,
                     turn: motion.angular_rate * interval,
-                    gravity: self.alignment.gravity() * T::from_f64(STANDARD_GRAVITY),
+                    gravity: self.alignment.gravity(),
                 };
                 navigator.propagate(&step, verdict.stance);
                 if verdict.stance {

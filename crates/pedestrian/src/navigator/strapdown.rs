@@ -29,10 +29,10 @@ impl<T: Scalar> Strapdown<T> {
         let dt = step.interval;
         let body = step.specific_force * dt;
         let pushed = orientation.to_earth(&(body + cross(&step.turn, &body) * T::HALF));
-        let mut change = pushed;
-        change.data.0[0][2] -= step.gravity * dt;
-        self.position += (self.velocity + change * T::HALF) * dt;
-        self.velocity += change;
+        let before = self.velocity;
+        self.velocity += pushed;
+        self.velocity.data.0[0][2] -= step.gravity * dt;
+        self.position += (before + self.velocity) * (dt * T::HALF);
         pushed
     }
 }

@@ -66,12 +66,9 @@ impl<const FRAC: u32> Fixed<FRAC> {
     /// From a value with `from` fractional bits: rounded, saturating.
     #[inline(always)]
     pub(super) fn rescaled(value: i32, from: u32) -> Self {
-        Self(if FRAC > from {
-            value.saturating_mul(1 << (FRAC - from))
-        } else if FRAC < from {
-            ((value >> (from - FRAC - 1)) + 1) >> 1
-        } else {
-            value
+        Self(match FRAC.checked_sub(from) {
+            Some(up) => value.saturating_mul(1 << up),
+            None => ((value >> (from - FRAC - 1)) + 1) >> 1,
         })
     }
 }

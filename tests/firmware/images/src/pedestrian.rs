@@ -1,6 +1,8 @@
 //! The pedestrian trackers, as the replay sees them.
 
-use kestirim_pedestrian::{Config, Ekf, Estimate, ImuSample, Lite, Navigator, Tracker as Pedestrian};
+use kestirim_pedestrian::{
+    Config, Ekf, Estimate, ImuSample, Lite, Navigator, Tracker as Pedestrian,
+};
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::SVector;
 use support::{Class, fail};

@@ -41,7 +41,9 @@ macro_rules! measure_all {
         measure::<$scalar>(concat!("recip ", $suffix), |x| x.recip());
         measure::<$scalar>(concat!("multiply ", $suffix), |x| x * x);
         measure::<$scalar>(concat!("divide ", $suffix), |x| <$scalar>::TWO / x);
-        measure::<$scalar>(concat!("divisor ", $suffix), |x| <$scalar>::TWO.divided_by(x.divisor()));
+        measure::<$scalar>(concat!("divisor ", $suffix), |x| {
+            <$scalar>::TWO.divided_by(x.divisor())
+        });
     };
 }
 
