@@ -15,7 +15,8 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 #[derive(Clone, Copy, Debug)]
 pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
-    /// Of each axis, (mrad/s)²: one number, since sway turns about every axis.
+    /// Of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20 holds
+    /// the squares of both the largest bias and the smallest noise.)
     bias_variance: T,
     /// The accelerometer's magnitude at rest (m/s²).
     gravity: T,
@@ -44,7 +45,9 @@ struct Standstill<T: Scalar> {
     blocks: i32,
     rate: SVector<T, 3>,
     force: SVector<T, 3>,
+    /// 0.01 rad/s.
     rate_sum: SVector<T, 3>,
+    /// (0.01 rad/s)².
     rate_square: T,
     force_sum: SVector<T, 3>,
 }
@@ -77,20 +80,19 @@ impl<T: Scalar> Alignment<T> {
     const LARGEST_BIAS: f64 = 0.35;
     /// … nor forces further apart than this (g).
     const FORCE_SPREAD: f64 = 0.04;
-    /// The gyroscope's own noise over a standstill (mrad/s), below which no spread is believed.
-    const RATE_FLOOR: f64 = 0.7;
+    /// The gyroscope's own noise over a standstill (0.01 rad/s), below which no spread is believed.
+    const RATE_FLOOR: f64 = 0.07;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
-    /// How far a bias wanders between two standstills (mrad/s).
-    const WANDER: f64 = 0.1;
+    /// How far a bias wanders between two standstills (0.01 rad/s).
+    const WANDER: f64 = 0.01;
 
     /// Nothing seen yet but the class of the sensor.
     pub(crate) fn new(sensor: SensorClass) -> Self {
         let Prior { gyro_bias, gravity } = sensor.prior();
         Self {
             gyro_bias: SVector::zeros(),
-            // (100 mrad/s)² saturates in Q12.20, which changes nothing: it is far beyond any spread.
-            bias_variance: T::from_f64(gyro_bias * gyro_bias * 1e6).min(T::MAX * T::HALF),
+            bias_variance: T::from_f64(gyro_bias * gyro_bias * 1e4),
             gravity: T::from_f64(STANDARD_GRAVITY),
             gravity_variance: T::from_f64(gravity * gravity),
             force_to_g: T::from_f64(1.0 / STANDARD_GRAVITY),
@@ -146,11 +148,11 @@ impl<T: Scalar> Alignment<T> {
             self.standstill = Standstill::from_block(rate, force);
             return None;
         }
-        let milli = rate_step * T::from_f64(1000.0);
+        let step = rate_step * T::from_f64(100.0);
         let run = &mut self.standstill;
         run.blocks += 1;
-        run.rate_sum += milli;
-        run.rate_square += T::dot(&milli.data.0[0], &milli.data.0[0]);
+        run.rate_sum += step;
+        run.rate_square += T::dot(&step.data.0[0], &step.data.0[0]);
         run.force_sum += force_step;
         if run.blocks < Self::BLOCKS {
             return None;
@@ -167,7 +169,7 @@ impl<T: Scalar> Alignment<T> {
         let mean_step = run.rate_sum * share;
         let square = T::dot(&mean_step.data.0[0], &mean_step.data.0[0]);
         let spread = (run.rate_square * share - square).max(T::ZERO) * T::from_f64(1.0 / 3.0);
-        let rate = run.rate + mean_step * T::from_f64(0.001);
+        let rate = run.rate + mean_step * T::from_f64(0.01);
         let [x, y, z] = (run.force + run.force_sum * share).data.0[0];
         let magnitude = x.hypot(y).hypot(z);
 
