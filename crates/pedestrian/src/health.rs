@@ -9,7 +9,8 @@ use nalgebra::SVector;
 // One flag a finding is what a reader wants to ask for by name.
 #[allow(clippy::struct_excessive_bools)]
 pub struct Warnings {
-    /// An axis of the accelerometer showed the same large value three times in a row: its range is too small.
+    /// Again and again an axis of the accelerometer showed the same large value three times in a row: its
+    /// range is too small.
     pub accelerometer_saturated: bool,
     /// The same of the gyroscope.
     pub gyroscope_saturated: bool,
@@ -35,18 +36,22 @@ pub(crate) struct Health<T: Scalar> {
     bad_landings: u8,
 }
 
-/// How often in a row each axis has shown the same value.
+/// How often in a row each axis has shown the same value, and how often that was three times.
 #[derive(Clone, Copy, Debug)]
 struct Repeats<T: Scalar> {
     last: SVector<T, 3>,
     counts: [u8; 3],
+    threes: u8,
 }
 
 impl<T: Scalar> Repeats<T> {
-    /// Whether an axis has now shown the same value three times.
+    /// A coarse log repeats a value by chance, once or twice a walk; a range that is too small does so
+    /// in every stride.
+    const CHANCE: u8 = 5;
+
+    /// Takes a value and tells whether an axis stays at the end of its range more often than by chance.
     #[inline]
     fn update(&mut self, value: &SVector<T, 3>, large: T) -> bool {
-        let mut saturated = false;
         for axis in 0..3 {
             let (new, old) = (value.data.0[0][axis], self.last.data.0[0][axis]);
             if new != old {
@@ -54,10 +59,12 @@ impl<T: Scalar> Repeats<T> {
                 self.counts[axis] = 0;
             } else if new.abs() > large {
                 self.counts[axis] = self.counts[axis].saturating_add(1);
-                saturated |= self.counts[axis] >= 2;
+                if self.counts[axis] == 2 {
+                    self.threes = self.threes.saturating_add(1);
+                }
             }
         }
-        saturated
+        self.threes > Self::CHANCE
     }
 }
 
@@ -70,7 +77,7 @@ impl<T: Scalar> Health<T> {
     const LANDINGS: u8 = 4;
 
     pub(crate) fn new() -> Self {
-        let nothing = Repeats { last: SVector::zeros(), counts: [0; 3] };
+        let nothing = Repeats { last: SVector::zeros(), counts: [0; 3], threes: 0 };
         let warnings = Warnings { never_still: true, ..Warnings::default() };
         Self { warnings, force: nothing, rate: nothing, bad_landings: 0 }
     }

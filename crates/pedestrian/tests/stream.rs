@@ -40,7 +40,7 @@ fn what_is_wrong_with_a_stream_is_named() {
             .accelerometer_saturated
     );
     assert!(
-        changed(|s| s.angular_rate = (s.angular_rate * 2.0).map(|w| w.clamp(-4.3, 4.3)))
+        changed(|s| s.angular_rate = (s.angular_rate * 5.0).map(|w| w.clamp(-4.3, 4.3)))
             .gyroscope_saturated
     );
     assert!(changed(|s| s.specific_force /= 9.80665).gravity_implausible);
