@@ -6,7 +6,7 @@ use nalgebra::SVector;
 /// Standard gravity (m/s²).
 pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Gyro bias and local gravity, learnt from standstill.
+/// Gyro bias and what of an accelerometer bias can be seen, learnt from standstill.
 ///
 /// The stream is cut into eighths of a second. Four in a row whose mean rates and forces agree are a
 /// standstill of half a second; a stance of walking is over sooner. What it says is weighted by
@@ -18,12 +18,11 @@ pub struct Alignment<T: Scalar> {
     /// Of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20 holds
     /// the squares of both the largest bias and the smallest noise.)
     bias_variance: T,
-    /// The accelerometer's magnitude at rest (m/s²).
+    /// The accelerometer's magnitude at rest, in units of standard gravity.
     gravity: T,
-    /// Relative to g, squared.
     gravity_variance: T,
-    /// 1/gravity, s²/m: a division that only a standstill needs.
-    force_to_g: T,
+    /// m/s², body.
+    accelerometer_bias: SVector<T, 3>,
     block: Block<T>,
     standstill: Standstill<T>,
 }
@@ -93,9 +92,9 @@ impl<T: Scalar> Alignment<T> {
         Self {
             gyro_bias: SVector::zeros(),
             bias_variance: T::from_f64(gyro_bias * gyro_bias * 1e4),
-            gravity: T::from_f64(STANDARD_GRAVITY),
+            gravity: T::ONE,
             gravity_variance: T::from_f64(gravity * gravity),
-            force_to_g: T::from_f64(1.0 / STANDARD_GRAVITY),
+            accelerometer_bias: SVector::zeros(),
             block: Block::new(),
             standstill: Standstill::from_block(SVector::zeros(), SVector::zeros()),
         }
@@ -106,14 +105,10 @@ impl<T: Scalar> Alignment<T> {
         &self.gyro_bias
     }
 
-    /// What the accelerometer shows at rest (m/s²).
-    pub fn gravity(&self) -> T {
-        self.gravity
-    }
-
-    /// What turns a force in m/s² into one in units of the local gravity.
-    pub(crate) fn force_to_g(&self) -> T {
-        self.force_to_g
+    /// The smallest accelerometer bias that explains what it shows at rest (m/s², body): along gravity. Across
+    /// it, a bias cannot be told from a tilt.
+    pub fn accelerometer_bias(&self) -> &SVector<T, 3> {
+        &self.accelerometer_bias
     }
 
     /// Keeps what was learnt and forgets the stream, to begin it again.
@@ -170,7 +165,8 @@ impl<T: Scalar> Alignment<T> {
         let square = T::dot(&mean_step.data.0[0], &mean_step.data.0[0]);
         let spread = (run.rate_square * share - square).max(T::ZERO) * T::from_f64(1.0 / 3.0);
         let rate = run.rate + mean_step * T::from_f64(0.01);
-        let [x, y, z] = (run.force + run.force_sum * share).data.0[0];
+        let force = run.force + run.force_sum * share;
+        let [x, y, z] = force.data.0[0];
         let magnitude = x.hypot(y).hypot(z);
 
         let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
@@ -181,10 +177,10 @@ impl<T: Scalar> Alignment<T> {
 
         let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
         let gain = self.gravity_variance / (self.gravity_variance + noise);
-        let standard = T::from_f64(STANDARD_GRAVITY);
-        self.gravity += (magnitude * standard - self.gravity) * gain;
+        self.gravity += (magnitude - self.gravity) * gain;
         self.gravity_variance *= T::ONE - gain;
-        self.force_to_g = T::ONE / self.gravity;
+        let excess = (self.gravity - T::ONE) * T::from_f64(STANDARD_GRAVITY);
+        self.accelerometer_bias = force * (excess / magnitude);
         magnitude
     }
 }

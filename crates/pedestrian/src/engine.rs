@@ -1,3 +1,4 @@
+use crate::alignment::STANDARD_GRAVITY;
 use crate::clock::{Clock, Tick};
 use crate::detector::{Motion, Verdict};
 use crate::health::Health;
@@ -43,10 +44,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     /// The sample as a detector wants it.
     #[inline]
     pub(crate) fn motion(&self, sample: &ImuSample<T>) -> Motion<T> {
-        let scale = self.alignment.force_to_g();
+        let force = sample.specific_force - self.alignment.accelerometer_bias();
         Motion {
             time_us: sample.time_us as u32,
-            force_g: sample.specific_force * scale,
+            force_g: force * T::from_f64(1.0 / STANDARD_GRAVITY),
             angular_rate: sample.angular_rate - self.alignment.gyro_bias(),
         }
     }
@@ -82,10 +83,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 }
                 let step = Step {
                     interval,
-                    specific_force: sample.specific_force,
+                    force_g: motion.force_g,
                     angular_rate: motion.angular_rate,
                     turn: motion.angular_rate * interval,
-                    gravity: self.alignment.gravity(),
                 };
                 navigator.propagate(&step, verdict.stance);
                 if verdict.stance {

@@ -26,7 +26,7 @@ pub(crate) struct Prior {
 pub(crate) struct Noise<T> {
     /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.
     pub(crate) velocity_variance: T,
-    /// Angle random walk, with the same absorbed: 0.01 or 0.02 rad/s/√Hz squared, scaled.
+    /// Angle random walk, with the same absorbed: 0.005 or 0.02 rad/s/√Hz squared, scaled.
     pub(crate) attitude_variance: T,
 }
 
@@ -41,7 +41,7 @@ impl SensorClass {
     /// Variances a second, multiplied by `scale`.
     pub(crate) fn noise<T: Scalar>(self, scale: f64) -> Noise<T> {
         let attitude = match self {
-            Self::Industrial => 0.01,
+            Self::Industrial => 0.005,
             Self::Consumer => 0.02,
         };
         Noise {

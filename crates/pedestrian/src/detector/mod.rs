@@ -13,12 +13,12 @@ pub use simple::{AngularRateEnergy, Magnitude, MovingVariance};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What a detector is shown: a sample whose gyro bias is taken off, in units in which one is everyday.
+/// What a detector is shown: a sample whose biases are taken off, in units in which one is everyday.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<T: Scalar> {
     /// When (µs; wraps every 71 minutes).
     pub time_us: u32,
-    /// Specific force in units of the local g (body).
+    /// Specific force without its bias, in units of standard gravity (body).
     pub force_g: SVector<T, 3>,
     /// Angular rate (rad/s, body).
     pub angular_rate: SVector<T, 3>,

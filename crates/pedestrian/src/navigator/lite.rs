@@ -1,6 +1,7 @@
 use super::strapdown::Strapdown;
 use super::{Navigator, Step, ZeroVelocity};
 use crate::SensorClass;
+use crate::alignment::STANDARD_GRAVITY;
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -48,9 +49,10 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         self.strapdown.integrate(self.ahrs.orientation(), step);
         self.until_gravity =
             if stance { self.until_gravity.wrapping_sub(1) % Self::GRAVITY_EVERY } else { 1 };
-        let gravity = (stance && self.until_gravity == 0).then_some(&step.specific_force);
+        let gravity = (stance && self.until_gravity == 0)
+            .then(|| step.force_g * T::from_f64(STANDARD_GRAVITY));
         // Steps are checked: bounded rates over at most a fifth of a second.
-        let _ = self.ahrs.update(&step.angular_rate, gravity, step.interval);
+        let _ = self.ahrs.update(&step.angular_rate, gravity.as_ref(), step.interval);
         self.drifted = (self.drifted + step.interval).min(T::from_f64(Self::LONGEST_SWING));
     }
 
@@ -61,7 +63,7 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         self.strapdown.velocity = zero.velocity;
         if zero.landing {
             let swing = self.drifted.max(T::from_f64(Self::SHORTEST_SWING));
-            let share = T::from_f64(Self::TILT_SHARE / crate::alignment::STANDARD_GRAVITY) / swing;
+            let share = T::from_f64(Self::TILT_SHARE / STANDARD_GRAVITY) / swing;
             let [x, y, _] = error.data.0[0];
             self.ahrs.turn_in_earth(&SVector::from([y * share, -x * share, T::ZERO]));
         }

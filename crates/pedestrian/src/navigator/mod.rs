@@ -18,14 +18,12 @@ use nalgebra::SVector;
 pub struct Step<T: Scalar> {
     /// Its length (s).
     pub interval: T,
-    /// Specific force (m/s², body), held over the step.
-    pub specific_force: SVector<T, 3>,
+    /// Specific force without its bias (units of standard gravity, body), held over the step.
+    pub force_g: SVector<T, 3>,
     /// Angular rate without its bias (rad/s, body), held over the step.
     pub angular_rate: SVector<T, 3>,
     /// Their product (rad): how the body turns in the step.
     pub turn: SVector<T, 3>,
-    /// What the accelerometer shows at rest (m/s²).
-    pub gravity: T,
 }
 
 /// The foot is known to stand: its velocity is known.

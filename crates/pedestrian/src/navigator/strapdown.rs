@@ -1,4 +1,5 @@
 use super::Step;
+use crate::alignment::STANDARD_GRAVITY;
 use kestirim_attitude::Orientation;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -27,11 +28,13 @@ impl<T: Scalar> Strapdown<T> {
         step: &Step<T>,
     ) -> SVector<T, 3> {
         let dt = step.interval;
-        let body = step.specific_force * dt;
+        // What gravity changes the velocity by in the step.
+        let fall = dt * T::from_f64(STANDARD_GRAVITY);
+        let body = step.force_g * fall;
         let pushed = orientation.to_earth(&(body + cross(&step.turn, &body) * T::HALF));
         let before = self.velocity;
         self.velocity += pushed;
-        self.velocity.data.0[0][2] -= step.gravity * dt;
+        self.velocity.data.0[0][2] -= fall;
         self.position += (before + self.velocity) * (dt * T::HALF);
         pushed
     }
