@@ -24,6 +24,9 @@ fn table() {
         ("lite --causal", Options { causal: true, ..lite }),
         ("ekf --scalar fixed", fixed),
         ("lite --scalar fixed", Options { tracker: TrackerKind::Lite, ..fixed }),
+        ("ekf --contact-height 0", Options { contact_height_m: Some(0.0), ..industrial }),
+        ("ekf --contact-height 0.04", Options { contact_height_m: Some(0.04), ..industrial }),
+        ("ekf --contact-height 0.10", Options { contact_height_m: Some(0.1), ..industrial }),
         ("ekf --detector shoe", Options { detector: detector("shoe"), ..industrial }),
         (
             "ekf --detector angular-rate",

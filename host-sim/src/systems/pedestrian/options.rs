@@ -18,6 +18,9 @@ pub struct Options {
     pub detector: DetectorKind,
     /// Class of the sensor: prior of its bias and noise.
     pub sensor: SensorClass,
+    /// Height of the sensor above the ball of the foot, m; none is the tracker's default, and 0 with the
+    /// detector of the paper, which forces all velocity to zero.
+    pub contact_height_m: Option<f64>,
     /// Look only backwards, as firmware must.
     pub causal: bool,
     /// Number type of the estimator.
@@ -41,6 +44,7 @@ impl Default for Options {
             tracker: TrackerKind::default(),
             detector: DetectorKind::default(),
             sensor: SensorClass::default(),
+            contact_height_m: None,
             causal: false,
             scalar: ScalarKind::F32,
         }
@@ -124,6 +128,17 @@ pub fn parse_detector(text: &str) -> Result<DetectorKind, String> {
     }
 }
 
+/// Reads a height of up to half a metre.
+///
+/// # Errors
+/// A sentence that says what was expected.
+pub fn parse_contact_height(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=0.5).contains(&value) => Ok(value),
+        _ => Err("expected metres from 0 to 0.5".to_owned()),
+    }
+}
+
 fn parse_threshold(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
@@ -142,6 +157,14 @@ mod tests {
         assert_eq!(parse_detector("variance:2"), Ok(DetectorKind::Variance(2.0)));
         assert_eq!(parse_detector("angular-rate:2"), Ok(DetectorKind::AngularRate(2.0)));
         assert_eq!(parse_detector("shoe:1e5"), Ok(DetectorKind::Shoe(1e5)));
+    }
+
+    #[test]
+    fn contact_heights_are_metres() {
+        assert_eq!(parse_contact_height("0.05"), Ok(0.05));
+        for text in ["", "x", "-0.1", "NaN", "inf", "7"] {
+            assert!(parse_contact_height(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::accuracy::{self, Accuracy};
-use super::options::{DetectorKind, Options, SensorClass, TrackerKind, parse_detector};
+use super::options::{
+    DetectorKind, Options, SensorClass, TrackerKind, parse_contact_height, parse_detector,
+};
 use super::run::{self, Walk};
 use super::track::TrackPoint;
 use super::{log, options, resample, truth};
@@ -37,6 +39,10 @@ pub struct Replay {
     /// Class of the sensor
     #[arg(long, value_enum, default_value_t)]
     sensor: SensorClass,
+    /// Height of the sensor above the ball of the foot, about which the foot rolls in stance; 0 takes
+    /// it for motionless [default: 0.07, and 0 with the detector magnitude, as in the paper]
+    #[arg(long, value_name = "METRES", value_parser = parse_contact_height)]
+    contact_height: Option<f64>,
     /// Look only backwards, as firmware must
     #[arg(long)]
     causal: bool,
@@ -94,6 +100,7 @@ impl Replay {
             tracker: self.tracker,
             detector: self.detector,
             sensor: self.sensor,
+            contact_height_m: self.contact_height,
             causal: self.causal,
             scalar,
         })

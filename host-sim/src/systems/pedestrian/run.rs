@@ -100,6 +100,11 @@ fn with_navigator<T: Scalar, N: Navigator<T>>(
         },
         ..Config::default()
     };
+    match (options.contact_height_m, options.detector) {
+        (Some(height), _) => config.contact_height = T::from_f64(height),
+        (None, DetectorKind::Magnitude(_)) => config.contact_height = T::ZERO,
+        (None, _) => {}
+    }
     let threshold = T::from_f64;
     match options.detector {
         DetectorKind::Adaptive if options.causal => {
@@ -107,8 +112,6 @@ fn with_navigator<T: Scalar, N: Navigator<T>>(
         }
         DetectorKind::Adaptive => offline::<T, N>(&samples, config),
         DetectorKind::Magnitude(value) => {
-            // The paper's method: all velocity is forced to zero.
-            config.contact_height = T::ZERO;
             causal::<T, N, _>(&samples, config, Magnitude::new(threshold(value / STANDARD_GRAVITY)))
         }
         DetectorKind::Variance(value) => {
