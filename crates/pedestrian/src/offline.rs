@@ -7,7 +7,7 @@ use kestirim_scalar::Scalar;
 
 /// Tracks a foot through a recorded walk, looking ahead.
 ///
-/// Two things are better known afterwards: gyro bias and gravity from every standstill of the
+/// Two things are better known afterwards: the biases, from every standstill of the
 /// recording, and the stances, whose unrest is compared with the smallest of 0.6 s before and after. An
 /// iterator over the estimates, one a sample; memory is the recording and one number a sample, both the
 /// caller's.

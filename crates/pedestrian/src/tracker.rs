@@ -108,7 +108,7 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
         self.engine.warnings()
     }
 
-    /// What standstills have shown of gyro bias and gravity.
+    /// What standstills have shown of the biases.
     pub fn alignment(&self) -> &Alignment<T> {
         &self.engine.alignment
     }

@@ -5,7 +5,7 @@ use kestirim_pedestrian::{
 };
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::SVector;
-use support::{Class, fail};
+use support::Class;
 
 use crate::replay::Tracker;
 use crate::stream::Sample;
@@ -66,7 +66,7 @@ impl<T: Scalar, N: Navigator<T> + Named> Tracker for Walk<T, N> {
                 self.position = position;
                 if stance { Class::Update } else { Class::Predict }
             }
-            Err(_) => fail("the tracker refused a sample"),
+            Err(_) => Class::Rejected,
         }
     }
 
