@@ -15,8 +15,16 @@ use super::target::Target;
 
 /// What of our own environment a build may see. Anything else, above all the variables that cargo
 /// and rustup set for this very process, would make the images depend on how the tests were started.
-const ENVIRONMENT: [&str; 6] =
-    ["PATH", "HOME", "CARGO_HOME", "CARGO_NET_OFFLINE", "HTTPS_PROXY", "https_proxy"];
+const ENVIRONMENT: [&str; 8] = [
+    "PATH",
+    "HOME",
+    "CARGO_HOME",
+    "CARGO_NET_OFFLINE",
+    "HTTPS_PROXY",
+    "https_proxy",
+    "SSL_CERT_FILE",
+    "SSL_CERT_DIR",
+];
 
 /// A toolchain that can build for one target.
 #[derive(Debug)]
