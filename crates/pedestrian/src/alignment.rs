@@ -30,7 +30,7 @@ pub struct Alignment<T: Scalar> {
 /// Sums over an eighth of a second.
 #[derive(Clone, Copy, Debug)]
 struct Block<T: Scalar> {
-    begun_us: Option<u64>,
+    begun_us: Option<u32>,
     count: i32,
     /// rad/s.
     rate: SVector<T, 3>,
@@ -71,7 +71,7 @@ impl<T: Scalar> Standstill<T> {
 }
 
 impl<T: Scalar> Alignment<T> {
-    const BLOCK_US: u64 = 125_000;
+    const BLOCK_US: u32 = 125_000;
     const BLOCKS: i32 = 4;
     /// Blocks further apart than this are no standstill (rad/s) …
     const RATE_SPREAD: f64 = 0.03;
@@ -120,17 +120,19 @@ impl<T: Scalar> Alignment<T> {
 
     /// Takes the next sample; `Some(|f|/g₀)` when a standstill has just refined the estimates.
     pub(crate) fn update(&mut self, sample: &ImuSample<T>) -> Option<T> {
-        let begun_us = *self.block.begun_us.get_or_insert(sample.time_us);
+        // The lower half is enough for differences.
+        let time_us = sample.time_us as u32;
+        let begun_us = *self.block.begun_us.get_or_insert(time_us);
         self.block.rate += sample.angular_rate;
         self.block.force += sample.specific_force;
         self.block.count += 1;
-        if sample.time_us.saturating_sub(begun_us) < Self::BLOCK_US {
+        if time_us.wrapping_sub(begun_us) < Self::BLOCK_US {
             return None;
         }
         let reciprocal = T::ONE / T::from_micro(self.block.count.saturating_mul(1_000_000));
         let rate = self.block.rate * reciprocal;
         let force = self.block.force * reciprocal * T::from_f64(1.0 / STANDARD_GRAVITY);
-        self.block = Block { begun_us: Some(sample.time_us), ..Block::new() };
+        self.block = Block { begun_us: Some(time_us), ..Block::new() };
         self.join(rate, force)
     }
 
