@@ -2,7 +2,7 @@ use super::window::SlidingMean;
 use super::{Motion, StanceDetector, Verdict};
 use kestirim_scalar::Scalar;
 
-/// The paper's detector (Kapan et al., eq. 2): stance where the magnitude of a single sample is within a
+/// The detector of the paper (AHRS and ZUPT on a Razor IMU, eq. 2): stance where the magnitude of a single sample is within a
 /// threshold of 1 g.
 ///
 /// Taken literally, as here, it fires many times inside every swing, where |f| passes through 1 g, and
