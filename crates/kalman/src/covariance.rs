@@ -4,7 +4,8 @@ use nalgebra::{SMatrix, SVector};
 /// A symmetric N × N covariance P, of which one triangle is kept.
 ///
 /// The other triangle is never written nor read, so P cannot lose its symmetry, whatever the
-/// rounding. The storage is a plain [`SMatrix`]: [`Covariance::to_matrix`] gives the whole P.
+/// rounding. Nor does it lose its positive sign: predictions and updates add to the diagonal what
+/// rounding may take ([`Scalar::rounding`]; see the crate's documentation). The storage is a plain [`SMatrix`]: [`Covariance::to_matrix`] gives the whole P.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -93,6 +94,14 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
+    /// P ← a·P, for a ≥ 0: all standard deviations grow by √a.
+    #[inline]
+    pub fn scale(&mut self, a: T) {
+        for entry in self.lower.data.0.as_flattened_mut() {
+            *entry *= a;
+        }
+    }
+
     /// Adds process noise to state `I` alone (unit: the state's, squared).
     #[inline]
     pub fn add_variance<const I: usize>(&mut self, variance: T) {
@@ -105,7 +114,8 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// A transition that moves a few states by others is a product of such shears. A constant
     /// velocity model is one a dimension (`position += dt·velocity`), each N multiplications,
     /// where the dense F P Fᵀ takes 2N³. The order is that of the states' own update: a state is
-    /// read before it is itself sheared when the transition reads its old value.
+    /// read before it is itself sheared when the transition reads its old value. The rounding of a
+    /// shear is left to [`Gaussian::advance`](crate::Gaussian::advance) or the next update.
     #[inline(always)]
     pub fn shear<const I: usize, const J: usize>(&mut self, a: T) {
         const { assert!(I < N && J < N && I != J, "a shear joins two different components") };
@@ -161,6 +171,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
     #[inline(always)]
     pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
+        self.absorb_rounding();
         for column in 0..N {
             for row in column..N {
                 self.lower.data.0[column][row] -= gain[row] * g[column];
@@ -171,6 +182,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// The same for all but row and column `I`.
     #[inline(always)]
     pub(crate) fn downdate_beside<const I: usize>(&mut self, gain: &[T; N], g: &[T; N]) {
+        self.absorb_rounding();
         for column in 0..N {
             for row in column..N {
                 if row != I && column != I {
@@ -185,6 +197,20 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     pub(crate) fn scale_component<const I: usize>(&mut self, factor: T) {
         for other in 0..N {
             *self.entry(I, other) *= factor;
+        }
+    }
+
+    /// In each entry of an update err the gain, the product and the difference, each by a rounding of
+    /// no more than √(P\[i, i\]·P\[j, j\]). A matrix of such errors is outweighed by N of them on its
+    /// diagonal.
+    const ROUNDINGS: u16 = N as u16;
+
+    /// Adds to the diagonal what the rounding of the step to come may take from it.
+    #[inline(always)]
+    pub(crate) fn absorb_rounding(&mut self) {
+        for index in 0..N {
+            let variance = &mut self.lower.data.0[index][index];
+            *variance += variance.rounding(Self::ROUNDINGS);
         }
     }
 

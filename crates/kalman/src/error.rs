@@ -14,6 +14,9 @@ pub enum Error {
     NotPositive,
     /// A measurement row names a state that the estimate does not have.
     IndexOutOfRange,
+    /// The covariance does not settle: a state that grows is not observed, or one so slow that the
+    /// iterations ran out.
+    NotConverged,
 }
 
 impl fmt::Display for Error {
@@ -21,6 +24,7 @@ impl fmt::Display for Error {
         formatter.write_str(match self {
             Self::NotFinite => "a number is not finite",
             Self::NotPositive => "a variance is not positive",
+            Self::NotConverged => "the covariance does not settle",
             Self::IndexOutOfRange => "a measurement row names a state that does not exist",
         })
     }

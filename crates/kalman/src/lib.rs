@@ -1,12 +1,22 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod block;
 mod covariance;
 mod error;
+mod gate;
 mod gaussian;
+mod innovation;
+mod model;
 mod row;
+mod steady_state;
 
+pub use block::BlockInnovation;
 pub use covariance::Covariance;
 pub use error::Error;
-pub use gaussian::{Gaussian, Innovation};
+pub use gate::{Gate, Verdict};
+pub use gaussian::Gaussian;
+pub use innovation::{Innovation, Weighed};
+pub use model::{Linear, Observation, Process};
 pub use row::SparseRow;
+pub use steady_state::{SteadyState, steady_state};

@@ -85,6 +85,10 @@ macro_rules! impl_scalar_for_float {
             }
 
             #[inline]
+            fn rounding(self, count: u16) -> Self {
+                $float::abs(self) * ($float::EPSILON * count as $float)
+            }
+            #[inline]
             fn accumulator() -> Self {
                 // −0 + x is x to the bit, so that the compiler drops the addition.
                 -0.0

@@ -102,6 +102,13 @@ pub trait Scalar:
     /// ln x; of zero −∞ or the lower rail, of a negative number NaN or the lower rail.
     fn ln(self) -> Self;
 
+    /// A bound on the error that `count` roundings leave in a result no larger than `self`.
+    ///
+    /// A rounding of floats errs by ε·|x| at most, with the operands' own last bits. In fixed point
+    /// it errs by half a unit in the last place; so does the other factor of a product, which counts
+    /// |x| times.
+    fn rounding(self, count: u16) -> Self;
+
     /// An empty sum of products.
     fn accumulator() -> Self::Accumulator;
     /// `sum + a · b`, exact in fixed point.

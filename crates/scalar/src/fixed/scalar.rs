@@ -123,6 +123,13 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     }
 
     #[inline]
+    fn rounding(self, count: u16) -> Self {
+        let each = (self.0.unsigned_abs() >> FRAC) + 1;
+        let halves = each.saturating_mul(u32::from(count));
+        Self((halves / 2 + halves % 2) as i32)
+    }
+
+    #[inline]
     fn accumulator() -> i64 {
         0
     }

@@ -1,0 +1,112 @@
+//! Several measurements with correlated noise at once.
+
+use crate::gaussian::is_finite;
+use crate::{Covariance, Error, Gaussian, SparseRow};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// What M measurements said together beyond what was expected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct BlockInnovation<T: Scalar, const M: usize> {
+    /// ν = z − h(x), as given.
+    pub innovation: SVector<T, M>,
+    /// S = H P Hᵀ + R.
+    pub covariance: Covariance<T, M>,
+    /// νᵀ S⁻¹ ν: M on average when the model is right.
+    pub nis: T,
+}
+
+impl<T: Scalar, const N: usize> Gaussian<T, N> {
+    /// M measurements at once, with innovations ν = z − h(x), rows H and noise R of any correlation.
+    ///
+    /// R = L D Lᵀ (L with a unit diagonal): L⁻¹z are measurements with the independent variances D,
+    /// and these are taken one after the other. The estimate is the textbook's, without the inverse
+    /// of S. Where R is diagonal, [`Gaussian::update`] for each measurement does the same for less.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], or [`Error::NotPositive`] if R or S is not positive definite; the
+    /// estimate is untouched.
+    pub fn update_block<const M: usize>(
+        &mut self,
+        rows: &SMatrix<T, M, N>,
+        innovation: &SVector<T, M>,
+        noise: &Covariance<T, M>,
+    ) -> Result<BlockInnovation<T, M>, Error> {
+        let covariance = self.expected_spread(rows, noise);
+        let (rows, independent, variances) = decorrelated(rows, innovation, noise)?;
+        let mut next = *self;
+        let mut nis = T::ZERO;
+        for m in 0..M {
+            let row = SparseRow::<T, N>::new(core::array::from_fn(|n| (n, rows.data.0[n][m])));
+            let moved = row.dot(&(next.mean - self.mean)).ok_or(Error::IndexOutOfRange)?;
+            nis += next.update(&row, independent.data.0[0][m] - moved, variances[m])?.nis;
+        }
+        *self = next;
+        Ok(BlockInnovation { innovation: *innovation, covariance, nis })
+    }
+
+    /// H P Hᵀ + R.
+    fn expected_spread<const M: usize>(
+        &self,
+        rows: &SMatrix<T, M, N>,
+        noise: &Covariance<T, M>,
+    ) -> Covariance<T, M> {
+        let mut spread = SMatrix::<T, M, M>::zeros();
+        for m in 0..M {
+            let mut cross = [T::ZERO; N];
+            for (i, cross) in cross.iter_mut().enumerate() {
+                let mut sum = T::accumulator();
+                for n in 0..N {
+                    sum = T::mac(sum, self.covariance.at(i, n), rows.data.0[n][m]);
+                }
+                *cross = T::finish(sum);
+            }
+            for other in m..M {
+                let mut sum = T::accumulator();
+                for n in 0..N {
+                    sum = T::mac(sum, rows.data.0[n][other], cross[n]);
+                }
+                spread.data.0[m][other] = T::finish(sum);
+            }
+        }
+        let mut covariance = Covariance::from_lower_triangle(&spread);
+        covariance.add(noise);
+        covariance
+    }
+}
+
+type Decorrelated<T, const M: usize, const N: usize> = (SMatrix<T, M, N>, SVector<T, M>, [T; M]);
+
+/// L⁻¹H, L⁻¹ν and D of R = L D Lᵀ, by forward substitution while the factors are found.
+fn decorrelated<T: Scalar, const M: usize, const N: usize>(
+    rows: &SMatrix<T, M, N>,
+    innovation: &SVector<T, M>,
+    noise: &Covariance<T, M>,
+) -> Result<Decorrelated<T, M, N>, Error> {
+    let (mut rows, mut innovation, mut rest) = (*rows, *innovation, noise.to_matrix());
+    let mut variances = [T::ZERO; M];
+    for pivot in 0..M {
+        let variance = rest.data.0[pivot][pivot];
+        if variance <= T::ZERO {
+            return Err(Error::NotPositive);
+        }
+        variances[pivot] = variance;
+        let divisor = variance.divisor();
+        for row in pivot + 1..M {
+            let factor = rest.data.0[pivot][row].divided_by(divisor);
+            for column in pivot + 1..M {
+                let taken = factor * rest.data.0[column][pivot];
+                rest.data.0[column][row] -= taken;
+            }
+            for column in 0..N {
+                let taken = factor * rows.data.0[column][pivot];
+                rows.data.0[column][row] -= taken;
+            }
+            let taken = factor * innovation.data.0[0][pivot];
+            innovation.data.0[0][row] -= taken;
+        }
+    }
+    // NaN passes every comparison above.
+    if is_finite(&variances) { Ok((rows, innovation, variances)) } else { Err(Error::NotFinite) }
+}

@@ -1,0 +1,68 @@
+//! The gain a filter settles at when neither its model nor its sensors change.
+
+use crate::{Covariance, Error, Gaussian};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// What a time-invariant filter settles at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SteadyState<T: Scalar, const N: usize, const M: usize> {
+    /// K of x ← x⁻ + K (z − H x⁻), N × M.
+    pub gain: SMatrix<T, N, M>,
+    /// P⁻, the covariance before an update.
+    pub prior: Covariance<T, N>,
+    /// P⁺, the covariance after it.
+    pub posterior: Covariance<T, N>,
+}
+
+/// Steps of the Riccati recursion before it is given up.
+const MOST_STEPS: u32 = 100_000;
+
+/// Settles the filter x ← F x + w, z = H x + v with covariances Q of w and R of v.
+///
+/// The Riccati recursion itself, repeated until no variance changes by more than its rounding: as
+/// slow as the slowest mode, and nothing is inverted. For firmware, run it on the host.
+///
+/// # Errors
+/// [`Error::NotConverged`], or why an update was refused.
+pub fn steady_state<T: Scalar, const N: usize, const M: usize>(
+    f: &SMatrix<T, N, N>,
+    q: &Covariance<T, N>,
+    h: &SMatrix<T, M, N>,
+    r: &Covariance<T, M>,
+) -> Result<SteadyState<T, N, M>, Error> {
+    let nothing = SVector::<T, M>::zeros();
+    let mut filter = Gaussian::new(SVector::zeros(), *q);
+    // A state that Q does not drive must be seen to decay, or to be learnt.
+    filter.covariance.add(&Covariance::from_variances(&[T::ONE; N]));
+    for _ in 0..MOST_STEPS {
+        let before = filter.covariance.variances();
+        filter.update_block(h, &nothing, r)?;
+        let posterior = filter.covariance;
+        filter.predict(f, q)?;
+        let after = filter.covariance.variances();
+        if before.iter().zip(after.iter()).all(|(&a, &b)| (a - b).abs() <= b.rounding(1)) {
+            let prior = filter.covariance;
+            return Ok(SteadyState { gain: gain(&prior, h, r)?, prior, posterior });
+        }
+    }
+    Err(Error::NotConverged)
+}
+
+/// K, column by column: where the update moves a zero mean when one innovation is 1.
+fn gain<T: Scalar, const N: usize, const M: usize>(
+    prior: &Covariance<T, N>,
+    h: &SMatrix<T, M, N>,
+    r: &Covariance<T, M>,
+) -> Result<SMatrix<T, N, M>, Error> {
+    let mut gain = SMatrix::zeros();
+    for column in 0..M {
+        let mut unit = SVector::<T, M>::zeros();
+        unit.data.0[0][column] = T::ONE;
+        let mut filter = Gaussian::new(SVector::zeros(), *prior);
+        filter.update_block(h, &unit, r)?;
+        gain.data.0[column] = filter.mean.data.0[0];
+    }
+    Ok(gain)
+}

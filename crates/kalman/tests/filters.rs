@@ -1,0 +1,184 @@
+//! Blocks, gates, model traits and the steady state, in every scalar where it matters.
+
+use kestirim_kalman::{
+    Covariance, Error, Gate, Gaussian, Observation, Process, SparseRow, Verdict, steady_state,
+};
+use kestirim_scalar::{Q12_20, Scalar};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, matrix, vector};
+
+fn cast<T: Scalar, const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> SMatrix<T, R, C> {
+    m.map(T::from_f64)
+}
+
+fn check_block<T: Scalar>(tolerance: f64) {
+    let p = matrix![2.0, 0.5, 0.1; 0.5, 1.0, -0.3; 0.1, -0.3, 0.7];
+    let h = matrix![1.0, 0.0, 0.5; 0.3, -1.0, 0.0];
+    let r = matrix![0.5, 0.2; 0.2, 0.4];
+    let innovation = vector![0.7, -0.4];
+    let mut ours =
+        Gaussian::<T, 3>::new(SVector::zeros(), Covariance::from_lower_triangle(&cast(&p)));
+    let noise = Covariance::from_lower_triangle(&cast(&r));
+    let report = ours.update_block(&cast(&h), &cast(&innovation), &noise).unwrap();
+
+    let s: Matrix2<f64> = h * p * h.transpose() + r;
+    let spread: Matrix2<f64> = report.covariance.to_matrix().map(T::to_f64);
+    let inverse = s.try_inverse().unwrap();
+    let gain = p * h.transpose() * inverse;
+    let mean: Vector3<f64> = gain * innovation;
+    let covariance: Matrix3<f64> = p - gain * h * p;
+    let nis = (innovation.transpose() * inverse * innovation)[0];
+    assert!((ours.mean.map(T::to_f64) - mean).abs().max() < tolerance);
+    assert!((ours.covariance.to_matrix().map(T::to_f64) - covariance).abs().max() < tolerance);
+    assert!((spread - s).abs().max() < tolerance);
+    assert!((report.nis.to_f64() - nis).abs() < tolerance);
+}
+
+#[test]
+fn a_block_is_the_dense_textbook_update() {
+    check_block::<f64>(1e-13);
+    check_block::<f32>(1e-6);
+    check_block::<Q12_20>(2e-5);
+}
+
+#[test]
+fn a_block_with_impossible_noise_is_refused() {
+    let start = Gaussian::<f32, 2>::new(Vector2::zeros(), Covariance::from_variances(&[1.0, 1.0]));
+    let rows = Matrix2::identity();
+    for (noise, error) in [
+        (matrix![1.0, 2.0; 2.0, 1.0], Error::NotPositive),
+        (matrix![0.0, 0.0; 0.0, 1.0], Error::NotPositive),
+        (matrix![f32::NAN, 0.0; 0.0, 1.0], Error::NotFinite),
+    ] {
+        let mut ours = start;
+        let noise = Covariance::from_lower_triangle(&noise);
+        assert_eq!(ours.update_block(&rows, &Vector2::new(1.0, 1.0), &noise), Err(error));
+        assert_eq!(ours, start);
+    }
+    let mut ours = start;
+    let noise = Covariance::from_variances(&[1.0, 1.0]);
+    let innovation = Vector2::new(1.0, f32::INFINITY);
+    assert_eq!(ours.update_block(&rows, &innovation, &noise), Err(Error::NotFinite));
+    assert_eq!(ours, start);
+}
+
+/// A pendulum's angle and rate, and the height of its bob.
+struct Pendulum {
+    dt: f64,
+}
+
+impl<T: Scalar> Process<T, 2> for Pendulum {
+    fn advance(&self, estimate: &mut Gaussian<T, 2>) {
+        let dt = T::from_f64(self.dt);
+        let (sin, cos) = estimate.mean[0].sin_cos();
+        estimate.mean[1] -= dt * sin;
+        estimate.covariance.shear::<1, 0>(-dt * cos);
+        let rate = estimate.mean[1];
+        estimate.mean[0] += dt * rate;
+        estimate.covariance.shear::<0, 1>(dt);
+        estimate.covariance.add_variance::<1>(T::from_f64(1e-5));
+    }
+}
+
+impl<T: Scalar> Observation<T, 2, 1> for Pendulum {
+    fn expect(&self, mean: &SVector<T, 2>) -> Result<(T, SparseRow<T, 1>), Error> {
+        let (sin, cos) = mean[0].sin_cos();
+        Ok((T::ONE - cos, SparseRow::new([(0, sin)])))
+    }
+}
+
+fn check_extended<T: Scalar>(tolerance: f64) {
+    let model = Pendulum { dt: 0.02 };
+    let (mut angle, mut rate) = (1.0_f64, 0.0_f64);
+    let start = Vector2::new(0.8, 0.3).map(T::from_f64);
+    let variances = [0.1, 0.1].map(T::from_f64);
+    let mut ours = Gaussian::new(start, Covariance::from_variances(&variances));
+    for _ in 0..1000 {
+        rate -= model.dt * angle.sin();
+        angle += model.dt * rate;
+        ours.advance(&model).unwrap();
+        ours.observe(&model, T::from_f64(1.0 - angle.cos()), T::from_f64(1e-3)).unwrap();
+    }
+    let error = (ours.mean[0].to_f64() - angle).hypot(ours.mean[1].to_f64() - rate);
+    assert!(error < tolerance, "{error}");
+}
+
+#[test]
+fn an_extended_filter_follows_a_pendulum_by_its_height() {
+    check_extended::<f64>(0.01);
+    check_extended::<f32>(0.01);
+    check_extended::<Q12_20>(0.01);
+}
+
+#[test]
+fn a_prediction_out_of_range_is_refused() {
+    let variances = Covariance::from_variances(&[Q12_20::from_f64(1000.0); 2]);
+    let mut ours = Gaussian::new(SVector::zeros(), variances);
+    let start = ours;
+    let f = Matrix2::identity() * Q12_20::TWO;
+    assert_eq!(ours.predict(&f, &Covariance::zero()), Err(Error::NotFinite));
+    assert_eq!(ours, start);
+}
+
+fn check_gate<T: Scalar>() {
+    let number = T::from_f64;
+    let row = SparseRow::new([(0, T::ONE)]);
+    let mut ours =
+        Gaussian::<T, 1>::new(SVector::zeros(), Covariance::from_variances(&[number(0.01)]));
+    let mut gate = Gate::new(number(25.0), 3);
+    let mut offer = |gate: &mut Gate<T>, z: f64| {
+        let weighed = ours.weigh(&row, number(z) - ours.mean[0], number(0.01)).unwrap();
+        let before = ours;
+        let verdict = gate.correct(&mut ours, &weighed).unwrap();
+        assert_eq!(ours == before, !verdict.is_taken());
+        (verdict, ours.mean[0].to_f64())
+    };
+    assert!(matches!(offer(&mut gate, 0.1).0, Verdict::Taken(_)));
+    // A wild one now and then is left out for ever …
+    for _ in 0..10 {
+        assert!(matches!(offer(&mut gate, 300.0).0, Verdict::Rejected(_)));
+        assert!(matches!(offer(&mut gate, 0.1).0, Verdict::Taken(_)));
+    }
+    // … but the fourth in a row that says the same is believed.
+    for _ in 0..3 {
+        assert!(matches!(offer(&mut gate, 5.0).0, Verdict::Rejected(_)));
+    }
+    let (verdict, mean) = offer(&mut gate, 5.0);
+    assert!(matches!(verdict, Verdict::Recovered(_)));
+    assert!(mean > 4.5 && mean < 5.0, "{mean}");
+    assert_eq!(gate.rejected(), 0);
+    assert!(matches!(offer(&mut gate, 5.0).0, Verdict::Taken(_)));
+}
+
+#[test]
+fn a_gate_recovers() {
+    check_gate::<f64>();
+    check_gate::<f32>();
+    check_gate::<Q12_20>();
+}
+
+#[test]
+fn the_steady_gain_of_a_tracker_is_the_alpha_beta_filters() {
+    // Kalata's tracking index for white acceleration held over a step: Λ = σ_w T²/σ_v.
+    let (dt, sigma_w, sigma_v) = (0.5_f64, 2.0_f64, 0.7_f64);
+    let index = sigma_w * dt * dt / sigma_v;
+    let r = (4.0 + index - (8.0 * index + index * index).sqrt()) / 4.0;
+    let alpha = 1.0 - r * r;
+    let beta = 2.0 * (2.0 - alpha) - 4.0 * (1.0 - alpha).sqrt();
+
+    let push = vector![dt * dt / 2.0, dt] * sigma_w;
+    let q = Covariance::from_lower_triangle(&(push * push.transpose()));
+    let f = matrix![1.0, dt; 0.0, 1.0];
+    let noise = Covariance::from_variances(&[sigma_v * sigma_v]);
+    let steady = steady_state(&f, &q, &matrix![1.0, 0.0], &noise).unwrap();
+    assert!((steady.gain[0] - alpha).abs() < 1e-9, "{} {alpha}", steady.gain[0]);
+    assert!((steady.gain[1] - beta / dt).abs() < 1e-9, "{} {}", steady.gain[1], beta / dt);
+    assert!(steady.posterior.variances()[0] < steady.prior.variances()[0]);
+}
+
+#[test]
+fn what_is_never_seen_does_not_settle() {
+    let q = Covariance::from_variances(&[1.0_f64, 1.0]);
+    let noise = Covariance::from_variances(&[1.0]);
+    let (f, h) = (Matrix2::identity(), matrix![1.0, 0.0]);
+    assert_eq!(steady_state(&f, &q, &h, &noise), Err(Error::NotConverged));
+}
