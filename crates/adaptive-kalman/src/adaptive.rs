@@ -1,0 +1,107 @@
+use crate::{Error, MeasurementNoise, ProcessNoise};
+use kestirim_kalman::{Gaussian, Innovation, Process, SparseRow};
+use kestirim_scalar::Scalar;
+
+/// The adaptive extended Kalman filter of N states and M kinds of scalar measurements, in its safe
+/// form: see [`MeasurementNoise`] and [`ProcessNoise`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct AdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
+    estimate: Gaussian<T, N>,
+    /// The mean after the last prediction, from which eq. 19 measures Δx.
+    predicted: Gaussian<T, N>,
+    process_noise: ProcessNoise<T, N>,
+    measurement_noise: [MeasurementNoise<T>; M],
+}
+
+impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
+    /// Starts from an estimate and the noise to be adapted.
+    pub fn new(
+        estimate: Gaussian<T, N>,
+        process_noise: ProcessNoise<T, N>,
+        measurement_noise: [MeasurementNoise<T>; M],
+    ) -> Self {
+        Self { estimate, predicted: estimate, process_noise, measurement_noise }
+    }
+
+    /// The estimate.
+    #[inline]
+    pub fn estimate(&self) -> &Gaussian<T, N> {
+        &self.estimate
+    }
+
+    /// The process noise as learnt so far.
+    #[inline]
+    pub fn process_noise(&self) -> &ProcessNoise<T, N> {
+        &self.process_noise
+    }
+
+    /// The noise of each measurement as learnt so far.
+    #[inline]
+    pub fn measurement_noise(&self) -> &[MeasurementNoise<T>; M] {
+        &self.measurement_noise
+    }
+
+    /// Begins an epoch: adapts Q to what the last one changed, then moves on by `process`, which
+    /// brings no noise of its own.
+    ///
+    /// # Errors
+    /// [`Error::Estimate`]; the filter is untouched.
+    #[inline]
+    pub fn predict(&mut self, process: &impl Process<T, N>) -> Result<(), Error> {
+        let mut noise = self.process_noise;
+        noise.learn(&(self.estimate.mean - self.predicted.mean));
+        self.estimate.advance(&WithNoise { process, noise: &noise })?;
+        self.process_noise = noise;
+        self.predicted = self.estimate;
+        Ok(())
+    }
+
+    /// Takes in measurement `index` with innovation ν = z − h(x) and row h, and learns its noise.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchMeasurement`] or [`Error::Estimate`]; the filter is untouched.
+    #[inline]
+    pub fn update<const K: usize>(
+        &mut self,
+        index: usize,
+        row: &SparseRow<T, K>,
+        innovation: T,
+    ) -> Result<Innovation<T>, Error> {
+        let noise = self.measurement_noise.get_mut(index).ok_or(Error::NoSuchMeasurement)?;
+        let weighed = self.estimate.weigh(row, innovation, noise.variance())?;
+        let report = self.estimate.correct(&weighed)?;
+        noise.learn(&weighed);
+        Ok(report)
+    }
+
+    /// The same without learning: for an epoch whose measurements only just determine the state, in
+    /// which every residual is small and means nothing.
+    ///
+    /// # Errors
+    /// As [`AdaptiveKalman::update`].
+    #[inline]
+    pub fn update_without_learning<const K: usize>(
+        &mut self,
+        index: usize,
+        row: &SparseRow<T, K>,
+        innovation: T,
+    ) -> Result<Innovation<T>, Error> {
+        let noise = self.measurement_noise.get(index).ok_or(Error::NoSuchMeasurement)?;
+        Ok(self.estimate.update(row, innovation, noise.variance())?)
+    }
+}
+
+/// A process with the adapted Q.
+struct WithNoise<'a, P, T: Scalar, const N: usize> {
+    process: &'a P,
+    noise: &'a ProcessNoise<T, N>,
+}
+
+impl<P: Process<T, N>, T: Scalar, const N: usize> Process<T, N> for WithNoise<'_, P, T, N> {
+    #[inline]
+    fn advance(&self, estimate: &mut Gaussian<T, N>) {
+        self.process.advance(estimate);
+        estimate.covariance.add(&self.noise.covariance());
+    }
+}

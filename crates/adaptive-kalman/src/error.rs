@@ -1,0 +1,45 @@
+use core::fmt;
+
+/// Why a step was refused. The filter is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// The estimate refused it.
+    Estimate(kestirim_kalman::Error),
+    /// There is no measurement of this number.
+    NoSuchMeasurement,
+    /// A forgetting factor is not in 0..=1, or limits of a variance are negative, out of order or not
+    /// finite.
+    InvalidLearning,
+}
+
+impl From<kestirim_kalman::Error> for Error {
+    fn from(error: kestirim_kalman::Error) -> Self {
+        Self::Estimate(error)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Estimate(error) => error.fmt(formatter),
+            Self::NoSuchMeasurement => {
+                formatter.write_str("there is no measurement of this number")
+            }
+            Self::InvalidLearning => {
+                formatter.write_str("a forgetting factor or a limit makes no sense")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Estimate(error) => Some(error),
+            _ => None,
+        }
+    }
+}

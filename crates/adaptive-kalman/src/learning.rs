@@ -1,0 +1,44 @@
+use crate::Error;
+use kestirim_scalar::Scalar;
+
+/// How a variance is learnt: how fast it forgets, and between which limits it stays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Learning<T> {
+    forgetting: T,
+    least: T,
+    most: T,
+}
+
+impl<T: Scalar> Learning<T> {
+    /// v ← α v + (1 − α) sample, kept within `least..=most`.
+    ///
+    /// α = 0.95 remembers about 20 samples; 1 learns nothing.
+    ///
+    /// # Errors
+    /// [`Error::InvalidLearning`] unless 0 ≤ α ≤ 1 and 0 ≤ `least` ≤ `most`, all finite.
+    pub fn new(forgetting: T, least: T, most: T) -> Result<Self, Error> {
+        let unit = T::ZERO <= forgetting && forgetting <= T::ONE;
+        let ordered = T::ZERO <= least && least <= most && most.is_finite();
+        if unit && ordered {
+            Ok(Self { forgetting, least, most })
+        } else {
+            Err(Error::InvalidLearning)
+        }
+    }
+
+    /// The variance after one more sample.
+    #[inline]
+    pub fn learn(&self, variance: T, sample: T) -> T {
+        let sum = T::mac(T::accumulator(), self.forgetting, variance);
+        let learnt = T::finish(T::mac(sum, T::ONE - self.forgetting, sample));
+        learnt.clamp(self.least, self.most)
+    }
+
+    /// The nearest variance within the limits.
+    #[inline]
+    pub fn limited(&self, variance: T) -> T {
+        variance.clamp(self.least, self.most)
+    }
+}

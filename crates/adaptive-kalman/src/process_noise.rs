@@ -1,0 +1,49 @@
+use crate::Learning;
+use kestirim_kalman::Covariance;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// The diagonal process noise Q of N states, learnt from how far updates move them.
+///
+/// Q ← α Q + (1 − α) diag(Δx²) with Δx = K ν, what an epoch's updates changed (eq. 19, its
+/// diagonal), each entry within its limits: with a floor, the filter never stops listening.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ProcessNoise<T: Scalar, const N: usize> {
+    variances: [T; N],
+    learning: [Learning<T>; N],
+}
+
+impl<T: Scalar, const N: usize> ProcessNoise<T, N> {
+    /// Variances to start from, a step each, moved into their limits.
+    pub fn new(variances: [T; N], learning: [Learning<T>; N]) -> Self {
+        let mut limited = variances;
+        for (variance, learning) in limited.iter_mut().zip(&learning) {
+            *variance = learning.limited(*variance);
+        }
+        Self { variances: limited, learning }
+    }
+
+    /// The diagonal of Q, a step each.
+    #[inline]
+    pub fn variances(&self) -> &[T; N] {
+        &self.variances
+    }
+
+    /// Q.
+    #[inline]
+    pub fn covariance(&self) -> Covariance<T, N> {
+        Covariance::from_variances(&self.variances)
+    }
+
+    /// Learns from Δx, what the updates of one epoch changed.
+    #[inline]
+    pub fn learn(&mut self, moved: &SVector<T, N>) {
+        for ((variance, learning), &moved) in
+            self.variances.iter_mut().zip(&self.learning).zip(&moved.data.0[0])
+        {
+            let learnt = learning.learn(*variance, moved * moved);
+            *variance = if learnt.is_finite() { learnt } else { *variance };
+        }
+    }
+}
