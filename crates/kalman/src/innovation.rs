@@ -101,6 +101,12 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
         Self { spread: a * self.spread, cross, ..*self }
     }
 
+    /// ν, S and NIS as they are before the update.
+    #[inline]
+    pub fn innovation_report(&self) -> Innovation<T> {
+        self.report(self.variance().divisor())
+    }
+
     #[inline]
     pub(crate) fn report(&self, divisor: T::Divisor) -> Innovation<T> {
         Innovation {

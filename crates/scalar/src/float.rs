@@ -56,6 +56,10 @@ macro_rules! impl_scalar_for_float {
                 $hypot(self, other)
             }
             #[inline]
+            fn norm<const N: usize>(components: &[Self; N]) -> Self {
+                $sqrt(Self::dot(components, components))
+            }
+            #[inline]
             fn recip(self) -> Self {
                 $float::recip(self)
             }

@@ -1,7 +1,7 @@
 //! Every elementary function against f64 over its whole domain, edges included. The bounds asserted are
 //! those of the crate's documentation.
 
-use kestirim_scalar::{Fixed, Scalar};
+use kestirim_scalar::{Fixed, Q12_20, Scalar};
 
 /// Bits over the whole range of an i32: both rails, every power of two and its neighbours, small numbers one
 /// by one, and 200 000 spread evenly.
@@ -146,4 +146,29 @@ fn microseconds_become_seconds() {
         assert_near(Fixed::<30>::from_micro(micro), exact, 0.0, 1e-9, exact);
         assert!((f64::from(f32::from_micro(micro)) - exact).abs() <= 1.2e-7 * exact.abs());
     }
+}
+
+#[test]
+fn a_norm_is_rounded_once_and_saturates() {
+    let norm = |v: [f64; 3]| Q12_20::norm(&v.map(Q12_20::from_f64));
+    assert_eq!(norm([2.0, -3.0, 6.0]), Q12_20::from_f64(7.0));
+    assert_eq!(norm([0.0; 3]), Q12_20::ZERO);
+    assert_eq!(norm([1e-6, 0.0, 0.0]), Q12_20::from_f64(1e-6));
+    assert!(!norm([2000.0, 2000.0, 0.0]).is_finite());
+    assert!(!norm([-2048.0; 3]).is_finite());
+    let (x, y, z) = (12.345_678, -98.765_432, 0.123_456);
+    let exact = (x * x + y * y + z * z).sqrt();
+    assert!((norm([x, y, z]).to_f64() - exact).abs() < 1.5 / 1_048_576.0);
+    assert_eq!(f32::norm(&[2.0, -3.0, 6.0]), 7.0);
+    assert_eq!(f64::norm(&[2.0, -3.0, 6.0]), 7.0);
+}
+
+#[test]
+fn a_rounding_bounds_what_arithmetic_loses() {
+    assert_eq!(1.0_f32.rounding(4), 4.0 * f32::EPSILON);
+    assert_eq!((-2.0_f64).rounding(1), 2.0 * f64::EPSILON);
+    // Half a unit in the last place each, rounded up; more where a factor's error is magnified.
+    assert_eq!(Q12_20::from_f64(0.5).rounding(3).to_bits(), 2);
+    assert_eq!(Q12_20::from_f64(-3.0).rounding(4).to_bits(), 8);
+    assert!(Q12_20::MIN.rounding(u16::MAX) > Q12_20::ZERO);
 }

@@ -18,6 +18,17 @@ impl<const FRAC: u32> Fixed<FRAC> {
         let square = unsigned_product(x, x) + unsigned_product(y, y);
         Self(i32::try_from(nearest_root(square)).unwrap_or(i32::MAX))
     }
+
+    #[inline]
+    pub(super) fn length(components: &[Self]) -> Self {
+        let mut square = 0_u64;
+        for component in components {
+            let size = component.0.unsigned_abs();
+            square = square.saturating_add(unsigned_product(size, size));
+        }
+        // Beyond 2⁶² the root is beyond the rail.
+        Self(i32::try_from(nearest_root(square.min(1 << 62))).unwrap_or(i32::MAX))
+    }
 }
 
 /// √n to the nearest integer, n ≤ 2⁶³.

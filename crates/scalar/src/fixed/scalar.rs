@@ -94,6 +94,10 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
         self.hypotenuse(other)
     }
     #[inline]
+    fn norm<const N: usize>(components: &[Self; N]) -> Self {
+        Self::length(components)
+    }
+    #[inline]
     fn recip(self) -> Self {
         if self.0 == 0 { Self(i32::MAX) } else { Self::ONE / self }
     }

@@ -1,0 +1,43 @@
+use core::fmt;
+
+/// Why there is no answer. Nothing was changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument, or the answer, is NaN, infinite or on a rail of fixed point.
+    NotFinite,
+    /// A variance is not positive.
+    NotPositive,
+    /// Fewer ranges than unknowns.
+    TooFewRanges,
+    /// The anchors stand so that the answer is not determined: in a line, or in a plane where three
+    /// dimensions are asked for.
+    DegenerateGeometry,
+    /// The iterations ran out.
+    NotConverged,
+    /// An index beyond the anchors.
+    NoSuchAnchor,
+    /// The times of an exchange do not follow each other.
+    InvalidExchange,
+    /// A table whose entries are not in rising order.
+    UnorderedTable,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::NotPositive => "a variance is not positive",
+            Self::TooFewRanges => "there are fewer ranges than unknowns",
+            Self::DegenerateGeometry => "the anchors' places do not determine the answer",
+            Self::NotConverged => "the iterations did not converge",
+            Self::NoSuchAnchor => "there is no such anchor",
+            Self::InvalidExchange => "the times of an exchange do not follow each other",
+            Self::UnorderedTable => "the entries of a table are not in rising order",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

@@ -1,0 +1,40 @@
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// What an anchor at a known place should measure, and how that changes with the tag's position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ExpectedRange<T, const D: usize> {
+    /// Slant distance from anchor to tag, m (the paper's eq. 10).
+    pub distance: T,
+    /// ∂distance/∂position: the first D components of the unit vector from anchor to tag; zero where both
+    /// are at the same place.
+    pub direction: [T; D],
+}
+
+/// The distance from an anchor to a tag and its derivatives, in the room's axes (right-handed, z up; m).
+///
+/// With D = 2 the tag's height is known: it is at `height` in every axis from D on. With D = 3
+/// `height` is not read.
+#[inline]
+pub fn expected_range<T: Scalar, const D: usize>(
+    position: &SVector<T, D>,
+    height: T,
+    anchor: &SVector<T, 3>,
+) -> ExpectedRange<T, D> {
+    const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
+    let mut offset = [T::ZERO; 3];
+    for axis in 0..3 {
+        let tag = if axis < D { position.data.0[0][axis] } else { height };
+        offset[axis] = tag - anchor.data.0[0][axis];
+    }
+    let distance = T::norm(&offset);
+    let mut direction = [T::ZERO; D];
+    if distance > T::ZERO {
+        let divisor = distance.divisor();
+        for axis in 0..D {
+            direction[axis] = offset[axis].divided_by(divisor);
+        }
+    }
+    ExpectedRange { distance, direction }
+}

@@ -1,0 +1,29 @@
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// Where the tag can be at all: a box with its sides along the room's axes (m).
+///
+/// Three anchors see a tag and its mirror image alike; only the walls tell them apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Room<T> {
+    /// Smallest x, y, z.
+    pub low: [T; 3],
+    /// Largest x, y, z.
+    pub high: [T; 3],
+}
+
+impl<T: Scalar> Room<T> {
+    /// A room between two opposite corners in the plane, of any height.
+    pub fn plane(x0: T, y0: T, x1: T, y1: T) -> Self {
+        Self { low: [x0.min(x1), y0.min(y1), T::MIN], high: [x0.max(x1), y0.max(y1), T::MAX] }
+    }
+
+    /// Whether the first D coordinates of `position` are inside, or outside by no more than `margin`.
+    pub fn contains<const D: usize>(&self, position: &SVector<T, D>, margin: T) -> bool {
+        position.iter().zip(self.low.iter().zip(&self.high)).all(|(&coordinate, (&low, &high))| {
+            low - margin <= coordinate && coordinate <= high + margin
+        })
+    }
+}
