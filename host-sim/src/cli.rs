@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::systems::{System, pedestrian};
+use crate::systems::{System, pedestrian, robot};
 
 /// Estimators on synthetic and recorded streams.
 ///
@@ -23,6 +23,9 @@ pub enum Command {
     /// Run a system on a recorded log
     #[command(subcommand)]
     Replay(Replay),
+    /// Find what a system's sensors measure wrong, from a log with known truth
+    #[command(subcommand)]
+    Calibrate(Calibrate),
     /// List systems, scenarios and log formats
     List,
 }
@@ -59,6 +62,15 @@ pub struct RunOptions {
 pub enum Replay {
     /// A walk recorded by a foot-mounted IMU
     Pedestrian(pedestrian::replay::Replay),
+    /// Ranges recorded between anchors and a tag
+    Robot(robot::replay::Replay),
+}
+
+/// `host-sim calibrate`.
+#[derive(Debug, Subcommand)]
+pub enum Calibrate {
+    /// What each anchor measures too long
+    Robot(robot::calibrate::Calibrate),
 }
 
 /// Number type in which an estimator computes.

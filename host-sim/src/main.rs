@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_sim::cli::{self, Cli, Command, Replay, RunOptions};
+use host_sim::cli::{self, Calibrate, Cli, Command, Replay, RunOptions};
 use host_sim::systems::{self, System};
 use host_sim::{Error, output};
 
@@ -28,6 +28,8 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         }
         Some(Command::Run(run)) => run.system.run(run.options, run.json),
         Some(Command::Replay(Replay::Pedestrian(replay))) => replay.run(),
+        Some(Command::Replay(Replay::Robot(replay))) => replay.run(),
+        Some(Command::Calibrate(Calibrate::Robot(calibrate))) => calibrate.run(),
         Some(Command::List) => output::print(&systems::list()),
     }
 }

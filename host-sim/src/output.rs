@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::Error;
+use crate::text::printable_path;
 
 /// Prints a report on standard output: for people, or as one JSON object.
 ///
@@ -58,6 +59,26 @@ pub fn progress(steps: u64) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Refuses to write to a file that is an input as well.
+///
+/// # Errors
+/// [`Error::Usage`].
+pub fn refuse_overwriting<'a>(
+    option: &str,
+    output: Option<&Path>,
+    inputs: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<(), Error> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let Some(output) = output.and_then(real) else { return Ok(()) };
+    match inputs.into_iter().find(|path| real(path).as_ref() == Some(&output)) {
+        Some(input) => Err(Error::Usage(format!(
+            "{option} {} would overwrite an input file",
+            printable_path(input)
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Writes a file so that it is never seen half-written: beside it first, then renamed.

@@ -119,16 +119,22 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     #[inline(always)]
     pub fn shear<const I: usize, const J: usize>(&mut self, a: T) {
         const { assert!(I < N && J < N && I != J, "a shear joins two different components") };
-        let cross = self.at(I, J);
+        self.shear_at(I, J, a);
+    }
+
+    /// [`Covariance::shear`] for indices known to be below N and different.
+    #[inline(always)]
+    pub(crate) fn shear_at(&mut self, i: usize, j: usize, a: T) {
+        let cross = self.at(i, j);
         for other in 0..N {
-            if other != I {
-                let step = a * self.at(J, other);
-                *self.entry(I, other) += step;
+            if other != i {
+                let step = a * self.at(j, other);
+                *self.entry(i, other) += step;
             }
         }
-        // E P Eᵀ adds a·P[I,J] with the old and once more with the new cross term.
-        let sheared = self.at(I, J);
-        *self.entry(I, I) += a * (cross + sheared);
+        // E P Eᵀ adds a·P[i, j] with the old and once more with the new cross term.
+        let sheared = self.at(i, j);
+        *self.entry(i, i) += a * (cross + sheared);
     }
 
     /// Forgets all that ties state `I` to the others and sets its variance.
@@ -192,11 +198,11 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// Scales row and column `I` by `factor`.
+    /// Scales row and column `i` < N by `factor`, where they cross once.
     #[inline(always)]
-    pub(crate) fn scale_component<const I: usize>(&mut self, factor: T) {
+    pub(crate) fn scale_component(&mut self, i: usize, factor: T) {
         for other in 0..N {
-            *self.entry(I, other) *= factor;
+            *self.entry(i, other) *= factor;
         }
     }
 
@@ -221,7 +227,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     }
 
     #[inline(always)]
-    fn entry(&mut self, i: usize, j: usize) -> &mut T {
+    pub(crate) fn entry(&mut self, i: usize, j: usize) -> &mut T {
         if i >= j { &mut self.lower.data.0[j][i] } else { &mut self.lower.data.0[i][j] }
     }
 }

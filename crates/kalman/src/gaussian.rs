@@ -56,6 +56,28 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(())
     }
 
+    /// Adds process noise to one state (unit: the state's, squared).
+    ///
+    /// # Errors
+    /// [`Error::IndexOutOfRange`], [`Error::NotPositive`] for a negative variance, or
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn add_variance_at(&mut self, index: usize, variance: T) -> Result<(), Error> {
+        if index >= N {
+            return Err(Error::IndexOutOfRange);
+        }
+        if variance < T::ZERO {
+            return Err(Error::NotPositive);
+        }
+        let entry = self.covariance.entry(index, index);
+        let sum = *entry + variance;
+        if !sum.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        *entry = sum;
+        Ok(())
+    }
+
     /// Takes in the measurement z of a model, linear or linearised, with noise variance R.
     ///
     /// # Errors
@@ -103,19 +125,34 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         innovation: T,
         variance: T,
     ) -> Result<Weighed<T, N>, Error> {
-        if row.entries().iter().any(|&(index, _)| index >= N) {
+        self.weigh_entries(row.entries(), innovation, variance)
+    }
+
+    /// [`Gaussian::weigh`] for a row whose number of entries depends on the situation: pairs of a
+    /// state's index and ∂h/∂(that state).
+    ///
+    /// # Errors
+    /// As [`Gaussian::update`].
+    #[inline]
+    pub fn weigh_entries(
+        &self,
+        row: &[(usize, T)],
+        innovation: T,
+        variance: T,
+    ) -> Result<Weighed<T, N>, Error> {
+        if row.iter().any(|&(index, _)| index >= N) {
             return Err(Error::IndexOutOfRange);
         }
         let mut cross = [T::ZERO; N];
         for (i, cross) in cross.iter_mut().enumerate() {
             let mut sum = T::accumulator();
-            for &(index, value) in row.entries() {
+            for &(index, value) in row {
                 sum = T::mac(sum, value, self.covariance.at(index, i));
             }
             *cross = T::finish(sum);
         }
         let mut spread = T::accumulator();
-        for &(index, value) in row.entries() {
+        for &(index, value) in row {
             if let Some(&cross) = cross.get(index) {
                 spread = T::mac(spread, value, cross);
             }
@@ -157,7 +194,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let divisor = weighed.variance().divisor();
         let gain = self.move_mean(&weighed, divisor)?;
         self.covariance.downdate_beside::<I>(&gain, &cross);
-        self.covariance.scale_component::<I>(variance.divided_by(divisor));
+        self.covariance.scale_component(I, variance.divided_by(divisor));
         Ok(weighed.report(divisor))
     }
 

@@ -8,6 +8,7 @@ mod gate;
 mod gaussian;
 mod innovation;
 mod model;
+mod motion;
 mod row;
 mod steady_state;
 
@@ -18,5 +19,6 @@ pub use gate::{Gate, Verdict};
 pub use gaussian::Gaussian;
 pub use innovation::{Innovation, Weighed};
 pub use model::{Linear, Observation, Process};
+pub use motion::ConstantVelocity;
 pub use row::SparseRow;
 pub use steady_state::{SteadyState, steady_state};

@@ -1,7 +1,8 @@
 //! Blocks, gates, model traits and the steady state, in every scalar where it matters.
 
 use kestirim_kalman::{
-    Covariance, Error, Gate, Gaussian, Observation, Process, SparseRow, Verdict, steady_state,
+    ConstantVelocity, Covariance, Error, Gate, Gaussian, Observation, Process, SparseRow, Verdict,
+    steady_state,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, matrix, vector};
@@ -181,4 +182,67 @@ fn what_is_never_seen_does_not_settle() {
     let noise = Covariance::from_variances(&[1.0]);
     let (f, h) = (Matrix2::identity(), matrix![1.0, 0.0]);
     assert_eq!(steady_state(&f, &q, &h, &noise), Err(Error::NotConverged));
+}
+
+fn moving<T: Scalar>() -> Gaussian<T, 5> {
+    let mean = vector![1.0, 2.0, 0.5, -0.25, 0.1].map(T::from_f64);
+    Gaussian::new(mean, Covariance::from_variances(&[0.5, 0.4, 0.3, 0.2, 0.1].map(T::from_f64)))
+}
+
+fn check_constant_velocity<T: Scalar>(tolerance: f64) {
+    let (h, q) = (0.2, 0.7);
+    let mut ours = moving::<T>();
+    let motion = ConstantVelocity::<T, 2>::new(T::from_f64(h), T::from_f64(q));
+    let pushed = [1.0, -2.0].map(T::from_f64);
+    ours.advance(&ConstantVelocity { acceleration: Some(pushed), ..motion }).unwrap();
+
+    let dense = moving::<f64>();
+    let mut f = SMatrix::<f64, 5, 5>::identity();
+    let mut noise = SMatrix::<f64, 5, 5>::zeros();
+    for axis in 0..2 {
+        f[(axis, axis + 2)] = h;
+        noise[(axis, axis)] = q * h * h * h / 3.0;
+        noise[(axis, axis + 2)] = q * h * h / 2.0;
+        noise[(axis + 2, axis)] = q * h * h / 2.0;
+        noise[(axis + 2, axis + 2)] = q * h;
+    }
+    let push = vector![h * h / 2.0, -h * h, h, -2.0 * h, 0.0];
+    let mean: SVector<f64, 5> = f * dense.mean + push;
+    let covariance = f * dense.covariance.to_matrix() * f.transpose() + noise;
+    assert!((ours.mean.map(T::to_f64) - mean).abs().max() < tolerance);
+    let ours: SMatrix<f64, 5, 5> = ours.covariance.to_matrix().map(T::to_f64);
+    assert!((ours - covariance).abs().max() < tolerance);
+}
+
+#[test]
+fn constant_velocity_is_the_textbooks() {
+    check_constant_velocity::<f64>(1e-12);
+    check_constant_velocity::<f32>(1e-6);
+    check_constant_velocity::<Q12_20>(2e-5);
+}
+
+#[test]
+fn a_decaying_velocity_hardly_cares_for_the_length_of_its_steps() {
+    let run = |steps: u32, seconds: f64| {
+        let mut ours = moving::<f64>();
+        let step = seconds / f64::from(steps);
+        let motion = ConstantVelocity::<f64, 2>::new(step, 0.1);
+        for _ in 0..steps {
+            ours.advance(&ConstantVelocity { decay_time: Some(2.0), ..motion }).unwrap();
+        }
+        ours
+    };
+    for seconds in [0.1, 1.0, 10.0, 60.0] {
+        let (one, many) = (run(1, seconds), run(1000, seconds));
+        for axis in 0..2 {
+            let ratio = one.covariance.variances()[axis] / many.covariance.variances()[axis];
+            assert!((0.75..1.35).contains(&ratio), "{seconds} s: {ratio}");
+        }
+        assert!((one.mean - many.mean).abs().max() < 0.35, "{seconds} s");
+        assert!(one.covariance.to_matrix().symmetric_eigenvalues().min() > 0.0);
+    }
+    // It coasts v τ far, and its velocity settles at q τ / 2.
+    let still = run(1000, 60.0);
+    assert!((still.mean - vector![2.0, 1.5, 0.0, 0.0, 0.1]).abs().max() < 1e-3);
+    assert!((still.covariance.variances()[2] - 0.1).abs() < 2e-3);
 }

@@ -1,6 +1,7 @@
 //! The systems, one folder each.
 
 pub mod pedestrian;
+pub mod robot;
 
 use crate::Error;
 use crate::cli::{RunOptions, ScalarKind};

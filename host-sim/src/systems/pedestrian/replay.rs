@@ -72,7 +72,8 @@ impl Replay {
 
     fn report(&self) -> Result<Report, Error> {
         let options = self.options()?;
-        self.refuse_overwriting_input()?;
+        let inputs = [Some(&self.log), self.truth.as_ref()];
+        output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())?;
         let recorded = log::read(&self.log)?;
         let footprints =
             self.truth.as_deref().map(|path| truth::read(path, &recorded)).transpose()?;
@@ -104,19 +105,6 @@ impl Replay {
             causal: self.causal,
             scalar,
         })
-    }
-
-    fn refuse_overwriting_input(&self) -> Result<(), Error> {
-        let real = |path: &Path| path.canonicalize().ok();
-        let Some(track) = self.track.as_deref().and_then(real) else { return Ok(()) };
-        let inputs = [Some(&self.log), self.truth.as_ref()];
-        match inputs.into_iter().flatten().find(|&path| real(path).as_ref() == Some(&track)) {
-            Some(input) => Err(Error::Usage(format!(
-                "--track {} would overwrite an input file",
-                printable_path(input)
-            ))),
-            None => Ok(()),
-        }
     }
 }
 

@@ -1,0 +1,78 @@
+use crate::{Gaussian, Process};
+use kestirim_scalar::Scalar;
+
+/// Motion at a velocity that white acceleration changes, in D dimensions.
+///
+/// The first D states are the position (m), the next D the velocity (m/s); further states stay as
+/// they are. x ← x + g v + ½ a h², v ← d v + a h over h seconds, where a is a known acceleration.
+/// Without decay g = h and d = 1, and Q is that of continuous white noise,
+/// q·\[h³/3, h²/2; h²/2, h\] an axis (Bar-Shalom, Li and Kirubarajan 2001, 6.2.2). With a decay time τ
+/// the velocity is forgotten, v̇ = −v/τ + w, in steps of any length without an exponential:
+/// d = 1/(1 + h/τ), g = h d. Its variance settles at q τ/2, as the exact one does, and a tag of which
+/// nothing is heard drifts, but does not run away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ConstantVelocity<T, const D: usize> {
+    /// h, the length of the step, s.
+    pub interval: T,
+    /// q, power spectral density of the acceleration, m²/s³.
+    pub acceleration_density: T,
+    /// τ, after which a velocity is mostly forgotten, s.
+    pub decay_time: Option<T>,
+    /// a, the acceleration as measured, m/s².
+    pub acceleration: Option<[T; D]>,
+}
+
+impl<T: Scalar, const D: usize> ConstantVelocity<T, D> {
+    /// Motion over `interval` (s) with white acceleration of this density (m²/s³).
+    pub const fn new(interval: T, acceleration_density: T) -> Self {
+        Self { interval, acceleration_density, decay_time: None, acceleration: None }
+    }
+
+    /// (g, d, Q of position, covariance, velocity).
+    #[inline]
+    fn coefficients(&self) -> (T, T, [T; 3]) {
+        let h = self.interval;
+        let gained = self.acceleration_density * h;
+        let third = T::from_f64(1.0 / 3.0);
+        let Some(tau) = self.decay_time else {
+            return (h, T::ONE, [gained * h * h * third, gained * h * T::HALF, gained]);
+        };
+        let divisor = (tau + h).divisor();
+        let decay = tau.divided_by(divisor);
+        let reach = h * decay;
+        // Both go over from the white noise's at h ≪ τ to the settled process's at h ≫ τ.
+        let velocity = gained * decay * (T::ONE + decay) * T::HALF;
+        let position = gained * reach * reach * third * (T::ONE + T::TWO * h.divided_by(divisor));
+        (reach, decay, [position, velocity * reach * T::HALF, velocity])
+    }
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Process<T, N> for ConstantVelocity<T, D> {
+    #[inline]
+    fn advance(&self, estimate: &mut Gaussian<T, N>) {
+        const { assert!(2 * D <= N, "each coordinate has a position and a velocity") };
+        let (reach, decay, [position, cross, velocity]) = self.coefficients();
+        let mean = &mut estimate.mean.data.0[0];
+        for axis in 0..D {
+            mean[axis] += reach * mean[D + axis];
+            mean[D + axis] *= decay;
+            if let Some(acceleration) = &self.acceleration {
+                let gained = self.interval * acceleration[axis];
+                mean[axis] += gained * self.interval * T::HALF;
+                mean[D + axis] += gained;
+            }
+        }
+        let covariance = &mut estimate.covariance;
+        for axis in 0..D {
+            covariance.shear_at(axis, D + axis, reach);
+            if self.decay_time.is_some() {
+                covariance.scale_component(D + axis, decay);
+                *covariance.entry(D + axis, D + axis) *= decay;
+            }
+            *covariance.entry(axis, axis) += position;
+            *covariance.entry(axis, D + axis) += cross;
+            *covariance.entry(D + axis, D + axis) += velocity;
+        }
+    }
+}

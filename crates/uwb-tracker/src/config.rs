@@ -1,0 +1,70 @@
+use kestirim_adaptive_kalman::Learning;
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{Huber, Room};
+
+/// What a tracker assumes of its radio and of what carries the tag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Config<T> {
+    /// Standard deviation of a range to begin with, m.
+    pub range_sigma: T,
+    /// How each anchor's variance (m²) is learnt, if at all.
+    pub learning: Option<Learning<T>>,
+    /// How ranges that do not fit are weakened, if at all.
+    pub huber: Option<Huber<T>>,
+    /// The NIS above which a range is left out; [`Scalar::MAX`] leaves none out.
+    pub gate: T,
+    /// Power spectral density of the acceleration, m²/s³.
+    pub acceleration_density: T,
+    /// How long a velocity lasts, s.
+    pub decay_time: Option<T>,
+    /// Standard deviation of the bias common to all ranges, m, for trackers that estimate it.
+    pub common_bias_sigma: T,
+    /// Height of the tag in two dimensions, m.
+    pub height: T,
+    /// Where the tag can be.
+    pub room: Option<Room<T>>,
+}
+
+impl<T: Scalar> Config<T> {
+    /// For anchors whose biases are known: a variance may fall to (5 cm)².
+    pub fn calibrated(height: T) -> Self {
+        Self::robust(height, 0.05)
+    }
+
+    /// For anchors as they come, with biases of a decimetre or two: no variance falls below (10 cm)².
+    pub fn uncalibrated(height: T) -> Self {
+        Self::robust(height, 0.1)
+    }
+
+    /// The textbook's extended filter: every range counts, always the same.
+    pub fn plain(height: T) -> Self {
+        Self {
+            range_sigma: T::from_f64(0.1),
+            learning: None,
+            huber: None,
+            gate: T::MAX,
+            acceleration_density: T::from_f64(0.1),
+            decay_time: None,
+            common_bias_sigma: T::from_f64(0.3),
+            height,
+            room: None,
+        }
+    }
+
+    /// All that real rooms ask for. The constants are physical, and broad in their effect: the book has the
+    /// table of what half and twice of each does to every recording.
+    fn robust(height: T, least_sigma: f64) -> Self {
+        let number = T::from_f64;
+        // An anchor's variance is remembered over a hundred ranges. Behind a person it is metres.
+        let learning = Learning::new(number(0.99), number(least_sigma * least_sigma), number(9.0));
+        Self {
+            learning: learning.ok(),
+            huber: Some(Huber { long: T::HALF, short: number(2.5) }),
+            gate: number(25.0),
+            decay_time: Some(T::TWO),
+            ..Self::plain(height)
+        }
+    }
+}

@@ -1,0 +1,52 @@
+use core::fmt;
+
+/// Why a sample was refused. The tracker is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// A number is NaN, infinite or on a rail of fixed point.
+    NotFinite,
+    /// No radio measures this range: below −1 m or above 200 m.
+    ImplausibleRange,
+    /// There is no anchor of this number.
+    NoSuchAnchor,
+    /// More anchors than the tracker has room for.
+    TooManyAnchors,
+    /// The same anchor's range for the same time came before.
+    Duplicate,
+    /// The sample is older than what the tracker already knows.
+    OutOfOrder,
+    /// The estimate refused it.
+    Estimate(kestirim_kalman::Error),
+}
+
+impl From<kestirim_kalman::Error> for Error {
+    fn from(error: kestirim_kalman::Error) -> Self {
+        Self::Estimate(error)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::ImplausibleRange => "no radio measures this range",
+            Self::NoSuchAnchor => "there is no anchor of this number",
+            Self::TooManyAnchors => "there are more anchors than the tracker has room for",
+            Self::Duplicate => "this range came before",
+            Self::OutOfOrder => "the sample is older than the estimate",
+            Self::Estimate(error) => return error.fmt(formatter),
+        })
+    }
+}
+
+impl core::error::Error for Error {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Estimate(error) => Some(error),
+            _ => None,
+        }
+    }
+}

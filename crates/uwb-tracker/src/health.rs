@@ -1,0 +1,73 @@
+use kestirim_scalar::Scalar;
+
+/// What a tracker's position is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum State {
+    /// There has been no position yet.
+    Initialising,
+    /// Ranges come in and fit.
+    Tracking,
+    /// No range was taken in for a second: the position is extrapolated.
+    Coasting,
+    /// There was a position, and it is worth nothing any more: the next ranges make a new one.
+    Lost,
+}
+
+/// How a tracker feels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Health<T> {
+    /// What the position is worth.
+    pub state: State,
+    /// Mean NIS of the last twenty ranges or so: 1 when the model is right.
+    pub nis: T,
+    /// Ranges taken in so far.
+    pub taken: u32,
+    /// Ranges left out so far.
+    pub rejected: u32,
+    /// Positions begun anew after the first.
+    pub restarts: u16,
+    /// Anchors heard within the last second.
+    pub heard: u8,
+    /// Dilution of precision of those anchors; none if they do not determine a position.
+    pub dilution: Option<T>,
+    /// Standard deviation of the position, root of its variances' sum, m; none without one.
+    pub position_sigma: Option<T>,
+    /// Whether the tag stands still, as far as IMU or wheels tell.
+    pub still: bool,
+}
+
+/// What is counted on the way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counters<T> {
+    pub(crate) nis: T,
+    pub(crate) taken: u32,
+    pub(crate) rejected: u32,
+    pub(crate) rejected_in_row: u16,
+    pub(crate) starts: u16,
+    pub(crate) last_taken_us: u64,
+}
+
+impl<T: Scalar> Counters<T> {
+    pub(crate) fn new() -> Self {
+        Self { nis: T::ONE, taken: 0, rejected: 0, rejected_in_row: 0, starts: 0, last_taken_us: 0 }
+    }
+
+    #[inline]
+    pub(crate) fn count(&mut self, taken: bool, nis: T, time_us: u64) {
+        // A wild range's NIS may be out of range.
+        let nis = nis.min(T::from_f64(100.0));
+        self.nis += (nis - self.nis) * T::from_f64(0.05);
+        if taken {
+            self.taken = self.taken.wrapping_add(1);
+            self.rejected_in_row = 0;
+            self.last_taken_us = time_us;
+        } else {
+            self.rejected = self.rejected.wrapping_add(1);
+            self.rejected_in_row = self.rejected_in_row.saturating_add(1);
+        }
+    }
+}

@@ -1,0 +1,21 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod config;
+mod error;
+mod health;
+mod link;
+mod motion;
+mod sample;
+mod start;
+mod stillness;
+mod tracker;
+
+pub use config::Config;
+pub use error::Error;
+pub use health::{Health, State};
+pub use link::Anchor;
+pub use sample::{InertialSample, OdometrySample, Outcome, RangeSample, Report};
+pub use tracker::{
+    CalibratedPlaneTracker, CalibratedSpaceTracker, PlaneTracker, SpaceTracker, Tracker,
+};

@@ -1,0 +1,66 @@
+use crate::Config;
+use kestirim_adaptive_kalman::MeasurementNoise;
+use kestirim_kalman::Gate;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// An anchor: where it is, and by how much it measures too long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Anchor<T: Scalar> {
+    /// Its place in the room's axes (right-handed, z up), m.
+    pub position: SVector<T, 3>,
+    /// What its ranges are too long by, m; zero if that is not known.
+    pub bias: T,
+}
+
+/// An anchor and what its ranges have been like.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Link<T: Scalar> {
+    pub(crate) anchor: Anchor<T>,
+    pub(crate) variance: T,
+    pub(crate) gate: Gate<T>,
+    last: Option<(u64, T)>,
+}
+
+impl<T: Scalar> Link<T> {
+    /// After so many ranges in a row that do not fit, one is believed all the same.
+    const PATIENCE: u16 = 20;
+    /// A range older than this says nothing about now (µs).
+    const FRESH_US: u64 = 1_000_000;
+
+    pub(crate) fn new(anchor: Anchor<T>, config: &Config<T>) -> Self {
+        let variance = config.range_sigma * config.range_sigma;
+        Self { anchor, variance, gate: Gate::new(config.gate, Self::PATIENCE), last: None }
+    }
+
+    /// The range, freed of its bias, if it is fresh at `time_us`.
+    #[inline]
+    pub(crate) fn fresh(&self, time_us: u64) -> Option<T> {
+        let (heard_us, range) = self.last?;
+        (time_us.saturating_sub(heard_us) <= Self::FRESH_US).then_some(range)
+    }
+
+    /// When it was heard last.
+    #[inline]
+    pub(crate) fn heard_us(&self) -> Option<u64> {
+        self.last.map(|(time_us, _)| time_us)
+    }
+
+    /// Remembers a range, freed of its bias.
+    #[inline]
+    pub(crate) fn hear(&mut self, time_us: u64, range: T) {
+        self.last = Some((time_us, range));
+    }
+
+    /// The same link when a new estimate begins: it was not to blame for the old one.
+    pub(crate) fn begun(&self, config: &Config<T>) -> Self {
+        Self { last: self.last, ..Self::new(self.anchor, config) }
+    }
+
+    /// R of a filter that adapts it.
+    #[inline]
+    pub(crate) fn noise(&self, config: &Config<T>) -> Option<MeasurementNoise<T>> {
+        config.learning.map(|learning| MeasurementNoise::new(self.variance, learning))
+    }
+}

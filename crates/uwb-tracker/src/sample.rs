@@ -1,0 +1,73 @@
+use kestirim_kalman::Innovation;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// One measured distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RangeSample<T> {
+    /// When it was measured (µs since any moment).
+    pub time_us: u64,
+    /// Which anchor it is from: its place in the list that the tracker was made with.
+    pub anchor: usize,
+    /// The distance, m; a little below zero is possible, and meant.
+    pub range: T,
+}
+
+/// What an IMU says about the motion of the tag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct InertialSample<T: Scalar, const D: usize> {
+    /// When it was measured (µs since the same moment as the ranges).
+    pub time_us: u64,
+    /// What the accelerometer shows, in the body's axes, with or without gravity, m/s². From its
+    /// restlessness the tracker tells standing from moving.
+    pub acceleration: SVector<T, 3>,
+    /// The acceleration without gravity in the room's axes, m/s², if the prediction is to be driven by
+    /// it (the paper's eq. 9). For a slow robot that does more harm than good.
+    pub push: Option<[T; D]>,
+}
+
+/// What the wheels say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct OdometrySample<T> {
+    /// When it was measured (µs since the same moment as the ranges).
+    pub time_us: u64,
+    /// Mean speed of the wheels, m/s.
+    pub speed: T,
+    /// Difference of their speeds by the track, rad/s; only whether the robot turns is read from it.
+    pub turn_rate: T,
+}
+
+/// What became of a range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Outcome {
+    /// It is kept for a first position, for which more are needed.
+    Collected,
+    /// It made a first position possible, or a new one after the tracker was lost.
+    Started,
+    /// It was taken in with its full weight.
+    Taken,
+    /// It was taken in with less: it is longer or shorter than expected.
+    Weakened,
+    /// It was left out.
+    Rejected,
+    /// It was taken in against expectation: too many had been left out.
+    Recovered,
+}
+
+/// What became of a range, and what it said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Report<T> {
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Innovation (m), its variance and NIS, before any weakening; none without an estimate.
+    pub innovation: Option<Innovation<T>>,
+}

@@ -1,0 +1,59 @@
+//! A first position, or a new one.
+
+use crate::Config;
+use crate::link::Link;
+use heapless::Vec;
+use kestirim_kalman::{Covariance, Gaussian};
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{Observation, Solver};
+use nalgebra::{SMatrix, SVector};
+
+/// What the fit's covariance does not know: the biases, m.
+const POSITION_SIGMA: f64 = 0.1;
+/// How fast a tag may be when it is first heard, m/s.
+const VELOCITY_SIGMA: f64 = 0.5;
+
+/// The estimate that the fresh ranges make, if they are enough.
+pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
+    config: &Config<T>,
+    links: &[Link<T>],
+    time_us: u64,
+) -> Option<Gaussian<T, N>> {
+    let variance = config.range_sigma * config.range_sigma;
+    let mut observations = Vec::<Observation<T>, A>::new();
+    for link in links {
+        if let Some(range) = link.fresh(time_us) {
+            let anchor = link.anchor.position;
+            observations.push(Observation { anchor, range, variance }).ok()?;
+        }
+    }
+    let estimates_bias = N > 2 * D;
+    let solver = Solver {
+        height: config.height,
+        room: config.room,
+        common_bias: estimates_bias.then_some(config.common_bias_sigma),
+        huber: config.huber,
+    };
+    let fix = solver.solve::<D>(&observations, None).ok()?;
+    let mut mean = SVector::<T, N>::zeros();
+    let mut covariance = SMatrix::<T, N, N>::zeros();
+    for axis in 0..D {
+        mean.data.0[0][axis] = fix.position.data.0[0][axis];
+        for other in axis..D {
+            covariance.data.0[axis][other] = fix.covariance.data.0[axis][other];
+        }
+        covariance.data.0[axis][axis] += T::from_f64(POSITION_SIGMA * POSITION_SIGMA);
+        covariance.data.0[D + axis][D + axis] = T::from_f64(VELOCITY_SIGMA * VELOCITY_SIGMA);
+    }
+    if estimates_bias {
+        mean.data.0[0][2 * D] = fix.common_bias;
+        let known = fix.common_bias_variance > T::ZERO;
+        covariance.data.0[2 * D][2 * D] = if known {
+            fix.common_bias_variance
+        } else {
+            config.common_bias_sigma * config.common_bias_sigma
+        };
+    }
+    let covariance = Covariance::from_lower_triangle(&covariance);
+    covariance.is_finite().then(|| Gaussian::new(mean, covariance))
+}

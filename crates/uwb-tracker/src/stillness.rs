@@ -1,0 +1,56 @@
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// Tells standing from moving by how restless an accelerometer is.
+///
+/// The acceleration's deviation from its own mean over the last half second is squared and averaged
+/// over the last 0.15 s. Whatever is constant, gravity or a bias, does not matter. A robot's wheels
+/// shake it by half a metre per second squared even at walking snails' pace; a standing one shows
+/// the sensor's noise.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stillness<T: Scalar> {
+    last_us: Option<u64>,
+    mean: SVector<T, 3>,
+    variance: T,
+    still: bool,
+}
+
+impl<T: Scalar> Stillness<T> {
+    /// Restlessness below which the tag stands, m/s².
+    const LIMIT: f64 = 0.2;
+    /// Over how long the mean is taken, s.
+    const MEAN_TIME: f64 = 0.5;
+    /// Over how long the squares are averaged, s.
+    const SQUARE_TIME: f64 = 0.15;
+    /// Without a sample for so long nothing is known (µs).
+    const GAP_US: u64 = 500_000;
+
+    pub(crate) fn new() -> Self {
+        Self { last_us: None, mean: SVector::zeros(), variance: T::ONE, still: false }
+    }
+
+    /// Whether the tag stands at `time_us`.
+    #[inline]
+    pub(crate) fn is_still(&self, time_us: u64) -> bool {
+        let fresh = |last_us| time_us.saturating_sub(last_us) <= Self::GAP_US;
+        self.still && self.last_us.is_some_and(fresh)
+    }
+
+    #[inline]
+    pub(crate) fn update(&mut self, time_us: u64, acceleration: &SVector<T, 3>) {
+        let elapsed = self.last_us.map(|last_us| time_us.saturating_sub(last_us));
+        self.last_us = Some(time_us);
+        let Some(elapsed) = elapsed.filter(|&elapsed| elapsed <= Self::GAP_US) else {
+            *self = Self { last_us: Some(time_us), mean: *acceleration, ..Self::new() };
+            return;
+        };
+        let dt = T::from_micro(elapsed as i32);
+        let deviation = acceleration - self.mean;
+        let share = |time: f64| dt / (T::from_f64(time) + dt);
+        self.mean += deviation * share(Self::MEAN_TIME);
+        // Beyond a few metres per second squared it moves, however much: the square stays in range.
+        let size = T::norm(&deviation.data.0[0]).min(T::TWO);
+        self.variance += (size * size - self.variance) * share(Self::SQUARE_TIME);
+        self.still = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
+    }
+}

@@ -1,0 +1,407 @@
+use crate::health::Counters;
+use crate::link::Link;
+use crate::motion;
+use crate::start::start;
+use crate::stillness::Stillness;
+use crate::{
+    Anchor, Config, Error, Health, InertialSample, OdometrySample, Outcome, RangeSample, Report,
+    State,
+};
+use heapless::Vec;
+use kestirim_kalman::{Gaussian, Verdict, Weighed};
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{ExpectedRange, dilution_of_precision, expected_range};
+use nalgebra::SVector;
+
+/// A tag in the plane at a known height, with the anchors' common bias among the five states.
+pub type PlaneTracker<T, const A: usize> = Tracker<T, 2, 5, A>;
+/// A tag in the plane at a known height, for calibrated anchors: four states.
+pub type CalibratedPlaneTracker<T, const A: usize> = Tracker<T, 2, 4, A>;
+/// A tag in space, with the anchors' common bias among the seven states.
+pub type SpaceTracker<T, const A: usize> = Tracker<T, 3, 7, A>;
+/// A tag in space, for calibrated anchors: six states.
+pub type CalibratedSpaceTracker<T, const A: usize> = Tracker<T, 3, 6, A>;
+
+/// Position, velocity and perhaps common bias of a tag, from single ranges of up to A anchors.
+///
+/// The states are D coordinates (m), their velocities (m/s) and, if N = 2 D + 1, what all ranges are too
+/// long by (m).
+#[derive(Clone, Debug)]
+pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
+    config: Config<T>,
+    links: Vec<Link<T>, A>,
+    estimate: Option<Gaussian<T, N>>,
+    /// When the estimate holds.
+    time_us: u64,
+    stillness: Stillness<T>,
+    wheels: Option<OdometrySample<T>>,
+    heard: u8,
+    counters: Counters<T>,
+}
+
+impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
+    /// What no radio measures, m.
+    const SHORTEST: f64 = -1.0;
+    const LONGEST: f64 = 200.0;
+    /// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
+    /// after an exchange of messages.
+    const LATE_US: u64 = 100_000;
+    /// Between ranges, the estimate follows the IMU in steps of this (µs).
+    const INERTIAL_STEP_US: u64 = 100_000;
+    /// Odometry older than this says nothing about now (µs).
+    const WHEELS_US: u64 = 500_000;
+    /// A position this uncertain is none, m.
+    const LOST_SIGMA: f64 = 2.0;
+    /// Without a range for so long, the position is extrapolated (µs).
+    const COASTING_US: u64 = 1_000_000;
+    /// A robot turning faster changes its direction between two ranges, rad/s.
+    const TURNING: f64 = 0.3;
+
+    /// A tracker for these anchors, which does not know yet where it is.
+    ///
+    /// # Errors
+    /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
+    pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
+        const { assert!(N == 2 * D || N == 2 * D + 1, "positions, velocities and perhaps a bias") };
+        let mut links = Vec::new();
+        for anchor in anchors {
+            let numbers = anchor.position.iter().chain([&anchor.bias]);
+            if !numbers.copied().all(T::is_finite) {
+                return Err(Error::NotFinite);
+            }
+            links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
+        }
+        Ok(Self {
+            config,
+            links,
+            estimate: None,
+            time_us: 0,
+            stillness: Stillness::new(),
+            wheels: None,
+            heard: 0,
+            counters: Counters::new(),
+        })
+    }
+
+    /// Where the tag is, m; none before the first position, or when it is lost.
+    #[inline]
+    pub fn position(&self) -> Option<SVector<T, D>> {
+        let estimate = self.estimate.as_ref()?;
+        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))
+    }
+
+    /// How fast it moves, m/s.
+    #[inline]
+    pub fn velocity(&self) -> Option<SVector<T, D>> {
+        let estimate = self.estimate.as_ref()?;
+        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][D + axis]))
+    }
+
+    /// Mean and covariance of all states.
+    #[inline]
+    pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
+        self.estimate.as_ref()
+    }
+
+    /// The standard deviation that is attributed to an anchor's ranges at present, m.
+    pub fn range_sigma(&self, anchor: usize) -> Option<T> {
+        self.links.get(anchor).map(|link| link.variance.sqrt())
+    }
+
+    /// Sets the tag's height in two dimensions, m.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn set_height(&mut self, height: T) -> Result<(), Error> {
+        if !height.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        self.config.height = height;
+        Ok(())
+    }
+
+    /// Takes in a range.
+    ///
+    /// # Errors
+    /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
+    #[inline]
+    pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
+        let range = self.check(sample)?;
+        let now_us = sample.time_us.max(self.time_us);
+        let before = (now_us > self.time_us).then_some((self.estimate, self.time_us, self.heard));
+        let report = self.follow(now_us).and_then(|()| self.measure(sample.anchor, now_us, range));
+        match (&report, before) {
+            (Ok(_), _) => {
+                if let Some(link) = self.links.get_mut(sample.anchor) {
+                    link.hear(sample.time_us, range);
+                }
+            }
+            (Err(_), Some(before)) => (self.estimate, self.time_us, self.heard) = before,
+            (Err(_), None) => {}
+        }
+        report
+    }
+
+    /// Takes in a sample of the IMU.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    #[inline]
+    pub fn inertial(&mut self, sample: &InertialSample<T, D>) -> Result<(), Error> {
+        let numbers = sample.acceleration.iter().chain(sample.push.iter().flatten());
+        if !numbers.copied().all(T::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        self.check_time(sample.time_us)?;
+        let elapsed = sample.time_us.saturating_sub(self.time_us);
+        let mut stillness = self.stillness;
+        stillness.update(sample.time_us, &sample.acceleration);
+        if sample.push.is_some() || elapsed >= Self::INERTIAL_STEP_US {
+            self.advance(sample.time_us, sample.push)?;
+        }
+        self.stillness = stillness;
+        Ok(())
+    }
+
+    /// Takes in a sample of the wheels.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    #[inline]
+    pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
+        if !(sample.speed.is_finite() && sample.turn_rate.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        self.check_time(sample.time_us)?;
+        self.wheels = Some(*sample);
+        Ok(())
+    }
+
+    /// How the tracker feels at `time_us`.
+    pub fn health(&self, time_us: u64) -> Health<T> {
+        let counters = &self.counters;
+        let silence = time_us.saturating_sub(counters.last_taken_us);
+        let position_sigma = self.estimate.as_ref().map(|estimate| {
+            let variances = estimate.covariance.variances();
+            (0..D).fold(T::ZERO, |sum, axis| sum + variances.data.0[0][axis]).sqrt()
+        });
+        Health {
+            state: match (&self.estimate, counters.starts) {
+                (None, 0) => State::Initialising,
+                (None, _) => State::Lost,
+                (Some(_), _) if silence > Self::COASTING_US => State::Coasting,
+                (Some(_), _) => State::Tracking,
+            },
+            nis: counters.nis,
+            taken: counters.taken,
+            rejected: counters.rejected,
+            restarts: counters.starts.saturating_sub(1),
+            heard: self.count_heard(time_us),
+            dilution: self.dilution(time_us),
+            position_sigma,
+            still: self.is_still(time_us),
+        }
+    }
+
+    /// The range freed of its bias, if it can be one.
+    #[inline]
+    fn check(&self, sample: &RangeSample<T>) -> Result<T, Error> {
+        let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        if !sample.range.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        let plausible = T::from_f64(Self::SHORTEST)..=T::from_f64(Self::LONGEST);
+        if !plausible.contains(&sample.range) {
+            return Err(Error::ImplausibleRange);
+        }
+        if let Some(heard_us) = link.heard_us() {
+            if sample.time_us == heard_us {
+                return Err(Error::Duplicate);
+            }
+            if sample.time_us < heard_us {
+                return Err(Error::OutOfOrder);
+            }
+        }
+        self.check_time(sample.time_us)?;
+        Ok(sample.range - link.anchor.bias)
+    }
+
+    #[inline]
+    fn check_time(&self, time_us: u64) -> Result<(), Error> {
+        let late = time_us.saturating_add(Self::LATE_US) < self.time_us;
+        if late { Err(Error::OutOfOrder) } else { Ok(()) }
+    }
+
+    /// Brings the estimate to the time of a range; gives it up if it has become worthless.
+    #[inline]
+    fn follow(&mut self, time_us: u64) -> Result<(), Error> {
+        if time_us == self.time_us {
+            return Ok(());
+        }
+        self.advance(time_us, None)?;
+        self.heard = self.count_heard(time_us);
+        if let Some(estimate) = &self.estimate {
+            let variances = estimate.covariance.variances();
+            let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);
+            if (0..D).any(|axis| variances.data.0[0][axis] > most) {
+                self.estimate = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the estimate on to `time_us`.
+    #[inline]
+    fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
+        let elapsed = time_us.saturating_sub(self.time_us).min(i32::MAX as u64);
+        if let Some(mut estimate) = self.estimate.filter(|_| elapsed > 0) {
+            let still = self.is_still(time_us);
+            let interval = T::from_micro(elapsed as i32);
+            motion::advance(&mut estimate, &self.config, interval, still, push)?;
+            if still {
+                motion::stand_still::<T, D, N>(&mut estimate)?;
+            } else if let Some(wheels) = self.fresh_wheels(time_us)
+                && wheels.turn_rate.abs() < T::from_f64(Self::TURNING)
+            {
+                motion::drive::<T, D, N>(&mut estimate, wheels.speed)?;
+            }
+            self.estimate = Some(estimate);
+        }
+        self.time_us = self.time_us.max(time_us);
+        Ok(())
+    }
+
+    /// Takes in a range at the estimate's own time.
+    #[inline]
+    fn measure(&mut self, anchor: usize, now_us: u64, range: T) -> Result<Report<T>, Error> {
+        let link = self.links.get_mut(anchor).ok_or(Error::NoSuchAnchor)?;
+        let Some(estimate) = &mut self.estimate else {
+            let again = link.fresh(now_us).is_some();
+            link.hear(now_us, range);
+            let outcome =
+                if self.begin(now_us, again) { Outcome::Started } else { Outcome::Collected };
+            return Ok(Report { outcome, innovation: None });
+        };
+        let observes_bias = N > 2 * D && self.heard as usize >= D + 2;
+        let (row, expected) =
+            predicted_range::<T, D, N>(estimate, &self.config, &link.anchor, observes_bias);
+        let row = row.get(..N - D).unwrap_or(&row);
+        let weighed = estimate.weigh_entries(row, range - expected, link.variance)?;
+
+        let mut gate = link.gate;
+        let verdict = gate.judge(&weighed);
+        let seen = weighed.innovation_report();
+        let outcome = match verdict {
+            Verdict::Reject => Outcome::Rejected,
+            Verdict::Recover => {
+                estimate.correct_widened(&weighed, gate.gamma())?;
+                Outcome::Recovered
+            }
+            Verdict::Admit => {
+                let weakened = weakened(&weighed, &self.config)?;
+                estimate.correct(weakened.as_ref().unwrap_or(&weighed))?;
+                if weakened.is_some() { Outcome::Weakened } else { Outcome::Taken }
+            }
+        };
+        link.gate = gate;
+        // A range that the estimate has to follow fits whatever it is worth.
+        let redundant = self.heard as usize > D + usize::from(observes_bias);
+        if redundant && let Some(mut noise) = link.noise(&self.config) {
+            noise.learn(&weighed);
+            link.variance = noise.variance();
+        }
+        self.counters.count(verdict != Verdict::Reject, seen.nis, now_us);
+        let most_rejected = 3 * u16::from(self.heard.max(D as u8));
+        if self.counters.rejected_in_row > most_rejected {
+            // None of the anchors agrees: the place is wrong, not they.
+            self.estimate = None;
+        }
+        Ok(Report { outcome, innovation: Some(seen) })
+    }
+
+    /// Makes a position of the fresh ranges, if they are enough: when all anchors have been heard, or
+    /// one of them `again`, before the others.
+    fn begin(&mut self, now_us: u64, again: bool) -> bool {
+        if !again && usize::from(self.count_heard(now_us)) < self.links.len() {
+            return false;
+        }
+        self.estimate = start::<T, D, N, A>(&self.config, &self.links, now_us);
+        if self.estimate.is_none() {
+            return false;
+        }
+        for link in &mut self.links {
+            *link = link.begun(&self.config);
+        }
+        self.heard = self.count_heard(now_us);
+        self.counters.starts = self.counters.starts.saturating_add(1);
+        self.counters.rejected_in_row = 0;
+        self.counters.last_taken_us = now_us;
+        true
+    }
+
+    #[inline]
+    fn count_heard(&self, time_us: u64) -> u8 {
+        self.links.iter().filter(|link| link.fresh(time_us).is_some()).count() as u8
+    }
+
+    #[inline]
+    fn fresh_wheels(&self, time_us: u64) -> Option<&OdometrySample<T>> {
+        let fresh =
+            |wheels: &&OdometrySample<T>| time_us.saturating_sub(wheels.time_us) <= Self::WHEELS_US;
+        self.wheels.as_ref().filter(fresh)
+    }
+
+    #[inline]
+    fn is_still(&self, time_us: u64) -> bool {
+        let wheels_stand =
+            |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
+        self.stillness.is_still(time_us) || self.fresh_wheels(time_us).is_some_and(wheels_stand)
+    }
+
+    fn dilution(&self, time_us: u64) -> Option<T> {
+        let position = self.position()?;
+        let heard = self.links.iter().filter(|link| link.fresh(time_us).is_some());
+        let directions = heard.map(|link| {
+            expected_range(&position, self.config.height, &link.anchor.position).direction
+        });
+        dilution_of_precision(directions).ok()
+    }
+}
+
+/// The row ∂h/∂x and the range that is expected.
+#[inline]
+fn predicted_range<T: Scalar, const D: usize, const N: usize>(
+    estimate: &Gaussian<T, N>,
+    config: &Config<T>,
+    anchor: &Anchor<T>,
+    observes_bias: bool,
+) -> ([(usize, T); 4], T) {
+    let mean = &estimate.mean.data.0[0];
+    let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
+    let ExpectedRange { distance, direction } =
+        expected_range(&position, config.height, &anchor.position);
+    let mut row = [(0, T::ZERO); 4];
+    for axis in 0..D {
+        row[axis] = (axis, direction[axis]);
+    }
+    if N == 2 * D {
+        return (row, distance);
+    }
+    row[D] = (2 * D, if observes_bias { T::ONE } else { T::ZERO });
+    (row, if observes_bias { distance + mean[2 * D] } else { distance })
+}
+
+/// The range with the noise that Huber gives it, if it is beyond his threshold: S grows to S |ν|/(k √S).
+#[inline]
+fn weakened<T: Scalar, const N: usize>(
+    weighed: &Weighed<T, N>,
+    config: &Config<T>,
+) -> Result<Option<Weighed<T, N>>, Error> {
+    let Some(huber) = &config.huber else { return Ok(None) };
+    let threshold = huber.threshold(weighed.innovation());
+    if !weighed.exceeds(threshold * threshold) {
+        return Ok(None);
+    }
+    let variance = weighed.innovation().abs() * weighed.variance().sqrt() / threshold;
+    Ok(Some(weighed.with_noise((variance - weighed.spread()).max(weighed.noise()))?))
+}

@@ -1,0 +1,109 @@
+//! `host-sim calibrate robot`: what each anchor measures too long.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::anchors::Anchors;
+use super::calibration::{self, AnchorCalibration, Residuals};
+use super::{anchors, points, ranges};
+use crate::{Error, output};
+
+/// Options of the command.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Calibrate {
+    /// Where the anchors are: CSV with columns anchor,x,y,z (m)
+    #[arg(long, value_name = "FILE")]
+    anchors: PathBuf,
+    /// The ranges: CSV with columns t,anchor,range, or with --points point,k,anchor,range (s, m)
+    #[arg(long, value_name = "FILE")]
+    log: PathBuf,
+    /// Where the tag was put down: CSV with columns point,x,y,z
+    #[arg(long, value_name = "FILE", required_unless_present = "truth")]
+    points: Option<PathBuf>,
+    /// Where the tag moved: CSV with columns t,x,y,z
+    #[arg(long, value_name = "FILE", conflicts_with = "points")]
+    truth: Option<PathBuf>,
+    /// Where to write the calibration
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Calibrate {
+    /// Reads, calibrates, writes and prints.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the options or the files; then nothing is written.
+    pub fn run(&self) -> Result<(), Error> {
+        let inputs =
+            [Some(&self.anchors), Some(&self.log), self.points.as_ref(), self.truth.as_ref()];
+        output::refuse_overwriting("--out", Some(&self.out), inputs.into_iter().flatten())?;
+        let anchors = anchors::read(&self.anchors)?;
+        let residuals = self.residuals(&anchors)?;
+        let calibrations = residuals.calibrations(&anchors);
+        if calibrations.is_empty() {
+            return Err(Error::File {
+                path: self.log.clone(),
+                problem: "expected ranges from places that are known, found none".to_owned(),
+            });
+        }
+        calibration::write(&self.out, &calibrations)?;
+        output::show(&Report { system: "robot", anchors: calibrations }, self.json)
+    }
+
+    fn residuals(&self, anchors: &Anchors) -> Result<Residuals, Error> {
+        let mut residuals = Residuals::new(anchors);
+        if let Some(path) = &self.truth {
+            let truth = points::read_course(path, ["x", "y", "z"])?;
+            for row in ranges::read_moving(&self.log, anchors)?.rows {
+                if let (Some(range), Some(place)) = (row.range, truth.within(row.time_us)) {
+                    residuals.add(anchors, row.anchor, range, place);
+                }
+            }
+        }
+        if let Some(path) = &self.points {
+            let logs = ranges::read_static(&self.log, anchors)?;
+            for point in points::read_points(path)? {
+                let (Some([x, y]), Some(z)) = (point.plane, point.height) else {
+                    return Err(Error::File {
+                        path: path.clone(),
+                        problem: "expected columns x, y and z".to_owned(),
+                    });
+                };
+                for row in logs.get(&point.name).iter().flat_map(|log| &log.rows) {
+                    if let Some(range) = row.range {
+                        residuals.add(anchors, row.anchor, range, [x, y, z]);
+                    }
+                }
+            }
+        }
+        Ok(residuals)
+    }
+}
+
+/// What the command prints.
+#[derive(Debug, Clone, Serialize)]
+struct Report {
+    system: &'static str,
+    anchors: Vec<AnchorCalibration>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        table.set_header(["anchor", "bias", "spread", "ranges"]);
+        for anchor in &self.anchors {
+            table.add_row([
+                anchor.anchor.clone(),
+                format!("{:+.1} cm", 100.0 * anchor.bias_m),
+                format!("{:.1} cm", 100.0 * anchor.sigma_m),
+                anchor.ranges.to_string(),
+            ]);
+        }
+        table.fmt(f)
+    }
+}

@@ -1,0 +1,137 @@
+//! The trackers behind one face, whatever they compute in.
+
+use kestirim_adaptive_kalman::Learning;
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_uwb_tracker::{
+    Anchor, Config, InertialSample, OdometrySample, Outcome, RangeSample, Tracker,
+};
+use nalgebra::SVector;
+
+use super::anchors::MOST;
+use super::each_epoch::EachEpoch;
+use super::motion::{Inertial, Wheels};
+use super::options::{Dimensions, Setup, TrackerKind};
+use super::printed::Printed;
+use crate::Error;
+use crate::cli::ScalarKind;
+
+/// Something that follows a tag. Times are µs since the recording began.
+pub trait Follow {
+    /// Sets the tag's height, m.
+    fn set_height(&mut self, height_m: f64);
+    /// Takes in a range, m, and says whether it made a difference.
+    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> bool;
+    /// Takes in a sample of the IMU.
+    fn inertial(&mut self, time_us: u64, sample: &Inertial);
+    /// Takes in a sample of the wheels.
+    fn wheels(&mut self, time_us: u64, sample: &Wheels);
+    /// All ranges of this time have been given.
+    fn end_epoch(&mut self, time_us: u64);
+    /// Where the tag is, m; its height is given back as it was set in two dimensions.
+    fn position(&self) -> Option<[f64; 3]>;
+}
+
+/// Builds what was chosen.
+///
+/// # Errors
+/// [`Error::Usage`] if these anchors or numbers will not do.
+pub fn build(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    match setup.scalar {
+        ScalarKind::F32 => with_scalar::<f32>(setup),
+        ScalarKind::F64 => with_scalar::<f64>(setup),
+        ScalarKind::Fixed => with_scalar::<Q12_20>(setup),
+    }
+}
+
+fn with_scalar<T: Scalar>(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    match setup.dimensions {
+        Dimensions::Two => in_dimensions::<T, 2, 4, 5>(setup),
+        Dimensions::Three => in_dimensions::<T, 3, 6, 7>(setup),
+    }
+}
+
+fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usize>(
+    setup: &Setup,
+) -> Result<Box<dyn Follow>, Error> {
+    let height = T::from_f64(setup.height_m);
+    Ok(match setup.tracker {
+        TrackerKind::Lsq => Box::new(EachEpoch::<T, D>::new(setup, true)),
+        TrackerKind::Nls => Box::new(EachEpoch::<T, D>::new(setup, false)),
+        TrackerKind::Ekf => Box::new(Recursive::<T, D, N>::new(setup, Config::plain(height))?),
+        TrackerKind::Aekf => {
+            let limits = [0.99, 0.0025, 9.0].map(T::from_f64);
+            let learning = Learning::new(limits[0], limits[1], limits[2]).ok();
+            let config = Config { learning, ..Config::plain(height) };
+            Box::new(Recursive::<T, D, N>::new(setup, config)?)
+        }
+        TrackerKind::AekfPrinted => Printed::<T, D, N>::boxed(setup)?,
+        TrackerKind::Default if setup.biases.is_some() => {
+            Box::new(Recursive::<T, D, N>::new(setup, Config::calibrated(height))?)
+        }
+        TrackerKind::Default => {
+            Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, Config::uncalibrated(height))?)
+        }
+    })
+}
+
+/// `kestirim_uwb_tracker`.
+struct Recursive<T: Scalar, const D: usize, const N: usize> {
+    tracker: Tracker<T, D, N, MOST>,
+    height_m: f64,
+    /// Whether the prediction is driven by the IMU, as the paper's is.
+    pushed: bool,
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
+    fn new(setup: &Setup, config: Config<T>) -> Result<Self, Error> {
+        let places = setup.anchors.iter().enumerate();
+        let anchors: Vec<_> = places
+            .map(|(index, place)| Anchor {
+                position: SVector::from(place.map(T::from_f64)),
+                bias: T::from_f64(setup.bias(index)),
+            })
+            .collect();
+        let tracker = Tracker::new(Config { room: setup.room(), ..config }, &anchors)
+            .map_err(|error| Error::Usage(format!("these anchors cannot be used: {error}")))?;
+        let pushed = matches!(setup.tracker, TrackerKind::Ekf | TrackerKind::Aekf);
+        Ok(Self { tracker, height_m: setup.height_m, pushed })
+    }
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
+    fn set_height(&mut self, height_m: f64) {
+        if self.tracker.set_height(T::from_f64(height_m)).is_ok() {
+            self.height_m = height_m;
+        }
+    }
+
+    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> bool {
+        let sample = RangeSample { time_us, anchor, range: T::from_f64(range_m) };
+        self.tracker.range(&sample).is_ok_and(|report| report.outcome != Outcome::Rejected)
+    }
+
+    fn inertial(&mut self, time_us: u64, sample: &Inertial) {
+        let push = sample.push.filter(|_| self.pushed);
+        let sample = InertialSample {
+            time_us,
+            acceleration: SVector::from(sample.acceleration.map(T::from_f64)),
+            push: push.map(|push| std::array::from_fn(|axis| T::from_f64(push[axis]))),
+        };
+        // A sample that is refused is one that the filter does without.
+        let _ = self.tracker.inertial(&sample);
+    }
+
+    fn wheels(&mut self, time_us: u64, sample: &Wheels) {
+        let speed = T::from_f64(sample.speed);
+        let turn_rate = T::from_f64(sample.turn_rate);
+        let _ = self.tracker.odometry(&OdometrySample { time_us, speed, turn_rate });
+    }
+
+    fn end_epoch(&mut self, _: u64) {}
+
+    fn position(&self) -> Option<[f64; 3]> {
+        let position = self.tracker.position()?;
+        let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
+        Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(self.height_m)])
+    }
+}

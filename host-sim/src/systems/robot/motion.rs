@@ -1,0 +1,145 @@
+//! What a robot's IMU and wheels recorded.
+
+use std::path::Path;
+
+use super::table::{self, Row};
+use crate::Error;
+use crate::text::Header;
+
+/// Standard gravity, m/s².
+const GRAVITY: f64 = 9.806_65;
+
+/// A sample of the IMU.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertial {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// Acceleration as logged, body axes, m/s².
+    pub acceleration: [f64; 3],
+    /// Acceleration without gravity, room axes, m/s², if the attitude is known.
+    pub push: Option<[f64; 3]>,
+}
+
+/// A sample of the wheels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wheels {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// Mean speed, m/s.
+    pub speed: f64,
+    /// Difference of the speeds by the track, rad/s.
+    pub turn_rate: f64,
+}
+
+/// Columns of an IMU log, as far as they are there.
+struct Columns {
+    time: usize,
+    attitude: Option<[usize; 4]>,
+    linear: Option<[usize; 3]>,
+    force: Option<[usize; 3]>,
+}
+
+fn all<const K: usize>(header: &Header<'_>, names: [&str; K]) -> Option<[usize; K]> {
+    let places = names.map(|name| header.find(name));
+    places.iter().all(Option::is_some).then(|| places.map(Option::unwrap_or_default))
+}
+
+fn numbers<const K: usize>(row: &Row<'_>, columns: [usize; K]) -> Result<[f64; K], Error> {
+    let mut values = [0.0; K];
+    for (value, column) in values.iter_mut().zip(columns) {
+        *value = row.number("of the IMU", column)?;
+    }
+    Ok(values)
+}
+
+/// Reads an IMU: CSV with a column `t` (s) and any of `qw,qx,qy,qz` (body to room), `gx,gy,gz` (rad/s),
+/// `ax,ay,az` (specific force, m/s²) and `lax,lay,laz` (acceleration without gravity, body, m/s²).
+///
+/// Without any acceleration there are no samples. The angular rate is not needed by a tracker of
+/// positions.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_inertial(path: &Path) -> Result<Vec<Inertial>, Error> {
+    let mut samples: Vec<Inertial> = Vec::new();
+    table::read(
+        path,
+        "samples of an IMU",
+        |header| {
+            let [time] = header.require(["t"])?;
+            Ok(Columns {
+                time,
+                attitude: all(header, ["qw", "qx", "qy", "qz"]),
+                linear: all(header, ["lax", "lay", "laz"]),
+                force: all(header, ["ax", "ay", "az"]),
+            })
+        },
+        |columns, row| {
+            let time_us = row.time_us(columns.time)?;
+            let attitude = columns.attitude.map(|columns| numbers(row, columns)).transpose()?;
+            let linear = columns.linear.map(|columns| numbers(row, columns)).transpose()?;
+            let force = columns.force.map(|columns| numbers(row, columns)).transpose()?;
+            let Some(acceleration) = linear.or(force) else { return Ok(()) };
+            let push = attitude.and_then(|attitude| {
+                let [x, y, z] = turned(attitude, acceleration)?;
+                Some([x, y, if linear.is_some() { z } else { z - GRAVITY }])
+            });
+            samples.push(Inertial { time_us, acceleration, push });
+            Ok(())
+        },
+    )?;
+    Ok(samples)
+}
+
+/// Reads wheels: CSV with columns `t,v_left,v_right,track` (s, m/s, m).
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_wheels(path: &Path) -> Result<Vec<Wheels>, Error> {
+    let mut samples: Vec<Wheels> = Vec::new();
+    table::read(
+        path,
+        "samples of the wheels",
+        |header| header.require(["t", "v_left", "v_right", "track"]),
+        |&[t, left, right, track], row| {
+            let time_us = row.time_us(t)?;
+            let (left, right) = (row.number("v_left", left)?, row.number("v_right", right)?);
+            let track = row.number("track", track)?;
+            if track <= 0.0 {
+                return Err(row.line.error("expected a wheel track above zero, in metres"));
+            }
+            let turn_rate = (right - left) / track;
+            samples.push(Wheels { time_us, speed: 0.5 * (left + right), turn_rate });
+            Ok(())
+        },
+    )?;
+    Ok(samples)
+}
+
+/// A body vector in the room; none for a quaternion of length zero.
+fn turned([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> Option<[f64; 3]> {
+    let size = w * w + x * x + y * y + z * z;
+    if size < 1e-6 {
+        return None;
+    }
+    let turned = [
+        (w * w + x * x - y * y - z * z) * a + 2.0 * ((x * y - w * z) * b + (x * z + w * y) * c),
+        (w * w - x * x + y * y - z * z) * b + 2.0 * ((x * y + w * z) * a + (y * z - w * x) * c),
+        (w * w - x * x - y * y + z * z) * c + 2.0 * ((x * z - w * y) * a + (y * z + w * x) * b),
+    ];
+    Some(turned.map(|component| component / size))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quaternion_turns_from_body_to_room() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        // A quarter turn to the left: what is ahead in the body is y in the room.
+        let [x, y, z] = turned([half, 0.0, 0.0, half], [1.0, 0.0, 2.0]).unwrap();
+        assert!(x.abs() < 1e-12 && (y - 1.0).abs() < 1e-12 && (z - 2.0).abs() < 1e-12);
+        assert_eq!(turned([0.0; 4], [1.0; 3]), None);
+    }
+}
