@@ -28,12 +28,13 @@ impl<T: Scalar> Learning<T> {
         }
     }
 
-    /// The variance after one more sample.
-    #[inline]
+    /// The variance after one more sample: of no more than the largest variance, so that a square that is
+    /// out of range does no harm.
+    #[inline(always)]
     pub fn learn(&self, variance: T, sample: T) -> T {
+        let sample = sample.min(self.most);
         let sum = T::mac(T::accumulator(), self.forgetting, variance);
-        let learnt = T::finish(T::mac(sum, T::ONE - self.forgetting, sample));
-        learnt.clamp(self.least, self.most)
+        T::finish(T::mac(sum, T::ONE - self.forgetting, sample)).max(self.least)
     }
 
     /// The nearest variance within the limits.

@@ -11,6 +11,6 @@ mod process_noise;
 pub use adaptive::AdaptiveKalman;
 pub use error::Error;
 pub use learning::Learning;
-pub use measurement_noise::MeasurementNoise;
+pub use measurement_noise::{MeasurementNoise, learnt};
 pub use printed::PrintedAdaptiveKalman;
 pub use process_noise::ProcessNoise;

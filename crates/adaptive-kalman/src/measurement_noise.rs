@@ -34,12 +34,20 @@ impl<T: Scalar> MeasurementNoise<T> {
     /// a measurement that the estimate must follow always fits it.
     #[inline]
     pub fn learn<const N: usize>(&mut self, weighed: &Weighed<T, N>) {
-        let share = weighed.noise() / weighed.variance();
-        let residual = weighed.innovation() * share;
-        let sample = T::mac(T::accumulator(), residual, residual);
-        let sample = T::finish(T::mac(sample, weighed.spread(), share));
-        // A residual whose square is out of range is as bad as can be.
-        let learnt = self.learning.learn(self.variance, sample.min(T::MAX));
-        self.variance = if learnt.is_finite() { learnt } else { self.variance };
+        self.variance = learnt(self.variance, &self.learning, weighed);
     }
+}
+
+/// [`MeasurementNoise::learn`] for who keeps variances and learning apart: the variance after one more
+/// measurement.
+#[inline(always)]
+pub fn learnt<T: Scalar, const N: usize>(
+    variance: T,
+    learning: &Learning<T>,
+    weighed: &Weighed<T, N>,
+) -> T {
+    let share = weighed.by_variance(weighed.noise());
+    let residual = weighed.innovation() * share;
+    let sample = T::mac(T::accumulator(), residual, residual);
+    learning.learn(variance, T::finish(T::mac(sample, weighed.spread(), share)))
 }

@@ -42,8 +42,7 @@ impl<T: Scalar, const N: usize> ProcessNoise<T, N> {
         for ((variance, learning), &moved) in
             self.variances.iter_mut().zip(&self.learning).zip(&moved.data.0[0])
         {
-            let learnt = learning.learn(*variance, moved * moved);
-            *variance = if learnt.is_finite() { learnt } else { *variance };
+            *variance = learning.learn(*variance, moved * moved);
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Several measurements with correlated noise at once.
 
-use crate::gaussian::is_finite;
 use crate::{Covariance, Error, Gaussian, SparseRow};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
@@ -108,5 +107,9 @@ fn decorrelated<T: Scalar, const M: usize, const N: usize>(
         }
     }
     // NaN passes every comparison above.
-    if is_finite(&variances) { Ok((rows, innovation, variances)) } else { Err(Error::NotFinite) }
+    if T::all_finite(&variances) {
+        Ok((rows, innovation, variances))
+    } else {
+        Err(Error::NotFinite)
+    }
 }

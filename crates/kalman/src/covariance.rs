@@ -63,7 +63,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     }
 
     /// P\[i, j\], or `None` beyond the state.
-    #[inline]
+    #[inline(always)]
     pub fn get(&self, i: usize, j: usize) -> Option<T> {
         self.lower.data.0.get(i.min(j))?.get(i.max(j)).copied()
     }
@@ -81,7 +81,13 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// Whether no kept entry is NaN, infinite or on a rail.
     #[inline]
     pub fn is_finite(&self) -> bool {
-        self.lower.data.0.as_flattened().iter().all(|entry| entry.is_finite())
+        T::all_finite(self.lower.data.0.as_flattened())
+    }
+
+    #[inline(always)]
+    pub(crate) fn has_finite_variances(&self) -> bool {
+        let variances: [T; N] = core::array::from_fn(|index| self.lower.data.0[index][index]);
+        T::all_finite(&variances)
     }
 
     /// P ← P + Q.

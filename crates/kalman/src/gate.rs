@@ -48,7 +48,7 @@ impl<T: Scalar> Gate<T> {
     }
 
     /// Judges the next measurement and remembers the verdict.
-    #[inline]
+    #[inline(always)]
     pub fn judge<const N: usize>(&mut self, weighed: &Weighed<T, N>) -> Verdict {
         if !weighed.exceeds(self.gamma) {
             self.rejected = 0;
@@ -76,7 +76,7 @@ impl<T: Scalar> Gate<T> {
         let verdict = judging.judge(weighed);
         let innovation = match verdict {
             Verdict::Admit => estimate.correct(weighed)?,
-            Verdict::Reject => weighed.innovation_report(),
+            Verdict::Reject => weighed.report(),
             Verdict::Recover => estimate.correct_widened(weighed, self.gamma)?,
         };
         *self = judging;
@@ -90,6 +90,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     ///
     /// # Errors
     /// As [`Gaussian::correct`].
+    #[inline(never)] // Rare, and as large as an update.
     pub fn correct_widened(
         &mut self,
         weighed: &Weighed<T, N>,
@@ -100,11 +101,11 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let factor = ((wanted - weighed.noise()) / weighed.spread()).max(T::ONE);
         let mut next = *self;
         next.covariance.scale(factor);
-        next.correct(&weighed.scaled(factor))?;
+        next.correct(&weighed.scaled(factor)?)?;
         if !(factor.is_finite() && next.covariance.is_finite()) {
             return Err(Error::NotFinite);
         }
         *self = next;
-        Ok(weighed.innovation_report())
+        Ok(weighed.report())
     }
 }

@@ -44,12 +44,13 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     ///
     /// # Errors
     /// [`Error::NotFinite`] if the estimate would cease to be; it is untouched.
-    #[inline]
+    #[inline(always)]
     pub fn advance(&mut self, process: &impl Process<T, N>) -> Result<(), Error> {
         let mut next = *self;
         process.advance(&mut next);
         next.covariance.absorb_rounding();
-        if !(is_finite(&next.mean.data.0[0]) && next.covariance.is_finite()) {
+        // No covariance is larger than its variances: √(P[i, i]·P[j, j]).
+        if !(T::all_finite(&next.mean.data.0[0]) && next.covariance.has_finite_variances()) {
             return Err(Error::NotFinite);
         }
         *self = next;
@@ -118,7 +119,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     ///
     /// # Errors
     /// As [`Gaussian::update`].
-    #[inline]
+    #[inline(always)]
     pub fn weigh<const K: usize>(
         &self,
         row: &SparseRow<T, K>,
@@ -133,7 +134,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     ///
     /// # Errors
     /// As [`Gaussian::update`].
-    #[inline]
+    #[inline(always)] // With literal indices, nothing of the look-up is left.
     pub fn weigh_entries(
         &self,
         row: &[(usize, T)],
@@ -147,7 +148,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         for (i, cross) in cross.iter_mut().enumerate() {
             let mut sum = T::accumulator();
             for &(index, value) in row {
-                sum = T::mac(sum, value, self.covariance.at(index, i));
+                sum = T::mac(sum, value, self.covariance.get(index, i).unwrap_or(T::ZERO));
             }
             *cross = T::finish(sum);
         }
@@ -164,12 +165,11 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
-    #[inline]
+    #[inline(always)]
     pub fn correct(&mut self, weighed: &Weighed<T, N>) -> Result<Innovation<T>, Error> {
-        let divisor = weighed.variance().divisor();
-        let gain = self.move_mean(weighed, divisor)?;
+        let gain = self.move_mean(weighed)?;
         self.covariance.downdate(&gain, weighed.cross_covariance());
-        Ok(weighed.report(divisor))
+        Ok(weighed.report())
     }
 
     /// A scalar measurement of state `I` itself: [`Gaussian::update`] with a unit row.
@@ -191,32 +191,26 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
             *cross = self.covariance.at(I, i);
         }
         let weighed = Weighed::new(innovation, cross[I], variance, cross)?;
-        let divisor = weighed.variance().divisor();
-        let gain = self.move_mean(&weighed, divisor)?;
+        let gain = self.move_mean(&weighed)?;
         self.covariance.downdate_beside::<I>(&gain, &cross);
-        self.covariance.scale_component(I, variance.divided_by(divisor));
-        Ok(weighed.report(divisor))
+        self.covariance.scale_component(I, weighed.by_variance(variance));
+        Ok(weighed.report())
     }
 
     /// x ← x + k ν, and the gain k.
-    #[inline]
-    fn move_mean(&mut self, weighed: &Weighed<T, N>, divisor: T::Divisor) -> Result<[T; N], Error> {
+    #[inline(always)]
+    fn move_mean(&mut self, weighed: &Weighed<T, N>) -> Result<[T; N], Error> {
         let mut gain = [T::ZERO; N];
         let mut mean = self.mean.data.0[0];
         for i in 0..N {
-            gain[i] = weighed.cross_covariance()[i].divided_by(divisor);
+            gain[i] = weighed.by_variance(weighed.cross_covariance()[i]);
             mean[i] += gain[i] * weighed.innovation();
         }
         // A gain that is not finite makes its mean not finite, even where the innovation is zero.
-        if !is_finite(&mean) {
+        if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
         self.mean.data.0[0] = mean;
         Ok(gain)
     }
-}
-
-#[inline]
-pub(crate) fn is_finite<T: Scalar>(values: &[T]) -> bool {
-    values.iter().all(|value| value.is_finite())
 }

@@ -19,8 +19,7 @@ pub struct Innovation<T> {
 /// Gates and robust weights look at it, may change its noise, and take it in with
 /// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Weighed<T, const N: usize> {
+pub struct Weighed<T: Scalar, const N: usize> {
     innovation: T,
     /// h P hᵀ.
     spread: T,
@@ -28,91 +27,102 @@ pub struct Weighed<T, const N: usize> {
     noise: T,
     /// P hᵀ.
     cross: [T; N],
+    /// S, by which everything is divided.
+    divisor: T::Divisor,
 }
 
 impl<T: Scalar, const N: usize> Weighed<T, N> {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(innovation: T, spread: T, noise: T, cross: [T; N]) -> Result<Self, Error> {
-        if !(innovation.is_finite() && spread.is_finite()) {
+        if !innovation.is_finite() {
             return Err(Error::NotFinite);
         }
         // Rounding can leave h P hᵀ a trifle below zero.
         let spread = spread.max(T::ZERO);
-        Self { innovation, spread, noise, cross }.with_noise(noise)
+        let divisor = checked_divisor(spread, noise)?;
+        Ok(Self { innovation, spread, noise, cross, divisor })
     }
 
     /// The same measurement with another noise variance R.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::NotPositive`].
-    #[inline]
-    pub fn with_noise(mut self, noise: T) -> Result<Self, Error> {
-        self.noise = noise;
-        if !self.variance().is_finite() {
-            return Err(Error::NotFinite);
-        }
-        if noise < T::ZERO || self.variance() <= T::ZERO {
-            return Err(Error::NotPositive);
-        }
-        Ok(self)
+    #[inline(always)]
+    pub fn with_noise(self, noise: T) -> Result<Self, Error> {
+        let divisor = checked_divisor(self.spread, noise)?;
+        Ok(Self { noise, divisor, ..self })
     }
 
     /// ν = z − h(x).
-    #[inline]
+    #[inline(always)]
     pub fn innovation(&self) -> T {
         self.innovation
     }
 
     /// h P hᵀ: how uncertain the expectation is.
-    #[inline]
+    #[inline(always)]
     pub fn spread(&self) -> T {
         self.spread
     }
 
     /// R: how uncertain the measurement is.
-    #[inline]
+    #[inline(always)]
     pub fn noise(&self) -> T {
         self.noise
     }
 
     /// S = h P hᵀ + R.
-    #[inline]
+    #[inline(always)]
     pub fn variance(&self) -> T {
         self.spread + self.noise
     }
 
+    /// `value / S`, by the division that all quotients share.
+    #[inline(always)]
+    pub fn by_variance(&self, value: T) -> T {
+        value.divided_by(self.divisor)
+    }
+
     /// P hᵀ, from which the gain P hᵀ/S is made.
-    #[inline]
+    #[inline(always)]
     pub fn cross_covariance(&self) -> &[T; N] {
         &self.cross
     }
 
-    /// Whether ν² > γ·S, that is NIS > γ, without a division and however large ν is.
-    #[inline]
+    /// Whether ν² > γ·S, that is NIS > γ, however large ν is.
+    #[inline(always)]
     pub fn exceeds(&self, gamma: T) -> bool {
         let square = T::mac(T::accumulator(), self.innovation, self.innovation);
         T::finish(T::mac(square, -gamma, self.variance())) > T::ZERO
     }
 
     /// The same measurement against a·P.
-    #[inline]
-    pub(crate) fn scaled(&self, a: T) -> Self {
+    #[inline(always)]
+    pub(crate) fn scaled(&self, a: T) -> Result<Self, Error> {
         let cross = self.cross.map(|cross| a * cross);
-        Self { spread: a * self.spread, cross, ..*self }
+        Self::new(self.innovation, a * self.spread, self.noise, cross)
     }
 
     /// ν, S and NIS as they are before the update.
-    #[inline]
-    pub fn innovation_report(&self) -> Innovation<T> {
-        self.report(self.variance().divisor())
-    }
-
-    #[inline]
-    pub(crate) fn report(&self, divisor: T::Divisor) -> Innovation<T> {
+    #[inline(always)]
+    pub fn report(&self) -> Innovation<T> {
         Innovation {
             innovation: self.innovation,
             variance: self.variance(),
-            nis: self.innovation.divided_by(divisor) * self.innovation,
+            nis: self.by_variance(self.innovation) * self.innovation,
         }
     }
+}
+
+/// S as a divisor, if anything can be weighed with it.
+#[inline(always)]
+fn checked_divisor<T: Scalar>(spread: T, noise: T) -> Result<T::Divisor, Error> {
+    let variance = spread + noise;
+    if !variance.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    if noise < T::ZERO || variance <= T::ZERO {
+        return Err(Error::NotPositive);
+    }
+    Ok(variance.divisor())
 }

@@ -1,10 +1,10 @@
-//! The trait for floats: arithmetic is the machine's, functions are libm's, so that host and target
-//! agree bit for bit.
+//! The trait for floats: arithmetic is the machine's, functions are libm's or our own, so that host and
+//! target agree bit for bit (but for norms on machines without an FPU, which may differ in the last one).
 
 use crate::{Scalar, single};
 
 macro_rules! impl_scalar_for_float {
-    ($float:ident, $sqrt:path, $hypot:path, $sin_cos:path, $atan2:path, $exp:path, $ln:path) => {
+    ($float:ident, $sqrt:path, $root:path, $hypot:path, $sin_cos:path, $atan2:path, $exp:path, $ln:path) => {
         impl Scalar for $float {
             type Accumulator = $float;
             type Divisor = $float;
@@ -43,6 +43,11 @@ macro_rules! impl_scalar_for_float {
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }
+            #[inline(always)]
+            fn all_finite(values: &[Self]) -> bool {
+                // Zero times what is not finite is NaN: a sum and one comparison for all.
+                values.iter().fold(0.0, |sum: $float, value| sum + value * 0.0) == 0.0
+            }
             #[inline]
             fn abs(self) -> Self {
                 $float::abs(self)
@@ -57,7 +62,7 @@ macro_rules! impl_scalar_for_float {
             }
             #[inline]
             fn norm<const N: usize>(components: &[Self; N]) -> Self {
-                $sqrt(Self::dot(components, components))
+                $root(Self::dot(components, components))
             }
             #[inline]
             fn recip(self) -> Self {
@@ -113,7 +118,8 @@ macro_rules! impl_scalar_for_float {
 // it emulates at ten times the cost: those two are our own.
 impl_scalar_for_float!(
     f32,
-    libm::sqrtf,
+    single::sqrt,
+    single::root,
     single::hypot,
     single::sin_cos,
     libm::atan2f,
@@ -122,6 +128,7 @@ impl_scalar_for_float!(
 );
 impl_scalar_for_float!(
     f64,
+    libm::sqrt,
     libm::sqrt,
     libm::hypot,
     libm::sincos,

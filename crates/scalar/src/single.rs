@@ -2,6 +2,38 @@
 
 use core::f32::consts::{FRAC_2_PI, TAU};
 
+/// Whether the machine multiplies in hardware.
+const FPU: bool = cfg!(not(any(
+    all(target_arch = "arm", not(target_abi = "eabihf")),
+    all(target_arch = "riscv32", not(target_feature = "f"))
+)));
+
+/// √x within one unit in the last place, with IEEE's edges.
+#[inline]
+pub(crate) fn sqrt(x: f32) -> f32 {
+    if (f32::MIN_POSITIVE..=f32::MAX).contains(&x) { root(x) } else { libm::sqrtf(x) }
+}
+
+/// √x within one unit in the last place; of zero 0, of what is subnormal too little, and of what is not
+/// finite NaN.
+///
+/// The square root instruction of a Cortex-M4F is out of reach of stable Rust without `std`, and libm's
+/// integer square root costs twice as much as this where multiplications are cheap.
+#[inline]
+pub(crate) fn root(x: f32) -> f32 {
+    if !FPU {
+        return libm::sqrtf(x);
+    }
+    // 1/√x within 3.5 % from the bits alone; each of Newton's steps squares that.
+    let half = 0.5 * x;
+    let mut inverse = f32::from_bits(0x5F37_59DF_u32.wrapping_sub(x.to_bits() >> 1));
+    inverse *= 1.5 - half * inverse * inverse;
+    inverse *= 1.5 - half * inverse * inverse;
+    // And the last one for √x itself.
+    let root = x * inverse;
+    root + (x - root * root) * (0.5 * inverse)
+}
+
 /// √(x² + y²); the squares are scaled where they would overflow or vanish. Never inlined: three square roots
 /// at every place of use would be half a kilobyte each.
 #[inline(never)]

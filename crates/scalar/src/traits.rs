@@ -29,7 +29,7 @@ pub trait Scalar:
     /// A divisor prepared once for several quotients, over the whole range of `Self`: the reciprocal
     /// for floats, mantissa and shift for fixed point (whose reciprocal of a small number would
     /// overflow).
-    type Divisor: Copy;
+    type Divisor: Copy + PartialEq + core::fmt::Debug;
 
     /// 0.
     const ZERO: Self;
@@ -63,6 +63,12 @@ pub trait Scalar:
 
     /// False for NaN and infinities; for the two rails in fixed point.
     fn is_finite(self) -> bool;
+
+    /// Whether all of them are finite.
+    #[inline(always)]
+    fn all_finite(values: &[Self]) -> bool {
+        values.iter().all(|value| value.is_finite())
+    }
 
     /// |x|; saturates.
     fn abs(self) -> Self;

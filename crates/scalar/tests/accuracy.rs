@@ -159,8 +159,24 @@ fn a_norm_is_rounded_once_and_saturates() {
     let (x, y, z) = (12.345_678, -98.765_432, 0.123_456);
     let exact = (x * x + y * y + z * z).sqrt();
     assert!((norm([x, y, z]).to_f64() - exact).abs() < 1.5 / 1_048_576.0);
-    assert_eq!(f32::norm(&[2.0, -3.0, 6.0]), 7.0);
     assert_eq!(f64::norm(&[2.0, -3.0, 6.0]), 7.0);
+}
+
+#[test]
+fn a_norm_in_single_precision_is_good_to_the_last_place() {
+    assert_eq!(f32::norm(&[2.0, -3.0, 6.0]), 7.0);
+    assert_eq!(f32::norm(&[0.0; 3]), 0.0);
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
+        assert!(!f32::norm(&[1.0, bad]).is_finite());
+    }
+    // Through two octaves value by value is through all of them, from 10⁻¹⁸ to 10¹⁸.
+    for octave in [0.25_f32, 1e-18, 1e18] {
+        for step in 0..1 << 22 {
+            let x = octave * (1.0 + step as f32 / f32::from(1_u16 << 11) / 512.0);
+            let error = (f32::norm(&[x, 0.0]).to_f64() - x.to_f64()).abs();
+            assert!(error <= x.to_f64() * f64::from(f32::EPSILON), "{x}: {error}");
+        }
+    }
 }
 
 #[test]

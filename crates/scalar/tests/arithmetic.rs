@@ -91,3 +91,15 @@ fn the_fixed_crate_has_the_same_bits() {
     assert_eq!(ours.to_f64(), -3.25);
     assert_eq!(I12F20::from(ours), theirs);
 }
+
+#[test]
+fn one_that_is_not_finite_is_found_among_many() {
+    assert!(f32::all_finite(&[1.0, -0.0, f32::MAX, f32::MIN_POSITIVE]));
+    assert!(f32::all_finite(&[]));
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert!(!f32::all_finite(&[1.0, bad, 2.0]));
+        assert!(!f64::all_finite(&[bad.into(), f64::MAX]));
+    }
+    assert!(Q12_20::all_finite(&[Q12_20::ONE, Q12_20::ZERO]));
+    assert!(!Q12_20::all_finite(&[Q12_20::ONE, Q12_20::MIN]));
+}

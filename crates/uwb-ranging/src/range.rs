@@ -29,12 +29,11 @@ pub fn expected_range<T: Scalar, const D: usize>(
         offset[axis] = tag - anchor.data.0[0][axis];
     }
     let distance = T::norm(&offset);
+    // Where the distance is zero, so is the offset.
+    let divisor = distance.max(T::EPSILON).divisor();
     let mut direction = [T::ZERO; D];
-    if distance > T::ZERO {
-        let divisor = distance.divisor();
-        for axis in 0..D {
-            direction[axis] = offset[axis].divided_by(divisor);
-        }
+    for axis in 0..D {
+        direction[axis] = offset[axis].divided_by(divisor);
     }
     ExpectedRange { distance, direction }
 }

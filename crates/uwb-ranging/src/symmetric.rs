@@ -5,17 +5,24 @@ use kestirim_scalar::Scalar;
 /// The most unknowns: three coordinates and a common bias.
 pub(crate) const MOST: usize = 4;
 
-/// Normal equations A x = b of `unknowns` ≤ [`MOST`] unknowns; only the lower triangle of A is read.
+/// Normal equations A x = b of up to [`MOST`] unknowns; only the lower triangle of A is read.
 #[derive(Clone, Copy)]
 pub(crate) struct NormalEquations<T> {
     pub(crate) a: [[T; MOST]; MOST],
     pub(crate) b: [T; MOST],
-    unknowns: usize,
 }
 
 impl<T: Scalar> NormalEquations<T> {
+    /// Equations of so many unknowns. The others are said to be zero, with a weight of 1: all loops have
+    /// the same length.
     pub(crate) fn new(unknowns: usize) -> Self {
-        Self { a: [[T::ZERO; MOST]; MOST], b: [T::ZERO; MOST], unknowns: unknowns.min(MOST) }
+        let mut a = [[T::ZERO; MOST]; MOST];
+        for (index, row) in a.iter_mut().enumerate().skip(unknowns) {
+            if let Some(diagonal) = row.get_mut(index) {
+                *diagonal = T::ONE;
+            }
+        }
+        Self { a, b: [T::ZERO; MOST] }
     }
 
     /// Adds the equation `row · x = value` with this weight.
@@ -33,9 +40,9 @@ impl<T: Scalar> NormalEquations<T> {
     /// good as singular.
     pub(crate) fn factorised(&self, least: T) -> Option<Factors<T>> {
         let (mut l, mut d) = (self.a, [T::ONE; MOST]);
-        let largest = (0..self.unknowns).fold(T::ZERO, |most, i| most.max(self.a[i][i]));
+        let largest = (0..MOST).fold(T::ZERO, |most, i| most.max(self.a[i][i]));
         let threshold = largest * least;
-        for i in 0..self.unknowns {
+        for i in 0..MOST {
             for j in 0..i {
                 let mut sum = self.a[i][j];
                 for k in 0..j {
@@ -53,7 +60,7 @@ impl<T: Scalar> NormalEquations<T> {
             }
             d[i] = pivot;
         }
-        Some(Factors { l, d, unknowns: self.unknowns })
+        Some(Factors { l, d })
     }
 }
 
@@ -61,23 +68,22 @@ impl<T: Scalar> NormalEquations<T> {
 pub(crate) struct Factors<T> {
     l: [[T; MOST]; MOST],
     d: [T; MOST],
-    unknowns: usize,
 }
 
 impl<T: Scalar> Factors<T> {
-    /// A⁻¹ b; zero beyond the unknowns.
+    /// A⁻¹ b.
     pub(crate) fn solve(&self, b: &[T; MOST]) -> [T; MOST] {
         let mut x = [T::ZERO; MOST];
-        for i in 0..self.unknowns {
+        for i in 0..MOST {
             let mut sum = b[i];
             for k in 0..i {
                 sum -= self.l[i][k] * x[k];
             }
             x[i] = sum;
         }
-        for i in (0..self.unknowns).rev() {
+        for i in (0..MOST).rev() {
             let mut sum = x[i] / self.d[i];
-            for k in i + 1..self.unknowns {
+            for k in i + 1..MOST {
                 sum -= self.l[k][i] * x[k];
             }
             x[i] = sum;
@@ -88,7 +94,7 @@ impl<T: Scalar> Factors<T> {
     /// A⁻¹.
     pub(crate) fn inverse(&self) -> [[T; MOST]; MOST] {
         let mut inverse = [[T::ZERO; MOST]; MOST];
-        for i in 0..self.unknowns {
+        for i in 0..MOST {
             let mut unit = [T::ZERO; MOST];
             unit[i] = T::ONE;
             inverse[i] = self.solve(&unit);

@@ -29,16 +29,19 @@ pub struct Config<T> {
 
 impl<T: Scalar> Config<T> {
     /// For anchors whose biases are known: a variance may fall to (5 cm)².
+    #[inline]
     pub fn calibrated(height: T) -> Self {
         Self::robust(height, 0.05)
     }
 
     /// For anchors as they come, with biases of a decimetre or two: no variance falls below (10 cm)².
+    #[inline]
     pub fn uncalibrated(height: T) -> Self {
         Self::robust(height, 0.1)
     }
 
     /// The textbook's extended filter: every range counts, always the same.
+    #[inline]
     pub fn plain(height: T) -> Self {
         Self {
             range_sigma: T::from_f64(0.1),
@@ -55,6 +58,7 @@ impl<T: Scalar> Config<T> {
 
     /// All that real rooms ask for. The constants are physical, and broad in their effect: the book has the
     /// table of what half and twice of each does to every recording.
+    #[inline(always)] // So that the constants fold.
     fn robust(height: T, least_sigma: f64) -> Self {
         let number = T::from_f64;
         // An anchor's variance is remembered over a hundred ranges. Behind a person it is metres.

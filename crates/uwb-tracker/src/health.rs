@@ -9,7 +9,7 @@ pub enum State {
     Initialising,
     /// Ranges come in and fit.
     Tracking,
-    /// No range was taken in for a second: the position is extrapolated.
+    /// No range came for a second: the position is extrapolated.
     Coasting,
     /// There was a position, and it is worth nothing any more: the next ranges make a new one.
     Lost,
@@ -22,7 +22,7 @@ pub enum State {
 pub struct Health<T> {
     /// What the position is worth.
     pub state: State,
-    /// Mean NIS of the last twenty ranges or so: 1 when the model is right.
+    /// Mean NIS of the last twenty ranges or so that were taken in: 1 when the model is right.
     pub nis: T,
     /// Ranges taken in so far.
     pub taken: u32,
@@ -48,26 +48,23 @@ pub(crate) struct Counters<T> {
     pub(crate) rejected: u32,
     pub(crate) rejected_in_row: u16,
     pub(crate) starts: u16,
-    pub(crate) last_taken_us: u64,
 }
 
 impl<T: Scalar> Counters<T> {
     pub(crate) fn new() -> Self {
-        Self { nis: T::ONE, taken: 0, rejected: 0, rejected_in_row: 0, starts: 0, last_taken_us: 0 }
+        Self { nis: T::ONE, taken: 0, rejected: 0, rejected_in_row: 0, starts: 0 }
+    }
+
+    #[inline(always)]
+    pub(crate) fn take(&mut self, nis: T) {
+        self.nis += (nis - self.nis) * T::from_f64(0.05);
+        self.taken = self.taken.wrapping_add(1);
+        self.rejected_in_row = 0;
     }
 
     #[inline]
-    pub(crate) fn count(&mut self, taken: bool, nis: T, time_us: u64) {
-        // A wild range's NIS may be out of range.
-        let nis = nis.min(T::from_f64(100.0));
-        self.nis += (nis - self.nis) * T::from_f64(0.05);
-        if taken {
-            self.taken = self.taken.wrapping_add(1);
-            self.rejected_in_row = 0;
-            self.last_taken_us = time_us;
-        } else {
-            self.rejected = self.rejected.wrapping_add(1);
-            self.rejected_in_row = self.rejected_in_row.saturating_add(1);
-        }
+    pub(crate) fn reject(&mut self) {
+        self.rejected = self.rejected.wrapping_add(1);
+        self.rejected_in_row = self.rejected_in_row.saturating_add(1);
     }
 }

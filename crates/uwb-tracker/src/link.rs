@@ -1,5 +1,4 @@
 use crate::Config;
-use kestirim_adaptive_kalman::MeasurementNoise;
 use kestirim_kalman::Gate;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -20,7 +19,10 @@ pub(crate) struct Link<T: Scalar> {
     pub(crate) anchor: Anchor<T>,
     pub(crate) variance: T,
     pub(crate) gate: Gate<T>,
-    last: Option<(u64, T)>,
+    /// From this time on a range is new (µs); 0 if none came yet.
+    next_us: u64,
+    /// The last range, freed of its bias, m.
+    range: T,
 }
 
 impl<T: Scalar> Link<T> {
@@ -31,36 +33,37 @@ impl<T: Scalar> Link<T> {
 
     pub(crate) fn new(anchor: Anchor<T>, config: &Config<T>) -> Self {
         let variance = config.range_sigma * config.range_sigma;
-        Self { anchor, variance, gate: Gate::new(config.gate, Self::PATIENCE), last: None }
+        Self {
+            anchor,
+            variance,
+            gate: Gate::new(config.gate, Self::PATIENCE),
+            next_us: 0,
+            range: T::ZERO,
+        }
     }
 
     /// The range, freed of its bias, if it is fresh at `time_us`.
     #[inline]
     pub(crate) fn fresh(&self, time_us: u64) -> Option<T> {
-        let (heard_us, range) = self.last?;
-        (time_us.saturating_sub(heard_us) <= Self::FRESH_US).then_some(range)
+        let age_us = time_us.saturating_add(1).saturating_sub(self.next_us);
+        (self.next_us > 0 && age_us <= Self::FRESH_US).then_some(self.range)
     }
 
-    /// When it was heard last.
+    /// From when on a range is new (µs).
     #[inline]
-    pub(crate) fn heard_us(&self) -> Option<u64> {
-        self.last.map(|(time_us, _)| time_us)
+    pub(crate) fn next_us(&self) -> u64 {
+        self.next_us
     }
 
     /// Remembers a range, freed of its bias.
     #[inline]
     pub(crate) fn hear(&mut self, time_us: u64, range: T) {
-        self.last = Some((time_us, range));
+        self.next_us = time_us.wrapping_add(1);
+        self.range = range;
     }
 
     /// The same link when a new estimate begins: it was not to blame for the old one.
     pub(crate) fn begun(&self, config: &Config<T>) -> Self {
-        Self { last: self.last, ..Self::new(self.anchor, config) }
-    }
-
-    /// R of a filter that adapts it.
-    #[inline]
-    pub(crate) fn noise(&self, config: &Config<T>) -> Option<MeasurementNoise<T>> {
-        config.learning.map(|learning| MeasurementNoise::new(self.variance, learning))
+        Self { next_us: self.next_us, range: self.range, ..Self::new(self.anchor, config) }
     }
 }

@@ -46,11 +46,11 @@ impl<T: Scalar> Stillness<T> {
         };
         let dt = T::from_micro(elapsed as i32);
         let deviation = acceleration - self.mean;
-        let share = |time: f64| dt / (T::from_f64(time) + dt);
-        self.mean += deviation * share(Self::MEAN_TIME);
+        let share = |time: T| dt / (time + dt);
+        self.mean += deviation * share(T::from_f64(Self::MEAN_TIME));
         // Beyond a few metres per second squared it moves, however much: the square stays in range.
         let size = T::norm(&deviation.data.0[0]).min(T::TWO);
-        self.variance += (size * size - self.variance) * share(Self::SQUARE_TIME);
+        self.variance += (size * size - self.variance) * share(T::from_f64(Self::SQUARE_TIME));
         self.still = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
     }
 }

@@ -8,6 +8,7 @@ use crate::{
     State,
 };
 use heapless::Vec;
+use kestirim_adaptive_kalman::learnt;
 use kestirim_kalman::{Gaussian, Verdict, Weighed};
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{ExpectedRange, dilution_of_precision, expected_range};
@@ -52,8 +53,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const WHEELS_US: u64 = 500_000;
     /// A position this uncertain is none, m.
     const LOST_SIGMA: f64 = 2.0;
-    /// Without a range for so long, the position is extrapolated (µs).
-    const COASTING_US: u64 = 1_000_000;
     /// A robot turning faster changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
@@ -127,17 +126,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     #[inline]
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
         let range = self.check(sample)?;
-        let now_us = sample.time_us.max(self.time_us);
-        let before = (now_us > self.time_us).then_some((self.estimate, self.time_us, self.heard));
-        let report = self.follow(now_us).and_then(|()| self.measure(sample.anchor, now_us, range));
-        match (&report, before) {
-            (Ok(_), _) => {
-                if let Some(link) = self.links.get_mut(sample.anchor) {
-                    link.hear(sample.time_us, range);
-                }
-            }
-            (Err(_), Some(before)) => (self.estimate, self.time_us, self.heard) = before,
-            (Err(_), None) => {}
+        if sample.time_us <= self.time_us {
+            self.check_time(sample.time_us)?;
+            return self.measure(sample, range);
+        }
+        let before = (self.estimate, self.time_us, self.heard);
+        let report = self.follow(sample.time_us).and_then(|()| self.measure(sample, range));
+        if report.is_err() {
+            (self.estimate, self.time_us, self.heard) = before;
         }
         report
     }
@@ -180,7 +176,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// How the tracker feels at `time_us`.
     pub fn health(&self, time_us: u64) -> Health<T> {
         let counters = &self.counters;
-        let silence = time_us.saturating_sub(counters.last_taken_us);
+        let heard = self.count_heard(time_us);
         let position_sigma = self.estimate.as_ref().map(|estimate| {
             let variances = estimate.covariance.variances();
             (0..D).fold(T::ZERO, |sum, axis| sum + variances.data.0[0][axis]).sqrt()
@@ -189,14 +185,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             state: match (&self.estimate, counters.starts) {
                 (None, 0) => State::Initialising,
                 (None, _) => State::Lost,
-                (Some(_), _) if silence > Self::COASTING_US => State::Coasting,
+                (Some(_), _) if heard == 0 => State::Coasting,
                 (Some(_), _) => State::Tracking,
             },
             nis: counters.nis,
             taken: counters.taken,
             rejected: counters.rejected,
             restarts: counters.starts.saturating_sub(1),
-            heard: self.count_heard(time_us),
+            heard,
             dilution: self.dilution(time_us),
             position_sigma,
             still: self.is_still(time_us),
@@ -207,28 +203,21 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     #[inline]
     fn check(&self, sample: &RangeSample<T>) -> Result<T, Error> {
         let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
-        if !sample.range.is_finite() {
-            return Err(Error::NotFinite);
-        }
         let plausible = T::from_f64(Self::SHORTEST)..=T::from_f64(Self::LONGEST);
         if !plausible.contains(&sample.range) {
-            return Err(Error::ImplausibleRange);
+            let finite = sample.range.is_finite();
+            return Err(if finite { Error::ImplausibleRange } else { Error::NotFinite });
         }
-        if let Some(heard_us) = link.heard_us() {
-            if sample.time_us == heard_us {
-                return Err(Error::Duplicate);
-            }
-            if sample.time_us < heard_us {
-                return Err(Error::OutOfOrder);
-            }
+        if sample.time_us < link.next_us() {
+            let again = sample.time_us == link.next_us() - 1;
+            return Err(if again { Error::Duplicate } else { Error::OutOfOrder });
         }
-        self.check_time(sample.time_us)?;
         Ok(sample.range - link.anchor.bias)
     }
 
     #[inline]
     fn check_time(&self, time_us: u64) -> Result<(), Error> {
-        let late = time_us.saturating_add(Self::LATE_US) < self.time_us;
+        let late = time_us < self.time_us && self.time_us - time_us > Self::LATE_US;
         if late { Err(Error::OutOfOrder) } else { Ok(()) }
     }
 
@@ -272,51 +261,72 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     }
 
     /// Takes in a range at the estimate's own time.
-    #[inline]
-    fn measure(&mut self, anchor: usize, now_us: u64, range: T) -> Result<Report<T>, Error> {
-        let link = self.links.get_mut(anchor).ok_or(Error::NoSuchAnchor)?;
+    #[inline(always)]
+    fn measure(&mut self, sample: &RangeSample<T>, range: T) -> Result<Report<T>, Error> {
+        let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Some(estimate) = &mut self.estimate else {
-            let again = link.fresh(now_us).is_some();
-            link.hear(now_us, range);
-            let outcome =
-                if self.begin(now_us, again) { Outcome::Started } else { Outcome::Collected };
-            return Ok(Report { outcome, innovation: None });
+            return Ok(self.collect(sample, range));
         };
         let observes_bias = N > 2 * D && self.heard as usize >= D + 2;
         let (row, expected) =
             predicted_range::<T, D, N>(estimate, &self.config, &link.anchor, observes_bias);
         let row = row.get(..N - D).unwrap_or(&row);
         let weighed = estimate.weigh_entries(row, range - expected, link.variance)?;
+        let seen = weighed.report();
 
         let mut gate = link.gate;
         let verdict = gate.judge(&weighed);
-        let seen = weighed.innovation_report();
         let outcome = match verdict {
+            Verdict::Admit => {
+                if let Some(noise) = weakened(&weighed, &self.config) {
+                    estimate.correct(&weighed.with_noise(noise)?)?;
+                    Outcome::Weakened
+                } else {
+                    estimate.correct(&weighed)?;
+                    Outcome::Taken
+                }
+            }
             Verdict::Reject => Outcome::Rejected,
             Verdict::Recover => {
                 estimate.correct_widened(&weighed, gate.gamma())?;
                 Outcome::Recovered
             }
-            Verdict::Admit => {
-                let weakened = weakened(&weighed, &self.config)?;
-                estimate.correct(weakened.as_ref().unwrap_or(&weighed))?;
-                if weakened.is_some() { Outcome::Weakened } else { Outcome::Taken }
-            }
         };
         link.gate = gate;
+        link.hear(sample.time_us, range);
         // A range that the estimate has to follow fits whatever it is worth.
         let redundant = self.heard as usize > D + usize::from(observes_bias);
-        if redundant && let Some(mut noise) = link.noise(&self.config) {
-            noise.learn(&weighed);
-            link.variance = noise.variance();
+        if redundant && let Some(learning) = &self.config.learning {
+            link.variance = learnt(link.variance, learning, &weighed);
         }
-        self.counters.count(verdict != Verdict::Reject, seen.nis, now_us);
-        let most_rejected = 3 * u16::from(self.heard.max(D as u8));
-        if self.counters.rejected_in_row > most_rejected {
-            // None of the anchors agrees: the place is wrong, not they.
-            self.estimate = None;
+        if verdict == Verdict::Reject {
+            self.reject();
+        } else {
+            self.counters.take(seen.nis);
         }
         Ok(Report { outcome, innovation: Some(seen) })
+    }
+
+    /// Counts a range that was left out; when none of the anchors agrees, the place is wrong, not they.
+    fn reject(&mut self) {
+        self.counters.reject();
+        let most_rejected = 3 * u16::from(self.heard.max(D as u8));
+        if self.counters.rejected_in_row > most_rejected {
+            self.estimate = None;
+        }
+    }
+
+    /// Keeps a range for a first position, and makes one if it can.
+    #[inline(never)] // Rare, and large.
+    fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
+        let mut again = false;
+        if let Some(link) = self.links.get_mut(sample.anchor) {
+            again = link.fresh(self.time_us).is_some();
+            link.hear(sample.time_us, range);
+        }
+        let started = self.begin(self.time_us, again);
+        let outcome = if started { Outcome::Started } else { Outcome::Collected };
+        Report { outcome, innovation: None }
     }
 
     /// Makes a position of the fresh ranges, if they are enough: when all anchors have been heard, or
@@ -335,7 +345,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.heard = self.count_heard(now_us);
         self.counters.starts = self.counters.starts.saturating_add(1);
         self.counters.rejected_in_row = 0;
-        self.counters.last_taken_us = now_us;
         true
     }
 
@@ -391,17 +400,14 @@ fn predicted_range<T: Scalar, const D: usize, const N: usize>(
     (row, if observes_bias { distance + mean[2 * D] } else { distance })
 }
 
-/// The range with the noise that Huber gives it, if it is beyond his threshold: S grows to S |ν|/(k √S).
-#[inline]
-fn weakened<T: Scalar, const N: usize>(
-    weighed: &Weighed<T, N>,
-    config: &Config<T>,
-) -> Result<Option<Weighed<T, N>>, Error> {
-    let Some(huber) = &config.huber else { return Ok(None) };
+/// The noise that Huber gives a range beyond his threshold: S grows to S |ν|/(k √S).
+#[inline(always)]
+fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<T>) -> Option<T> {
+    let huber = config.huber.as_ref()?;
     let threshold = huber.threshold(weighed.innovation());
     if !weighed.exceeds(threshold * threshold) {
-        return Ok(None);
+        return None;
     }
     let variance = weighed.innovation().abs() * weighed.variance().sqrt() / threshold;
-    Ok(Some(weighed.with_noise((variance - weighed.spread()).max(weighed.noise()))?))
+    Some((variance - weighed.spread()).max(weighed.noise()))
 }

@@ -8,7 +8,7 @@ use super::images::Images;
 use super::output::{Cost, Output};
 
 /// The classes of steps; an image tells those that occurred.
-const CLASSES: [&str; 3] = ["predict", "update", "rejected"];
+const CLASSES: [&str; 4] = ["predict", "update", "rejected", "start"];
 
 /// What a workload costs on a target.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use super::wide::unsigned_product;
 ///
 /// A plain reciprocal in the same format overflows for small divisors and loses digits for large
 /// ones; this one keeps 32 bits whatever the size.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedDivisor<const FRAC: u32> {
     /// 2⁶³ / (the divisor's magnitude, shifted until its top bit is set).
     reciprocal: u32,

@@ -5,6 +5,8 @@
 
 #![no_std]
 
+pub mod four_ranges;
 pub mod pedestrian;
 pub mod replay;
 pub mod stream;
+pub mod uwb;

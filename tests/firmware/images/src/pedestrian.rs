@@ -49,6 +49,7 @@ impl<T: Scalar, N: Navigator<T>> Default for Walk<T, N> {
 impl<T: Scalar, N: Navigator<T> + Named> Tracker for Walk<T, N> {
     const NAME: &str = N::NAME;
     const SCALAR: &str = N::SCALAR;
+    type Record = Sample;
     type Input = ImuSample<T>;
 
     fn input(sample: &Sample) -> ImuSample<T> {

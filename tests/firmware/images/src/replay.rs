@@ -3,7 +3,7 @@
 
 use support::{Class, Meter, line, line_of_text};
 
-use crate::stream::{Sample, Stream};
+use crate::stream::{Record, Stream};
 
 /// A position is told every so many samples, and after the last.
 const SAMPLES_A_POSITION: u32 = 50;
@@ -14,13 +14,15 @@ pub trait Tracker: Default {
     const NAME: &str;
     /// The name of the scalar in tables: `f32`, `q12.20` …
     const SCALAR: &str;
-    /// A sample in the tracker's own scalar.
+    /// What the stream holds.
+    type Record: Record;
+    /// A record in the tracker's own scalar.
     type Input;
 
-    /// Converts a sample. Not measured: a driver would deliver the tracker's scalar.
-    fn input(sample: &Sample) -> Self::Input;
+    /// Converts a record. Not measured: a driver would deliver the tracker's scalar.
+    fn input(record: &Self::Record) -> Self::Input;
 
-    /// Takes in a sample. Measured.
+    /// Takes in a record. Measured.
     fn step(&mut self, input: &Self::Input) -> Class;
 
     /// Where the tracker believes to be, in metres.
@@ -41,11 +43,11 @@ pub fn run<T: Tracker>() {
     let mut meter = Meter::new();
     let mut samples = 0_u32;
     let mut time_us = 0;
-    for sample in Stream::open() {
-        let input = T::input(&sample);
+    for (recorded_us, record) in Stream::<T::Record>::open() {
+        let input = T::input(&record);
         meter.measure(|| tracker.step(&input));
         samples += 1;
-        time_us = sample.time_us;
+        time_us = recorded_us;
         if samples.is_multiple_of(SAMPLES_A_POSITION) {
             tell(time_us, tracker.position());
         }

@@ -1,19 +1,31 @@
-//! The recorded stream, read sample by sample from the file `stream.bin` in the emulator's working
+//! The recorded stream, read record by record from the file `stream.bin` in the emulator's working
 //! directory. It is not part of the image, so a new recording needs no new build, is not limited by
 //! the flash of a board and does not count as flash.
 //!
-//! Twenty-eight bytes a sample, little-endian: microseconds since the previous sample (`u32`),
-//! specific force in m/s² (three `f32`), angular rate in rad/s (three `f32`).
+//! A record is a few words of four bytes, little-endian: microseconds since the previous record
+//! (`u32`), then what was measured.
+
+use core::marker::PhantomData;
 
 use semihosting::fs::File;
 use semihosting::io::Read;
 use support::fail;
 
 const FILE: &core::ffi::CStr = c"stream.bin";
-const WORDS: usize = 7;
-const BYTES: usize = WORDS * size_of::<u32>();
+const MOST_WORDS: usize = 7;
+const WORD: usize = size_of::<u32>();
 
-/// A sample of an inertial sensor, in its own axes.
+/// What was measured at one time.
+pub trait Record: Sized {
+    /// Words of a record, the time among them.
+    const WORDS: usize;
+
+    /// From the microseconds since the start of the stream and the words after the time; `None` if
+    /// there are too few of them.
+    fn new(time_us: u64, words: &[[u8; WORD]]) -> Option<Self>;
+}
+
+/// A sample of an inertial sensor, in its own axes: three `f32` and three `f32`.
 #[derive(Clone, Copy)]
 pub struct Sample {
     /// Microseconds since the start of the stream; the first sample may be later than 0.
@@ -24,39 +36,86 @@ pub struct Sample {
     pub angular_rate: [f32; 3],
 }
 
-/// The open stream: an iterator over its samples.
-pub struct Stream {
-    file: File,
-    time_us: u64,
+impl Record for Sample {
+    const WORDS: usize = 7;
+
+    fn new(time_us: u64, words: &[[u8; WORD]]) -> Option<Self> {
+        let &[fx, fy, fz, wx, wy, wz] = words.as_array()?;
+        Some(Self {
+            time_us,
+            specific_force: [fx, fy, fz].map(f32::from_le_bytes),
+            angular_rate: [wx, wy, wz].map(f32::from_le_bytes),
+        })
+    }
 }
 
-impl Stream {
+/// A range to one of several anchors: a `u32` and an `f32`.
+#[derive(Clone, Copy)]
+pub struct Range {
+    /// Microseconds since the start of the stream.
+    pub time_us: u64,
+    /// Which anchor.
+    pub anchor: u32,
+    /// m.
+    pub range: f32,
+}
+
+impl Record for Range {
+    const WORDS: usize = 3;
+
+    fn new(time_us: u64, words: &[[u8; WORD]]) -> Option<Self> {
+        let &[anchor, range] = words.as_array()?;
+        Some(Self { time_us, anchor: u32::from_le_bytes(anchor), range: f32::from_le_bytes(range) })
+    }
+}
+
+/// Ranges to four anchors at once: four `f32`.
+#[derive(Clone, Copy)]
+pub struct Ranges {
+    /// m.
+    pub ranges: [f32; 4],
+}
+
+impl Record for Ranges {
+    const WORDS: usize = 5;
+
+    fn new(_: u64, words: &[[u8; WORD]]) -> Option<Self> {
+        let &words: &[[u8; WORD]; 4] = words.as_array()?;
+        Some(Self { ranges: words.map(f32::from_le_bytes) })
+    }
+}
+
+/// The open stream: an iterator over its records and their times.
+pub struct Stream<R> {
+    file: File,
+    time_us: u64,
+    record: PhantomData<R>,
+}
+
+impl<R: Record> Stream<R> {
     /// Opens the stream; fails the image if there is none.
     pub fn open() -> Self {
         match File::open(FILE) {
-            Ok(file) => Self { file, time_us: 0 },
+            Ok(file) => Self { file, time_us: 0, record: PhantomData },
             Err(_) => fail("no stream.bin"),
         }
     }
 }
 
-impl Iterator for Stream {
-    type Item = Sample;
+impl<R: Record> Iterator for Stream<R> {
+    type Item = (u64, R);
 
-    fn next(&mut self) -> Option<Sample> {
-        let mut record = [0; BYTES];
-        match self.file.read(&mut record) {
+    fn next(&mut self) -> Option<(u64, R)> {
+        let mut bytes = [0; MOST_WORDS * WORD];
+        let bytes = bytes.get_mut(..R::WORDS * WORD)?;
+        match self.file.read(bytes) {
             Ok(0) => return None,
-            Ok(BYTES) => {}
-            _ => fail("stream.bin is cut in the middle of a sample"),
+            Ok(count) if count == bytes.len() => {}
+            _ => fail("stream.bin is cut in the middle of a record"),
         }
-        let (words, _) = record.as_chunks();
-        let &[elapsed, fx, fy, fz, wx, wy, wz] = words.as_array::<WORDS>()?;
+        let (words, _) = bytes.as_chunks();
+        let (&elapsed, words) = words.split_first()?;
         self.time_us += u64::from(u32::from_le_bytes(elapsed));
-        Some(Sample {
-            time_us: self.time_us,
-            specific_force: [fx, fy, fz].map(f32::from_le_bytes),
-            angular_rate: [wx, wy, wz].map(f32::from_le_bytes),
-        })
+        Some((self.time_us, R::new(self.time_us, words)?))
     }
 }

@@ -17,11 +17,17 @@ pub enum Class {
     Update,
     /// The step answered with an error.
     Rejected,
+    /// There was no estimate before the step.
+    Start,
 }
 
 impl Class {
-    const ALL: [(Self, &'static str); 3] =
-        [(Self::Predict, "predict"), (Self::Update, "update"), (Self::Rejected, "rejected")];
+    const ALL: [(Self, &'static str); 4] = [
+        (Self::Predict, "predict"),
+        (Self::Update, "update"),
+        (Self::Rejected, "rejected"),
+        (Self::Start, "start"),
+    ];
 }
 
 /// Instructions and stack of one call.

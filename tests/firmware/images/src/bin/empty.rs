@@ -14,6 +14,7 @@ struct Nothing([f32; 3]);
 impl Tracker for Nothing {
     const NAME: &str = "empty";
     const SCALAR: &str = "f32";
+    type Record = Sample;
     type Input = Sample;
 
     fn input(sample: &Sample) -> Sample {

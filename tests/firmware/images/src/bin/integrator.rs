@@ -18,6 +18,7 @@ struct Integrator {
 impl Tracker for Integrator {
     const NAME: &str = "integrator";
     const SCALAR: &str = "f32";
+    type Record = Sample;
     type Input = Sample;
 
     fn input(sample: &Sample) -> Sample {

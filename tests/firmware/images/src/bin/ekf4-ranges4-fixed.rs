@@ -1,0 +1,11 @@
+//! The common scenario of the peers, in fixed point.
+
+#![no_std]
+#![no_main]
+
+use images::four_ranges::Ekf;
+use images::replay::run;
+use kestirim_scalar::Q12_20;
+use support::image;
+
+image!(run::<Ekf<Q12_20>>);
