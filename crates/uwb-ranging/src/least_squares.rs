@@ -76,6 +76,10 @@ const STARTS: usize = 7;
 
 impl<T: Scalar> Solver<T> {
     const MOST_STEPS: u16 = 30;
+    /// A step of no more than this ends the search, m.
+    const SETTLED: f64 = 1e-3;
+    /// Two starts that come so close to each other lead to the same place, m.
+    const SAME: f64 = 0.05;
     /// Steps in which every range counts, so that Huber's weights begin near the answer.
     const PLAIN_STEPS: u16 = 3;
 
@@ -98,8 +102,13 @@ impl<T: Scalar> Solver<T> {
         let mut best: Option<(bool, Fix<T, D>)> = None;
         let mut failure = Error::NotConverged;
         for start in starts(observations, start) {
-            match self.descend(observations, &start, scale) {
-                Ok(fix) => best = Some(self.better(best, fix)),
+            if best.is_some_and(|best| good_enough(&best, observations.len())) {
+                break;
+            }
+            let known = best.map(|(_, fix)| fix.position);
+            match self.descend(observations, &start, scale, known) {
+                Ok(Some(fix)) => best = Some(self.better(best, fix)),
+                Ok(None) => {}
                 Err(error) => failure = error,
             }
         }
@@ -130,12 +139,14 @@ impl<T: Scalar> Solver<T> {
         (best_inside, best)
     }
 
+    /// Where the steps from one start lead; `None` if that is the place that is known already.
     fn descend<const D: usize>(
         &self,
         observations: &[Observation<T>],
         start: &SVector<T, D>,
         scale: T,
-    ) -> Result<Fix<T, D>, Error> {
+        known: Option<SVector<T, D>>,
+    ) -> Result<Option<Fix<T, D>>, Error> {
         let bias_prior = self.common_bias.filter(|_| observations.len() > D + 1);
         let unknowns = if bias_prior.is_some() { D + 1 } else { D };
         let mut position = *start;
@@ -174,10 +185,18 @@ impl<T: Scalar> Solver<T> {
             if !position.iter().all(|coordinate| coordinate.is_finite()) {
                 return Err(Error::NotConverged);
             }
-            let settled = moved.iter().all(|&moved| moved.abs() <= T::from_f64(1e-4));
-            if settled && step > Self::PLAIN_STEPS {
+            if step <= Self::PLAIN_STEPS {
+                continue;
+            }
+            if let Some(known) = known
+                && T::norm(&(position - known).data.0[0]) < T::from_f64(Self::SAME)
+            {
+                return Ok(None);
+            }
+            let settled = moved.iter().all(|&moved| moved.abs() <= T::from_f64(Self::SETTLED));
+            if settled {
                 let inverse = factors.inverse();
-                return Ok(Fix {
+                return Ok(Some(Fix {
                     position,
                     covariance: SMatrix::from_fn(|i, j| inverse[i][j] * scale),
                     common_bias: bias,
@@ -186,11 +205,21 @@ impl<T: Scalar> Solver<T> {
                         .map_or(T::ZERO, |row| row[D.min(3)] * scale),
                     cost,
                     ambiguous: false,
-                });
+                }));
             }
         }
         Err(Error::NotConverged)
     }
+}
+
+/// Whether no other start can do better: the ranges agree to their noise, and there are enough of them
+/// that a mirror image could not.
+fn good_enough<T: Scalar, const D: usize>(
+    (inside, fix): &(bool, Fix<T, D>),
+    observations: usize,
+) -> bool {
+    let most = T::from_micro(observations.min(2000) as i32 * 1_000_000);
+    *inside && observations > D + 1 && fix.cost <= most
 }
 
 /// The smallest variance, to which all weights are relative.

@@ -179,7 +179,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let heard = self.count_heard(time_us);
         let position_sigma = self.estimate.as_ref().map(|estimate| {
             let variances = estimate.covariance.variances();
-            (0..D).fold(T::ZERO, |sum, axis| sum + variances.data.0[0][axis]).sqrt()
+            variances.iter().take(D).fold(T::ZERO, |sum, &variance| sum + variance).sqrt()
         });
         Health {
             state: match (&self.estimate, counters.starts) {
@@ -232,7 +232,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if let Some(estimate) = &self.estimate {
             let variances = estimate.covariance.variances();
             let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);
-            if (0..D).any(|axis| variances.data.0[0][axis] > most) {
+            if variances.iter().take(D).any(|&variance| variance > most) {
                 self.estimate = None;
             }
         }

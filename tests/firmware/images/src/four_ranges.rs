@@ -101,6 +101,14 @@ impl<T: Named> Tracker for Ekf<T> {
     }
 }
 
+#[inline(always)] // So that the constants fold.
+fn learning<T: Scalar>(least: f64, most: f64) -> Learning<T> {
+    match Learning::new(T::from_f64(0.95), T::from_f64(least), T::from_f64(most)) {
+        Ok(learning) => learning,
+        Err(_) => support::fail("limits that make sense"),
+    }
+}
+
 /// The adaptive filter in its safe form: both adaptations.
 pub struct Aekf<T: Scalar> {
     anchors: [SVector<T, 3>; 4],
@@ -109,13 +117,6 @@ pub struct Aekf<T: Scalar> {
 
 impl<T: Scalar> Default for Aekf<T> {
     fn default() -> Self {
-        let learning = |least: f64, most: f64| {
-            let [forgetting, least, most] = [0.95, least, most].map(T::from_f64);
-            match Learning::new(forgetting, least, most) {
-                Ok(learning) => learning,
-                Err(_) => support::fail("limits that make sense"),
-            }
-        };
         let (position, velocity) = (learning(1e-5, 1e-2), learning(1e-3, 1e-1));
         let process = ProcessNoise::new(
             [1e-4, 1e-4, 2.5e-2, 2.5e-2].map(T::from_f64),

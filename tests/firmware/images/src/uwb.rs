@@ -12,16 +12,16 @@ use crate::stream::Range;
 
 /// Height of the tag, m.
 const HEIGHT: f64 = 1.0;
-/// The corners come first.
-const ANCHORS: [[f64; 3]; 8] = [
-    [0.0, 0.0, 2.5],
-    [10.0, 0.0, 2.0],
-    [10.0, 8.0, 2.5],
-    [0.0, 8.0, 2.0],
-    [5.0, 0.0, 0.5],
-    [10.0, 4.0, 0.2],
-    [5.0, 8.0, 0.5],
-    [0.0, 4.0, 0.2],
+/// Where the anchors are, dm; the corners come first.
+const ANCHORS: [[i32; 3]; 8] = [
+    [0, 0, 25],
+    [100, 0, 20],
+    [100, 80, 25],
+    [0, 80, 20],
+    [50, 0, 5],
+    [100, 40, 2],
+    [50, 80, 5],
+    [0, 40, 2],
 ];
 
 /// A tag in the plane.
@@ -36,8 +36,10 @@ pub struct Room<T: Scalar, const D: usize, const N: usize, const A: usize> {
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Default for Room<T, D, N, A> {
     fn default() -> Self {
-        let anchors = ANCHORS
-            .map(|place| Anchor { position: SVector::from(place.map(T::from_f64)), bias: T::ZERO });
+        let anchors = ANCHORS.map(|place| Anchor {
+            position: SVector::from(place.map(|dm| T::from_micro(dm * 100_000))),
+            bias: T::ZERO,
+        });
         let config = Config::calibrated(T::from_f64(HEIGHT));
         match Uwb::new(config, anchors.get(..A).unwrap_or(&anchors)) {
             Ok(tracker) => Self { tracker },
