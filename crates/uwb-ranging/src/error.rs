@@ -17,10 +17,8 @@ pub enum Error {
     DegenerateGeometry,
     /// The iterations ran out.
     NotConverged,
-    /// An index beyond the anchors.
-    NoSuchAnchor,
-    /// The times of an exchange do not follow each other.
-    InvalidExchange,
+    /// An exchange of which all intervals are zero.
+    EmptyExchange,
     /// A table whose entries are not in rising order.
     UnorderedTable,
 }
@@ -33,8 +31,7 @@ impl fmt::Display for Error {
             Self::TooFewRanges => "there are fewer ranges than unknowns",
             Self::DegenerateGeometry => "the anchors' places do not determine the answer",
             Self::NotConverged => "the iterations did not converge",
-            Self::NoSuchAnchor => "there is no such anchor",
-            Self::InvalidExchange => "the times of an exchange do not follow each other",
+            Self::EmptyExchange => "the intervals of an exchange are zero",
             Self::UnorderedTable => "the entries of a table are not in rising order",
         })
     }

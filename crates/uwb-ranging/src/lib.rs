@@ -1,19 +1,34 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod antenna;
+mod bias;
+mod calibration;
+mod clock;
 mod dilution;
 mod error;
 mod least_squares;
 mod quartiles;
 mod range;
 mod room;
+mod survey;
 mod symmetric;
+mod ticks;
+mod timestamp;
 mod trilateration;
+mod two_way;
 
+pub use antenna::AntennaDelay;
+pub use bias::LevelBias;
+pub use calibration::Calibration;
+pub use clock::{Channel, ClockOffset, DataRate};
 pub use dilution::dilution_of_precision;
 pub use error::Error;
 pub use least_squares::{Fix, Huber, Observation, Solver};
 pub use quartiles::Quartiles;
 pub use range::{ExpectedRange, expected_range};
 pub use room::Room;
+pub use survey::{Survey, survey};
+pub use timestamp::{METRES_PER_TICK, SPEED_OF_LIGHT, TICKS_PER_SECOND, Ticks, Timestamp};
 pub use trilateration::Trilateration;
+pub use two_way::{DoubleSided, SingleSided};

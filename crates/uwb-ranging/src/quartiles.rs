@@ -3,7 +3,8 @@ use kestirim_scalar::Scalar;
 /// Median and quartiles of a stream, in constant memory: the P² algorithm (Jain and Chlamtac 1985) with
 /// its five markers at the minimum, the quartiles and the maximum.
 ///
-/// A tenth of wild values moves the median by a fraction of the spread, however wild they are.
+/// A tenth of wild values moves the median by a fraction of the spread, however wild they are: beyond the
+/// limits it only counts on which side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -13,15 +14,16 @@ pub struct Quartiles<T> {
     /// How many values are at or below each marker.
     positions: [u32; 5],
     count: u32,
-}
-
-impl<T: Scalar> Default for Quartiles<T> {
-    fn default() -> Self {
-        Self { heights: [T::ZERO; 5], positions: [1, 2, 3, 4, 5], count: 0 }
-    }
+    limits: (T, T),
 }
 
 impl<T: Scalar> Quartiles<T> {
+    /// Of values that are expected between `low` and `high`.
+    pub fn within(low: T, high: T) -> Self {
+        let limits = (low.min(high), low.max(high));
+        Self { heights: [T::ZERO; 5], positions: [1, 2, 3, 4, 5], count: 0, limits }
+    }
+
     /// How many values there were.
     pub fn count(&self) -> u32 {
         self.count
@@ -32,6 +34,7 @@ impl<T: Scalar> Quartiles<T> {
         if !value.is_finite() || self.count == u32::MAX {
             return;
         }
+        let value = value.clamp(self.limits.0, self.limits.1);
         self.count += 1;
         if self.count <= 5 {
             self.insert(value);

@@ -12,11 +12,13 @@ use crate::output;
 pub enum System {
     /// Foot-mounted IMU with zero-velocity updates
     Pedestrian,
+    /// A robot among ultra-wideband anchors
+    Robot,
 }
 
 impl System {
     /// Every system, in the order in which they run.
-    pub const ALL: [Self; 1] = [Self::Pedestrian];
+    pub const ALL: [Self; 2] = [Self::Pedestrian, Self::Robot];
 
     /// Runs the system on its synthetic streams and prints the report.
     ///
@@ -25,6 +27,7 @@ impl System {
     pub fn run(self, options: RunOptions, json: bool) -> Result<(), Error> {
         match self {
             Self::Pedestrian => output::show(&pedestrian::experiment::run(options)?, json),
+            Self::Robot => output::show(&robot::experiment::run(options)?, json),
         }
     }
 
@@ -32,6 +35,7 @@ impl System {
     fn description(self) -> &'static str {
         match self {
             Self::Pedestrian => pedestrian::DESCRIPTION,
+            Self::Robot => robot::DESCRIPTION,
         }
     }
 }

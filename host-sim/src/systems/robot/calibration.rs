@@ -13,6 +13,9 @@ use crate::{Error, output};
 /// Beyond the bias of any radio that works, m.
 const LARGEST_BIAS: f64 = 100.0;
 
+/// Beyond it a range is wild, m.
+const LARGEST_RESIDUAL: f64 = 3.0;
+
 /// What was found of an anchor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AnchorCalibration {
@@ -35,7 +38,12 @@ pub struct Residuals {
 impl Residuals {
     /// Nothing yet.
     pub fn new(anchors: &Anchors) -> Self {
-        Self { quartiles: vec![Quartiles::default(); anchors.names.len()] }
+        Self {
+            quartiles: vec![
+                Quartiles::within(-LARGEST_RESIDUAL, LARGEST_RESIDUAL);
+                anchors.names.len()
+            ],
+        }
     }
 
     /// Takes in a range measured at a known place.

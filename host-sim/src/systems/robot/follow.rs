@@ -11,7 +11,7 @@ use super::anchors::MOST;
 use super::each_epoch::EachEpoch;
 use super::motion::{Inertial, Wheels};
 use super::options::{Dimensions, Setup, TrackerKind};
-use super::printed::Printed;
+use super::printed::{Beginning, Printed};
 use crate::Error;
 use crate::cli::ScalarKind;
 
@@ -64,7 +64,7 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
             let config = Config { learning, ..Config::plain(height) };
             Box::new(Recursive::<T, D, N>::new(setup, config)?)
         }
-        TrackerKind::AekfPrinted => Printed::<T, D, N>::boxed(setup)?,
+        TrackerKind::AekfPrinted => Printed::<T, D, N>::boxed(setup, Beginning::HONEST)?,
         TrackerKind::Default if setup.biases.is_some() => {
             Box::new(Recursive::<T, D, N>::new(setup, Config::calibrated(height))?)
         }
@@ -72,6 +72,18 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
             Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, Config::uncalibrated(height))?)
         }
     })
+}
+
+/// The paper's filter in the plane, begun as one likes.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_printed(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
+    match setup.scalar {
+        ScalarKind::F32 => Printed::<f32, 2, 4>::boxed(setup, beginning),
+        ScalarKind::F64 => Printed::<f64, 2, 4>::boxed(setup, beginning),
+        ScalarKind::Fixed => Printed::<Q12_20, 2, 4>::boxed(setup, beginning),
+    }
 }
 
 /// `kestirim_uwb_tracker`.

@@ -10,14 +10,17 @@ pub mod anchors;
 pub mod calibrate;
 pub mod calibration;
 pub mod each_epoch;
+pub mod experiment;
 pub mod feed;
 pub mod follow;
+pub mod limit;
 pub mod motion;
 pub mod options;
 pub mod points;
 pub mod printed;
 pub mod ranges;
 pub mod replay;
+pub mod scenario;
 pub mod table;
 
 /// What `host-sim list` says of this system.

@@ -12,9 +12,8 @@ use super::motion::{Inertial, Wheels};
 use super::options::Setup;
 use crate::Error;
 
-/// What the paper leaves open: with these numbers its table comes out of biased ranges, if the filter is
-/// started at the truth. With everyday ones R turns indefinite.
-#[derive(Debug, Clone, Copy)]
+/// What the paper leaves open.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constants {
     /// Variance of the first position, m².
     pub position: f64,
@@ -22,14 +21,30 @@ pub struct Constants {
     pub process: f64,
     /// Variance of a range to begin with, m².
     pub range: f64,
-    /// Forgetting factors of eqs 18 and 19.
+    /// Forgetting factor of eqs 18 and 19; 1 adapts nothing and leaves the plain filter.
     pub forgetting: f64,
 }
 
 impl Constants {
-    /// As used throughout.
-    pub const OF_THE_TABLE: Self =
-        Self { position: 1e-4, process: 3e-5, range: 0.1, forgetting: 0.95 };
+    /// With these the paper's table comes out of biased ranges, if the filter is started at the truth. With
+    /// everyday ones eq. 18 makes R indefinite.
+    pub const ADAPTIVE: Self = Self { position: 1e-4, process: 3e-5, range: 0.1, forgetting: 0.95 };
+    /// The same without adaptation.
+    pub const PLAIN: Self = Self { forgetting: 1.0, ..Self::ADAPTIVE };
+}
+
+/// How the filter begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beginning {
+    /// Where; none begins at the first trilateration.
+    pub start: Option<[f64; 2]>,
+    /// With which constants.
+    pub constants: Constants,
+}
+
+impl Beginning {
+    /// As anyone has to: at the first trilateration.
+    pub const HONEST: Self = Self { start: None, constants: Constants::ADAPTIVE };
 }
 
 /// The filter of N states in D dimensions for A anchors.
@@ -43,6 +58,7 @@ pub struct Printed<T: Scalar, const D: usize, const N: usize, const A: usize = 4
     /// Makes the first position.
     first: EachEpoch<T, D>,
     push: Option<[T; D]>,
+    beginning: Beginning,
 }
 
 impl<T: Scalar, const D: usize, const N: usize> Printed<T, D, N> {
@@ -50,11 +66,11 @@ impl<T: Scalar, const D: usize, const N: usize> Printed<T, D, N> {
     ///
     /// # Errors
     /// [`Error::Usage`] for fewer than three or more than eight.
-    pub fn boxed(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    pub fn boxed(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
         macro_rules! first_of {
             ($($count:literal)*) => {
                 match setup.anchors.len() {
-                    $($count => Ok(Box::new(Printed::<T, D, N, $count>::new(setup)?)),)*
+                    $($count => Ok(Box::new(Printed::<T, D, N, $count>::new(setup, beginning)?)),)*
                     _ => Err(Error::Usage(
                         "the printed filter is built for 3 to 8 anchors".to_owned(),
                     )),
@@ -66,7 +82,7 @@ impl<T: Scalar, const D: usize, const N: usize> Printed<T, D, N> {
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Printed<T, D, N, A> {
-    fn new(setup: &Setup) -> Result<Self, Error> {
+    fn new(setup: &Setup, beginning: Beginning) -> Result<Self, Error> {
         let places = <[[f64; 3]; A]>::try_from(setup.anchors.as_slice())
             .map_err(|_| Error::Usage(format!("expected {A} anchors")))?;
         Ok(Self {
@@ -77,22 +93,24 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Printed<T, D, N,
             filter: None,
             first: EachEpoch::new(setup, true),
             push: None,
+            beginning,
         })
     }
 
     fn started(&self) -> Option<PrintedAdaptiveKalman<T, N, A>> {
-        let position = self.first.position()?;
+        let Beginning { start, constants } = self.beginning;
+        let position = start.map_or(self.first.position(), |[x, y]| Some([x, y, self.height_m]))?;
         let mut mean = SVector::<T, N>::zeros();
-        let (mut variances, process) = ([T::ZERO; N], T::from_f64(Constants::OF_THE_TABLE.process));
+        let mut variances = [T::ZERO; N];
         for axis in 0..D {
             mean[axis] = T::from_f64(position[axis]);
-            variances[axis] = T::from_f64(Constants::OF_THE_TABLE.position);
+            variances[axis] = T::from_f64(constants.position);
         }
-        let forgetting = T::from_f64(Constants::OF_THE_TABLE.forgetting);
+        let forgetting = T::from_f64(constants.forgetting);
         PrintedAdaptiveKalman::new(
             Gaussian::new(mean, Covariance::from_variances(&variances)),
-            Covariance::from_variances(&[process; N]),
-            Covariance::from_variances(&[T::from_f64(Constants::OF_THE_TABLE.range); A]),
+            Covariance::from_variances(&[T::from_f64(constants.process); N]),
+            Covariance::from_variances(&[T::from_f64(constants.range); A]),
             forgetting,
             forgetting,
         )

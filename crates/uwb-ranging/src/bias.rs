@@ -1,0 +1,76 @@
+use crate::Error;
+use kestirim_scalar::Scalar;
+
+/// By how much a range is too long, depending on the level at which the frame was received: K knots and
+/// straight lines between them.
+///
+/// A strong signal makes the DW1000 see the first path too early, a weak one too late: 3 cm at 2 m, 29 cm
+/// at 58 m. **corrected = range − bias** (APS011, p. 12; public drivers have had the sign wrong).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct LevelBias<T, const K: usize> {
+    levels: [T; K],
+    biases: [T; K],
+}
+
+/// APS011's table for channels of 500 MHz: from −95 to −61 dBm in steps of 2, mm.
+const APS011_PRF64: [i32; 18] =
+    [86, 81, 76, 71, 62, 49, 42, 35, 21, 0, -27, -51, -69, -82, -93, -100, -105, -110];
+const APS011_PRF16: [i32; 18] =
+    [112, 110, 106, 97, 84, 65, 36, 0, -31, -59, -84, -109, -127, -143, -163, -179, -187, -198];
+
+impl<T: Scalar> LevelBias<T, 18> {
+    /// The application note's table for a pulse repetition frequency of 64 MHz, as public drivers carry it.
+    ///
+    /// Its levels are true ones. The chip's own estimate saturates above −85 dBm: knots measured with the
+    /// estimate of one's own devices do better ([`LevelBias::new`]).
+    pub fn aps011_prf64() -> Self {
+        Self::aps011(&APS011_PRF64)
+    }
+
+    /// The same for 16 MHz.
+    pub fn aps011_prf16() -> Self {
+        Self::aps011(&APS011_PRF16)
+    }
+
+    fn aps011(millimetres: &[i32; 18]) -> Self {
+        let mut levels = [T::ZERO; 18];
+        for (level, dbm) in levels.iter_mut().zip((0..18).map(|knot| 2 * knot - 95)) {
+            *level = T::from_micro(dbm * 1_000_000);
+        }
+        Self { levels, biases: millimetres.map(|bias| T::from_micro(bias * 1000)) }
+    }
+}
+
+impl<T: Scalar, const K: usize> LevelBias<T, K> {
+    /// From pairs of level (dBm, rising) and bias (m).
+    ///
+    /// # Errors
+    /// [`Error::UnorderedTable`] or [`Error::NotFinite`].
+    pub fn new(knots: [(T, T); K]) -> Result<Self, Error> {
+        let (levels, biases) = (knots.map(|(level, _)| level), knots.map(|(_, bias)| bias));
+        if !(T::all_finite(&levels) && T::all_finite(&biases)) {
+            return Err(Error::NotFinite);
+        }
+        let rising = levels.iter().zip(levels.iter().skip(1)).all(|(low, high)| low < high);
+        if K == 0 || !rising { Err(Error::UnorderedTable) } else { Ok(Self { levels, biases }) }
+    }
+
+    /// What a range received at `level` (dBm) is too long by, m: the first or last knot's beyond the ends.
+    pub fn bias(&self, level: T) -> T {
+        let mut below: Option<(T, T)> = None;
+        for (&knot, &bias) in self.levels.iter().zip(&self.biases) {
+            if level < knot {
+                let Some((low, low_bias)) = below else { return bias };
+                return low_bias + (bias - low_bias) * ((level - low) / (knot - low));
+            }
+            below = Some((knot, bias));
+        }
+        below.map_or(T::ZERO, |(_, bias)| bias)
+    }
+
+    /// The range (m) without its bias at this level (dBm).
+    pub fn corrected(&self, range: T, level: T) -> T {
+        range - self.bias(level)
+    }
+}

@@ -1,0 +1,186 @@
+//! Trilateration and least squares in every scalar.
+
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_uwb_ranging::{
+    Error, Huber, Observation, Room, Solver, Trilateration, dilution_of_precision, expected_range,
+};
+use nalgebra::{SVector, Vector2, Vector3};
+use proptest::prelude::*;
+
+const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 2.0], [4.8, 6.4, 2.5], [0.0, 6.4, 2.2], [4.8, 0.0, 1.0]];
+const SPATIAL: [[f64; 3]; 5] =
+    [[0.0, 0.0, 0.0], [9.0, 0.0, 0.2], [0.0, 8.0, 0.1], [9.0, 8.0, 3.0], [4.0, 1.0, 3.0]];
+
+fn distance(place: [f64; 3], tag: [f64; 3]) -> f64 {
+    (Vector3::from(place) - Vector3::from(tag)).norm()
+}
+
+fn places<T: Scalar, const A: usize>(places: [[f64; 3]; A]) -> [SVector<T, 3>; A] {
+    places.map(|place| SVector::from(place.map(T::from_f64)))
+}
+
+fn observations<T: Scalar, const A: usize>(
+    at: [[f64; 3]; A],
+    ranges: [f64; A],
+) -> [Observation<T>; A] {
+    let variance = T::from_f64(0.01);
+    core::array::from_fn(|i| Observation {
+        anchor: SVector::from(at[i].map(T::from_f64)),
+        range: T::from_f64(ranges[i]),
+        variance,
+    })
+}
+
+fn check_exact<T: Scalar>(tag: [f64; 3], tolerance: f64) {
+    let plane = Trilateration::<T, 4, 2>::new(places(CORNERS)).unwrap();
+    let ranges = CORNERS.map(|place| distance(place, tag));
+    let ours = plane.position(&ranges.map(T::from_f64), T::from_f64(tag[2])).unwrap();
+    assert!((ours.map(T::to_f64) - Vector2::new(tag[0], tag[1])).norm() < tolerance, "{ours:?}");
+
+    let solver = Solver::new(T::from_f64(tag[2]));
+    let fix = solver.solve::<2>(&observations(CORNERS, ranges), None).unwrap();
+    let error = (fix.position.map(T::to_f64) - Vector2::new(tag[0], tag[1])).norm();
+    assert!(error < 2e-3, "{error}");
+
+    let space = Trilateration::<T, 5, 3>::new(places(SPATIAL)).unwrap();
+    let ranges = SPATIAL.map(|place| distance(place, tag));
+    let ours = space.position(&ranges.map(T::from_f64), T::ZERO).unwrap();
+    assert!((ours.map(T::to_f64) - Vector3::from(tag)).norm() < 5.0 * tolerance, "{ours:?}");
+    let fix = solver.solve::<3>(&observations(SPATIAL, ranges), None).unwrap();
+    assert!((fix.position.map(T::to_f64) - Vector3::from(tag)).norm() < 5e-3);
+}
+
+proptest! {
+    #[test]
+    fn exact_ranges_give_the_exact_place(x in 0.2..4.6f64, y in 0.2..6.2f64, z in 0.0..1.5f64) {
+        check_exact::<f64>([x, y, z], 1e-9);
+        check_exact::<f32>([x, y, z], 3e-5);
+        check_exact::<Q12_20>([x, y, z], 3e-4);
+    }
+
+    #[test]
+    fn whatever_is_measured_the_answer_is_a_number_or_an_error(
+        ranges in proptest::array::uniform4(prop_oneof![
+            -200.0..1000.0f64, Just(f64::NAN), Just(f64::INFINITY), Just(0.0), Just(-1e30),
+        ])
+    ) {
+        fn check<T: Scalar>(ranges: [f64; 4]) -> Result<(), TestCaseError> {
+            let observations = observations::<T, 4>(CORNERS, ranges);
+            let huber = Huber { long: T::HALF, short: T::TWO };
+            let solver = Solver {
+                common_bias: Some(T::HALF),
+                huber: Some(huber),
+                ..Solver::new(T::ONE)
+            };
+            if let Ok(fix) = solver.solve::<2>(&observations, None) {
+                prop_assert!(fix.position.iter().all(|x| x.is_finite()));
+            }
+            let plane = Trilateration::<T, 4, 2>::new(places(CORNERS)).unwrap();
+            if let Ok(position) = plane.position(&ranges.map(T::from_f64), T::ONE) {
+                prop_assert!(position.iter().all(|x| x.is_finite()));
+            }
+            Ok(())
+        }
+        check::<f64>(ranges)?;
+        check::<f32>(ranges)?;
+        check::<Q12_20>(ranges)?;
+    }
+}
+
+#[test]
+fn the_covariance_is_that_of_the_errors() {
+    let tag = [1.5, 2.0, 1.0];
+    let truth = CORNERS.map(|place| distance(place, tag));
+    let mut squares = nalgebra::Matrix2::<f64>::zeros();
+    let (mut count, mut covariance) = (0.0, nalgebra::Matrix2::zeros());
+    for pattern in 0..16_u32 {
+        // ±σ on every link: the errors' exact second moments, to first order.
+        let ranges =
+            core::array::from_fn(|i| truth[i] + if pattern >> i & 1 == 0 { 0.1 } else { -0.1 });
+        let fix =
+            Solver::new(1.0).solve::<2>(&observations::<f64, 4>(CORNERS, ranges), None).unwrap();
+        let error = fix.position - Vector2::new(tag[0], tag[1]);
+        squares += error * error.transpose();
+        count += 1.0;
+        covariance += fix.covariance;
+    }
+    assert!((squares / count - covariance / count).abs().max() < 5e-4);
+}
+
+#[test]
+fn a_common_bias_is_found_where_there_are_ranges_enough() {
+    let tag = [1.0, 2.0, 1.0];
+    let ranges = CORNERS.map(|place| distance(place, tag) + 0.25);
+    let solver = Solver { common_bias: Some(0.3), ..Solver::new(1.0_f32) };
+    let fix = solver.solve::<2>(&observations(CORNERS, ranges), None).unwrap();
+    assert!((fix.common_bias - 0.25).abs() < 0.05, "{fix:?}");
+    assert!((fix.position - Vector2::new(1.0, 2.0)).norm() < 0.02);
+    let three = solver.solve::<2>(&observations(CORNERS, ranges)[..3], None).unwrap();
+    assert_eq!(three.common_bias, 0.0);
+}
+
+#[test]
+fn a_wall_tells_a_place_from_its_mirror_image() {
+    // Three anchors along a wall, nearly in a line.
+    let wall = [[0.0, 0.0, 2.0], [2.0, 0.05, 2.0], [4.0, 0.0, 2.0]];
+    let ranges = wall.map(|place| distance(place, [1.0, 3.0, 1.0]));
+    let free = Solver::new(1.0_f32);
+    assert!(free.solve::<2>(&observations(wall, ranges), None).unwrap().ambiguous);
+    for (y0, y1, y) in [(0.0, 5.0, 3.0), (-5.0, 0.0, -3.0)] {
+        let solver = Solver { room: Some(Room::plane(0.0, y0, 4.0, y1)), ..free };
+        let fix = solver.solve::<2>(&observations(wall, ranges), None).unwrap();
+        assert!((fix.position.y - y).abs() < 0.3, "{fix:?}");
+    }
+}
+
+#[test]
+fn one_wall_in_the_way_is_outvoted() {
+    let at = [[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [8.0, 8.0, 1.0], [0.0, 8.0, 1.0], [4.0, 9.0, 1.0]];
+    let tag = [3.0, 5.0, 1.0];
+    let mut ranges = at.map(|place| distance(place, tag));
+    ranges[2] += 2.0;
+    let plain = Solver::new(1.0_f32);
+    let robust = Solver { huber: Some(Huber { long: 0.5, short: 2.5 }), ..plain };
+    let error = |solver: Solver<f32>| {
+        let fix = solver.solve::<2>(&observations(at, ranges), None).unwrap();
+        (fix.position - Vector2::new(3.0, 5.0)).norm()
+    };
+    assert!(error(plain) > 0.5 && error(robust) < 0.12, "{} {}", error(plain), error(robust));
+}
+
+#[test]
+fn impossible_questions_have_their_errors() {
+    let line = [[0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [2.0, 2.0, 1.0]];
+    assert_eq!(Trilateration::<f32, 3, 2>::new(places(line)), Err(Error::DegenerateGeometry));
+    assert_eq!(
+        Trilateration::<f32, 2, 2>::new(places([line[0], line[1]])),
+        Err(Error::TooFewRanges)
+    );
+    let solver = Solver::new(1.0_f32);
+    let few = observations(CORNERS, [3.0; 4]);
+    assert_eq!(solver.solve::<2>(&few[..2], None), Err(Error::TooFewRanges));
+    let mut bad = few;
+    bad[1].variance = 0.0;
+    assert_eq!(solver.solve::<2>(&bad, None), Err(Error::NotPositive));
+    bad[1].range = f32::NAN;
+    assert_eq!(solver.solve::<2>(&bad, None), Err(Error::NotFinite));
+    assert_eq!(dilution_of_precision([[1.0_f32, 0.0]]), Err(Error::TooFewRanges));
+    let parallel = [[1.0_f32, 0.0], [1.0, 0.0], [-1.0, 0.0]];
+    assert_eq!(dilution_of_precision(parallel), Err(Error::DegenerateGeometry));
+    let around = [[1.0_f32, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    assert!((dilution_of_precision(around).unwrap() - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_range_and_its_derivatives() {
+    let anchor = Vector3::new(1.0, 2.0, 3.0);
+    let plane = expected_range(&Vector2::new(4.0, 6.0), 3.0, &anchor);
+    assert_eq!(plane.distance, 5.0_f64);
+    assert!((plane.direction[0] - 0.6).abs() < 1e-15 && (plane.direction[1] - 0.8).abs() < 1e-15);
+    let slant = expected_range(&Vector2::new(1.0, 2.0), 1.0, &anchor);
+    assert_eq!((slant.distance, slant.direction), (2.0, [0.0, 0.0]));
+    let space = expected_range(&Vector3::new(1.0, 2.0, 5.0), f64::NAN, &anchor);
+    assert_eq!((space.distance, space.direction), (2.0, [0.0, 0.0, 1.0]));
+    let here = expected_range(&anchor.map(|x| x as f32), 0.0, &anchor.map(|x| x as f32));
+    assert_eq!((here.distance, here.direction), (0.0, [0.0; 3]));
+}

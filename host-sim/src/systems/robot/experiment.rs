@@ -1,0 +1,293 @@
+//! `host-sim run robot`: the paper's Table 1, with the start made visible.
+//!
+//! Every filter of the paper is run twice: started at the surveyed point, as its numbers can only have come
+//! about, and started at the first trilateration, as anyone has to who does not know yet where the robot is.
+
+use std::fmt;
+
+use indicatif::ParallelProgressIterator;
+use rand_core::Rng;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::accuracy::Accuracy;
+use super::feed::{self, Company, Epoch};
+use super::follow::{self, Follow};
+use super::limit::{Knowledge, mean_error_limit};
+use super::options::{self, Dimensions, Setup, TrackerKind};
+use super::printed::{Beginning, Constants};
+use super::ranges::RangeRow;
+use super::scenario::{self, ANCHORS, EPOCHS, Office};
+use crate::cli::{RunOptions, ScalarKind};
+use crate::metrics::{distance, mean, median};
+use crate::published::{PositionErrors, ROBOT_TABLE_1, ROBOT_TABLE_1_MEAN};
+use crate::random::stream;
+use crate::systems::choose_scalar;
+use crate::{Error, output};
+
+/// Repetitions unless told otherwise: the mean of the table is then good to a fiftieth.
+const TRIALS: u32 = 200;
+/// In how many ways a point is measured.
+const COLUMNS: usize = 8;
+
+/// Errors in cm, of the mean of 50 positions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Row {
+    /// As printed in the paper.
+    pub published: PositionErrors,
+    /// The paper's protocol, its filters started at the surveyed point.
+    pub from_the_truth: PositionErrors,
+    /// The same filters, started at the first trilateration.
+    pub honest_start: PositionErrors,
+    /// The same adaptive filter, started 10 cm beside the surveyed point.
+    pub aekf_from_10_cm_beside_cm: f64,
+    /// This library's default without calibration.
+    pub ours_cm: f64,
+    /// And with the anchors calibrated at six marked places.
+    pub ours_calibrated_cm: f64,
+    /// What the best unbiased estimator errs by, if nothing is known of the biases.
+    pub limit_cm: f64,
+    /// The same if each anchor's bias is known.
+    pub limit_calibrated_cm: f64,
+}
+
+/// The straight line: root mean square errors, cm.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Line {
+    /// Trilateration alone.
+    pub unfiltered_cm: f64,
+    /// The paper's filters from an honest start.
+    pub ekf_cm: f64,
+    /// And the adaptive one.
+    pub aekf_cm: f64,
+    /// This library's default without calibration.
+    pub ours_cm: f64,
+    /// And with it.
+    pub ours_calibrated_cm: f64,
+}
+
+/// What the command prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    system: &'static str,
+    seed: u64,
+    trials: u32,
+    scalar: ScalarKind,
+    points: Vec<Row>,
+    mean: Row,
+    line: Line,
+}
+
+/// Runs the experiment.
+///
+/// # Errors
+/// If the scalar is not supported.
+pub fn run(options: RunOptions) -> Result<Report, Error> {
+    let scalar = choose_scalar("robot", options.scalar, &options::SCALARS, ScalarKind::F32)?;
+    let trials = options.trials.unwrap_or(TRIALS);
+    let days: Result<Vec<Day>, Error> = (0..u64::from(trials))
+        .into_par_iter()
+        .progress_with(output::progress(u64::from(trials)))
+        .map(|trial| Day::run(options.seed, trial, scalar))
+        .collect();
+    let days = days?;
+    let points: Vec<Row> = (0..15).map(|point| row(&days, point)).collect();
+    let lines: Vec<[f64; 5]> = days.iter().map(|day| day.line).collect();
+    let column = |index: usize| mean(&lines.iter().map(|line| line[index]).collect::<Vec<_>>());
+    let line = Line {
+        unfiltered_cm: column(0),
+        ekf_cm: column(1),
+        aekf_cm: column(2),
+        ours_cm: column(3),
+        ours_calibrated_cm: column(4),
+    };
+    let mean = mean_row(&points);
+    Ok(Report { system: "robot", seed: options.seed, trials, scalar, points, mean, line })
+}
+
+/// One office on one day.
+struct Day {
+    /// Errors of the columns at each point, cm.
+    points: [[f64; COLUMNS]; 15],
+    /// Errors of the five ways to follow the line, cm.
+    line: [f64; 5],
+}
+
+impl Day {
+    fn run(seed: u64, trial: u64, scalar: ScalarKind) -> Result<Self, Error> {
+        let mut rng = stream(seed, trial);
+        let office = Office::draw(&mut rng);
+        let places = scenario::points();
+        let measured = places.map(|place| office.measure(&mut rng, &[place; EPOCHS]));
+        let plain = Setup {
+            tracker: TrackerKind::Default,
+            dimensions: Dimensions::Two,
+            scalar,
+            room: None,
+            height_m: 0.0,
+            anchors: ANCHORS.to_vec(),
+            biases: None,
+        };
+        let calibrated = Setup { biases: Some(biases(&office, &mut rng)), ..plain.clone() };
+        let mut points = [[0.0; COLUMNS]; 15];
+        for ((errors, rows), &place) in points.iter_mut().zip(&measured).zip(&places) {
+            let trackers = trackers(&plain, &calibrated, place, trial)?;
+            *errors = trackers.map(|mut tracker| static_error_cm(tracker.as_mut(), rows, place));
+        }
+        let way = scenario::line();
+        let rows = office.measure(&mut rng, &way);
+        let honest = |constants| Beginning { start: None, constants };
+        let followers = [
+            follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
+            follow::build_printed(&plain, honest(Constants::PLAIN))?,
+            follow::build_printed(&plain, honest(Constants::ADAPTIVE))?,
+            follow::build(&plain)?,
+            follow::build(&calibrated)?,
+        ];
+        let line = followers.map(|mut tracker| line_error_cm(tracker.as_mut(), &rows, &way));
+        Ok(Self { points, line })
+    }
+}
+
+/// The ways to measure a point, in the order of the columns.
+fn trackers(
+    plain: &Setup,
+    calibrated: &Setup,
+    place: [f64; 2],
+    trial: u64,
+) -> Result<[Box<dyn Follow>; COLUMNS], Error> {
+    // Beside the point, every day in another direction: turned by the golden angle.
+    let angle = 2.399_963_229_728_653 * trial as f64;
+    let beside = [place[0] + 0.1 * angle.cos(), place[1] + 0.1 * angle.sin()];
+    let printed = |start, constants| follow::build_printed(plain, Beginning { start, constants });
+    Ok([
+        follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
+        printed(Some(place), Constants::PLAIN)?,
+        printed(Some(place), Constants::ADAPTIVE)?,
+        printed(None, Constants::PLAIN)?,
+        printed(None, Constants::ADAPTIVE)?,
+        printed(Some(beside), Constants::ADAPTIVE)?,
+        follow::build(plain)?,
+        follow::build(calibrated)?,
+    ])
+}
+
+/// What each anchor measures too long, m: the median at the marked places.
+fn biases<R: Rng>(office: &Office, rng: &mut R) -> Vec<f64> {
+    let mut excess = [const { Vec::new() }; 4];
+    for place in scenario::marks() {
+        for row in office.measure(rng, &[place; EPOCHS]) {
+            let Some(range) = row.range else { continue };
+            let [x, y, _] = ANCHORS[row.anchor];
+            excess[row.anchor].push(range - distance(place, [x, y]));
+        }
+    }
+    excess.iter().map(|excess| median(excess)).collect()
+}
+
+fn positions(tracker: &mut dyn Follow, rows: &[RangeRow]) -> Vec<Epoch> {
+    feed::follow(tracker, rows, &Company::default()).epochs
+}
+
+/// The paper's measure: the error of the mean of all positions, cm.
+fn static_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], place: [f64; 2]) -> f64 {
+    let epochs = positions(tracker, rows);
+    let found: Vec<[f64; 3]> = epochs.iter().filter_map(|epoch| epoch.position).collect();
+    let coordinate =
+        |axis: usize| mean(&found.iter().map(|position| position[axis]).collect::<Vec<_>>());
+    100.0 * distance([coordinate(0), coordinate(1)], place)
+}
+
+fn line_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], way: &[[f64; 2]]) -> f64 {
+    let epochs = positions(tracker, rows);
+    let pairs: Vec<_> =
+        epochs.iter().zip(way).map(|(epoch, &truth)| (epoch.position, truth)).collect();
+    Accuracy::of(&pairs).map_or(0.0, |accuracy| 100.0 * accuracy.rmse_m)
+}
+
+fn row(days: &[Day], point: usize) -> Row {
+    let column =
+        |index: usize| mean(&days.iter().map(|day| day.points[point][index]).collect::<Vec<_>>());
+    let [unfiltered, from_truth, adaptive_from_truth, ekf, aekf, beside, ours, calibrated] =
+        std::array::from_fn(column);
+    let place = scenario::points()[point];
+    Row {
+        published: ROBOT_TABLE_1[point],
+        from_the_truth: PositionErrors {
+            unfiltered_cm: unfiltered,
+            ekf_cm: from_truth,
+            aekf_cm: adaptive_from_truth,
+        },
+        honest_start: PositionErrors { unfiltered_cm: unfiltered, ekf_cm: ekf, aekf_cm: aekf },
+        aekf_from_10_cm_beside_cm: beside,
+        ours_cm: ours,
+        ours_calibrated_cm: calibrated,
+        limit_cm: 100.0 * mean_error_limit(place, Knowledge::Nothing),
+        limit_calibrated_cm: 100.0 * mean_error_limit(place, Knowledge::Anchors),
+    }
+}
+
+fn mean_row(rows: &[Row]) -> Row {
+    let of = |field: fn(&Row) -> f64| mean(&rows.iter().map(field).collect::<Vec<_>>());
+    Row {
+        published: ROBOT_TABLE_1_MEAN,
+        from_the_truth: PositionErrors {
+            unfiltered_cm: of(|row| row.from_the_truth.unfiltered_cm),
+            ekf_cm: of(|row| row.from_the_truth.ekf_cm),
+            aekf_cm: of(|row| row.from_the_truth.aekf_cm),
+        },
+        honest_start: PositionErrors {
+            unfiltered_cm: of(|row| row.honest_start.unfiltered_cm),
+            ekf_cm: of(|row| row.honest_start.ekf_cm),
+            aekf_cm: of(|row| row.honest_start.aekf_cm),
+        },
+        aekf_from_10_cm_beside_cm: of(|row| row.aekf_from_10_cm_beside_cm),
+        ours_cm: of(|row| row.ours_cm),
+        ours_calibrated_cm: of(|row| row.ours_calibrated_cm),
+        limit_cm: of(|row| row.limit_cm),
+        limit_calibrated_cm: of(|row| row.limit_calibrated_cm),
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { seed, trials, .. } = self;
+        writeln!(f, "robot: error of the mean of 50 positions, cm; {trials} days, seed {seed}")?;
+        let mut table = output::table();
+        table.set_header([
+            "",
+            "published\nLSQ  EKF  AEKF",
+            "started at the truth\nLSQ  EKF  AEKF",
+            "10 cm beside\nAEKF",
+            "honest start\nEKF  AEKF",
+            "ours\nas is  calibrated",
+            "limit\nas is  calibrated",
+        ]);
+        let three = |e: &PositionErrors| {
+            format!("{:5.2} {:5.2} {:5.2}", e.unfiltered_cm, e.ekf_cm, e.aekf_cm)
+        };
+        let mut add = |name: String, row: &Row| {
+            let honest = &row.honest_start;
+            table.add_row([
+                name,
+                three(&row.published),
+                three(&row.from_the_truth),
+                format!("{:5.2}", row.aekf_from_10_cm_beside_cm),
+                format!("{:5.2} {:5.2}", honest.ekf_cm, honest.aekf_cm),
+                format!("{:5.2} {:5.2}", row.ours_cm, row.ours_calibrated_cm),
+                format!("{:5.2} {:5.2}", row.limit_cm, row.limit_calibrated_cm),
+            ]);
+        };
+        for (index, row) in self.points.iter().enumerate() {
+            add(format!("P{}", index + 1), row);
+        }
+        add("mean".to_owned(), &self.mean);
+        writeln!(f, "{table}")?;
+        let line = &self.line;
+        writeln!(
+            f,
+            "straight line, RMSE, cm: LSQ {:.1}, EKF {:.1}, AEKF {:.1}, ours {:.1}, calibrated {:.1}",
+            line.unfiltered_cm, line.ekf_cm, line.aekf_cm, line.ours_cm, line.ours_calibrated_cm
+        )
+    }
+}
