@@ -46,25 +46,26 @@ pub(crate) struct Counters<T> {
     pub(crate) nis: T,
     pub(crate) taken: u32,
     pub(crate) rejected: u32,
-    pub(crate) rejected_in_row: u16,
+    /// Two for each that was rejected lately, less one for each that was taken in.
+    pub(crate) distrust: u16,
     pub(crate) starts: u16,
 }
 
 impl<T: Scalar> Counters<T> {
     pub(crate) fn new() -> Self {
-        Self { nis: T::ONE, taken: 0, rejected: 0, rejected_in_row: 0, starts: 0 }
+        Self { nis: T::ONE, taken: 0, rejected: 0, distrust: 0, starts: 0 }
     }
 
     #[inline(always)]
     pub(crate) fn take(&mut self, nis: T) {
         self.nis += (nis - self.nis) * T::from_f64(0.05);
         self.taken = self.taken.wrapping_add(1);
-        self.rejected_in_row = 0;
+        self.distrust = self.distrust.saturating_sub(1);
     }
 
     #[inline]
     pub(crate) fn reject(&mut self) {
         self.rejected = self.rejected.wrapping_add(1);
-        self.rejected_in_row = self.rejected_in_row.saturating_add(1);
+        self.distrust = self.distrust.saturating_add(2);
     }
 }

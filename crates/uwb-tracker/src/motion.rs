@@ -8,8 +8,8 @@ use kestirim_scalar::Scalar;
 const STILL_SIGMA: f64 = 0.015;
 /// The wheels slip, and the tag is not between them, m/s.
 const SPEED_SIGMA: f64 = 0.1;
-/// A velocity that contradicts by 5 σ that the tag stands, or drives as fast as its wheels turn.
-const CONTRADICTION: f64 = 25.0;
+/// A velocity that contradicts by 3 σ that the tag stands, or drives as fast as its wheels turn.
+const CONTRADICTION: f64 = 9.0;
 /// What the common bias may change by, m²/s.
 const BIAS_DENSITY: f64 = 1e-5;
 
@@ -35,23 +35,31 @@ pub(crate) fn advance<T: Scalar, const D: usize, const N: usize>(
     Ok(())
 }
 
-/// Takes in that the velocity is zero, unless the ranges say clearly that it is not: a trolley on a
-/// smooth floor does not shake either.
+/// Whether the velocity may be zero: no component is clearly beyond what is not known of it.
+#[inline]
+pub(crate) fn may_stand<T: Scalar, const D: usize, const N: usize>(
+    estimate: &Gaussian<T, N>,
+) -> bool {
+    let variances = estimate.covariance.variances();
+    let pairs = estimate.mean.iter().zip(variances.iter()).skip(D).take(D);
+    let mut standing = pairs.map(|(&velocity, &variance)| {
+        let spread = variance + T::from_f64(STILL_SIGMA * STILL_SIGMA);
+        velocity * velocity <= spread * T::from_f64(CONTRADICTION)
+    });
+    standing.all(|standing| standing)
+}
+
+/// Takes in that the velocity is zero.
 #[inline]
 pub(crate) fn stand_still<T: Scalar, const D: usize, const N: usize>(
     estimate: &mut Gaussian<T, N>,
 ) -> Result<(), Error> {
     let variance = T::from_f64(STILL_SIGMA * STILL_SIGMA);
-    let mut standing = *estimate;
     for index in D..2 * D {
-        let velocity = standing.mean.data.0[0].get(index).copied().unwrap_or(T::ZERO);
-        let weighed = standing.weigh_entries(&[(index, T::ONE)], -velocity, variance)?;
-        if weighed.exceeds(T::from_f64(CONTRADICTION)) {
-            return Ok(());
-        }
-        standing.correct(&weighed)?;
+        let velocity = estimate.mean.data.0[0].get(index).copied().unwrap_or(T::ZERO);
+        let weighed = estimate.weigh_entries(&[(index, T::ONE)], -velocity, variance)?;
+        estimate.correct(&weighed)?;
     }
-    *estimate = standing;
     Ok(())
 }
 

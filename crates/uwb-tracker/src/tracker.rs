@@ -53,6 +53,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const WHEELS_US: u64 = 500_000;
     /// A position this uncertain is none, m.
     const LOST_SIGMA: f64 = 2.0;
+    /// Ranges that fit so badly on average have a tag that moves.
+    const NIS_OF_MOTION: f64 = 4.0;
     /// A robot turning faster changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
@@ -244,7 +246,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
         let elapsed = time_us.saturating_sub(self.time_us).min(i32::MAX as u64);
         if let Some(mut estimate) = self.estimate.filter(|_| elapsed > 0) {
-            let still = self.is_still(time_us);
+            let still = self.is_still(time_us) && motion::may_stand::<T, D, N>(&estimate);
             let interval = T::from_micro(elapsed as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
             if still {
@@ -307,11 +309,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(Report { outcome, innovation: Some(seen) })
     }
 
-    /// Counts a range that was left out; when none of the anchors agrees, the place is wrong, not they.
+    /// Counts a range that was left out; when half of them are, the place is wrong, not they.
     fn reject(&mut self) {
         self.counters.reject();
-        let most_rejected = 3 * u16::from(self.heard.max(D as u8));
-        if self.counters.rejected_in_row > most_rejected {
+        if self.counters.distrust > 2 * u16::from(self.heard.max(D as u8)) {
             self.estimate = None;
         }
     }
@@ -344,7 +345,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
         self.heard = self.count_heard(now_us);
         self.counters.starts = self.counters.starts.saturating_add(1);
-        self.counters.rejected_in_row = 0;
+        self.counters.distrust = 0;
+        self.counters.nis = T::ONE;
         true
     }
 
@@ -360,11 +362,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.wheels.as_ref().filter(fresh)
     }
 
+    /// Whether IMU or wheels say so, and the ranges do not say otherwise: a trolley on a smooth floor does
+    /// not shake either.
     #[inline]
     fn is_still(&self, time_us: u64) -> bool {
         let wheels_stand =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
-        self.stillness.is_still(time_us) || self.fresh_wheels(time_us).is_some_and(wheels_stand)
+        self.counters.nis < T::from_f64(Self::NIS_OF_MOTION)
+            && (self.stillness.is_still(time_us)
+                || self.fresh_wheels(time_us).is_some_and(wheels_stand))
     }
 
     fn dilution(&self, time_us: u64) -> Option<T> {
