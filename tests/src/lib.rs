@@ -2,3 +2,4 @@
 
 pub mod firmware;
 pub mod recordings;
+pub mod robot;

@@ -14,20 +14,29 @@ pub const GCP: [u32; 8] = [31, 36, 41, 46, 48, 57, 72, 81];
 /// … and those that are.
 pub const GCP_FAST: [u32; 3] = [43, 56, 74];
 
-/// The folder of the recordings. `None` where it is absent, which is said; with `KESTIRIM_REQUIRE_DATA=1`
-/// a panic instead.
+/// The folder of the recorded walks.
+///
+/// # Panics
+/// As [`folder_of`].
+pub fn folder() -> Option<PathBuf> {
+    folder_of("pedestrian")
+}
+
+/// The folder of a system's recordings. `None` where it is absent, which is said; with
+/// `KESTIRIM_REQUIRE_DATA=1` a panic instead.
 ///
 /// # Panics
 /// See above.
-pub fn folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/pedestrian");
+pub fn folder_of(system: &str) -> Option<PathBuf> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    let folder = data.join(system);
     if folder.is_dir() {
         return Some(folder);
     }
     let required = env::var("KESTIRIM_REQUIRE_DATA").is_ok_and(|value| value == "1");
     assert!(!required, "KESTIRIM_REQUIRE_DATA=1, but {} is absent", folder.display());
     // Not `eprintln!`, which the test runner swallows when the test passes.
-    let _ = writeln!(io::stderr(), "SKIPPED: recorded walks: {} is absent", folder.display());
+    let _ = writeln!(io::stderr(), "SKIPPED: recordings: {} is absent", folder.display());
     None
 }
 

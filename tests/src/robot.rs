@@ -1,0 +1,199 @@
+//! Recorded ranges with truth, from `../shared/data/robot` beside the repository.
+
+use std::path::Path;
+
+use host_sim::cli::ScalarKind;
+use host_sim::systems::robot::accuracy::Accuracy;
+use host_sim::systems::robot::anchors::{self, Anchors};
+use host_sim::systems::robot::calibration::Residuals;
+use host_sim::systems::robot::feed::{self, Company, Followed};
+use host_sim::systems::robot::follow;
+use host_sim::systems::robot::motion;
+use host_sim::systems::robot::options::{Dimensions, Setup, TrackerKind};
+use host_sim::systems::robot::points::{self, Course};
+use host_sim::systems::robot::ranges::{self, RangeRow};
+
+/// How ranges are tracked: the same for every recording.
+#[derive(Clone, Copy, Debug)]
+pub struct Method {
+    /// Which tracker.
+    pub tracker: TrackerKind,
+    /// In which number type.
+    pub scalar: ScalarKind,
+}
+
+impl Method {
+    /// What host-sim does unless told otherwise.
+    pub const DEFAULT: Self = Self { tracker: TrackerKind::Default, scalar: ScalarKind::F32 };
+
+    fn setup(self, anchors: &Anchors, height_m: f64, biases: Option<Vec<f64>>) -> Setup {
+        Setup {
+            tracker: self.tracker,
+            dimensions: Dimensions::Two,
+            scalar: self.scalar,
+            room: None,
+            height_m,
+            anchors: anchors.positions.clone(),
+            biases,
+        }
+    }
+}
+
+/// A recording of a tag that moves, or stands.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    anchors: Anchors,
+    rows: Vec<RangeRow>,
+    truth: Course<3>,
+    company: Company,
+    height_m: f64,
+}
+
+impl Recording {
+    /// Reads a folder of the recordings, with its IMU or wheels if it has them. The tag's height is the mean
+    /// of the true one.
+    ///
+    /// # Panics
+    /// It cannot be read: those beside the repository can.
+    pub fn read(folder: &Path, name: &str) -> Self {
+        let folder = folder.join(name);
+        let anchors = anchors::read(&folder.join("anchors.csv")).expect("anchors");
+        let rows = ranges::read_moving(&folder.join("ranges.csv"), &anchors).expect("ranges").rows;
+        let truth =
+            points::read_course(&folder.join("truth.csv"), ["x", "y", "z"]).expect("a truth");
+        let imu = folder.join("imu.csv");
+        let inertial =
+            if imu.exists() { motion::read_inertial(&imu).expect("an IMU") } else { vec![] };
+        let heights: Vec<f64> =
+            rows.iter().filter_map(|row| Some(truth.held(row.time_us)?[2])).collect();
+        let height_m = host_sim::metrics::mean(&heights);
+        Self { anchors, rows, truth, company: Company { inertial, ..Company::default() }, height_m }
+    }
+
+    /// What each anchor measures too long, m, from the first `seconds` of the recording.
+    pub fn biases(&self, seconds: f64) -> Vec<f64> {
+        let mut residuals = Residuals::new(&self.anchors);
+        let start_us = self.rows.first().map_or(0, |row| row.time_us);
+        let end_us = start_us.saturating_add((seconds * 1e6) as i64);
+        for row in self.rows.iter().take_while(|row| row.time_us <= end_us) {
+            if let (Some(range), Some(place)) = (row.range, self.truth.within(row.time_us)) {
+                residuals.add(&self.anchors, row.anchor, range, place);
+            }
+        }
+        residuals.calibrations(&self.anchors).iter().map(|anchor| anchor.bias_m).collect()
+    }
+
+    /// Tracks the recording.
+    ///
+    /// # Panics
+    /// The tracker cannot be built, or finds no position at all.
+    pub fn track(&self, method: Method, biases: Option<Vec<f64>>) -> (Accuracy, Followed) {
+        let setup = method.setup(&self.anchors, self.height_m, biases);
+        let mut tracker = follow::build(&setup).expect("a tracker");
+        let followed = feed::follow(tracker.as_mut(), &self.rows, &self.company);
+        let pairs: Vec<_> = followed
+            .epochs
+            .iter()
+            .filter_map(|epoch| {
+                let [x, y, _] = self.truth.within(epoch.time_us)?;
+                Some((epoch.position, [x, y]))
+            })
+            .collect();
+        (Accuracy::of(&pairs).expect("positions"), followed)
+    }
+}
+
+/// The 90 points of `lias_static_814`, each with 50 epochs.
+#[derive(Clone, Debug)]
+pub struct Points {
+    anchors: Anchors,
+    points: Vec<(String, [f64; 3], Vec<RangeRow>)>,
+}
+
+impl Points {
+    /// Epochs of 0.1 s that are used.
+    const EPOCHS_US: i64 = 50 * 100_000;
+
+    /// Reads them, with the four anchors in the corners or all eight.
+    ///
+    /// # Panics
+    /// They cannot be read.
+    pub fn read(folder: &Path, corners_only: bool) -> Self {
+        let folder = folder.join("lias_static_814");
+        let mut anchors = anchors::read(&folder.join("anchors.csv")).expect("anchors");
+        if corners_only {
+            let corner = |index: &usize| index.is_multiple_of(2);
+            let kept: Vec<usize> = (0..anchors.names.len()).filter(corner).collect();
+            anchors = Anchors {
+                names: kept.iter().map(|&index| anchors.names[index].clone()).collect(),
+                positions: kept.iter().map(|&index| anchors.positions[index]).collect(),
+            };
+        }
+        let mut logs = ranges::read_static(&folder.join("ranges.csv"), &anchors).expect("ranges");
+        let read = points::read_points(&folder.join("points.csv")).expect("points");
+        let points = read.into_iter().map(|point| {
+            let ([x, y], z) = (point.plane.expect("x and y"), point.height.expect("z"));
+            let mut rows = logs.remove(&point.name).expect("ranges of the point").rows;
+            rows.retain(|row| row.time_us < Self::EPOCHS_US);
+            (point.name, [x, y, z], rows)
+        });
+        Self { points: points.collect(), anchors }
+    }
+
+    /// Only the points whose name starts so, or all but these.
+    #[must_use]
+    pub fn group(&self, prefix: &str, inside: bool) -> Self {
+        let kept = self.points.iter().filter(|(name, ..)| name.starts_with(prefix) == inside);
+        Self { anchors: self.anchors.clone(), points: kept.cloned().collect() }
+    }
+
+    /// What each anchor measures too long, m.
+    pub fn biases(&self) -> Vec<f64> {
+        let mut residuals = Residuals::new(&self.anchors);
+        for (_, place, rows) in &self.points {
+            for row in rows {
+                if let Some(range) = row.range {
+                    residuals.add(&self.anchors, row.anchor, range, *place);
+                }
+            }
+        }
+        residuals.calibrations(&self.anchors).iter().map(|anchor| anchor.bias_m).collect()
+    }
+
+    /// Errors of the last positions.
+    ///
+    /// # Panics
+    /// The tracker cannot be built, or finds no position at all.
+    pub fn track(&self, method: Method, biases: Option<&[f64]>) -> Accuracy {
+        let found = self.points.iter().map(|(_, [x, y, z], rows)| {
+            let setup = method.setup(&self.anchors, *z, biases.map(<[f64]>::to_vec));
+            let mut tracker = follow::build(&setup).expect("a tracker");
+            let followed = feed::follow(tracker.as_mut(), rows, &Company::default());
+            (followed.epochs.last().and_then(|epoch| epoch.position), [*x, *y])
+        });
+        Accuracy::of(&found.collect::<Vec<_>>()).expect("positions")
+    }
+}
+
+/// The runs in which a person stands in the way of an anchor, each with the free run at the same spot.
+pub const BLOCKED: [(&str, &str); 8] = [
+    ("trek_4vba0", "trek_4vnm"),
+    ("trek_4vba1", "trek_4vnm"),
+    ("trek_4vba2s", "trek_4vnm"),
+    ("trek_4vba3s", "trek_4vnm"),
+    ("trek_4vba02", "trek_4vnm2"),
+    ("trek_4vba12", "trek_4vnm2"),
+    ("trek_4vba22", "trek_4vnm2"),
+    ("trek_4vba32", "trek_4vnm2"),
+];
+
+/// Root mean square errors of [`BLOCKED`], m, calibrated on the free runs or not at all.
+pub fn blocked(folder: &Path, method: Method, calibrated: bool) -> Vec<f64> {
+    BLOCKED
+        .iter()
+        .map(|(name, free)| {
+            let biases = calibrated.then(|| Recording::read(folder, free).biases(f64::INFINITY));
+            Recording::read(folder, name).track(method, biases).0.rmse_m
+        })
+        .collect()
+}

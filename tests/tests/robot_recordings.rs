@@ -1,0 +1,105 @@
+//! Recorded ranges with truth: the accuracy that the book promises, one configuration for all.
+//!
+//! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
+//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+
+use host_sim::cli::ScalarKind;
+use host_sim::metrics::mean;
+use host_sim::systems::robot::options::TrackerKind;
+use kestirim_tests::recordings::folder_of;
+use kestirim_tests::robot::{Method, Points, Recording, blocked};
+
+const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
+
+/// Runs a check in every number type.
+fn in_every_scalar(check: impl Fn(Method)) {
+    for scalar in SCALARS {
+        check(Method { scalar, ..Method::DEFAULT });
+    }
+}
+
+fn within(what: &str, method: Method, metres: f64, most: f64) {
+    println!("{what}, {:?}: {:.2} cm (at most {:.2})", method.scalar, 100.0 * metres, 100.0 * most);
+    assert!(metres <= most, "{what} in {:?}: {metres} m", method.scalar);
+}
+
+#[test]
+fn points_among_four_corners() {
+    let Some(folder) = folder_of("robot") else { return };
+    let points = Points::read(&folder, true);
+    let (learnt, tested) = (points.group("5_", true), points.group("5_", false));
+    let biases = learnt.biases();
+    in_every_scalar(|method| {
+        within("90 points as they come", method, points.track(method, None).mean_m, 0.092);
+        let calibrated = tested.track(method, Some(&biases));
+        within("groups 1 to 4, calibrated at 5", method, calibrated.mean_m, 0.062);
+    });
+    // The methods beside it, as they are known from these recordings.
+    let method = |tracker| Method { tracker, ..Method::DEFAULT };
+    let plain = points.track(method(TrackerKind::Lsq), None).mean_m;
+    assert!((0.125..0.145).contains(&plain), "{plain}");
+    let plain = points.track(method(TrackerKind::Ekf), None).mean_m;
+    assert!((0.110..0.130).contains(&plain), "{plain}");
+}
+
+#[test]
+fn a_person_in_the_way() {
+    let Some(folder) = folder_of("robot") else { return };
+    in_every_scalar(|method| {
+        let errors = blocked(&folder, method, true);
+        within("person in the way, calibrated", method, mean(&errors), 0.105);
+    });
+    let plain = Method { tracker: TrackerKind::Ekf, ..Method::DEFAULT };
+    assert!(mean(&blocked(&folder, plain, true)) > 0.2, "the plain filter is drawn along");
+}
+
+#[test]
+fn a_robot_that_creeps_among_three_anchors() {
+    let Some(folder) = folder_of("robot") else { return };
+    in_every_scalar(|method| {
+        for (name, most) in [("esp32_los2", 0.06), ("esp32_wall2", 0.22)] {
+            let (accuracy, followed) = Recording::read(&folder, name).track(method, None);
+            within(name, method, accuracy.rmse_m, most);
+            assert_eq!((accuracy.missed, followed.lost_s()), (0, 0.0), "never lost");
+        }
+    });
+}
+
+#[test]
+fn a_trolley_among_eight_anchors() {
+    let Some(folder) = folder_of("robot") else { return };
+    let biases = Points::read(&folder, false).biases();
+    in_every_scalar(|method| {
+        for name in ["lias_mid_tag0", "lias_mid_tag1", "lias_mid_tag2"] {
+            let recording = Recording::read(&folder, name);
+            let (accuracy, followed) = recording.track(method, Some(biases.clone()));
+            within(name, method, accuracy.rmse_m, 0.066);
+            assert_eq!((accuracy.missed, followed.lost_s()), (0, 0.0), "never lost");
+        }
+    });
+}
+
+#[test]
+fn single_ranges_in_a_labyrinth() {
+    let Some(folder) = folder_of("robot") else { return };
+    let recording = Recording::read(&folder, "labyrinth");
+    let biases = recording.biases(10.0);
+    in_every_scalar(|method| {
+        let (accuracy, followed) = recording.track(method, Some(biases.clone()));
+        within("labyrinth", method, accuracy.rmse_m, 0.14);
+        // Three of four anchors are not yet a position.
+        assert!(accuracy.missed <= 3 && followed.lost_s() < 0.5);
+    });
+}
+
+#[test]
+fn a_tag_carried_about_as_it_comes() {
+    let Some(folder) = folder_of("robot") else { return };
+    in_every_scalar(|method| {
+        for name in ["trek_m1l", "trek_m2r", "trek_m3s"] {
+            let (accuracy, _) = Recording::read(&folder, name).track(method, None);
+            within(name, method, accuracy.rmse_m, 0.25);
+            assert_eq!(accuracy.missed, 0);
+        }
+    });
+}
