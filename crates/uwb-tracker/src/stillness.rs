@@ -17,7 +17,7 @@ pub(crate) struct Stillness<T: Scalar> {
 
 impl<T: Scalar> Stillness<T> {
     /// Restlessness below which the tag stands, m/s².
-    const LIMIT: f64 = 0.2;
+    const LIMIT: f64 = 0.3;
     /// Over how long the mean is taken, s.
     const MEAN_TIME: f64 = 0.5;
     /// Over how long the squares are averaged, s.

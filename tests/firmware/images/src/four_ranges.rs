@@ -118,10 +118,8 @@ pub struct Aekf<T: Scalar> {
 impl<T: Scalar> Default for Aekf<T> {
     fn default() -> Self {
         let (position, velocity) = (learning(1e-5, 1e-2), learning(1e-3, 1e-1));
-        let process = ProcessNoise::new(
-            [1e-4, 1e-4, 2.5e-2, 2.5e-2].map(T::from_f64),
-            [position, position, velocity, velocity],
-        );
+        let (p, v) = (T::from_f64(1e-4), T::from_f64(2.5e-2));
+        let process = ProcessNoise::new([p, p, v, v], [position, position, velocity, velocity]);
         let noise = MeasurementNoise::new(T::from_f64(RANGE_VARIANCE), learning(2.5e-3, 4.0));
         Self { anchors: anchors(), filter: AdaptiveKalman::new(start(), process, [noise; 4]) }
     }

@@ -1,0 +1,327 @@
+//! The robot's filters on emulated boards: the same states as on the host, within the budgets.
+//!
+//! On a machine without the tools these tests say SKIPPED and pass; with
+//! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use host_sim::random::{normal, stream};
+use kestirim_adaptive_kalman::{
+    AdaptiveKalman, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise,
+};
+use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_tests::firmware::{
+    CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target,
+};
+use kestirim_uwb_ranging::expected_range;
+use kestirim_uwb_tracker::{Anchor, Config, RangeSample, Tracker};
+use nalgebra::{SMatrix, SVector};
+
+/// Bit for bit the same arithmetic; positions are told to the micrometre (m).
+const SAME: f64 = 3e-6;
+/// Without an FPU the norm of an `f32` may differ in its last bit (m).
+const NEARLY_SAME: f64 = 2e-4;
+
+/// The common scenario by which filters are compared, beside the repository; else the same without its
+/// noise, for which there is no reference.
+fn common_scenario() -> (Vec<[f32; 4]>, Option<Vec<[f64; 4]>>) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/facts/ekf4-ranges4.json");
+    let required = std::env::var("KESTIRIM_REQUIRE_DATA").is_ok_and(|value| value == "1");
+    let Ok(text) = std::fs::read_to_string(&file) else {
+        assert!(!required, "KESTIRIM_REQUIRE_DATA=1, but {} is absent", file.display());
+        let place = |step: u32| {
+            let angle = TAU * f64::from(step) / 100.0;
+            [5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin()]
+        };
+        let ranges = |[x, y]: [f64; 2]| ANCHORS.map(|[a, b]| (x - a).hypot(y - b) as f32);
+        return ((1..=100).map(place).map(ranges).collect(), None);
+    };
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let rows = |name: &str| -> Vec<[f64; 4]> {
+        serde_json::from_value(json[name].clone()).expect("rows of four numbers")
+    };
+    let ranges = rows("ranges").into_iter().map(|row| row.map(|range| range as f32)).collect();
+    (ranges, Some(rows("reference_states_f64")))
+}
+
+const ANCHORS: [[f64; 2]; 4] = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]];
+
+fn anchors<T: Scalar>() -> [SVector<T, 3>; 4] {
+    ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64)))
+}
+
+fn start<T: Scalar>() -> Gaussian<T, 4> {
+    let mean = SVector::from([5.0, 4.0, 0.0, 0.0].map(T::from_f64));
+    Gaussian::new(mean, Covariance::from_variances(&[T::ONE; 4]))
+}
+
+fn motion<T: Scalar>(density: f64) -> ConstantVelocity<T, 2> {
+    ConstantVelocity::new(T::from_f64(0.1), T::from_f64(density))
+}
+
+/// The row and the expectation of a range.
+fn expected<T: Scalar>(mean: &SVector<T, 4>, anchor: &SVector<T, 3>) -> (SparseRow<T, 2>, T) {
+    let place = SVector::from([mean[0], mean[1]]);
+    let range = expected_range(&place, T::ZERO, anchor);
+    (SparseRow::new([(0, range.direction[0]), (1, range.direction[1])]), range.distance)
+}
+
+/// The states after each step, as the image computes them.
+type Steps = Vec<[f64; 4]>;
+
+fn ekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
+    let mut estimate = start::<T>();
+    let step = |row: &[f64; 4]| {
+        estimate.advance(&motion(0.25)).expect("a finite state");
+        for (anchor, &range) in anchors::<T>().iter().zip(row) {
+            let (row, distance) = expected(&estimate.mean, anchor);
+            let innovation = T::from_f64(range) - distance;
+            estimate.update(&row, innovation, T::from_f64(0.01)).expect("a finite range");
+        }
+        estimate.mean.map(T::to_f64).data.0[0]
+    };
+    ranges.iter().map(step).collect()
+}
+
+fn aekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
+    let number = T::from_f64;
+    let learning = |least, most| Learning::new(number(0.95), number(least), number(most)).unwrap();
+    let (position, velocity) = (learning(1e-5, 1e-2), learning(1e-3, 1e-1));
+    let process = ProcessNoise::new(
+        [1e-4, 1e-4, 2.5e-2, 2.5e-2].map(number),
+        [position, position, velocity, velocity],
+    );
+    let noise = MeasurementNoise::new(number(0.01), learning(2.5e-3, 4.0));
+    let mut filter = AdaptiveKalman::new(start::<T>(), process, [noise; 4]);
+    let step = |row: &[f64; 4]| {
+        filter.predict(&motion(0.0)).expect("a finite state");
+        for (index, (anchor, &range)) in anchors::<T>().iter().zip(row).enumerate() {
+            let (row, distance) = expected(&filter.estimate().mean, anchor);
+            filter.update(index, &row, number(range) - distance).expect("a finite range");
+        }
+        filter.estimate().mean.map(T::to_f64).data.0[0]
+    };
+    ranges.iter().map(step).collect()
+}
+
+fn printed<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
+    let number = T::from_f64;
+    let mut from = start::<T>();
+    from.covariance = Covariance::from_variances(&[1e-4, 1e-4, 0.0, 0.0].map(number));
+    let (q, r) = (Covariance::from_variances(&[number(3e-5); 4]), [number(0.1); 4]);
+    let forgetting = number(0.95);
+    let noise = Covariance::from_variances(&r);
+    let mut filter = PrintedAdaptiveKalman::new(from, q, noise, forgetting, forgetting).unwrap();
+    let step = |row: &[f64; 4]| {
+        filter.predict(&motion(0.0)).expect("a finite state");
+        let mean = filter.estimate().mean;
+        let (mut rows, mut innovation) = (SMatrix::<T, 4, 4>::zeros(), SVector::<T, 4>::zeros());
+        for (index, (anchor, &range)) in anchors::<T>().iter().zip(row).enumerate() {
+            let (row, distance) = expected(&mean, anchor);
+            innovation[index] = number(range) - distance;
+            for &(column, value) in row.entries() {
+                rows[(index, column)] = value;
+            }
+        }
+        filter.update(&rows, &innovation).expect("R stays positive with these constants");
+        filter.estimate().mean.map(T::to_f64).data.0[0]
+    };
+    ranges.iter().map(step).collect()
+}
+
+#[test]
+fn the_common_scenario_has_its_reference_states() {
+    let (ranges, Some(reference)) = common_scenario() else { return };
+    let ranges: Vec<_> = ranges.iter().map(|row| row.map(f64::from)).collect();
+    // The ranges are kept in single precision: 10⁻⁶ m.
+    for (states, most) in
+        [(ekf::<f64>(&ranges), 2e-6), (ekf::<f32>(&ranges), 2e-5), (ekf::<Q12_20>(&ranges), 2e-3)]
+    {
+        for (ours, theirs) in states.iter().zip(&reference) {
+            for (ours, theirs) in ours.iter().zip(theirs) {
+                assert!((ours - theirs).abs() < most, "{ours} or {theirs}");
+            }
+        }
+    }
+}
+
+/// A tag on an ellipse among the anchors of the images, ranges in epochs of 0.1 s: noise of 5 cm, reflections and
+/// wild values.
+fn ellipse(count: usize) -> Vec<(u32, usize, f32)> {
+    let mut rng = stream(3, 0);
+    let mut samples = Vec::new();
+    for epoch in 0..300_u32 {
+        let angle = 0.03 * f64::from(epoch);
+        let tag = [5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin(), 1.0];
+        for (anchor, place) in PLACES.iter().enumerate().take(count) {
+            let squares: f64 = place.iter().zip(tag).map(|(a, b)| (a - b).powi(2)).sum();
+            let kind = normal(&mut rng, 1.0).abs();
+            let excess = if kind > 2.5 {
+                10.0
+            } else if kind > 1.9 {
+                kind
+            } else {
+                0.0
+            };
+            let range = squares.sqrt() + normal(&mut rng, 0.05) + excess;
+            let elapsed_us = if anchor == 0 { 100_000 } else { 0 };
+            samples.push((elapsed_us, anchor, range as f32));
+        }
+    }
+    samples
+}
+
+/// Where the images have their anchors, m.
+const PLACES: [[f64; 3]; 8] = [
+    [0.0, 0.0, 2.5],
+    [10.0, 0.0, 2.0],
+    [10.0, 8.0, 2.5],
+    [0.0, 8.0, 2.0],
+    [5.0, 0.0, 0.5],
+    [10.0, 4.0, 0.2],
+    [5.0, 8.0, 0.5],
+    [0.0, 4.0, 0.2],
+];
+
+fn tracked<T: Scalar, const D: usize, const N: usize, const A: usize>(
+    samples: &[(u32, usize, f32)],
+) -> Steps {
+    let anchors: Vec<_> = PLACES[..A]
+        .iter()
+        .map(|place| Anchor { position: SVector::from(place.map(T::from_f64)), bias: T::ZERO })
+        .collect();
+    let mut tracker =
+        Tracker::<T, D, N, A>::new(Config::calibrated(T::ONE), &anchors).expect("they fit");
+    let mut time_us = 0;
+    let step = |&(elapsed_us, anchor, range): &(u32, usize, f32)| {
+        time_us += u64::from(elapsed_us);
+        tracker
+            .range(&RangeSample { time_us, anchor, range: T::from_f32(range) })
+            .expect("a range");
+        let mut state = [0.0; 4];
+        for (state, position) in state.iter_mut().zip(tracker.position().iter().flatten()) {
+            *state = position.to_f64();
+        }
+        state
+    };
+    samples.iter().map(step).collect()
+}
+
+/// Runs an image and compares what it tells, every fifty steps, with the host.
+fn agree(images: &Images, image: &str, stream: &[u8], host: &Steps) -> Result<Output> {
+    let output = images.run(image, stream)?;
+    let row = Row::of(images, image, &output)?;
+    println!("{row}");
+    let exact = row.scalar != "f32" || images.target.triple == CORTEX_M4F.triple;
+    let tolerance = if exact { SAME } else { NEARLY_SAME };
+    let told = output.positions()?;
+    assert_eq!(told.len(), host.len().div_ceil(50));
+    for (index, told) in told.iter().enumerate() {
+        let state = host[(50 * index + 49).min(host.len() - 1)];
+        for (ours, theirs) in told.metres.iter().zip(state) {
+            let what = format!("{image} after {} steps", 50 * index + 50);
+            assert!((ours - theirs).abs() < tolerance, "{what}: {ours} or {theirs} m");
+            if told.metres[2] == 0.0 {
+                break;
+            }
+        }
+    }
+    let elf = images.elf(image)?;
+    assert_eq!(elf.panic_symbols(), Vec::<String>::new(), "{image} cannot panic");
+    assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{image} has no double precision");
+    Ok(output)
+}
+
+/// Mean instructions at most.
+#[derive(Clone, Copy)]
+struct Budgets {
+    /// A prediction and four ranges, in `f32` and in fixed point.
+    ekf: [f64; 2],
+    /// The same with both adaptations, and as printed.
+    aekf: [f64; 2],
+    /// A range with gate and Huber, in the plane and in space, in `f32`.
+    update: [f64; 2],
+}
+
+fn check(target: &'static Target, budgets: Budgets) -> Result<()> {
+    let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
+    check_four_ranges(&images, budgets)?;
+    check_trackers(&images, budgets)
+}
+
+fn check_four_ranges(images: &Images, budgets: Budgets) -> Result<()> {
+    let (ranges, _) = common_scenario();
+    let mut stream = Vec::new();
+    for row in &ranges {
+        stream.extend(100_000_u32.to_le_bytes());
+        stream.extend(row.iter().flat_map(|range| range.to_le_bytes()));
+    }
+    let ranges: Vec<_> = ranges.iter().map(|row| row.map(f64::from)).collect();
+    let cases = [
+        ("ekf4-ranges4-f32", ekf::<f32>(&ranges), budgets.ekf[0]),
+        ("ekf4-ranges4-fixed", ekf::<Q12_20>(&ranges), budgets.ekf[1]),
+        ("aekf4-ranges4-f32", aekf::<f32>(&ranges), budgets.aekf[0]),
+        ("aekf4-ranges4-fixed", aekf::<Q12_20>(&ranges), f64::INFINITY),
+        ("aekf4-printed-f32", printed::<f32>(&ranges), budgets.aekf[1]),
+    ];
+    for (image, host, budget) in cases {
+        let output = agree(images, image, &stream, &host)?;
+        let cost = output.cost("step", "update")?.context("every step is an update")?;
+        assert!(cost.mean() <= budget, "{image}: {} instructions", cost.mean());
+    }
+    Ok(())
+}
+
+fn check_trackers(images: &Images, budgets: Budgets) -> Result<()> {
+    let (four, eight) = (ellipse(4), ellipse(8));
+    let encode = |samples: &[(u32, usize, f32)]| {
+        let words = samples.iter().flat_map(|&(elapsed_us, anchor, range)| {
+            [elapsed_us.to_le_bytes(), (anchor as u32).to_le_bytes(), range.to_le_bytes()]
+        });
+        words.flatten().collect::<Vec<u8>>()
+    };
+    let cases = [
+        ("uwb-tracker-4-f32", &four, tracked::<f32, 2, 4, 4>(&four), budgets.update[0]),
+        ("uwb-tracker-4-fixed", &four, tracked::<Q12_20, 2, 4, 4>(&four), f64::INFINITY),
+        ("uwb-tracker-8-f32", &eight, tracked::<f32, 2, 4, 8>(&eight), budgets.update[0]),
+        ("uwb-tracker-8-fixed", &eight, tracked::<Q12_20, 2, 4, 8>(&eight), f64::INFINITY),
+        ("uwb-tracker-space-f32", &eight, tracked::<f32, 3, 6, 8>(&eight), budgets.update[1]),
+        ("uwb-tracker-space-fixed", &eight, tracked::<Q12_20, 3, 6, 8>(&eight), f64::INFINITY),
+    ];
+    for (image, samples, host, budget) in cases {
+        let output = agree(images, image, &encode(samples), &host)?;
+        for class in ["update", "predict", "rejected", "start"] {
+            if let Some(cost) = output.cost("step", class)? {
+                println!("    {class}: {:.0} ({} to {})", cost.mean(), cost.min, cost.max);
+            }
+        }
+        let update = output.cost("step", "update")?.context("ranges are taken in")?;
+        assert!(update.mean() <= budget, "{image}: {} instructions", update.mean());
+        let [object_bytes] = output.numbers("object_bytes")?;
+        assert!(object_bytes <= 1024, "{image}: {object_bytes} bytes");
+    }
+    Ok(())
+}
+
+const UNLIMITED: Budgets =
+    Budgets { ekf: [f64::INFINITY; 2], aekf: [f64::INFINITY; 2], update: [f64::INFINITY; 2] };
+
+#[test]
+fn cortex_m0() -> Result<()> {
+    check(&CORTEX_M0, Budgets { ekf: [f64::INFINITY, 20_000.0], ..UNLIMITED })
+}
+
+#[test]
+fn cortex_m4f() -> Result<()> {
+    let budgets =
+        Budgets { ekf: [900.0, f64::INFINITY], aekf: [2_000.0; 2], update: [300.0, 500.0] };
+    check(&CORTEX_M4F, budgets)
+}
+
+#[test]
+fn rv32imc() -> Result<()> {
+    check(&RV32IMC, UNLIMITED)
+}
