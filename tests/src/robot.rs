@@ -7,11 +7,15 @@ use host_sim::systems::robot::accuracy::Accuracy;
 use host_sim::systems::robot::anchors::{self, Anchors};
 use host_sim::systems::robot::calibration::Residuals;
 use host_sim::systems::robot::feed::{self, Company, Followed};
-use host_sim::systems::robot::follow;
+use host_sim::systems::robot::follow::{self, Follow};
 use host_sim::systems::robot::motion;
 use host_sim::systems::robot::options::{Dimensions, Setup, TrackerKind};
 use host_sim::systems::robot::points::{self, Course};
 use host_sim::systems::robot::ranges::{self, RangeRow};
+use kestirim_uwb_tracker::Config;
+
+/// A change of the default tracker's constants.
+pub type Change = fn(&mut Config<f64>);
 
 /// How ranges are tracked: the same for every recording.
 #[derive(Clone, Copy, Debug)]
@@ -20,11 +24,14 @@ pub struct Method {
     pub tracker: TrackerKind,
     /// In which number type.
     pub scalar: ScalarKind,
+    /// With which constants changed, if any: of the default tracker in `f64`.
+    pub change: Option<Change>,
 }
 
 impl Method {
     /// What host-sim does unless told otherwise.
-    pub const DEFAULT: Self = Self { tracker: TrackerKind::Default, scalar: ScalarKind::F32 };
+    pub const DEFAULT: Self =
+        Self { tracker: TrackerKind::Default, scalar: ScalarKind::F32, change: None };
 
     fn setup(self, anchors: &Anchors, height_m: f64, biases: Option<Vec<f64>>) -> Setup {
         Setup {
@@ -36,6 +43,14 @@ impl Method {
             anchors: anchors.positions.clone(),
             biases,
         }
+    }
+
+    fn build(self, setup: &Setup) -> Box<dyn Follow> {
+        match self.change {
+            Some(change) => follow::build_changed(setup, change),
+            None => follow::build(setup),
+        }
+        .expect("a tracker")
     }
 }
 
@@ -89,7 +104,7 @@ impl Recording {
     /// The tracker cannot be built, or finds no position at all.
     pub fn track(&self, method: Method, biases: Option<Vec<f64>>) -> (Accuracy, Followed) {
         let setup = method.setup(&self.anchors, self.height_m, biases);
-        let mut tracker = follow::build(&setup).expect("a tracker");
+        let mut tracker = method.build(&setup);
         let followed = feed::follow(tracker.as_mut(), &self.rows, &self.company);
         let pairs: Vec<_> = followed
             .epochs
@@ -167,7 +182,7 @@ impl Points {
     pub fn track(&self, method: Method, biases: Option<&[f64]>) -> Accuracy {
         let found = self.points.iter().map(|(_, [x, y, z], rows)| {
             let setup = method.setup(&self.anchors, *z, biases.map(<[f64]>::to_vec));
-            let mut tracker = follow::build(&setup).expect("a tracker");
+            let mut tracker = method.build(&setup);
             let followed = feed::follow(tracker.as_mut(), rows, &Company::default());
             (followed.epochs.last().and_then(|epoch| epoch.position), [*x, *y])
         });

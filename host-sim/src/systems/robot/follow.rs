@@ -74,6 +74,24 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
     })
 }
 
+/// The default tracker in the plane and double precision, with its constants changed: to see what they do.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_changed(
+    setup: &Setup,
+    change: impl FnOnce(&mut Config<f64>),
+) -> Result<Box<dyn Follow>, Error> {
+    if setup.biases.is_some() {
+        let mut config = Config::calibrated(setup.height_m);
+        change(&mut config);
+        return Ok(Box::new(Recursive::<f64, 2, 4>::new(setup, config)?));
+    }
+    let mut config = Config::uncalibrated(setup.height_m);
+    change(&mut config);
+    Ok(Box::new(Recursive::<f64, 2, 5>::new(setup, config)?))
+}
+
 /// The paper's filter in the plane, begun as one likes.
 ///
 /// # Errors
