@@ -38,7 +38,7 @@ fn blocked<T: Scalar>(learn: bool) -> (AdaptiveKalman<T, 2, 4>, f64) {
         filter.predict(&Still).unwrap();
         for index in 0..4 {
             let ripple = [0.1, -0.1, 0.1, -0.1, -0.1, 0.1, -0.1, 0.1][(k + 3 * index) % 8];
-            let truth = ROWS[index][0] * 2.0 + ROWS[index][1] * -1.0;
+            let truth = ROWS[index][0] * 2.0 - ROWS[index][1];
             let measured = truth + ripple + if index == 3 { 1.0 } else { 0.0 };
             let row = row::<T>(index);
             let innovation = T::from_f64(measured) - row.dot(&filter.estimate().mean).unwrap();
