@@ -112,9 +112,9 @@ fn constants() {
         ("× 2", |config| config.acceleration_density *= 2.0),
         ("decay time × ½", |config| config.decay_time = Some(1.0)),
         ("× 2", |config| config.decay_time = Some(4.0)),
-        ("gate at 3.5 σ", |config| config.gate = 12.5),
-        ("at 7 σ", |config| config.gate = 50.0),
-        ("no gate", |config| config.gate = f64::MAX),
+        ("gate at 3.5 σ", |config| config.gate = Some(12.5)),
+        ("at 7 σ", |config| config.gate = Some(50.0)),
+        ("no gate", |config| config.gate = None),
         ("Huber's long threshold × ½", |config| {
             if let Some(huber) = &mut config.huber {
                 huber.long *= 0.5;

@@ -13,8 +13,8 @@ pub struct Config<T> {
     pub learning: Option<Learning<T>>,
     /// How ranges that do not fit are weakened, if at all.
     pub huber: Option<Huber<T>>,
-    /// The NIS above which a range is left out; [`Scalar::MAX`] leaves none out.
-    pub gate: T,
+    /// The NIS above which a range is left out, if any is.
+    pub gate: Option<T>,
     /// Power spectral density of the acceleration, m²/s³.
     pub acceleration_density: T,
     /// How long a velocity lasts, s.
@@ -47,7 +47,7 @@ impl<T: Scalar> Config<T> {
             range_sigma: T::from_f64(0.1),
             learning: None,
             huber: None,
-            gate: T::MAX,
+            gate: None,
             acceleration_density: T::from_f64(0.1),
             decay_time: None,
             common_bias_sigma: T::from_f64(0.3),
@@ -66,7 +66,7 @@ impl<T: Scalar> Config<T> {
         Self {
             learning: learning.ok(),
             huber: Some(Huber { long: T::HALF, short: number(2.5) }),
-            gate: number(25.0),
+            gate: Some(number(25.0)),
             decay_time: Some(T::TWO),
             ..Self::plain(height)
         }

@@ -36,7 +36,7 @@ impl<T: Scalar> Link<T> {
         Self {
             anchor,
             variance,
-            gate: Gate::new(config.gate, Self::PATIENCE),
+            gate: Gate::new(config.gate.unwrap_or(T::MAX), Self::PATIENCE),
             next_us: 0,
             range: T::ZERO,
         }

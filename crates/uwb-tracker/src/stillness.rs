@@ -36,8 +36,10 @@ impl<T: Scalar> Stillness<T> {
         self.still && self.last_us.is_some_and(fresh)
     }
 
+    /// Takes in what the accelerometer shows and, where it is known, how strongly it is pushed: a steady push
+    /// looks like gravity, but is not rest.
     #[inline]
-    pub(crate) fn update(&mut self, time_us: u64, acceleration: &SVector<T, 3>) {
+    pub(crate) fn update(&mut self, time_us: u64, acceleration: &SVector<T, 3>, push: T) {
         let elapsed = self.last_us.map(|last_us| time_us.saturating_sub(last_us));
         self.last_us = Some(time_us);
         let Some(elapsed) = elapsed.filter(|&elapsed| elapsed <= Self::GAP_US) else {
@@ -51,6 +53,7 @@ impl<T: Scalar> Stillness<T> {
         // Beyond a few metres per second squared it moves, however much: the square stays in range.
         let size = T::norm(&deviation.data.0[0]).min(T::TWO);
         self.variance += (size * size - self.variance) * share(T::from_f64(Self::SQUARE_TIME));
-        self.still = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
+        let calm = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
+        self.still = calm && push < T::from_f64(Self::LIMIT);
     }
 }

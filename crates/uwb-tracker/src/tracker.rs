@@ -53,6 +53,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const WHEELS_US: u64 = 500_000;
     /// A position this uncertain is none, m.
     const LOST_SIGMA: f64 = 2.0;
+    /// Nor is one that nothing has been heard of for so long (µs).
+    const LOST_US: u64 = 60_000_000;
     /// Ranges that fit so badly on average have a tag that moves.
     const NIS_OF_MOTION: f64 = 4.0;
     /// A robot turning faster changes its direction between two ranges, rad/s.
@@ -153,9 +155,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.check_time(sample.time_us)?;
         let elapsed = sample.time_us.saturating_sub(self.time_us);
         let mut stillness = self.stillness;
-        stillness.update(sample.time_us, &sample.acceleration);
+        let push = sample.push.map_or(T::ZERO, |push| T::norm(&push));
+        stillness.update(sample.time_us, &sample.acceleration, push);
         if sample.push.is_some() || elapsed >= Self::INERTIAL_STEP_US {
-            self.advance(sample.time_us, sample.push)?;
+            let before = core::mem::replace(&mut self.stillness, stillness);
+            let advanced = self.advance(sample.time_us, sample.push);
+            if advanced.is_err() {
+                self.stillness = before;
+            }
+            return advanced;
         }
         self.stillness = stillness;
         Ok(())
@@ -226,8 +234,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Brings the estimate to the time of a range; gives it up if it has become worthless.
     #[inline]
     fn follow(&mut self, time_us: u64) -> Result<(), Error> {
-        if time_us == self.time_us {
-            return Ok(());
+        if time_us.saturating_sub(self.time_us) > Self::LOST_US {
+            self.estimate = None;
         }
         self.advance(time_us, None)?;
         self.heard = self.count_heard(time_us);
@@ -277,7 +285,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let seen = weighed.report();
 
         let mut gate = link.gate;
-        let verdict = gate.judge(&weighed);
+        let verdict =
+            if self.config.gate.is_some() { gate.judge(&weighed) } else { Verdict::Admit };
         let outcome = match verdict {
             Verdict::Admit => {
                 if let Some(noise) = weakened(&weighed, &self.config) {
