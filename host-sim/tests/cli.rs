@@ -1,63 +1,18 @@
 //! The program from outside: exit status, standard output, standard error, files.
 
+mod program;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
 use host_sim::systems::pedestrian::scenario::Scenario;
 use host_sim::systems::pedestrian::sensor::razor_text;
 use host_sim::systems::pedestrian::truth::Footprint;
-use serde_json::Value;
-use tempfile::TempDir;
+use program::{Desk, host_sim, json, refusal, text};
 
 const HEADER: &str = "t,ax,ay,az,gx,gy,gz\n";
-
-fn host_sim<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().expect("the program runs")
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).expect("the program speaks UTF-8")
-}
-
-fn json(output: &Output) -> Value {
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
-}
-
-/// The one sentence of a refusal.
-fn refusal(arguments: &[&str]) -> String {
-    let output = host_sim(arguments);
-    let sentence = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {sentence}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    assert_eq!(sentence.trim_end().lines().count(), 1, "{sentence}");
-    sentence.to_owned()
-}
-
-/// A folder with files, and their paths as text.
-struct Desk(TempDir);
-
-impl Desk {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a folder for the test"))
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn file(&self, name: &str, contents: impl AsRef<[u8]>) -> String {
-        fs::write(self.path(name), contents).expect("the folder can be written");
-        self.named(name)
-    }
-
-    fn named(&self, name: &str) -> String {
-        self.path(name).to_str().expect("a plain name").to_owned()
-    }
-}
 
 /// A synthetic walk without noise, as CSV, and its footprints.
 fn walk_and_footprints() -> (String, String) {
@@ -133,7 +88,7 @@ fn the_track_has_a_row_for_every_sample() {
         assert_eq!(written.lines().next(), Some("t,x,y,z"));
         assert_eq!(written.lines().count(), 1 + expected);
     }
-    assert_eq!(fs::read_dir(desk.0.path()).expect("the folder is there").count(), 2);
+    assert_eq!(fs::read_dir(desk.path(".")).expect("the folder is there").count(), 2);
 }
 
 #[test]

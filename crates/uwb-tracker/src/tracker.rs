@@ -36,6 +36,8 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     time_us: u64,
     stillness: Stillness<T>,
     wheels: Option<OdometrySample<T>>,
+    /// Until then, what says that the tag stands is not believed.
+    doubted_until_us: u64,
     heard: u8,
     counters: Counters<T>,
 }
@@ -55,8 +57,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const LOST_SIGMA: f64 = 2.0;
     /// Nor is one that nothing has been heard of for so long (µs).
     const LOST_US: u64 = 60_000_000;
-    /// Ranges that fit so badly on average have a tag that moves.
+    /// Ranges whose mean NIS is above this do not come from a tag that stands.
     const NIS_OF_MOTION: f64 = 4.0;
+    /// For so long standing is doubted then (µs), …
+    const DOUBT_US: u64 = 30_000_000;
+    /// … and the velocity is as uncertain as at the start, (m/s)².
+    const DOUBTED_VARIANCE: f64 = 0.25;
     /// A robot turning faster changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
@@ -81,6 +87,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             time_us: 0,
             stillness: Stillness::new(),
             wheels: None,
+            doubted_until_us: 0,
             heard: 0,
             counters: Counters::new(),
         })
@@ -314,6 +321,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.reject();
         } else {
             self.counters.take(seen.nis);
+            if self.counters.nis > T::from_f64(Self::NIS_OF_MOTION) {
+                self.doubt_standing();
+            }
         }
         Ok(Report { outcome, innovation: Some(seen) })
     }
@@ -371,15 +381,30 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.wheels.as_ref().filter(fresh)
     }
 
-    /// Whether IMU or wheels say so, and the ranges do not say otherwise: a trolley on a smooth floor does
-    /// not shake either.
+    /// Whether IMU or wheels say that the tag stands, and may be believed.
     #[inline]
     fn is_still(&self, time_us: u64) -> bool {
         let wheels_stand =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
-        self.counters.nis < T::from_f64(Self::NIS_OF_MOTION)
+        time_us >= self.doubted_until_us
             && (self.stillness.is_still(time_us)
                 || self.fresh_wheels(time_us).is_some_and(wheels_stand))
+    }
+
+    /// Ranges that fit so badly on average while the tag is said to stand have one that moves: a trolley on a
+    /// smooth floor does not shake, and an IMU may have died.
+    #[inline(never)] // Rare.
+    fn doubt_standing(&mut self) {
+        if !self.is_still(self.time_us) {
+            return;
+        }
+        self.doubted_until_us = self.time_us.saturating_add(Self::DOUBT_US);
+        if let Some(estimate) = &mut self.estimate {
+            for index in D..2 * D {
+                // Unless the variance is out of range already, in which case it is large enough.
+                let _ = estimate.add_variance_at(index, T::from_f64(Self::DOUBTED_VARIANCE));
+            }
+        }
     }
 
     fn dilution(&self, time_us: u64) -> Option<T> {
