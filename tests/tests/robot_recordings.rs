@@ -4,10 +4,11 @@
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use host_sim::cli::ScalarKind;
-use host_sim::metrics::mean;
+use host_sim::metrics::{mean, median, rms};
 use host_sim::systems::robot::options::TrackerKind;
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Method, Points, Recording, blocked};
+use kestirim_uwb_ranging::LevelBias;
 
 const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
 
@@ -102,4 +103,51 @@ fn a_tag_carried_about_as_it_comes() {
             assert_eq!(accuracy.missed, 0);
         }
     });
+}
+
+/// A range with a clear view: true distance, measured one (m), and the received level (dBm).
+fn ranges_by_level() -> Option<Vec<(f64, f64, f64)>> {
+    /// Height of the antenna that stayed where it was, m; the recording names that of the other one.
+    const FIXED_HEIGHT: f64 = 1.05;
+    let file = folder_of("robot")?.join("cucu_static_los_nlos/ranges.csv");
+    let text = std::fs::read_to_string(file).expect("ranges");
+    let rows = text.lines().skip(1).filter_map(|line| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |column: usize| fields.get(column)?.parse::<f64>().ok();
+        let rise = number(1)? * 0.01 - FIXED_HEIGHT;
+        let distance = number(2)?.hypot(rise);
+        let wild = (number(3)? - distance).abs() > 1.0;
+        (fields[0] == "LOS" && !wild).then_some((distance, number(3)?, number(4)?))
+    });
+    Some(rows.collect())
+}
+
+#[test]
+fn the_received_level_tells_most_of_the_bias() {
+    let Some(rows) = ranges_by_level() else { return };
+    // Knots from the distances with even numbers, tested on those with odd ones.
+    let even = |distance: f64| (distance / 4.0).floor() as i64 % 2 == 0;
+    let levels = [-86.0, -85.0, -84.0, -83.0, -82.0, -81.0, -80.0, -79.0_f64];
+    let knots = levels.map(|level| {
+        let near =
+            rows.iter().filter(|(distance, _, rx)| even(*distance) && (rx - level).abs() < 0.5);
+        let errors: Vec<f64> = near.map(|(distance, range, _)| range - distance).collect();
+        assert!(errors.len() > 20, "{level} dBm: {}", errors.len());
+        (level, median(&errors))
+    });
+    let table = LevelBias::new(knots).expect("levels that rise");
+    let errors = |corrected: &dyn Fn(f64, f64) -> f64| {
+        let tested = rows.iter().filter(|(distance, ..)| !even(*distance));
+        rms(&tested
+            .map(|(distance, range, rx)| corrected(*range, *rx) - distance)
+            .collect::<Vec<_>>())
+    };
+    let plain = errors(&|range, _| range);
+    let corrected = errors(&|range, level| table.corrected(range, level));
+    let wrong_sign = errors(&|range, level| range + table.bias(level));
+    println!(
+        "by level: {plain:.3} m becomes {corrected:.3} m, with the wrong sign {wrong_sign:.3} m"
+    );
+    assert!(corrected < 0.3 * plain && corrected < 0.07, "{plain} {corrected}");
+    assert!(wrong_sign > plain);
 }
