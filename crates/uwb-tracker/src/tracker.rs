@@ -42,6 +42,9 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     counters: Counters<T>,
 }
 
+/// Estimate, its time, anchors heard, end of a doubt.
+type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
+
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// What no radio measures, m.
     const SHORTEST: f64 = -1.0;
@@ -141,10 +144,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.check_time(sample.time_us)?;
             return self.measure(sample, range);
         }
-        let before = (self.estimate, self.time_us, self.heard);
-        let report = self.follow(sample.time_us).and_then(|()| self.measure(sample, range));
+        let before = self.timed();
+        let report = self.advance(sample.time_us, None).and_then(|()| self.measure(sample, range));
         if report.is_err() {
-            (self.estimate, self.time_us, self.heard) = before;
+            self.restore(before);
         }
         report
     }
@@ -165,10 +168,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let push = sample.push.map_or(T::ZERO, |push| T::norm(&push));
         stillness.update(sample.time_us, &sample.acceleration, push);
         if sample.push.is_some() || elapsed >= Self::INERTIAL_STEP_US {
-            let before = core::mem::replace(&mut self.stillness, stillness);
+            let before = (self.timed(), self.stillness);
+            self.stillness = stillness;
             let advanced = self.advance(sample.time_us, sample.push);
             if advanced.is_err() {
-                self.stillness = before;
+                self.restore(before.0);
+                self.stillness = before.1;
             }
             return advanced;
         }
@@ -238,31 +243,33 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if late { Err(Error::OutOfOrder) } else { Ok(()) }
     }
 
-    /// Brings the estimate to the time of a range; gives it up if it has become worthless.
+    /// What [`Tracker::advance`] changes.
     #[inline]
-    fn follow(&mut self, time_us: u64) -> Result<(), Error> {
-        if time_us.saturating_sub(self.time_us) > Self::LOST_US {
-            self.estimate = None;
-        }
-        self.advance(time_us, None)?;
-        self.heard = self.count_heard(time_us);
-        if let Some(estimate) = &self.estimate {
-            let variances = estimate.covariance.variances();
-            let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);
-            if variances.iter().take(D).any(|&variance| variance > most) {
-                self.estimate = None;
-            }
-        }
-        Ok(())
+    fn timed(&self) -> Timed<T, N> {
+        (self.estimate, self.time_us, self.heard, self.doubted_until_us)
     }
 
-    /// Moves the estimate on to `time_us`.
+    #[inline]
+    fn restore(&mut self, before: Timed<T, N>) {
+        (self.estimate, self.time_us, self.heard, self.doubted_until_us) = before;
+    }
+
+    /// Moves the estimate on to `time_us`; gives it up if it has become worthless.
     #[inline]
     fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
-        let elapsed = time_us.saturating_sub(self.time_us).min(i32::MAX as u64);
-        if let Some(mut estimate) = self.estimate.filter(|_| elapsed > 0) {
+        let elapsed = time_us.saturating_sub(self.time_us);
+        if elapsed == 0 {
+            return Ok(());
+        }
+        if elapsed > Self::LOST_US {
+            self.estimate = None;
+        }
+        if self.counters.nis > T::from_f64(Self::NIS_OF_MOTION) {
+            self.doubt_standing();
+        }
+        if let Some(mut estimate) = self.estimate {
             let still = self.is_still(time_us) && motion::may_stand::<T, D, N>(&estimate);
-            let interval = T::from_micro(elapsed as i32);
+            let interval = T::from_micro(elapsed.min(Self::LOST_US) as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
             if still {
                 motion::stand_still::<T, D, N>(&mut estimate)?;
@@ -271,9 +278,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             {
                 motion::drive::<T, D, N>(&mut estimate, wheels.speed)?;
             }
-            self.estimate = Some(estimate);
+            let variances = estimate.covariance.variances();
+            let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);
+            let lost = variances.iter().take(D).any(|&variance| variance > most);
+            self.estimate = if lost { None } else { Some(estimate) };
         }
-        self.time_us = self.time_us.max(time_us);
+        self.time_us = time_us;
+        self.heard = self.count_heard(time_us);
         Ok(())
     }
 
@@ -321,9 +332,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.reject();
         } else {
             self.counters.take(seen.nis);
-            if self.counters.nis > T::from_f64(Self::NIS_OF_MOTION) {
-                self.doubt_standing();
-            }
         }
         Ok(Report { outcome, innovation: Some(seen) })
     }
