@@ -1,0 +1,140 @@
+//! What a range makes of the estimate.
+
+use super::Tracker;
+use crate::start::start;
+use crate::{Anchor, Config, Error, Outcome, RangeSample, Report};
+use kestirim_adaptive_kalman::learnt;
+use kestirim_kalman::{Gaussian, Verdict, Weighed};
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{ExpectedRange, expected_range};
+use nalgebra::SVector;
+
+impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
+    /// Takes in a range at the estimate's own time.
+    #[inline(always)]
+    pub(super) fn measure(
+        &mut self,
+        sample: &RangeSample<T>,
+        range: T,
+    ) -> Result<Report<T>, Error> {
+        let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        let Some(estimate) = &mut self.estimate else {
+            return Ok(self.collect(sample, range));
+        };
+        let observes_bias = N > 2 * D && self.heard as usize >= D + 2;
+        let (row, expected) =
+            predicted_range::<T, D, N>(estimate, &self.config, &link.anchor, observes_bias);
+        let row = row.get(..N - D).unwrap_or(&row);
+        let weighed = estimate.weigh_entries(row, range - expected, link.variance)?;
+        let seen = weighed.report();
+
+        let mut gate = link.gate;
+        let verdict =
+            if self.config.gate.is_some() { gate.judge(&weighed) } else { Verdict::Admit };
+        let outcome = match verdict {
+            Verdict::Admit => {
+                if let Some(noise) = weakened(&weighed, &self.config) {
+                    estimate.correct(&weighed.with_noise(noise)?)?;
+                    Outcome::Weakened
+                } else {
+                    estimate.correct(&weighed)?;
+                    Outcome::Taken
+                }
+            }
+            Verdict::Reject => Outcome::Rejected,
+            Verdict::Recover => {
+                estimate.correct_widened(&weighed, gate.gamma())?;
+                Outcome::Recovered
+            }
+        };
+        link.gate = gate;
+        link.hear(sample.time_us, range);
+        // A range that the estimate has to follow fits whatever it is worth.
+        let redundant = self.heard as usize > D + usize::from(observes_bias);
+        if redundant && let Some(learning) = &self.config.learning {
+            link.variance = learnt(link.variance, learning, &weighed);
+        }
+        if verdict == Verdict::Reject {
+            self.reject();
+        } else {
+            self.counters.take(seen.nis);
+        }
+        Ok(Report { outcome, innovation: Some(seen) })
+    }
+
+    /// Counts a range that was left out; when half of them are, the place is wrong, not they.
+    pub(super) fn reject(&mut self) {
+        self.counters.reject();
+        if self.counters.distrust > 2 * u16::from(self.heard.max(D as u8)) {
+            self.estimate = None;
+        }
+    }
+
+    /// Keeps a range for a first position, and makes one if it can.
+    #[inline(never)] // Rare, and large.
+    pub(super) fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
+        let mut again = false;
+        if let Some(link) = self.links.get_mut(sample.anchor) {
+            again = link.fresh(self.time_us).is_some();
+            link.hear(sample.time_us, range);
+        }
+        let started = self.begin(self.time_us, again);
+        let outcome = if started { Outcome::Started } else { Outcome::Collected };
+        Report { outcome, innovation: None }
+    }
+
+    /// Makes a position of the fresh ranges, if they are enough: when all anchors have been heard, or
+    /// one of them `again`, before the others.
+    pub(super) fn begin(&mut self, now_us: u64, again: bool) -> bool {
+        if !again && usize::from(self.count_heard(now_us)) < self.links.len() {
+            return false;
+        }
+        self.estimate = start::<T, D, N, A>(&self.config, &self.links, now_us);
+        if self.estimate.is_none() {
+            return false;
+        }
+        for link in &mut self.links {
+            *link = link.begun(&self.config);
+        }
+        self.heard = self.count_heard(now_us);
+        self.counters.starts = self.counters.starts.saturating_add(1);
+        self.counters.distrust = 0;
+        self.counters.nis = T::ONE;
+        true
+    }
+}
+
+/// The row ∂h/∂x and the range that is expected.
+#[inline]
+fn predicted_range<T: Scalar, const D: usize, const N: usize>(
+    estimate: &Gaussian<T, N>,
+    config: &Config<T>,
+    anchor: &Anchor<T>,
+    observes_bias: bool,
+) -> ([(usize, T); 4], T) {
+    let mean = &estimate.mean.data.0[0];
+    let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
+    let ExpectedRange { distance, direction } =
+        expected_range(&position, config.height, &anchor.position);
+    let mut row = [(0, T::ZERO); 4];
+    for axis in 0..D {
+        row[axis] = (axis, direction[axis]);
+    }
+    if N == 2 * D {
+        return (row, distance);
+    }
+    row[D] = (2 * D, if observes_bias { T::ONE } else { T::ZERO });
+    (row, if observes_bias { distance + mean[2 * D] } else { distance })
+}
+
+/// The noise that Huber gives a range beyond his threshold: S grows to S |ν|/(k √S).
+#[inline(always)]
+fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<T>) -> Option<T> {
+    let huber = config.huber.as_ref()?;
+    let threshold = huber.threshold(weighed.innovation());
+    if !weighed.exceeds(threshold * threshold) {
+        return None;
+    }
+    let variance = weighed.innovation().abs() * weighed.variance().sqrt() / threshold;
+    Some((variance - weighed.spread()).max(weighed.noise()))
+}

@@ -1,0 +1,199 @@
+mod health;
+mod measure;
+mod time;
+
+use crate::health::Counters;
+use crate::link::Link;
+use crate::stillness::Stillness;
+use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
+use heapless::Vec;
+use kestirim_kalman::Gaussian;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// A tag in the plane at a known height, with the anchors' common bias among the five states.
+pub type PlaneTracker<T, const A: usize> = Tracker<T, 2, 5, A>;
+/// A tag in the plane at a known height, for calibrated anchors: four states.
+pub type CalibratedPlaneTracker<T, const A: usize> = Tracker<T, 2, 4, A>;
+/// A tag in space, with the anchors' common bias among the seven states.
+pub type SpaceTracker<T, const A: usize> = Tracker<T, 3, 7, A>;
+/// A tag in space, for calibrated anchors: six states.
+pub type CalibratedSpaceTracker<T, const A: usize> = Tracker<T, 3, 6, A>;
+
+/// Position, velocity and perhaps common bias of a tag, from single ranges of up to A anchors.
+///
+/// The states are D coordinates (m), their velocities (m/s) and, if N = 2 D + 1, what all ranges are too
+/// long by (m).
+#[derive(Clone, Debug)]
+pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
+    config: Config<T>,
+    links: Vec<Link<T>, A>,
+    estimate: Option<Gaussian<T, N>>,
+    /// When the estimate holds.
+    time_us: u64,
+    stillness: Stillness<T>,
+    wheels: Option<OdometrySample<T>>,
+    /// Until then, what says that the tag stands is not believed.
+    doubted_until_us: u64,
+    heard: u8,
+    counters: Counters<T>,
+}
+
+impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
+    /// What no radio measures, m.
+    const SHORTEST: f64 = -1.0;
+    const LONGEST: f64 = 200.0;
+    /// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
+    /// after an exchange of messages.
+    const LATE_US: u64 = 100_000;
+    /// Between ranges, the estimate follows the IMU in steps of this (µs).
+    const INERTIAL_STEP_US: u64 = 100_000;
+
+    /// A tracker for these anchors, which does not know yet where it is.
+    ///
+    /// # Errors
+    /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
+    pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
+        const { assert!(N == 2 * D || N == 2 * D + 1, "positions, velocities and perhaps a bias") };
+        let mut links = Vec::new();
+        for anchor in anchors {
+            let numbers = anchor.position.iter().chain([&anchor.bias]);
+            if !numbers.copied().all(T::is_finite) {
+                return Err(Error::NotFinite);
+            }
+            links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
+        }
+        Ok(Self {
+            config,
+            links,
+            estimate: None,
+            time_us: 0,
+            stillness: Stillness::new(),
+            wheels: None,
+            doubted_until_us: 0,
+            heard: 0,
+            counters: Counters::new(),
+        })
+    }
+
+    /// Where the tag is, m; none before the first position, or when it is lost.
+    #[inline]
+    pub fn position(&self) -> Option<SVector<T, D>> {
+        let estimate = self.estimate.as_ref()?;
+        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))
+    }
+
+    /// How fast it moves, m/s.
+    #[inline]
+    pub fn velocity(&self) -> Option<SVector<T, D>> {
+        let estimate = self.estimate.as_ref()?;
+        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][D + axis]))
+    }
+
+    /// Mean and covariance of all states.
+    #[inline]
+    pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
+        self.estimate.as_ref()
+    }
+
+    /// The standard deviation that is attributed to an anchor's ranges at present, m.
+    pub fn range_sigma(&self, anchor: usize) -> Option<T> {
+        self.links.get(anchor).map(|link| link.variance.sqrt())
+    }
+
+    /// Sets the tag's height in two dimensions, m.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn set_height(&mut self, height: T) -> Result<(), Error> {
+        if !height.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        self.config.height = height;
+        Ok(())
+    }
+
+    /// Takes in a range.
+    ///
+    /// # Errors
+    /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
+    #[inline]
+    pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
+        let range = self.check(sample)?;
+        if sample.time_us <= self.time_us {
+            self.check_time(sample.time_us)?;
+            return self.measure(sample, range);
+        }
+        let before = self.timed();
+        let report = self.advance(sample.time_us, None).and_then(|()| self.measure(sample, range));
+        if report.is_err() {
+            self.restore(before);
+        }
+        report
+    }
+
+    /// Takes in a sample of the IMU.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    #[inline]
+    pub fn inertial(&mut self, sample: &InertialSample<T, D>) -> Result<(), Error> {
+        let numbers = sample.acceleration.iter().chain(sample.push.iter().flatten());
+        if !numbers.copied().all(T::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        self.check_time(sample.time_us)?;
+        let elapsed = sample.time_us.saturating_sub(self.time_us);
+        let mut stillness = self.stillness;
+        let push = sample.push.map_or(T::ZERO, |push| T::norm(&push));
+        stillness.update(sample.time_us, &sample.acceleration, push);
+        if sample.push.is_some() || elapsed >= Self::INERTIAL_STEP_US {
+            let before = (self.timed(), self.stillness);
+            self.stillness = stillness;
+            let advanced = self.advance(sample.time_us, sample.push);
+            if advanced.is_err() {
+                self.restore(before.0);
+                self.stillness = before.1;
+            }
+            return advanced;
+        }
+        self.stillness = stillness;
+        Ok(())
+    }
+
+    /// Takes in a sample of the wheels.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    #[inline]
+    pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
+        if !(sample.speed.is_finite() && sample.turn_rate.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        self.check_time(sample.time_us)?;
+        self.wheels = Some(*sample);
+        Ok(())
+    }
+
+    /// The range freed of its bias, if it can be one.
+    #[inline]
+    fn check(&self, sample: &RangeSample<T>) -> Result<T, Error> {
+        let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        let plausible = T::from_f64(Self::SHORTEST)..=T::from_f64(Self::LONGEST);
+        if !plausible.contains(&sample.range) {
+            let finite = sample.range.is_finite();
+            return Err(if finite { Error::ImplausibleRange } else { Error::NotFinite });
+        }
+        if sample.time_us < link.next_us() {
+            let again = sample.time_us == link.next_us() - 1;
+            return Err(if again { Error::Duplicate } else { Error::OutOfOrder });
+        }
+        Ok(sample.range - link.anchor.bias)
+    }
+
+    #[inline]
+    fn check_time(&self, time_us: u64) -> Result<(), Error> {
+        let late = time_us < self.time_us && self.time_us - time_us > Self::LATE_US;
+        if late { Err(Error::OutOfOrder) } else { Ok(()) }
+    }
+}

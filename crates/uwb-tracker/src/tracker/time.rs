@@ -1,0 +1,109 @@
+//! How the estimate follows the time, and whether the tag stands meanwhile.
+
+use super::Tracker;
+use crate::{Error, OdometrySample, motion};
+use kestirim_kalman::Gaussian;
+use kestirim_scalar::Scalar;
+
+/// Estimate, its time, anchors heard, end of a doubt.
+pub(super) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
+
+impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
+    /// Odometry older than this says nothing about now (µs).
+    const WHEELS_US: u64 = 500_000;
+    /// A position this uncertain is none, m.
+    const LOST_SIGMA: f64 = 2.0;
+    /// Nor is one that nothing has been heard of for so long (µs).
+    const LOST_US: u64 = 60_000_000;
+    /// Ranges whose mean NIS is above this do not come from a tag that stands.
+    const NIS_OF_MOTION: f64 = 4.0;
+    /// For so long standing is doubted then (µs), …
+    const DOUBT_US: u64 = 30_000_000;
+    /// … and the velocity is as uncertain as at the start, (m/s)².
+    const DOUBTED_VARIANCE: f64 = 0.25;
+    /// A robot turning faster changes its direction between two ranges, rad/s.
+    const TURNING: f64 = 0.3;
+
+    /// What [`Tracker::advance`] changes.
+    #[inline]
+    pub(super) fn timed(&self) -> Timed<T, N> {
+        (self.estimate, self.time_us, self.heard, self.doubted_until_us)
+    }
+
+    #[inline]
+    pub(super) fn restore(&mut self, before: Timed<T, N>) {
+        (self.estimate, self.time_us, self.heard, self.doubted_until_us) = before;
+    }
+
+    /// Moves the estimate on to `time_us`; gives it up if it has become worthless.
+    #[inline]
+    pub(super) fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
+        let elapsed = time_us.saturating_sub(self.time_us);
+        if elapsed == 0 {
+            return Ok(());
+        }
+        if elapsed > Self::LOST_US {
+            self.estimate = None;
+        }
+        if self.counters.nis > T::from_f64(Self::NIS_OF_MOTION) {
+            self.doubt_standing();
+        }
+        if let Some(mut estimate) = self.estimate {
+            let still = self.is_still(time_us) && motion::may_stand::<T, D, N>(&estimate);
+            let interval = T::from_micro(elapsed.min(Self::LOST_US) as i32);
+            motion::advance(&mut estimate, &self.config, interval, still, push)?;
+            if still {
+                motion::stand_still::<T, D, N>(&mut estimate)?;
+            } else if let Some(wheels) = self.fresh_wheels(time_us)
+                && wheels.turn_rate.abs() < T::from_f64(Self::TURNING)
+            {
+                motion::drive::<T, D, N>(&mut estimate, wheels.speed)?;
+            }
+            let variances = estimate.covariance.variances();
+            let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);
+            let lost = variances.iter().take(D).any(|&variance| variance > most);
+            self.estimate = if lost { None } else { Some(estimate) };
+        }
+        self.time_us = time_us;
+        self.heard = self.count_heard(time_us);
+        Ok(())
+    }
+
+    #[inline]
+    pub(super) fn count_heard(&self, time_us: u64) -> u8 {
+        self.links.iter().filter(|link| link.fresh(time_us).is_some()).count() as u8
+    }
+
+    #[inline]
+    pub(super) fn fresh_wheels(&self, time_us: u64) -> Option<&OdometrySample<T>> {
+        let fresh =
+            |wheels: &&OdometrySample<T>| time_us.saturating_sub(wheels.time_us) <= Self::WHEELS_US;
+        self.wheels.as_ref().filter(fresh)
+    }
+
+    /// Whether IMU or wheels say that the tag stands, and may be believed.
+    #[inline]
+    pub(super) fn is_still(&self, time_us: u64) -> bool {
+        let wheels_stand =
+            |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
+        time_us >= self.doubted_until_us
+            && (self.stillness.is_still(time_us)
+                || self.fresh_wheels(time_us).is_some_and(wheels_stand))
+    }
+
+    /// Ranges that fit so badly on average while the tag is said to stand have one that moves: a trolley on a
+    /// smooth floor does not shake, and an IMU may have died.
+    #[inline(never)] // Rare.
+    pub(super) fn doubt_standing(&mut self) {
+        if !self.is_still(self.time_us) {
+            return;
+        }
+        self.doubted_until_us = self.time_us.saturating_add(Self::DOUBT_US);
+        if let Some(estimate) = &mut self.estimate {
+            for index in D..2 * D {
+                // Unless the variance is out of range already, in which case it is large enough.
+                let _ = estimate.add_variance_at(index, T::from_f64(Self::DOUBTED_VARIANCE));
+            }
+        }
+    }
+}
