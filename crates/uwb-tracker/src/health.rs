@@ -49,11 +49,13 @@ pub(crate) struct Counters<T> {
     /// Two for each that was rejected lately, less one for each that was taken in.
     pub(crate) distrust: u16,
     pub(crate) starts: u16,
+    /// How often a position was tried to be made in vain.
+    pub(crate) tries: u8,
 }
 
 impl<T: Scalar> Counters<T> {
     pub(crate) fn new() -> Self {
-        Self { nis: T::ONE, taken: 0, rejected: 0, distrust: 0, starts: 0 }
+        Self { nis: T::ONE, taken: 0, rejected: 0, distrust: 0, starts: 0, tries: 0 }
     }
 
     #[inline(always)]

@@ -13,11 +13,16 @@ const POSITION_SIGMA: f64 = 0.1;
 /// How fast a tag may be when it is first heard, m/s.
 const VELOCITY_SIGMA: f64 = 0.5;
 
-/// The estimate that the fresh ranges make, if they are enough.
+/// A fit that costs more is of ranges of which one is wild: three standard deviations a range cost 3.
+const LARGEST_COST: f64 = 12.0;
+
+/// The estimate that the fresh ranges make, if they are enough and, unless there is no more `patience`, agree
+/// with each other.
 pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     config: &Config<T>,
     links: &[Link<T>],
     time_us: u64,
+    patience: bool,
 ) -> Option<Gaussian<T, N>> {
     let variance = config.range_sigma * config.range_sigma;
     let mut observations = Vec::<Observation<T>, A>::new();
@@ -35,6 +40,9 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
         huber: config.huber,
     };
     let fix = solver.solve::<D>(&observations, None).ok()?;
+    if patience && fix.cost > T::from_f64(LARGEST_COST) {
+        return None;
+    }
     let mut mean = SVector::<T, N>::zeros();
     let mut covariance = SMatrix::<T, N, N>::zeros();
     for axis in 0..D {

@@ -10,6 +10,9 @@ use kestirim_uwb_ranging::{ExpectedRange, expected_range};
 use nalgebra::SVector;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
+    /// After so many tries to begin, ranges that contradict each other are accepted, too.
+    const TRIES: u8 = 20;
+
     /// Takes in a range at the estimate's own time.
     #[inline(always)]
     pub(super) fn measure(
@@ -89,10 +92,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if !again && usize::from(self.count_heard(now_us)) < self.links.len() {
             return false;
         }
-        self.estimate = start::<T, D, N, A>(&self.config, &self.links, now_us);
+        let patience = self.counters.tries < Self::TRIES;
+        self.counters.tries = self.counters.tries.saturating_add(1);
+        self.estimate = start::<T, D, N, A>(&self.config, &self.links, now_us, patience);
         if self.estimate.is_none() {
             return false;
         }
+        self.counters.tries = 0;
         for link in &mut self.links {
             *link = link.begun(&self.config);
         }
