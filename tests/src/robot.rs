@@ -98,6 +98,17 @@ impl Recording {
         residuals.calibrations(&self.anchors).iter().map(|anchor| anchor.bias_m).collect()
     }
 
+    /// The same with every twentieth range replaced by what radios have been seen to say.
+    #[must_use]
+    pub fn spoiled(&self) -> Self {
+        let wild = [337.0, -143.0, 60.0, 100.0, 12.0, 0.2].iter().cycle();
+        let mut spoiled = self.clone();
+        for (row, &wild) in spoiled.rows.iter_mut().step_by(20).zip(wild) {
+            row.range = Some(wild);
+        }
+        spoiled
+    }
+
     /// Tracks the recording.
     ///
     /// # Panics

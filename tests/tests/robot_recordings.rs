@@ -105,6 +105,18 @@ fn a_tag_carried_about_as_it_comes() {
     });
 }
 
+#[test]
+fn wild_ranges_do_little_harm() {
+    let Some(folder) = folder_of("robot") else { return };
+    in_every_scalar(|method| {
+        for (name, most) in [("esp32_los2", 0.15), ("esp32_wall2", 0.25), ("trek_m1l", 0.2)] {
+            let (accuracy, followed) = Recording::read(&folder, name).spoiled().track(method, None);
+            within(&format!("{name}, spoiled"), method, accuracy.rmse_m, most);
+            assert!(accuracy.missed <= 3 && followed.lost_s() < 1.0, "{name}: {followed:?}");
+        }
+    });
+}
+
 /// A range with a clear view: true distance, measured one (m), and the received level (dBm).
 fn ranges_by_level() -> Option<Vec<(f64, f64, f64)>> {
     /// Height of the antenna that stayed where it was, m; the recording names that of the other one.

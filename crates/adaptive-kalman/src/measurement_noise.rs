@@ -34,20 +34,22 @@ impl<T: Scalar> MeasurementNoise<T> {
     /// a measurement that the estimate must follow always fits it.
     #[inline]
     pub fn learn<const N: usize>(&mut self, weighed: &Weighed<T, N>) {
-        self.variance = learnt(self.variance, &self.learning, weighed);
+        let square = weighed.innovation() * weighed.innovation();
+        self.variance = learnt(self.variance, &self.learning, weighed, square);
     }
 }
 
 /// [`MeasurementNoise::learn`] for who keeps variances and learning apart: the variance after one more
-/// measurement.
+/// measurement, of whose ν² only `square` is believed. Where a gate left it out, γ S is enough: one wild
+/// value then teaches little, and many in a row the same in the end.
 #[inline(always)]
 pub fn learnt<T: Scalar, const N: usize>(
     variance: T,
     learning: &Learning<T>,
     weighed: &Weighed<T, N>,
+    square: T,
 ) -> T {
     let share = weighed.by_variance(weighed.noise());
-    let residual = weighed.innovation() * share;
-    let sample = T::mac(T::accumulator(), residual, residual);
+    let sample = T::mac(T::accumulator(), square * share, share);
     learning.learn(variance, T::finish(T::mac(sample, weighed.spread(), share)))
 }

@@ -34,20 +34,22 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let mut gate = link.gate;
         let verdict =
             if self.config.gate.is_some() { gate.judge(&weighed) } else { Verdict::Admit };
-        let outcome = match verdict {
+        let believed = gate.gamma() * weighed.variance();
+        let (outcome, square) = match verdict {
             Verdict::Admit => {
+                let square = weighed.innovation() * weighed.innovation();
                 if let Some(noise) = weakened(&weighed, &self.config) {
                     estimate.correct(&weighed.with_noise(noise)?)?;
-                    Outcome::Weakened
+                    (Outcome::Weakened, square)
                 } else {
                     estimate.correct(&weighed)?;
-                    Outcome::Taken
+                    (Outcome::Taken, square)
                 }
             }
-            Verdict::Reject => Outcome::Rejected,
+            Verdict::Reject => (Outcome::Rejected, believed),
             Verdict::Recover => {
                 estimate.correct_widened(&weighed, gate.gamma())?;
-                Outcome::Recovered
+                (Outcome::Recovered, believed)
             }
         };
         link.gate = gate;
@@ -55,7 +57,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         // A range that the estimate has to follow fits whatever it is worth.
         let redundant = self.heard as usize > D + usize::from(observes_bias);
         if redundant && let Some(learning) = &self.config.learning {
-            link.variance = learnt(link.variance, learning, &weighed);
+            link.variance = learnt(link.variance, learning, &weighed, square);
         }
         if verdict == Verdict::Reject {
             self.reject();
