@@ -10,13 +10,16 @@ pub enum Error {
     NotFinite,
     /// No radio measures this range: below −1 m or above 200 m.
     ImplausibleRange,
+    /// No robot accelerates or drives like this: beyond 500 m/s², 100 m/s or 100 rad/s.
+    ImplausibleMotion,
     /// There is no anchor of this number.
     NoSuchAnchor,
     /// More anchors than the tracker has room for.
     TooManyAnchors,
     /// The same anchor's range for the same time came before.
     Duplicate,
-    /// The sample is older than what the tracker already knows.
+    /// The sample is older than what the tracker already knows. If all are, the clock has jumped: make a new
+    /// tracker.
     OutOfOrder,
     /// The estimate refused it.
     Estimate(kestirim_kalman::Error),
@@ -33,6 +36,7 @@ impl fmt::Display for Error {
         formatter.write_str(match self {
             Self::NotFinite => "a number is not finite",
             Self::ImplausibleRange => "no radio measures this range",
+            Self::ImplausibleMotion => "no robot moves like this",
             Self::NoSuchAnchor => "there is no anchor of this number",
             Self::TooManyAnchors => "there are more anchors than the tracker has room for",
             Self::Duplicate => "this range came before",

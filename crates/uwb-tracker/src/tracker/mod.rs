@@ -43,6 +43,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// What no radio measures, m.
     const SHORTEST: f64 = -1.0;
     const LONGEST: f64 = 200.0;
+    /// What nothing that carries a tag does, m/s² …
+    const LARGEST_ACCELERATION: f64 = 500.0;
+    /// … and m/s, or rad/s.
+    const LARGEST_SPEED: f64 = 100.0;
     /// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
     /// after an exchange of messages.
     const LATE_US: u64 = 100_000;
@@ -135,12 +139,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Takes in a sample of the IMU.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the
+    /// tracker is as it was.
     #[inline]
     pub fn inertial(&mut self, sample: &InertialSample<T, D>) -> Result<(), Error> {
         let numbers = sample.acceleration.iter().chain(sample.push.iter().flatten());
-        if !numbers.copied().all(T::is_finite) {
-            return Err(Error::NotFinite);
+        for &number in numbers {
+            plausible(number, Self::LARGEST_ACCELERATION)?;
         }
         self.check_time(sample.time_us)?;
         let elapsed = sample.time_us.saturating_sub(self.time_us);
@@ -164,12 +169,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Takes in a sample of the wheels.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the
+    /// tracker is as it was.
     #[inline]
     pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
-        if !(sample.speed.is_finite() && sample.turn_rate.is_finite()) {
-            return Err(Error::NotFinite);
-        }
+        plausible(sample.speed, Self::LARGEST_SPEED)?;
+        plausible(sample.turn_rate, Self::LARGEST_SPEED)?;
         self.check_time(sample.time_us)?;
         self.wheels = Some(*sample);
         Ok(())
@@ -196,4 +201,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let late = time_us < self.time_us && self.time_us - time_us > Self::LATE_US;
         if late { Err(Error::OutOfOrder) } else { Ok(()) }
     }
+}
+
+/// Refuses what is not finite or too large.
+#[inline]
+fn plausible<T: Scalar>(number: T, largest: f64) -> Result<(), Error> {
+    if number.abs() <= T::from_f64(largest) {
+        return Ok(());
+    }
+    Err(if number.is_finite() { Error::ImplausibleMotion } else { Error::NotFinite })
 }

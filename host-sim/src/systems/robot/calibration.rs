@@ -2,19 +2,21 @@
 
 use std::path::Path;
 
-use kestirim_uwb_ranging::Quartiles;
 use serde::Serialize;
 
 use super::anchors::Anchors;
 use super::table;
+use crate::metrics::percentile;
 use crate::text::printable;
 use crate::{Error, output};
 
 /// Beyond the bias of any radio that works, m.
 const LARGEST_BIAS: f64 = 100.0;
 
-/// Beyond it a range is wild, m.
-const LARGEST_RESIDUAL: f64 = 3.0;
+/// What no radio measures is left out, m.
+const PLAUSIBLE: std::ops::RangeInclusive<f64> = -1.0..=200.0;
+/// The standard deviation of normal values from the distance of their quartiles.
+const DEVIATION: f64 = 0.7413;
 
 /// What was found of an anchor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,49 +28,46 @@ pub struct AnchorCalibration {
     /// Standard deviation of what is left, m.
     pub sigma_m: f64,
     /// From how many ranges.
-    pub ranges: u32,
+    pub ranges: usize,
 }
 
 /// The differences between measured and true distances, anchor by anchor.
+///
+/// Firmware has `kestirim_uwb_ranging::Quartiles` for this; here there is memory for exact ones.
 #[derive(Debug, Clone)]
 pub struct Residuals {
-    quartiles: Vec<Quartiles<f64>>,
+    of_anchors: Vec<Vec<f64>>,
 }
 
 impl Residuals {
     /// Nothing yet.
     pub fn new(anchors: &Anchors) -> Self {
-        Self {
-            quartiles: vec![
-                Quartiles::within(-LARGEST_RESIDUAL, LARGEST_RESIDUAL);
-                anchors.names.len()
-            ],
-        }
+        Self { of_anchors: vec![Vec::new(); anchors.names.len()] }
     }
 
     /// Takes in a range measured at a known place.
     pub fn add(&mut self, anchors: &Anchors, anchor: usize, range: f64, truth: [f64; 3]) {
-        let (Some(place), Some(quartiles)) =
-            (anchors.positions.get(anchor), self.quartiles.get_mut(anchor))
+        let (Some(place), Some(residuals)) =
+            (anchors.positions.get(anchor), self.of_anchors.get_mut(anchor))
         else {
             return;
         };
-        let squares: f64 = place.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum();
-        quartiles.add(range - squares.sqrt());
+        if PLAUSIBLE.contains(&range) {
+            let squares: f64 = place.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum();
+            residuals.push(range - squares.sqrt());
+        }
     }
 
     /// The calibration of every anchor that was heard.
     pub fn calibrations(&self, anchors: &Anchors) -> Vec<AnchorCalibration> {
-        let pairs = anchors.names.iter().zip(&self.quartiles);
-        let heard = pairs.filter_map(|(name, quartiles)| {
-            Some(AnchorCalibration {
-                anchor: name.clone(),
-                bias_m: quartiles.median()?,
-                sigma_m: quartiles.deviation()?,
-                ranges: quartiles.count(),
-            })
-        });
-        heard.collect()
+        let heard = anchors.names.iter().zip(&self.of_anchors).filter(|(_, of)| !of.is_empty());
+        let calibration = |(name, residuals): (&String, &Vec<f64>)| AnchorCalibration {
+            anchor: name.clone(),
+            bias_m: percentile(residuals, 50.0),
+            sigma_m: DEVIATION * (percentile(residuals, 75.0) - percentile(residuals, 25.0)),
+            ranges: residuals.len(),
+        };
+        heard.map(calibration).collect()
     }
 }
 

@@ -33,6 +33,26 @@ pub struct RangeLog {
     pub strangers: usize,
 }
 
+/// Later lines may go back behind a time by this, µs; one that they go back behind farther was wrong.
+const LARGEST_STEP_BACK_US: i64 = 10_000_000;
+
+/// Drops samples whose time is far ahead of those that follow, and says how many there were: a single
+/// wrong time would make everything after it too late.
+pub fn drop_far_ahead<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
+    let (before, mut earliest_us) = (samples.len(), i64::MAX);
+    let mut kept = Vec::with_capacity(before);
+    while let Some(sample) = samples.pop() {
+        let time_us = time_us(&sample);
+        if time_us.saturating_sub(LARGEST_STEP_BACK_US) <= earliest_us {
+            earliest_us = earliest_us.min(time_us);
+            kept.push(sample);
+        }
+    }
+    kept.reverse();
+    *samples = kept;
+    before - samples.len()
+}
+
 /// Reads the log of a moving tag: CSV with columns `t,anchor,range` (s, m).
 ///
 /// # Errors

@@ -94,14 +94,14 @@ impl Replay {
         mut setup: Setup,
         mut warnings: Vec<String>,
     ) -> Result<Report, Error> {
-        let log = ranges::read_moving(&self.log, anchors)?;
+        let mut log = ranges::read_moving(&self.log, anchors)?;
         let truth =
             self.truth.as_deref().map(|path| points::read_course(path, ["x", "y"])).transpose()?;
         let height = self.height(false)?;
         if let Some(Height::Metres(metres)) = height {
             setup.height_m = metres;
         }
-        let company = Company {
+        let mut company = Company {
             inertial: self.imu.as_deref().map_or(Ok(vec![]), motion::read_inertial)?,
             wheels: self.odom.as_deref().map_or(Ok(vec![]), motion::read_wheels)?,
             height: match height {
@@ -113,6 +113,14 @@ impl Replay {
             warnings.push("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used".into());
         }
         warn_of_strangers(log.strangers, &mut warnings);
+        let ahead = ranges::drop_far_ahead(&mut log.rows, |row| row.time_us)
+            + ranges::drop_far_ahead(&mut company.inertial, |sample| sample.time_us)
+            + ranges::drop_far_ahead(&mut company.wheels, |sample| sample.time_us);
+        if ahead > 0 {
+            warnings.push(format!(
+                "{ahead} samples are more than 10 s ahead of what follows them: left out"
+            ));
+        }
         let mut tracker = follow::build(&setup)?;
         let followed = feed::follow(tracker.as_mut(), &log.rows, &company);
         if followed.epochs.iter().all(|epoch| epoch.position.is_none()) {
@@ -152,7 +160,7 @@ impl Replay {
         }
         let missing = found.iter().filter(|(_, position)| position.is_none()).count();
         if missing > 0 {
-            warnings.push(format!("{missing} points have too few ranges for a position"));
+            warnings.push(format!("points without ranges enough for a position: {missing}"));
         }
         let pairs: Vec<_> =
             found.iter().filter_map(|(point, position)| Some((*position, point.plane?))).collect();
