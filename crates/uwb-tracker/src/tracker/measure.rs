@@ -48,8 +48,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             }
             Verdict::Reject => (Outcome::Rejected, believed),
             Verdict::Recover => {
-                estimate.correct_widened(&weighed, gate.gamma())?;
-                (Outcome::Recovered, believed)
+                // Fixed point cannot widen without end; then the estimate is given up sooner or later.
+                let widened = estimate.correct_widened(&weighed, gate.gamma()).is_ok();
+                (if widened { Outcome::Recovered } else { Outcome::Rejected }, believed)
             }
         };
         link.gate = gate;
@@ -59,7 +60,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if redundant && let Some(learning) = &self.config.learning {
             link.variance = learnt(link.variance, learning, &weighed, square);
         }
-        if verdict == Verdict::Reject {
+        if outcome == Outcome::Rejected {
             self.reject();
         } else {
             self.counters.take(seen.nis);
