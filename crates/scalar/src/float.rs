@@ -1,7 +1,13 @@
 //! The trait for floats: arithmetic is the machine's, functions are libm's or our own, so that host and
 //! target agree bit for bit (but for norms on machines without an FPU, which may differ in the last one).
 
-use crate::{Scalar, single};
+use crate::{Scalar, double, single};
+
+/// 2^exponent for −126 ≤ exponent ≤ 127; beyond, the power at that end.
+#[inline(always)]
+fn power_of_two(exponent: i32) -> f32 {
+    f32::from_bits(((exponent.clamp(-126, 127) + 127) as u32) << 23)
+}
 
 macro_rules! impl_scalar_for_float {
     ($float:ident, $sqrt:path, $root:path, $hypot:path, $sin_cos:path, $atan2:path, $exp:path, $ln:path) => {
@@ -93,6 +99,16 @@ macro_rules! impl_scalar_for_float {
                 $ln(self)
             }
 
+            #[inline(always)]
+            fn from_binary(value: i32, exponent: i32) -> Self {
+                value as Self * power_of_two(exponent) as Self
+            }
+            #[inline(always)]
+            fn to_binary(self, exponent: i32) -> i32 {
+                let scaled = self * power_of_two(-exponent) as Self;
+                (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32
+            }
+
             #[inline]
             fn rounding(self, count: u16) -> Self {
                 $float::abs(self) * ($float::EPSILON * count as $float)
@@ -115,24 +131,25 @@ macro_rules! impl_scalar_for_float {
 }
 
 // libm's single-precision sine and hypotenuse compute in double precision, which a target without
-// it emulates at ten times the cost: those two are our own.
+// it emulates at ten times the cost; its exponential, logarithm and arc tangent branch, so that a loop over
+// a thousand particles does not become vector instructions. Those are our own.
 impl_scalar_for_float!(
     f32,
     single::sqrt,
     single::root,
     single::hypot,
     single::sin_cos,
-    libm::atan2f,
-    libm::expf,
-    libm::logf
+    single::atan2,
+    single::exp,
+    single::ln
 );
 impl_scalar_for_float!(
     f64,
     libm::sqrt,
-    libm::sqrt,
+    double::root,
     libm::hypot,
     libm::sincos,
-    libm::atan2,
-    libm::exp,
-    libm::log
+    double::atan2,
+    double::exp,
+    double::ln
 );

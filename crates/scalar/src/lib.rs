@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod double;
 mod fixed;
 mod float;
 #[cfg(feature = "fixed")]

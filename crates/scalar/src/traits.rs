@@ -61,6 +61,12 @@ pub trait Scalar:
     /// `value · 10⁻⁶`, rounded once: microseconds to seconds without double precision.
     fn from_micro(value: i32) -> Self;
 
+    /// `value · 2^exponent`, rounded once; −126 ≤ exponent ≤ 127. What integers have computed, such as random
+    /// numbers, becomes a scalar.
+    fn from_binary(value: i32, exponent: i32) -> Self;
+    /// The integer nearest to `self · 2^−exponent`; saturates, and of NaN it is 0 or the lower rail.
+    fn to_binary(self, exponent: i32) -> i32;
+
     /// False for NaN and infinities; for the two rails in fixed point.
     fn is_finite(self) -> bool;
 

@@ -1,7 +1,7 @@
 //! Every elementary function against f64 over its whole domain, edges included. The bounds asserted are
 //! those of the crate's documentation.
 
-use kestirim_scalar::{Fixed, Q12_20, Scalar};
+use kestirim_scalar::{Fixed, Q12_20, Q16_16, Scalar};
 
 /// Bits over the whole range of an i32: both rails, every power of two and its neighbours, small numbers one
 /// by one, and 200 000 spread evenly.
@@ -120,10 +120,59 @@ fn single_precision_functions_keep_their_bounds() {
             assert!((f64::from(Scalar::atan2(y, x)) - exact).abs() < 3e-7, "atan2 {y} {x}");
         }
     }
-    for k in -8_700..8_800 {
+    for k in -8_690..8_800 {
         let x = k as f32 * 0.01;
         assert!((f64::from(Scalar::exp(x)) / f64::from(x).exp() - 1.0).abs() < 1.2e-7, "exp {x}");
     }
+}
+
+#[test]
+fn double_precision_functions_keep_their_bounds() {
+    let units = |ours: f64, exact: f64| (ours - exact).abs() / (exact.abs() * f64::EPSILON);
+    for k in -353_500..354_800_i32 {
+        let x = f64::from(k) * 0.002_000_3;
+        assert!(units(Scalar::exp(x), x.exp()) < 1.5, "exp {x}");
+    }
+    for k in 0..400_000_i32 {
+        for x in [0.5 + f64::from(k) * 4e-6, f64::from(k) * 3.7e3 + 1e-9, 1e-300 * f64::from(k + 1)]
+        {
+            assert!(
+                (Scalar::ln(x) - x.ln()).abs() <= 1.2e-16 * x.ln().abs().max(0.5) * 2.0,
+                "ln {x}"
+            );
+        }
+        let x = 0.9 + f64::from(k) * 5e-7;
+        assert!(k == 200_000 || units(Scalar::ln(x), x.ln()) < 2.0, "ln {x}");
+        let (y, x) = (f64::from(k) * 1.7 - 3e5, f64::from(k % 997) * 13.0 - 5e3);
+        assert!(units(Scalar::atan2(y, x), y.atan2(x)) < 2.5 || y == 0.0, "atan2 {y} {x}");
+        let x = 1e-3 * f64::from(k + 1);
+        assert!(units(f64::norm(&[x, 0.0]), x) < 1.0, "norm {x}");
+    }
+}
+
+#[test]
+fn numbers_become_integers_and_come_back() {
+    fn check<T: Scalar>() {
+        for value in [0, 1, -1, 77, -1_234, 2_047] {
+            for exponent in [-8, -4, -2] {
+                assert_eq!(T::from_binary(value, exponent).to_binary(exponent), value);
+            }
+            assert_eq!(T::from_binary(value, 0), T::from_f64(f64::from(value)));
+        }
+        assert_eq!(T::from_f64(-1.75).to_binary(0), -2);
+        assert_eq!(T::from_f64(0.25).to_binary(-31), 1 << 29);
+        assert_eq!(T::from_f64(-3.0).to_binary(-31), i32::MIN);
+        assert_eq!(T::from_f64(3.0).to_binary(-31), i32::MAX);
+        assert_eq!(T::from_f64(3.0).to_binary(40), 0);
+        assert_eq!(T::from_binary(i32::MIN, -31), -T::ONE);
+        assert_eq!(T::from_binary(3, -40).to_binary(0), 0);
+    }
+    check::<f32>();
+    check::<f64>();
+    check::<Q16_16>();
+    check::<Q12_20>();
+    assert_eq!(Q16_16::from_binary(1, 31), Q16_16::MAX);
+    assert_eq!(Q16_16::from_binary(-1, 100), Q16_16::MIN);
 }
 
 #[test]
@@ -135,6 +184,28 @@ fn floats_have_their_ieee_edges() {
     assert_eq!(Scalar::hypot(0.0_f32, 0.0), 0.0);
     assert!(Scalar::hypot(f32::MAX, f32::MAX).is_infinite());
     assert_eq!(Scalar::exp(f64::NEG_INFINITY), 0.0);
+    functions_have_their_edges::<f32>();
+    functions_have_their_edges::<f64>();
+}
+
+fn functions_have_their_edges<T: Scalar>() {
+    let (infinity, nan) = (T::from_f64(f64::INFINITY), T::from_f64(f64::NAN));
+    let is_nan = |x: T| x.partial_cmp(&x).is_none();
+    assert_eq!(infinity.exp(), infinity);
+    assert_eq!((-infinity).exp(), T::ZERO);
+    assert_eq!(T::MAX.exp(), infinity);
+    assert_eq!(T::MIN.exp(), T::ZERO);
+    assert_eq!(T::ZERO.exp(), T::ONE);
+    assert_eq!(T::ONE.ln(), T::ZERO);
+    assert_eq!(infinity.ln(), infinity);
+    assert_eq!(T::ZERO.ln(), -infinity);
+    assert!(T::MAX.ln().is_finite());
+    assert!(is_nan(nan.exp()) && is_nan(nan.ln()) && is_nan((-T::ONE).ln()));
+    assert!(is_nan(nan.atan2(T::ONE)) && is_nan(T::ONE.atan2(nan)));
+    assert_eq!(T::ZERO.atan2(T::ZERO), T::ZERO);
+    assert_eq!(T::ZERO.atan2(-T::ONE), T::PI);
+    assert_eq!(infinity.atan2(T::ONE), T::PI * T::HALF);
+    assert_eq!((-T::ONE).atan2(T::ZERO), -T::PI * T::HALF);
 }
 
 #[test]

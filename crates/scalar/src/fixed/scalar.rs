@@ -18,6 +18,27 @@ impl<const FRAC: u32> Fixed<FRAC> {
     }
 }
 
+/// value · 2^by, rounded to nearest, saturating.
+#[inline(always)]
+fn shifted(value: i32, by: i32) -> i32 {
+    match by {
+        ..-31 => 0,
+        -31..0 => (((i64::from(value) >> (-by - 1)) + 1) >> 1) as i32,
+        0..32 => match i32::try_from(i64::from(value) << by) {
+            Ok(bits) => bits,
+            Err(_) => saturation(value),
+        },
+        _ if value == 0 => 0,
+        _ => saturation(value),
+    }
+}
+
+/// The rail of a sign.
+#[inline(always)]
+fn saturation(value: i32) -> i32 {
+    if value < 0 { i32::MIN } else { i32::MAX }
+}
+
 impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     /// The sum in units of 2⁻²ᶠᴿᴬᶜ: two products of rails fit; beyond them it saturates.
     type Accumulator = i64;
@@ -74,6 +95,15 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
         const MICRO_Q51: i64 = 2_251_799_814;
         let shift = 51 - FRAC;
         Self::saturate((i64::from(value) * MICRO_Q51 + (1 << (shift - 1))) >> shift)
+    }
+
+    #[inline(always)]
+    fn from_binary(value: i32, exponent: i32) -> Self {
+        Self(shifted(value, exponent.saturating_add(FRAC as i32)))
+    }
+    #[inline(always)]
+    fn to_binary(self, exponent: i32) -> i32 {
+        shifted(self.0, exponent.saturating_add(FRAC as i32).saturating_neg())
     }
 
     #[inline]
