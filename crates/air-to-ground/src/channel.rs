@@ -1,0 +1,187 @@
+use kestirim_scalar::Scalar;
+
+use crate::{Environment, Error, Measurement, Propagation};
+
+/// The path loss between a drone and a user on the ground: free space, and what the buildings add with and
+/// without a line of sight (Al-Hourani's model; the thesis' section 2.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Channel<T> {
+    /// b per radian of elevation.
+    b: T,
+    /// a·exp(a·b): the odds against a line of sight at the horizon.
+    odds: T,
+    line_of_sight: Shadowing<T>,
+    obstructed: Shadowing<T>,
+}
+
+/// One kind of propagation in the form in which a likelihood needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Shadowing<T> {
+    /// Mean loss at a distance of one metre, dB.
+    loss_at_one_metre: T,
+    /// 1/α, and its logarithm with that of the factor before the density.
+    inverse_sigma: T,
+    log_weight: T,
+    /// β per radian of elevation.
+    decay: T,
+}
+
+/// What a channel expects of a measurement (eqs 2.1 and 2.7 to 2.10).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PathLoss<T> {
+    /// Probability of a line of sight.
+    pub line_of_sight_probability: T,
+    /// Mean loss with a line of sight, dB.
+    pub line_of_sight_mean: T,
+    /// Standard deviation with a line of sight, dB.
+    pub line_of_sight_sigma: T,
+    /// Mean loss without, dB.
+    pub obstructed_mean: T,
+    /// Standard deviation without, dB.
+    pub obstructed_sigma: T,
+}
+
+impl<T: Scalar> PathLoss<T> {
+    /// Mean loss over both kinds of propagation, dB.
+    pub fn mean(&self) -> T {
+        let p = self.line_of_sight_probability;
+        self.obstructed_mean + (self.line_of_sight_mean - self.obstructed_mean) * p
+    }
+
+    /// Standard deviation over both, dB.
+    pub fn sigma(&self) -> T {
+        let p = self.line_of_sight_probability;
+        let between = (p * (T::ONE - p)).sqrt() * (self.obstructed_mean - self.line_of_sight_mean);
+        // √(p·σ² + …): as norms, whose squares do not overflow in fixed point.
+        T::norm(&[
+            p.sqrt() * self.line_of_sight_sigma,
+            (T::ONE - p).sqrt() * self.obstructed_sigma,
+            between,
+        ])
+    }
+}
+
+impl<T: Scalar> Channel<T> {
+    /// A channel at a wavelength (m): 0.15 m is 2 GHz.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a wavelength, a deviation or an a that is not
+    /// above zero.
+    #[inline]
+    pub fn new(environment: &Environment<T>, wavelength: T) -> Result<Self, Error> {
+        let Environment { a, b, line_of_sight, obstructed } = *environment;
+        if [a, wavelength, line_of_sight.sigma, obstructed.sigma].iter().any(|x| *x <= T::ZERO) {
+            return Err(Error::NotPositive);
+        }
+        // 20·log₁₀(4π·d/λ) at one metre.
+        let free_space = (T::from_f64(4.0) * T::PI / wavelength).ln() * decibels_per_neper::<T>();
+        let odds = a * (a * b).exp();
+        let channel = Self {
+            b: b * degrees_per_radian(),
+            odds,
+            line_of_sight: Shadowing::new(&line_of_sight, free_space, T::ZERO),
+            obstructed: Shadowing::new(&obstructed, free_space, odds.ln()),
+        };
+        let [near, far] = [&channel.line_of_sight, &channel.obstructed].map(Shadowing::numbers);
+        let finite =
+            T::all_finite(&[channel.b, odds]) && T::all_finite(&near) && T::all_finite(&far);
+        if finite { Ok(channel) } else { Err(Error::NotFinite) }
+    }
+
+    /// What to expect at a horizontal distance and a height (m) of the drone from the user.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not above zero.
+    pub fn path_loss(&self, horizontal_distance: T, height: T) -> Result<PathLoss<T>, Error> {
+        if !T::all_finite(&[horizontal_distance, height]) {
+            return Err(Error::NotFinite);
+        }
+        if height <= T::ZERO {
+            return Err(Error::NotPositive);
+        }
+        let (elevation, distance_loss) = geometry(horizontal_distance, height);
+        let odds = self.odds * (-self.b * elevation).exp();
+        Ok(PathLoss {
+            line_of_sight_probability: T::ONE / (T::ONE + odds),
+            line_of_sight_mean: self.line_of_sight.loss_at_one_metre + distance_loss,
+            line_of_sight_sigma: self.line_of_sight.sigma(elevation),
+            obstructed_mean: self.obstructed.loss_at_one_metre + distance_loss,
+            obstructed_sigma: self.obstructed.sigma(elevation),
+        })
+    }
+
+    /// Logarithm of the density (per dB) of a measured loss if the user is there (eq. 2.11).
+    ///
+    /// Beyond 127 standard deviations it does not fall any further. Without branches, so that a loop over
+    /// particles becomes vector instructions; five exponentials and logarithms where the equations as
+    /// printed have nine. What is not finite in `user` gives what is not finite.
+    #[inline(always)]
+    pub fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
+        let distance = measurement.horizontal_distance(user);
+        let (elevation, distance_loss) = geometry(distance, measurement.height());
+        let excess = measurement.loss() - distance_loss;
+        // The two terms of the mixture, each without the factor P_LoS, which is taken out of both:
+        // P_NLoS = odds · P_LoS.
+        let seen = self.line_of_sight.log_density(excess, elevation);
+        let fading = self.b * elevation;
+        let hidden = self.obstructed.log_density(excess, elevation) - fading;
+        let odds = self.odds * (-fading).exp();
+        let (larger, apart) =
+            if hidden > seen { (hidden, seen - hidden) } else { (seen, hidden - seen) };
+        larger + ((T::ONE + apart.exp()) / (T::ONE + odds)).ln()
+    }
+}
+
+impl<T: Scalar> Shadowing<T> {
+    #[inline(always)]
+    fn new(propagation: &Propagation<T>, free_space: T, log_factor: T) -> Self {
+        // ln √(2π).
+        let log_root_tau = T::from_f64(0.918_938_533_204_672_7);
+        Self {
+            loss_at_one_metre: free_space + propagation.excess_loss,
+            inverse_sigma: propagation.sigma.recip(),
+            log_weight: log_factor - propagation.sigma.ln() - log_root_tau,
+            decay: propagation.sigma_decay * degrees_per_radian(),
+        }
+    }
+
+    fn numbers(&self) -> [T; 4] {
+        [self.loss_at_one_metre, self.inverse_sigma, self.log_weight, self.decay]
+    }
+
+    fn sigma(&self, elevation: T) -> T {
+        (-self.decay * elevation).exp() / self.inverse_sigma
+    }
+
+    /// ln of the normal density of what remains of a loss without that of the distance.
+    #[inline(always)]
+    fn log_density(&self, excess: T, elevation: T) -> T {
+        let steepness = self.decay * elevation;
+        let sigmas = (excess - self.loss_at_one_metre) * self.inverse_sigma * steepness.exp();
+        // 127²/2 is a number in every format that can hold a kilometre.
+        let limit = T::from_f64(127.0);
+        let sigmas = if sigmas > limit { limit } else { sigmas };
+        let sigmas = if sigmas < -limit { -limit } else { sigmas };
+        self.log_weight + steepness - sigmas * (sigmas * T::HALF)
+    }
+}
+
+/// Elevation (rad) of the drone above the user's horizon, and 20·log₁₀ of the distance (dB re 1 m).
+#[inline(always)]
+fn geometry<T: Scalar>(horizontal_distance: T, height: T) -> (T, T) {
+    let distance = T::norm(&[horizontal_distance, height]);
+    (height.atan2(horizontal_distance), distance.ln() * decibels_per_neper())
+}
+
+#[inline(always)]
+fn decibels_per_neper<T: Scalar>() -> T {
+    T::from_f64(20.0 / core::f64::consts::LN_10)
+}
+
+#[inline(always)]
+fn degrees_per_radian<T: Scalar>() -> T {
+    T::from_f64(180.0 / core::f64::consts::PI)
+}

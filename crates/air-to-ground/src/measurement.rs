@@ -1,0 +1,59 @@
+use kestirim_scalar::Scalar;
+
+use crate::Error;
+
+/// A path loss measured from the air: numbers that a channel can do something with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Measurement<T> {
+    place: [T; 2],
+    height: T,
+    loss: T,
+}
+
+impl<T: Scalar> Measurement<T> {
+    /// A `loss` (dB) measured by a drone above `place` (m, in the plane of the user) at `height` above the
+    /// user (m).
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not above zero;
+    /// [`Error::ImplausibleLoss`] beyond ±300 dB (a level of unknown offset may be negative).
+    #[inline]
+    pub fn new(place: [T; 2], height: T, loss: T) -> Result<Self, Error> {
+        if !T::all_finite(&[place[0], place[1], height, loss]) {
+            return Err(Error::NotFinite);
+        }
+        if height <= T::ZERO {
+            return Err(Error::NotPositive);
+        }
+        if loss.abs() > T::from_micro(300_000_000) {
+            return Err(Error::ImplausibleLoss);
+        }
+        Ok(Self { place, height, loss })
+    }
+
+    /// Where the drone was, m.
+    #[inline(always)]
+    pub fn place(&self) -> [T; 2] {
+        self.place
+    }
+
+    /// How far above the user it flew, m.
+    #[inline(always)]
+    pub fn height(&self) -> T {
+        self.height
+    }
+
+    /// What it measured, dB.
+    #[inline(always)]
+    pub fn loss(&self) -> T {
+        self.loss
+    }
+
+    /// Horizontal distance from the drone to a user, m.
+    #[inline(always)]
+    pub fn horizontal_distance(&self, user: [T; 2]) -> T {
+        T::norm(&[user[0] - self.place[0], user[1] - self.place[1]])
+    }
+}

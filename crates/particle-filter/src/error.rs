@@ -1,0 +1,30 @@
+use core::fmt;
+
+/// Why there is no answer. Nothing was changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// A number is NaN, infinite or on a rail of fixed point.
+    NotFinite,
+    /// A width, a weight or a deviation is negative, or a count is zero.
+    NotPositive,
+    /// More particles than there is room for.
+    TooMany,
+    /// Every weight is zero or not a number: nothing explains what was measured.
+    Degenerate,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::NotPositive => "a number that must be positive is not",
+            Self::TooMany => "there are more particles than there is room for",
+            Self::Degenerate => "no particle explains what was measured",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

@@ -1,0 +1,28 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod blocks;
+mod error;
+mod kld;
+mod mode;
+mod moments;
+mod movement;
+mod offspring;
+mod particles;
+mod point_mass;
+mod random;
+mod region;
+mod sequence;
+mod sorted;
+mod weights;
+
+pub use error::Error;
+pub use kld::kld_count;
+pub use moments::Moments;
+pub use offspring::{Resampler, offspring};
+pub use particles::Particles;
+pub use point_mass::PointMass;
+pub use rand_xoshiro::Xoshiro128PlusPlus;
+pub use region::Region;
+pub use sequence::Start;
+pub use weights::Update;

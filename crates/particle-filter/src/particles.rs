@@ -1,0 +1,191 @@
+use kestirim_scalar::Scalar;
+use rand_core::Rng;
+
+use crate::offspring::{self, Resampler};
+use crate::sequence::{Steps, placed};
+use crate::weights::Weights;
+use crate::{Error, Moments, Region, Start, Update};
+
+/// A weighted cloud of up to N states of D coordinates.
+///
+/// Coordinates are stored one after the other and weights as logarithms, the largest of them zero: N·(4·D + 8)
+/// bytes in single precision. Every step is O(N) and allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Particles<T, const D: usize, const N: usize> {
+    pub(crate) states: [[T; N]; D],
+    pub(crate) weights: Weights<T, N>,
+    /// Integer weights, then numbers of offspring; or occupied bins.
+    pub(crate) scratch: [u32; N],
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
+    const CAPACITY: usize = {
+        assert!(0 < D, "a state has at least one coordinate");
+        assert!(0 < N && N <= 1 << 20, "resampling is exact for up to 2²⁰ particles");
+        N
+    };
+
+    /// N particles that fill a region.
+    #[inline]
+    pub fn new<R: Rng + ?Sized>(start: Start, region: &Region<T, D>, rng: &mut R) -> Self {
+        let mut particles = Self::all_at(region.low());
+        particles.spread(start, region, rng);
+        particles
+    }
+
+    /// N particles of equal weight, all in one state.
+    #[inline]
+    pub fn all_at(state: &[T; D]) -> Self {
+        Self {
+            states: state.map(|coordinate| [coordinate; N]),
+            weights: Weights::equal(Self::CAPACITY),
+            scratch: [0; N],
+        }
+    }
+
+    /// Fills a region anew and forgets all weights: after [`Error::Degenerate`], when the state may be
+    /// anywhere in it. The number of particles stays.
+    #[inline]
+    pub fn spread<R: Rng + ?Sized>(&mut self, start: Start, region: &Region<T, D>, rng: &mut R) {
+        let (low, width) = (region.low(), region.width());
+        let steps = Steps::of(self.len());
+        for index in 0..self.weights.count() {
+            let place = placed(start.point(index as u32, steps, rng), low, &width);
+            self.put(index, &place);
+        }
+        self.weights.equalise(self.len());
+    }
+
+    /// The number of particles.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.weights.count()
+    }
+
+    /// Never: there is at least one particle.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The state of a particle.
+    #[inline(always)]
+    pub fn state(&self, index: usize) -> Option<[T; D]> {
+        (index < self.len()).then(|| self.at(index))
+    }
+
+    /// Logarithms of the weights; the largest is zero, that of a weight of zero −∞ (the lower rail in fixed
+    /// point).
+    #[inline(always)]
+    pub fn log_weights(&self) -> &[T] {
+        self.weights.logs()
+    }
+
+    /// A particle's weight; all sum up to one.
+    #[inline]
+    pub fn weight(&self, index: usize) -> Option<T> {
+        (index < self.len()).then(|| self.weights.of(index) / self.weights.sum())
+    }
+
+    /// Effective number of particles (Σw)²/Σw².
+    #[inline]
+    pub fn effective(&self) -> T {
+        self.weights.effective()
+    }
+
+    /// Weighs each particle by the likelihood of a measurement: `log_likelihood` of its state.
+    ///
+    /// A likelihood that is not a number counts as zero.
+    ///
+    /// # Errors
+    /// [`Error::Degenerate`] if no particle explains the measurement; then nothing has changed.
+    #[inline(always)]
+    pub fn update(&mut self, log_likelihood: impl Fn([T; D]) -> T) -> Result<Update<T>, Error> {
+        self.weights.update(&self.states, log_likelihood)
+    }
+
+    /// Replaces the particles by their offspring, of equal weight.
+    ///
+    /// # Errors
+    /// None that a set of particles could be in; nothing has changed then.
+    #[inline]
+    pub fn resample<R: Rng + ?Sized>(
+        &mut self,
+        resampler: Resampler,
+        rng: &mut R,
+    ) -> Result<(), Error> {
+        self.resample_to(self.len(), resampler, rng)
+    }
+
+    /// Replaces the particles by `count` offspring of equal weight: see [`kld_count`](crate::kld_count).
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`] for none, [`Error::TooMany`] for more than N. Nothing has changed then.
+    #[inline]
+    pub fn resample_to<R: Rng + ?Sized>(
+        &mut self,
+        count: usize,
+        resampler: Resampler,
+        rng: &mut R,
+    ) -> Result<(), Error> {
+        if count == 0 {
+            return Err(Error::NotPositive);
+        }
+        if count > N {
+            return Err(Error::TooMany);
+        }
+        let before = self.len();
+        for index in 0..before.min(N) {
+            self.scratch[index] = offspring::part(self.weights.of(index), offspring::bits(N));
+        }
+        let parts = self.scratch.get_mut(..before).ok_or(Error::TooMany)?;
+        offspring::count(resampler, parts, count as u32, rng)?;
+        self.multiply(before, count);
+        self.weights.equalise(count);
+        Ok(())
+    }
+
+    /// Puts each particle's offspring into the places below `after` of those that have none.
+    fn multiply(&mut self, before: usize, after: usize) {
+        let (before, after) = (before.min(N), after.min(N));
+        let mut free = 0;
+        for index in 0..before {
+            // One stays where it is.
+            let stays = u32::from(index < after);
+            for _ in stays..self.scratch[index] {
+                while free < before && self.scratch[free] > 0 {
+                    free += 1;
+                }
+                if free >= after {
+                    return;
+                }
+                for states in &mut self.states {
+                    states[free] = states[index];
+                }
+                free += 1;
+            }
+        }
+    }
+
+    /// Weighted mean and spread.
+    #[inline]
+    pub fn moments(&self) -> Moments<T, D> {
+        Moments::of(&self.weights, &self.states)
+    }
+
+    #[inline(always)]
+    pub(crate) fn at(&self, index: usize) -> [T; D] {
+        let mut state = [T::ZERO; D];
+        for axis in 0..D {
+            state[axis] = self.states[axis][index];
+        }
+        state
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, index: usize, state: &[T; D]) {
+        for axis in 0..D {
+            self.states[axis][index] = state[axis];
+        }
+    }
+}

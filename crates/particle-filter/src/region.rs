@@ -1,0 +1,65 @@
+use kestirim_scalar::Scalar;
+
+use crate::Error;
+
+/// A box with its sides along the axes: where the state can be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Region<T, const D: usize> {
+    low: [T; D],
+    high: [T; D],
+}
+
+impl<T: Scalar, const D: usize> Region<T, D> {
+    /// The box between two corners, of which `low` has the smaller coordinates.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] if a corner or a width is not; [`Error::NotPositive`] if the corners are the
+    /// wrong way round.
+    #[inline]
+    pub fn new(low: [T; D], high: [T; D]) -> Result<Self, Error> {
+        for axis in 0..D {
+            let width = high[axis] - low[axis];
+            if !T::all_finite(&[low[axis], high[axis], width]) {
+                return Err(Error::NotFinite);
+            }
+            if width < T::ZERO {
+                return Err(Error::NotPositive);
+            }
+        }
+        Ok(Self { low, high })
+    }
+
+    /// The corner of the smaller coordinates.
+    #[inline(always)]
+    pub fn low(&self) -> &[T; D] {
+        &self.low
+    }
+
+    /// The corner of the larger coordinates.
+    #[inline(always)]
+    pub fn high(&self) -> &[T; D] {
+        &self.high
+    }
+
+    /// The lengths of the sides.
+    #[inline(always)]
+    pub fn width(&self) -> [T; D] {
+        let mut width = [T::ZERO; D];
+        for axis in 0..D {
+            width[axis] = self.high[axis] - self.low[axis];
+        }
+        width
+    }
+
+    /// Whether a point is inside, borders included.
+    #[inline(always)]
+    pub fn contains(&self, point: &[T; D]) -> bool {
+        let mut inside = true;
+        for axis in 0..D {
+            inside &= self.low[axis] <= point[axis] && point[axis] <= self.high[axis];
+        }
+        inside
+    }
+}

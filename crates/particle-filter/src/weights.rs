@@ -1,0 +1,173 @@
+use kestirim_scalar::Scalar;
+
+use crate::Error;
+use crate::blocks::{BLOCK, Points, gather, sums};
+
+/// What an update has to tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Update<T> {
+    /// Effective number of particles (Σw)²/Σw²: from one to all.
+    pub effective: T,
+    /// Logarithm of the density of what was measured, given all that was measured before.
+    pub log_evidence: T,
+}
+
+/// Logarithms of weights, the largest of them zero; of those that are zero, −∞ or the lower rail.
+#[derive(Clone, Debug)]
+pub(crate) struct Weights<T, const N: usize> {
+    log: [T; N],
+    count: usize,
+    /// Σw, Σw².
+    sum: T,
+    square_sum: T,
+}
+
+/// ln 0.
+#[inline(always)]
+pub(crate) fn never<T: Scalar>() -> T {
+    T::ZERO.ln()
+}
+
+impl<T: Scalar, const N: usize> Weights<T, N> {
+    /// `count` equal weights.
+    #[inline]
+    pub(crate) fn equal(count: usize) -> Self {
+        let mut weights = Self { log: [T::ZERO; N], count: 0, sum: T::ZERO, square_sum: T::ZERO };
+        weights.equalise(count);
+        weights
+    }
+
+    #[inline]
+    pub(crate) fn equalise(&mut self, count: usize) {
+        self.count = count.min(N);
+        for log in self.log.iter_mut().take(self.count) {
+            *log = T::ZERO;
+        }
+        self.sum = T::from_binary(self.count as i32, 0);
+        self.square_sum = self.sum;
+    }
+
+    #[inline(always)]
+    pub(crate) fn count(&self) -> usize {
+        // The compiler cannot know that it never exceeds N, and would check every index.
+        self.count.min(N)
+    }
+
+    /// The logarithms from number `base` on, up to a block; none beyond the last.
+    #[inline(always)]
+    pub(crate) fn block(&self, base: usize) -> Option<&[T]> {
+        let end = base.saturating_add(BLOCK).min(self.count);
+        self.log.get(base..end).filter(|block| !block.is_empty())
+    }
+
+    #[inline(always)]
+    pub(crate) fn logs(&self) -> &[T] {
+        self.log.get(..self.count).unwrap_or(&self.log)
+    }
+
+    /// The number of the largest weight.
+    #[inline]
+    pub(crate) fn heaviest(&self) -> usize {
+        // It is zero, exactly.
+        self.logs().iter().position(|log| *log == T::ZERO).unwrap_or(0)
+    }
+
+    /// A weight; the largest is one.
+    #[inline(always)]
+    pub(crate) fn of(&self, index: usize) -> T {
+        self.log[index].exp()
+    }
+
+    /// The sum of the weights.
+    #[inline(always)]
+    pub(crate) fn sum(&self) -> T {
+        self.sum
+    }
+
+    #[inline(always)]
+    pub(crate) fn effective(&self) -> T {
+        self.sum * (self.sum / self.square_sum)
+    }
+
+    /// Multiplies each weight by a likelihood; one that is zero, infinite or NaN makes it zero.
+    ///
+    /// # Errors
+    /// [`Error::Degenerate`] if no weight is left; then none has changed.
+    #[inline(always)]
+    pub(crate) fn update<const D: usize>(
+        &mut self,
+        points: &impl Points<T, D>,
+        log_likelihood: impl Fn([T; D]) -> T,
+    ) -> Result<Update<T>, Error> {
+        let never = never::<T>();
+        let mut block = [[T::ZERO; BLOCK]; D];
+        let (mut largest, mut base) = (never, 0);
+        while let Some(logs) = self.block(base) {
+            points.load(base, logs.len(), &mut block);
+            let mut fresh = [never; BLOCK];
+            for (index, (slot, &log)) in fresh.iter_mut().zip(logs).enumerate() {
+                let gain = log_likelihood(gather(&block, index));
+                let value = log + gain;
+                *slot = if gain.is_finite() && value.is_finite() { value } else { never };
+            }
+            let peak = largest_of(fresh);
+            if peak > never && largest == never {
+                // The first that is worth something: now those before it may be written off.
+                self.log.iter_mut().take(base).for_each(|log| *log = never);
+            }
+            largest = if peak > largest { peak } else { largest };
+            if largest > never {
+                for (log, value) in self.log.iter_mut().take(self.count).skip(base).zip(fresh) {
+                    *log = value;
+                }
+            }
+            base += BLOCK;
+        }
+        if largest == never {
+            return Err(Error::Degenerate);
+        }
+        let before = self.sum;
+        self.normalise(largest);
+        let log_evidence = largest + (self.sum / before).ln();
+        Ok(Update { effective: self.effective(), log_evidence })
+    }
+
+    /// Subtracts the largest logarithm from all.
+    #[inline(always)]
+    fn normalise(&mut self, largest: T) {
+        let never = never::<T>();
+        for log in self.log.iter_mut().take(self.count) {
+            let value = *log - largest;
+            // On the lower rail of fixed point the difference would no longer be on it.
+            *log = if *log > never { value } else { never };
+        }
+        let [[sum, square_sum]] =
+            sums(self, &Nowhere, |weight, []| [[(weight, T::ONE), (weight, weight)]]);
+        self.sum = sum;
+        self.square_sum = square_sum;
+    }
+}
+
+/// Points of no dimension: for sums over weights alone.
+struct Nowhere;
+
+impl<T> Points<T, 0> for Nowhere {
+    #[inline(always)]
+    fn load(&self, _: usize, _: usize, _: &mut [[T; BLOCK]; 0]) {}
+}
+
+/// The largest of a block, in lanes.
+#[inline(always)]
+fn largest_of<T: Scalar>(mut values: [T; BLOCK]) -> T {
+    let mut half = BLOCK / 2;
+    while half > 0 {
+        for lane in 0..half {
+            let (a, b) = (values[lane], values[lane + half]);
+            values[lane] = if b > a { b } else { a };
+        }
+        half /= 2;
+    }
+    values[0]
+}

@@ -1,0 +1,54 @@
+//! The point-mass filter against integrals.
+
+use kestirim_particle_filter::{Error, PointMass, Region};
+use kestirim_scalar::{Q16_16, Scalar};
+
+fn bell<T: Scalar>(state: [T; 2], centre: [f64; 2], sigma: [f64; 2]) -> T {
+    let sigmas = [0, 1].map(|axis| {
+        let distance: T = (state[axis] - T::from_f64(centre[axis])) / T::from_f64(sigma[axis]);
+        distance.clamp(T::from_f64(-30.0), T::from_f64(30.0))
+    });
+    -T::dot(&sigmas, &sigmas) * T::HALF
+}
+
+fn check<T: Scalar>(tolerance: f64) -> Result<(), Error> {
+    let region = Region::new([T::from_f64(-100.0); 2], [T::from_f64(100.0); 2])?;
+    let mut filter = PointMass::<T, 2, 500>::new(&region);
+    let (centre, sigma) = ([13.7, -21.3], [3.0, 5.0]);
+    let posterior = |point| bell::<T>(point, centre, sigma);
+    filter.update(posterior)?;
+    // Two refinements, from a cell wider than the posterior.
+    assert!(filter.refine(T::from_f64(12.0), posterior)?);
+    filter.refine(T::from_f64(12.0), posterior)?;
+    let moments = filter.moments();
+    for axis in 0..2 {
+        assert!((moments.mean()[axis].to_f64() - centre[axis]).abs() < tolerance);
+        assert!((moments.deviation()[axis].to_f64() / sigma[axis] - 1.0).abs() < tolerance);
+    }
+    assert!(filter.effective().to_f64() > 20.0);
+    // The density at the border of a normal distribution's 90 % region is a tenth of the largest.
+    let level = filter.density_level(T::from_f64(0.9)).to_f64();
+    assert!((level - 0.1_f64.ln()).abs() < 0.15, "{level}");
+    Ok(())
+}
+
+#[test]
+fn a_narrow_bell_is_found_and_measured() -> Result<(), Error> {
+    check::<f64>(1e-3)?;
+    check::<f32>(1e-3)?;
+    check::<Q16_16>(0.02)
+}
+
+#[test]
+fn nothing_is_refined_that_fills_the_region() -> Result<(), Error> {
+    let region = Region::new([0.0, 0.0], [1.0, 1.0])?;
+    let mut filter = PointMass::<f64, 2, 100>::new(&region);
+    assert!(!filter.refine(12.0, |_| 0.0)?);
+    assert_eq!(filter.region(), &region);
+    assert_eq!(filter.update(|_| f64::NAN), Err(Error::Degenerate));
+    assert_eq!(filter.refine(12.0, |_| f64::NEG_INFINITY), Ok(false));
+    assert!((filter.effective() - 100.0).abs() < 1e-9);
+    assert_eq!(filter.point(100), None);
+    assert!(filter.point(99).is_some_and(|point| region.contains(&point)));
+    Ok(())
+}

@@ -1,0 +1,43 @@
+use core::fmt;
+
+/// Why a measurement was refused. The locator is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// The channel refused it: not finite, no loss that a radio measures, no height.
+    Channel(kestirim_air_to_ground::Error),
+    /// The filter refused it: nowhere in the region does anything explain it.
+    Filter(kestirim_particle_filter::Error),
+}
+
+impl From<kestirim_air_to_ground::Error> for Error {
+    fn from(error: kestirim_air_to_ground::Error) -> Self {
+        Self::Channel(error)
+    }
+}
+
+impl From<kestirim_particle_filter::Error> for Error {
+    fn from(error: kestirim_particle_filter::Error) -> Self {
+        Self::Filter(error)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Channel(error) => error.fmt(formatter),
+            Self::Filter(error) => error.fmt(formatter),
+        }
+    }
+}
+
+impl core::error::Error for Error {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        Some(match self {
+            Self::Channel(error) => error,
+            Self::Filter(error) => error,
+        })
+    }
+}

@@ -1,0 +1,83 @@
+use kestirim_air_to_ground::{Channel, Measurement};
+use kestirim_particle_filter::{Moments, Particles, Region, Resampler, Start, Update};
+use kestirim_scalar::Scalar;
+use rand_core::Rng;
+
+use crate::Error;
+
+/// What the thesis leaves to choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PrintedSettings<T> {
+    /// How particles are resampled.
+    pub resampler: Resampler,
+    /// Share of effective particles below which they are resampled: N_th/L.
+    pub threshold: T,
+    /// Standard deviation of the jitter of each coordinate and step, m.
+    pub jitter: T,
+}
+
+impl<T: Scalar> PrintedSettings<T> {
+    /// Systematic resampling, N_th = L/10, 10 m: what the thesis' tables were made with.
+    #[inline]
+    pub fn thesis() -> Self {
+        Self {
+            resampler: Resampler::Systematic,
+            threshold: T::from_f64(0.1),
+            jitter: T::from_f64(10.0),
+        }
+    }
+}
+
+/// The thesis' particle filter (Table 2.1), literally.
+#[derive(Clone, Debug)]
+pub struct PrintedLocator<T, const L: usize> {
+    channel: Channel<T>,
+    settings: PrintedSettings<T>,
+    particles: Particles<T, 2, L>,
+}
+
+impl<T: Scalar, const L: usize> PrintedLocator<T, L> {
+    /// Particles all over a region (m).
+    #[inline]
+    pub fn new<R: Rng + ?Sized>(
+        channel: Channel<T>,
+        region: &Region<T, 2>,
+        settings: PrintedSettings<T>,
+        rng: &mut R,
+    ) -> Self {
+        let particles = Particles::new(Start::Random, region, rng);
+        Self { channel, settings, particles }
+    }
+
+    /// Takes in a measurement: lines 5 to 15.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] if no particle explains it; then nothing has changed.
+    #[inline]
+    pub fn measure<R: Rng + ?Sized>(
+        &mut self,
+        measurement: &Measurement<T>,
+        rng: &mut R,
+    ) -> Result<Update<T>, Error> {
+        let channel = &self.channel;
+        let update = self.particles.update(|user| channel.log_likelihood(measurement, user))?;
+        if update.effective < self.settings.threshold * T::from_binary(L as i32, 0) {
+            self.particles.resample(self.settings.resampler, rng)?;
+        }
+        self.particles.jitter(&[self.settings.jitter; 2], rng);
+        Ok(update)
+    }
+
+    /// Weighted mean and spread: lines 17 and 18.
+    #[inline]
+    pub fn moments(&self) -> Moments<T, 2> {
+        self.particles.moments()
+    }
+
+    /// The cloud itself.
+    #[inline]
+    pub fn particles(&self) -> &Particles<T, 2, L> {
+        &self.particles
+    }
+}
