@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::systems::{System, pedestrian, robot};
+use crate::systems::{drone, pedestrian, robot};
 
 /// Estimators on synthetic and recorded streams.
 ///
@@ -19,6 +19,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Run a system on its synthetic streams and print published beside own results
+    #[command(subcommand)]
     Run(Run),
     /// Run a system on a recorded log
     #[command(subcommand)]
@@ -30,11 +31,20 @@ pub enum Command {
     List,
 }
 
-/// `host-sim run`.
-#[derive(Debug, Args)]
-pub struct Run {
-    /// Which system
-    pub system: System,
+/// `host-sim run`: every system has experiments of its own.
+#[derive(Debug, Subcommand)]
+pub enum Run {
+    /// Foot-mounted IMU with zero-velocity updates
+    Pedestrian(PlainRun),
+    /// A robot among ultra-wideband anchors
+    Robot(PlainRun),
+    /// A drone that finds and follows a user on the ground
+    Drone(drone::options::Run),
+}
+
+/// An experiment without options of its own.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct PlainRun {
     /// Options that all systems share.
     #[command(flatten)]
     pub options: RunOptions,
@@ -64,6 +74,8 @@ pub enum Replay {
     Pedestrian(pedestrian::replay::Replay),
     /// Ranges recorded between anchors and a tag
     Robot(robot::replay::Replay),
+    /// Path losses that a drone recorded from a user on the ground
+    Drone(drone::replay::Replay),
 }
 
 /// `host-sim calibrate`.

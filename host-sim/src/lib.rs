@@ -14,6 +14,7 @@ pub mod output;
 pub mod published;
 pub mod random;
 pub mod systems;
+pub mod table;
 pub mod text;
 
 pub use error::Error;

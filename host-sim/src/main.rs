@@ -3,14 +3,20 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_sim::cli::{self, Calibrate, Cli, Command, Replay, RunOptions};
+use host_sim::cli::{self, Calibrate, Cli, Command, Replay, Run};
 use host_sim::systems::{self, System};
 use host_sim::{Error, output};
 
 /// Wrong usage or unreadable input.
 const REFUSED: u8 = 2;
 
+/// A filter of thousands of particles is moved about a few times before it lies on the heap.
+const STACK_BYTES: usize = 16 << 20;
+
 fn main() -> ExitCode {
+    if let Err(error) = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build_global() {
+        return refuse(&format!("no threads: {error}"));
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) if error.use_stderr() => return refuse(&cli::sentence(&error)),
@@ -23,12 +29,13 @@ fn main() -> ExitCode {
 
 fn dispatch(command: Option<Command>) -> Result<(), Error> {
     match command {
-        None => {
-            System::ALL.into_iter().try_for_each(|system| system.run(RunOptions::default(), false))
-        }
-        Some(Command::Run(run)) => run.system.run(run.options, run.json),
+        None => System::ALL.into_iter().try_for_each(System::run_by_default),
+        Some(Command::Run(Run::Pedestrian(run))) => systems::run_pedestrian(run),
+        Some(Command::Run(Run::Robot(run))) => systems::run_robot(run),
+        Some(Command::Run(Run::Drone(run))) => systems::run_drone(run),
         Some(Command::Replay(Replay::Pedestrian(replay))) => replay.run(),
         Some(Command::Replay(Replay::Robot(replay))) => replay.run(),
+        Some(Command::Replay(Replay::Drone(replay))) => replay.run(),
         Some(Command::Calibrate(Calibrate::Robot(calibrate))) => calibrate.run(),
         Some(Command::List) => output::print(&systems::list()),
     }

@@ -52,11 +52,12 @@ pub fn table() -> Table {
 }
 
 /// A progress bar on standard error, invisible unless that is a terminal.
-pub fn progress(steps: u64) -> ProgressBar {
+pub fn progress(steps: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(steps);
     // The template is a constant; an unknown key would merely leave the default style.
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} walks {eta}") {
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg} {eta}") {
         bar.set_style(style);
+        bar.set_message(what.to_owned());
     }
     bar
 }

@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-use crate::{Environment, Error, Measurement, Propagation};
+use crate::{Environment, Error, Likelihood, Measurement, Propagation};
 
 /// The path loss between a drone and a user on the ground: free space, and what the buildings add with and
 /// without a line of sight (Al-Hourani's model; the thesis' section 2.1).
@@ -26,6 +26,8 @@ struct Shadowing<T> {
     log_weight: T,
     /// β per radian of elevation.
     decay: T,
+    /// ln α less that of the smallest deviation believed in.
+    steepest: T,
 }
 
 /// What a channel expects of a measurement (eqs 2.1 and 2.7 to 2.10).
@@ -91,6 +93,29 @@ impl<T: Scalar> Channel<T> {
         if finite { Ok(channel) } else { Err(Error::NotFinite) }
     }
 
+    /// The same channel with no deviation below `sigma` (dB).
+    ///
+    /// Right below the drone the model's shadowing is a tenth of a decibel, which no radio measures. A filter
+    /// that believes it breaks on the first decibel that the model does not know of.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] if it is not above zero.
+    #[inline]
+    pub fn with_least_sigma(&self, sigma: T) -> Result<Self, Error> {
+        if !sigma.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if sigma <= T::ZERO {
+            return Err(Error::NotPositive);
+        }
+        let limited = |shadowing: &Shadowing<T>| Shadowing {
+            steepest: -(sigma * shadowing.inverse_sigma).ln(),
+            ..*shadowing
+        };
+        let line_of_sight = limited(&self.line_of_sight);
+        Ok(Self { line_of_sight, obstructed: limited(&self.obstructed), ..*self })
+    }
+
     /// What to expect at a horizontal distance and a height (m) of the drone from the user.
     ///
     /// # Errors
@@ -129,9 +154,15 @@ impl<T: Scalar> Channel<T> {
         let fading = self.b * elevation;
         let hidden = self.obstructed.log_density(excess, elevation) - fading;
         let odds = self.odds * (-fading).exp();
-        let (larger, apart) =
-            if hidden > seen { (hidden, seen - hidden) } else { (seen, hidden - seen) };
-        larger + ((T::ONE + apart.exp()) / (T::ONE + odds)).ln()
+        let apart = -(hidden - seen).abs();
+        hidden.max(seen) + ((T::ONE + apart.exp()) / (T::ONE + odds)).ln()
+    }
+}
+
+impl<T: Scalar> Likelihood<T> for Channel<T> {
+    #[inline(always)]
+    fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
+        Self::log_likelihood(self, measurement, user)
     }
 }
 
@@ -145,6 +176,7 @@ impl<T: Scalar> Shadowing<T> {
             inverse_sigma: propagation.sigma.recip(),
             log_weight: log_factor - propagation.sigma.ln() - log_root_tau,
             decay: propagation.sigma_decay * degrees_per_radian(),
+            steepest: T::MAX,
         }
     }
 
@@ -153,18 +185,22 @@ impl<T: Scalar> Shadowing<T> {
     }
 
     fn sigma(&self, elevation: T) -> T {
-        (-self.decay * elevation).exp() / self.inverse_sigma
+        (-self.steepness(elevation)).exp() / self.inverse_sigma
+    }
+
+    /// ln(α/σ) at an elevation.
+    #[inline(always)]
+    fn steepness(&self, elevation: T) -> T {
+        (self.decay * elevation).min(self.steepest)
     }
 
     /// ln of the normal density of what remains of a loss without that of the distance.
     #[inline(always)]
     fn log_density(&self, excess: T, elevation: T) -> T {
-        let steepness = self.decay * elevation;
+        let steepness = self.steepness(elevation);
         let sigmas = (excess - self.loss_at_one_metre) * self.inverse_sigma * steepness.exp();
         // 127²/2 is a number in every format that can hold a kilometre.
-        let limit = T::from_f64(127.0);
-        let sigmas = if sigmas > limit { limit } else { sigmas };
-        let sigmas = if sigmas < -limit { -limit } else { sigmas };
+        let sigmas = sigmas.abs().min(T::from_f64(127.0));
         self.log_weight + steepness - sigmas * (sigmas * T::HALF)
     }
 }
@@ -172,8 +208,8 @@ impl<T: Scalar> Shadowing<T> {
 /// Elevation (rad) of the drone above the user's horizon, and 20·log₁₀ of the distance (dB re 1 m).
 #[inline(always)]
 fn geometry<T: Scalar>(horizontal_distance: T, height: T) -> (T, T) {
-    let distance = T::norm(&[horizontal_distance, height]);
-    (height.atan2(horizontal_distance), distance.ln() * decibels_per_neper())
+    let log_distance = T::ln_norm(&[horizontal_distance, height]);
+    (height.atan2(horizontal_distance), log_distance * decibels_per_neper())
 }
 
 #[inline(always)]

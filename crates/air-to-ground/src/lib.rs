@@ -2,13 +2,19 @@
 #![no_std]
 
 mod channel;
+mod contaminated;
 mod environment;
 mod error;
+mod free_space;
+mod likelihood;
 mod measurement;
 mod rotor;
 
 pub use channel::{Channel, PathLoss};
+pub use contaminated::Contaminated;
 pub use environment::{Environment, Propagation};
 pub use error::Error;
+pub use free_space::{Antennas, FreeSpace, LevelPrior};
+pub use likelihood::Likelihood;
 pub use measurement::Measurement;
 pub use rotor::Rotor;

@@ -51,6 +51,12 @@ impl<T: Scalar> Measurement<T> {
         self.loss
     }
 
+    /// The same measurement, had the transmitter been weaker by `level` (dB).
+    #[inline(always)]
+    pub fn less(&self, level: T) -> Self {
+        Self { loss: self.loss - level, ..*self }
+    }
+
     /// Horizontal distance from the drone to a user, m.
     #[inline(always)]
     pub fn horizontal_distance(&self, user: [T; 2]) -> T {

@@ -28,6 +28,31 @@ impl<T: Scalar, const D: usize, const N: usize> Points<T, D> for [[T; N]; D] {
     }
 }
 
+/// Points that follow from others.
+pub(crate) struct Mapped<'a, P, F> {
+    pub(crate) points: &'a P,
+    pub(crate) of: F,
+}
+
+impl<T, F, const D: usize, const K: usize, const N: usize> Points<T, K>
+    for Mapped<'_, [[T; N]; D], F>
+where
+    T: Scalar,
+    F: Fn([T; D]) -> [T; K],
+{
+    #[inline(always)]
+    fn load(&self, base: usize, used: usize, block: &mut [[T; BLOCK]; K]) {
+        let mut states = [[T::ZERO; BLOCK]; D];
+        self.points.load(base, used, &mut states);
+        for index in 0..BLOCK {
+            let point = (self.of)(gather(&states, index));
+            for axis in 0..K {
+                block[axis][index] = point[axis];
+            }
+        }
+    }
+}
+
 /// The point number `index` of a block.
 #[inline(always)]
 pub(crate) fn gather<T: Scalar, const D: usize>(block: &[[T; BLOCK]; D], index: usize) -> [T; D] {

@@ -30,19 +30,8 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
     #[inline(always)]
     pub(crate) fn of<const N: usize>(weights: &Weights<T, N>, points: &impl Points<T, D>) -> Self {
         let share = weights.sum().recip();
-        // About a point in the midst, so that sums of far coordinates neither overflow nor round.
         let (centre, reach) = extent(weights, points);
-        let [offset] = sums(weights, points, |weight, point| {
-            let mut pairs = [(weight * share, T::ZERO); D];
-            for axis in 0..D {
-                pairs[axis].1 = point[axis] - centre[axis];
-            }
-            [pairs]
-        });
-        let mut mean = centre;
-        for axis in 0..D {
-            mean[axis] += offset[axis];
-        }
+        let mean = mean(weights, points, centre);
         // In units of the box's sides, of which all squares are numbers.
         let unit = reach.map(|reach| (reach + reach).max(T::EPSILON).divisor());
         let mut factor = sums(weights, points, |weight, point| {
@@ -101,6 +90,29 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
         }
         covariance
     }
+}
+
+/// The weighted mean, summed about a point in the midst, so that sums of far coordinates neither overflow nor
+/// round.
+#[inline(always)]
+pub(crate) fn mean<T: Scalar, const D: usize, const N: usize>(
+    weights: &Weights<T, N>,
+    points: &impl Points<T, D>,
+    centre: [T; D],
+) -> [T; D] {
+    let share = weights.sum().recip();
+    let [offset] = sums(weights, points, |weight, point| {
+        let mut pairs = [(weight * share, T::ZERO); D];
+        for axis in 0..D {
+            pairs[axis].1 = point[axis] - centre[axis];
+        }
+        [pairs]
+    });
+    let mut mean = centre;
+    for axis in 0..D {
+        mean[axis] += offset[axis];
+    }
+    mean
 }
 
 /// The middle of the box around all points of any weight, and half of its sides.

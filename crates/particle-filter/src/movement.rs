@@ -10,12 +10,12 @@ use crate::{Error, Particles};
 const BLOCK: usize = 16;
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
-    /// Moves each particle: `motion` of its state and of D nearly normal random numbers (zero mean, variance
+    /// Moves each particle: `motion` of its state and of K nearly normal random numbers (zero mean, variance
     /// one, within ±3).
     #[inline(always)]
-    pub fn predict<R: Rng + ?Sized>(
+    pub fn predict<const K: usize, R: Rng + ?Sized>(
         &mut self,
-        motion: impl Fn([T; D], [T; D]) -> [T; D],
+        motion: impl Fn([T; D], [T; K]) -> [T; D],
         rng: &mut R,
     ) {
         for index in 0..self.weights.count() {

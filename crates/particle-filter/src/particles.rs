@@ -1,6 +1,8 @@
 use kestirim_scalar::Scalar;
 use rand_core::Rng;
 
+use crate::blocks::Mapped;
+use crate::moments::mean;
 use crate::offspring::{self, Resampler};
 use crate::sequence::{Steps, placed};
 use crate::weights::Weights;
@@ -31,6 +33,24 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         let mut particles = Self::all_at(region.low());
         particles.spread(start, region, rng);
         particles
+    }
+
+    /// As [`Particles::new`], with `count` particles for a start.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`] for none, [`Error::TooMany`] for more than N.
+    #[inline]
+    pub fn with_count<R: Rng + ?Sized>(
+        count: usize,
+        start: Start,
+        region: &Region<T, D>,
+        rng: &mut R,
+    ) -> Result<Self, Error> {
+        check(count, N)?;
+        let mut particles = Self::all_at(region.low());
+        particles.weights.equalise(count);
+        particles.spread(start, region, rng);
+        Ok(particles)
     }
 
     /// N particles of equal weight, all in one state.
@@ -128,12 +148,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         resampler: Resampler,
         rng: &mut R,
     ) -> Result<(), Error> {
-        if count == 0 {
-            return Err(Error::NotPositive);
-        }
-        if count > N {
-            return Err(Error::TooMany);
-        }
+        check(count, N)?;
         let before = self.len();
         for index in 0..before.min(N) {
             self.scratch[index] = offspring::part(self.weights.of(index), offspring::bits(N));
@@ -173,6 +188,19 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         Moments::of(&self.weights, &self.states)
     }
 
+    /// Weighted mean and spread of something that follows from the state, such as some of its coordinates.
+    #[inline(always)]
+    pub fn moments_of<const K: usize>(&self, of: impl Fn([T; D]) -> [T; K]) -> Moments<T, K> {
+        Moments::of(&self.weights, &Mapped { points: &self.states, of })
+    }
+
+    /// The mean alone of the same.
+    #[inline(always)]
+    pub fn mean_of<const K: usize>(&self, of: impl Fn([T; D]) -> [T; K]) -> [T; K] {
+        let first = of(self.at(0));
+        mean(&self.weights, &Mapped { points: &self.states, of }, first)
+    }
+
     #[inline(always)]
     pub(crate) fn at(&self, index: usize) -> [T; D] {
         let mut state = [T::ZERO; D];
@@ -187,5 +215,14 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         for axis in 0..D {
             self.states[axis][index] = state[axis];
         }
+    }
+}
+
+/// Whether so many points can be kept.
+pub(crate) fn check(count: usize, most: usize) -> Result<(), Error> {
+    match count {
+        0 => Err(Error::NotPositive),
+        _ if count > most => Err(Error::TooMany),
+        _ => Ok(()),
     }
 }

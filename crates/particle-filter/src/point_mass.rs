@@ -2,15 +2,16 @@ use kestirim_scalar::Scalar;
 
 use crate::blocks::{BLOCK, Points};
 use crate::moments::bounds;
+use crate::particles::check;
 use crate::sequence::{Steps, lattice_point, placed};
 use crate::weights::{Weights, never};
 use crate::{Error, Moments, Region, Update};
 
-/// A posterior on N fixed points: the golden lattice in a box of D dimensions.
+/// A posterior on up to N fixed points: the golden lattice in a box of D dimensions.
 ///
 /// For a small static problem nothing beats it: its points never wander off, so that it needs no randomness, and
 /// the mean over a smooth posterior is right to many digits as soon as the lattice is finer than the
-/// posterior. When it no longer is, [`PointMass::refine`] lays it anew where the weight is; that takes the
+/// posterior. When it no longer is, [`PointMass::finer`] lays another where the weight is; that takes the
 /// measurements once more. Points are computed, not stored: 4·N bytes in single precision.
 #[derive(Clone, Debug)]
 pub struct PointMass<T, const D: usize, const N: usize> {
@@ -26,6 +27,28 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         Self { region: *region, weights: Weights::equal(N) }
     }
 
+    /// Equal weights on a lattice of `count` points.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`] for none, [`Error::TooMany`] for more than N.
+    #[inline]
+    pub fn with_count(count: usize, region: &Region<T, D>) -> Result<Self, Error> {
+        check(count, N)?;
+        Ok(Self { region: *region, weights: Weights::equal(count) })
+    }
+
+    /// The number of points.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.weights.count()
+    }
+
+    /// Never: there is at least one point.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// The box that the lattice fills.
     #[inline]
     pub fn region(&self) -> &Region<T, D> {
@@ -35,7 +58,7 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
     /// A point of the lattice.
     #[inline]
     pub fn point(&self, index: usize) -> Option<[T; D]> {
-        (index < N).then(|| Lattice::<T, D, N>::new(&self.region).at(index as u32))
+        (index < self.len()).then(|| Lattice::new(&self.region, self.len()).at(index as u32))
     }
 
     /// Logarithms of the weights; the largest is zero, that of a weight of zero −∞ (the lower rail in fixed
@@ -63,32 +86,24 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
     /// [`Error::Degenerate`] if no point explains the measurement; then nothing has changed.
     #[inline(always)]
     pub fn update(&mut self, log_likelihood: impl Fn([T; D]) -> T) -> Result<Update<T>, Error> {
-        self.weights.update(&Lattice::<T, D, N>::new(&self.region), log_likelihood)
+        self.weights.update(&Lattice::new(&self.region, self.len()), log_likelihood)
     }
 
-    /// Lays the lattice over the box around all weights that are more than exp(−`depth`) of the largest, with a
-    /// point's room on each side, and weighs it by `log_posterior`: the sum of the log-likelihoods of all
-    /// measurements so far, and of what was known before.
-    ///
-    /// Says whether it did: it does not where the box would hardly be smaller than the old one.
-    ///
-    /// # Errors
-    /// [`Error::Degenerate`] if the posterior is zero at all new points; then nothing has changed.
-    #[inline(always)]
-    pub fn refine(&mut self, depth: T, log_posterior: impl Fn([T; D]) -> T) -> Result<bool, Error> {
-        let Some(region) = self.heavy_region(depth) else { return Ok(false) };
-        let mut weights = Weights::equal(N);
-        weights.update(&Lattice::<T, D, N>::new(&region), log_posterior)?;
-        *self = Self { region, weights };
-        Ok(true)
+    /// A lattice over the box around all weights that are more than exp(−`depth`) of the largest, with a point's
+    /// room on each side; none if it would hardly be smaller than this one. Its weights are equal: it is to be
+    /// updated by all measurements so far.
+    pub fn finer(&self, depth: T) -> Option<Self> {
+        let region = self.heavy_region(depth)?;
+        Some(Self { region, weights: Weights::equal(self.len()) })
     }
 
     /// The box around what has weight, if it is worth while: smaller than nine tenths of the old one.
     fn heavy_region(&self, depth: T) -> Option<Region<T, D>> {
-        let points = Lattice::<T, D, N>::new(&self.region);
+        let points = Lattice::new(&self.region, self.len());
         let (mut low, mut high) = bounds(&self.weights, &points, |log| log > -depth);
         // As much room as a point has: N^(−1/D) of the side.
-        let share = (-T::from_binary(N as i32, 0).ln() / T::from_binary(D as i32, 0)).exp();
+        let share =
+            (-T::from_binary(self.len() as i32, 0).ln() / T::from_binary(D as i32, 0)).exp();
         let (old, mut volume) = (self.region.width(), T::ONE);
         for axis in 0..D {
             let room = old[axis] * share;
@@ -103,7 +118,7 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
     /// Weighted mean and spread.
     #[inline]
     pub fn moments(&self) -> Moments<T, D> {
-        Moments::of(&self.weights, &Lattice::<T, D, N>::new(&self.region))
+        Moments::of(&self.weights, &Lattice::new(&self.region, self.len()))
     }
 
     /// The logarithm, relative to the largest weight, of the density above which `mass` (0 to 1) of the
@@ -128,16 +143,16 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
 }
 
 /// The points of the golden lattice in a region.
-struct Lattice<T, const D: usize, const N: usize> {
+struct Lattice<T, const D: usize> {
     low: [T; D],
     width: [T; D],
     steps: Steps,
 }
 
-impl<T: Scalar, const D: usize, const N: usize> Lattice<T, D, N> {
+impl<T: Scalar, const D: usize> Lattice<T, D> {
     #[inline(always)]
-    fn new(region: &Region<T, D>) -> Self {
-        Self { low: *region.low(), width: region.width(), steps: Steps::of(N) }
+    fn new(region: &Region<T, D>, count: usize) -> Self {
+        Self { low: *region.low(), width: region.width(), steps: Steps::of(count) }
     }
 
     #[inline(always)]
@@ -146,7 +161,7 @@ impl<T: Scalar, const D: usize, const N: usize> Lattice<T, D, N> {
     }
 }
 
-impl<T: Scalar, const D: usize, const N: usize> Points<T, D> for Lattice<T, D, N> {
+impl<T: Scalar, const D: usize> Points<T, D> for Lattice<T, D> {
     #[inline(always)]
     fn load(&self, base: usize, used: usize, block: &mut [[T; BLOCK]; D]) {
         for index in 0..used.min(BLOCK) {

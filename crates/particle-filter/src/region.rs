@@ -31,6 +31,18 @@ impl<T: Scalar, const D: usize> Region<T, D> {
         Ok(Self { low, high })
     }
 
+    /// The same box with further coordinates, which are zero.
+    #[inline]
+    pub fn extended<const K: usize>(&self) -> Region<T, K> {
+        const { assert!(K >= D, "coordinates are added") };
+        let mut region = Region { low: [T::ZERO; K], high: [T::ZERO; K] };
+        for axis in 0..D {
+            region.low[axis] = self.low[axis];
+            region.high[axis] = self.high[axis];
+        }
+        region
+    }
+
     /// The corner of the smaller coordinates.
     #[inline(always)]
     pub fn low(&self) -> &[T; D] {

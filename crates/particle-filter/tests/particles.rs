@@ -188,7 +188,7 @@ fn jitter_and_kernel<T: Scalar>() -> Result<(), Error> {
     let [x, y] = moments.deviation().map(T::to_f64);
     assert!((x / 10.0 - 1.0).abs() < 0.05 && (y - 1.0).abs() < 0.05, "{x} {y}");
     // Correlated now: the kernel must follow.
-    particles.predict(|[x, y], _| [x, y + x * T::HALF], &mut rng(12));
+    particles.predict(|[x, y], []| [x, y + x * T::HALF], &mut rng(12));
     let before = particles.moments();
     particles.resample(Resampler::Systematic, &mut rng(13))?;
     particles.regularise(T::ONE, &mut rng(14))?;

@@ -18,8 +18,11 @@ fn check<T: Scalar>(tolerance: f64) -> Result<(), Error> {
     let posterior = |point| bell::<T>(point, centre, sigma);
     filter.update(posterior)?;
     // Two refinements, from a cell wider than the posterior.
-    assert!(filter.refine(T::from_f64(12.0), posterior)?);
-    filter.refine(T::from_f64(12.0), posterior)?;
+    for _ in 0..2 {
+        let Some(finer) = filter.finer(T::from_f64(12.0)) else { break };
+        filter = finer;
+        filter.update(posterior)?;
+    }
     let moments = filter.moments();
     for axis in 0..2 {
         assert!((moments.mean()[axis].to_f64() - centre[axis]).abs() < tolerance);
@@ -43,10 +46,9 @@ fn a_narrow_bell_is_found_and_measured() -> Result<(), Error> {
 fn nothing_is_refined_that_fills_the_region() -> Result<(), Error> {
     let region = Region::new([0.0, 0.0], [1.0, 1.0])?;
     let mut filter = PointMass::<f64, 2, 100>::new(&region);
-    assert!(!filter.refine(12.0, |_| 0.0)?);
+    assert!(filter.finer(12.0).is_none());
     assert_eq!(filter.region(), &region);
     assert_eq!(filter.update(|_| f64::NAN), Err(Error::Degenerate));
-    assert_eq!(filter.refine(12.0, |_| f64::NEG_INFINITY), Ok(false));
     assert!((filter.effective() - 100.0).abs() < 1e-9);
     assert_eq!(filter.point(100), None);
     assert!(filter.point(99).is_some_and(|point| region.contains(&point)));

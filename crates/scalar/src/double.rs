@@ -39,6 +39,8 @@ pub(crate) fn exp(x: f64) -> f64 {
         1.666_666_666_666_666_9e-1,
         0.5,
     ];
+    // Beyond, the result is infinite; so is that of this.
+    let x = if x > 710.0 { 710.0 } else { x };
     let whole = x * core::f64::consts::LOG2_E + ROUNDER;
     let count = whole - ROUNDER;
     let rest = (x - count * LN_2_HIGH) - count * LN_2_LOW;
@@ -49,9 +51,7 @@ pub(crate) fn exp(x: f64) -> f64 {
     let value = 1.0 + (rest + rest * rest * sum);
     // 2^(count − 1), then times two: so that the largest results have an exponent.
     let power = f64::from_bits(whole.to_bits().wrapping_add(1022) << 52);
-    let value = value * power * 2.0;
-    let value = if x < -707.5 { 0.0 } else { value };
-    if x > 709.782_712_893_384 { f64::INFINITY } else { value }
+    if x < -707.5 { 0.0 } else { value * power * 2.0 }
 }
 
 /// ln x within 1.5 units in the last place.

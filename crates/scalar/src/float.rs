@@ -70,6 +70,10 @@ macro_rules! impl_scalar_for_float {
             fn norm<const N: usize>(components: &[Self; N]) -> Self {
                 $root(Self::dot(components, components))
             }
+            #[inline(always)]
+            fn ln_norm<const N: usize>(components: &[Self; N]) -> Self {
+                $ln(Self::dot(components, components)) * 0.5
+            }
             #[inline]
             fn recip(self) -> Self {
                 $float::recip(self)

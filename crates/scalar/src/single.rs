@@ -87,6 +87,8 @@ const LN_2_LOW: f32 = -2.121_944_4e-4;
 /// (Cephes).
 #[inline(always)]
 pub(crate) fn exp(x: f32) -> f32 {
+    // Beyond, the result is infinite; so is that of this.
+    let x = if x > 89.0 { 89.0 } else { x };
     let whole = x * core::f32::consts::LOG2_E + ROUNDER;
     let count = whole - ROUNDER;
     let r = (x - count * LN_2_HIGH) - count * LN_2_LOW;
@@ -98,9 +100,7 @@ pub(crate) fn exp(x: f32) -> f32 {
     let value = 1.0 + (r + r * r * sum);
     // 2^(count − 1), then times two: so that the largest results have an exponent.
     let power = f32::from_bits(whole.to_bits().wrapping_add(126) << 23);
-    let value = value * power * 2.0;
-    let value = if x < -86.9 { 0.0 } else { value };
-    if x > 88.722_83 { f32::INFINITY } else { value }
+    if x < -86.9 { 0.0 } else { value * power * 2.0 }
 }
 
 /// ln x within 10⁻⁷ of itself or of one, without branches; a subnormal counts as zero. Moshier's polynomial

@@ -231,6 +231,10 @@ fn a_norm_is_rounded_once_and_saturates() {
     let exact = (x * x + y * y + z * z).sqrt();
     assert!((norm([x, y, z]).to_f64() - exact).abs() < 1.5 / 1_048_576.0);
     assert_eq!(f64::norm(&[2.0, -3.0, 6.0]), 7.0);
+    let seven = [2.0, -3.0, 6.0];
+    assert!((f64::ln_norm(&seven) - 7.0_f64.ln()).abs() < 1e-15);
+    assert!((f32::ln_norm(&seven.map(|x| x as f32)) - 7.0_f32.ln()).abs() < 3e-7);
+    assert!((Q12_20::ln_norm(&seven.map(Q12_20::from_f64)).to_f64() - 7.0_f64.ln()).abs() < 1e-6);
 }
 
 #[test]

@@ -1,14 +1,14 @@
 use heapless::Vec;
-use kestirim_air_to_ground::{Channel, Measurement};
+use kestirim_air_to_ground::{Channel, Likelihood, Measurement};
 use kestirim_particle_filter::{Moments, PointMass, Region, Update};
 use kestirim_scalar::Scalar;
 
 use crate::Error;
 
 /// What is less than e⁻¹² of the largest density is given up when the lattice is laid anew.
-const DEPTH: f64 = 12.0;
+const DEPTH: f64 = 10.0;
 /// The lattice is laid anew when its weight is on less than this share of its points.
-const SHARE: f64 = 0.12;
+const SHARE: f64 = 0.05;
 /// A lattice that is still too coarse is laid anew at once, at most so often.
 const ROUNDS: usize = 4;
 
@@ -17,20 +17,38 @@ const ROUNDS: usize = 4;
 ///
 /// A user who does not move leaves all measurements worth remembering: up to M of them are stored, and each new
 /// lattice is weighed by all. Beyond M the lattice stays as it is. 4·L + 16·M bytes in single precision.
+///
+/// The state is the place (m, in the plane of the measurements); with D = 3 its third coordinate is by how much
+/// (dB) the transmitter is weaker than the measurements assume.
 #[derive(Clone, Debug)]
-pub struct Locator<T, const L: usize, const M: usize> {
-    channel: Channel<T>,
-    posterior: PointMass<T, 2, L>,
+pub struct Locator<T, const L: usize, const M: usize, const D: usize = 2, C = Channel<T>> {
+    channel: C,
+    posterior: PointMass<T, D, L>,
     measurements: Vec<Measurement<T>, M>,
     /// Measurements that could not be stored.
     forgotten: u32,
 }
 
-impl<T: Scalar, const L: usize, const M: usize> Locator<T, L, M> {
-    /// A user who is equally likely to be anywhere in a region (m).
+impl<T, C, const L: usize, const M: usize, const D: usize> Locator<T, L, M, D, C>
+where
+    T: Scalar,
+    C: Likelihood<T>,
+{
+    /// A user who is equally likely to be anywhere in a region.
     #[inline]
-    pub fn new(channel: Channel<T>, region: &Region<T, 2>) -> Self {
+    pub fn new(channel: C, region: &Region<T, D>) -> Self {
+        const { assert!(D == 2 || D == 3, "a place in the plane, and perhaps a level") };
         Self { channel, posterior: PointMass::new(region), measurements: Vec::new(), forgotten: 0 }
+    }
+
+    /// The same with a lattice of `count` points.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `NotPositive` for none, with `TooMany` for more than L.
+    #[inline]
+    pub fn with_count(count: usize, channel: C, region: &Region<T, D>) -> Result<Self, Error> {
+        let posterior = PointMass::with_count(count, region)?;
+        Ok(Self { posterior, ..Self::new(channel, region) })
     }
 
     /// Takes in a measurement.
@@ -39,7 +57,7 @@ impl<T: Scalar, const L: usize, const M: usize> Locator<T, L, M> {
     /// [`Error::Filter`] if nothing in the region explains it; then nothing has changed.
     pub fn measure(&mut self, measurement: &Measurement<T>) -> Result<Update<T>, Error> {
         let channel = &self.channel;
-        let update = self.posterior.update(|user| channel.log_likelihood(measurement, user))?;
+        let update = self.posterior.update(|state| log_likelihood(channel, measurement, &state))?;
         if self.measurements.push(*measurement).is_err() {
             self.forgotten = self.forgotten.saturating_add(1);
         }
@@ -50,61 +68,76 @@ impl<T: Scalar, const L: usize, const M: usize> Locator<T, L, M> {
     }
 
     fn refine(&mut self) {
-        let few = T::from_binary(L as i32, 0) * T::from_f64(SHARE);
+        let few = T::from_binary(self.posterior.len() as i32, 0) * T::from_f64(SHARE);
         for _ in 0..ROUNDS {
             if self.posterior.effective() > few {
                 return;
             }
-            let (channel, measurements) = (&self.channel, &self.measurements);
-            let refined = self
-                .posterior
-                .refine(T::from_f64(DEPTH), |user| log_posterior(channel, measurements, user));
-            // A lattice that cannot be laid anew is still a posterior.
-            if refined != Ok(true) {
-                return;
+            let Some(mut finer) = self.posterior.finer(T::from_f64(DEPTH)) else { return };
+            let channel = &self.channel;
+            for measurement in &self.measurements {
+                // One at a time over all points, which is vector instructions, not all at a point.
+                if finer.update(|state| log_likelihood(channel, measurement, &state)).is_err() {
+                    // A lattice that cannot be laid anew is still a posterior.
+                    return;
+                }
             }
+            self.posterior = finer;
         }
     }
 
     /// Where the user is, and how well that is known.
     #[inline]
-    pub fn moments(&self) -> Moments<T, 2> {
+    pub fn moments(&self) -> Moments<T, D> {
         self.posterior.moments()
     }
 
     /// The posterior itself.
     #[inline]
-    pub fn posterior(&self) -> &PointMass<T, 2, L> {
+    pub fn posterior(&self) -> &PointMass<T, D, L> {
         &self.posterior
     }
 
-    /// Whether a place belongs to the smallest region that holds the user with this probability (0 to 1):
+    /// Whether a state belongs to the smallest region that holds the true one with this probability (0 to 1):
     /// where the density is highest. None once measurements have been forgotten.
-    pub fn credible(&self, place: [T; 2], probability: T) -> Option<bool> {
+    pub fn credible(&self, state: &[T; D], probability: T) -> Option<bool> {
         if self.forgotten > 0 {
             return None;
         }
-        if !self.posterior.region().contains(&place) {
+        if !self.posterior.region().contains(state) {
             return Some(false);
         }
         // The lattice knows densities relative to that of its heaviest point.
-        let here = log_posterior(&self.channel, &self.measurements, place);
+        let density = |state| log_posterior(&self.channel, &self.measurements, state);
         let heaviest = self.posterior.point(self.posterior.heaviest())?;
-        let most = log_posterior(&self.channel, &self.measurements, heaviest);
-        Some(here - most >= self.posterior.density_level(probability))
+        let level = self.posterior.density_level(probability);
+        Some(density(state) - density(&heaviest) >= level)
+    }
+}
+
+#[inline(always)]
+fn log_likelihood<T: Scalar, C: Likelihood<T>, const D: usize>(
+    channel: &C,
+    measurement: &Measurement<T>,
+    state: &[T; D],
+) -> T {
+    let place = [state[0], state[1]];
+    match state.get(2) {
+        Some(&level) => channel.log_likelihood(&measurement.less(level), place),
+        None => channel.log_likelihood(measurement, place),
     }
 }
 
 /// The logarithm of the posterior's density, without a constant.
 #[inline(always)]
-fn log_posterior<T: Scalar>(
-    channel: &Channel<T>,
+fn log_posterior<T: Scalar, C: Likelihood<T>, const D: usize>(
+    channel: &C,
     measurements: &[Measurement<T>],
-    user: [T; 2],
+    state: &[T; D],
 ) -> T {
     let mut sum = T::ZERO;
     for measurement in measurements {
-        sum += channel.log_likelihood(measurement, user);
+        sum += log_likelihood(channel, measurement, state);
     }
     sum
 }

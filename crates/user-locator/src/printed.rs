@@ -11,14 +11,14 @@ use crate::Error;
 pub struct PrintedSettings<T> {
     /// How particles are resampled.
     pub resampler: Resampler,
-    /// Share of effective particles below which they are resampled: N_th/L.
+    /// Share of effective particles below which they are resampled: `N_th/L`.
     pub threshold: T,
     /// Standard deviation of the jitter of each coordinate and step, m.
     pub jitter: T,
 }
 
 impl<T: Scalar> PrintedSettings<T> {
-    /// Systematic resampling, N_th = L/10, 10 m: what the thesis' tables were made with.
+    /// Systematic resampling, `N_th` = L/10, 10 m: what the thesis' tables were made with.
     #[inline]
     pub fn thesis() -> Self {
         Self {
@@ -50,6 +50,22 @@ impl<T: Scalar, const L: usize> PrintedLocator<T, L> {
         Self { channel, settings, particles }
     }
 
+    /// The same with `count` particles.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `NotPositive` for none, with `TooMany` for more than L.
+    #[inline]
+    pub fn with_count<R: Rng + ?Sized>(
+        count: usize,
+        channel: Channel<T>,
+        region: &Region<T, 2>,
+        settings: PrintedSettings<T>,
+        rng: &mut R,
+    ) -> Result<Self, Error> {
+        let particles = Particles::with_count(count, Start::Random, region, rng)?;
+        Ok(Self { channel, settings, particles })
+    }
+
     /// Takes in a measurement: lines 5 to 15.
     ///
     /// # Errors
@@ -62,7 +78,9 @@ impl<T: Scalar, const L: usize> PrintedLocator<T, L> {
     ) -> Result<Update<T>, Error> {
         let channel = &self.channel;
         let update = self.particles.update(|user| channel.log_likelihood(measurement, user))?;
-        if update.effective < self.settings.threshold * T::from_binary(L as i32, 0) {
+        if update.effective
+            < self.settings.threshold * T::from_binary(self.particles.len() as i32, 0)
+        {
             self.particles.resample(self.settings.resampler, rng)?;
         }
         self.particles.jitter(&[self.settings.jitter; 2], rng);

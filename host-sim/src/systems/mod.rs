@@ -1,33 +1,62 @@
 //! The systems, one folder each.
 
+pub mod drone;
 pub mod pedestrian;
 pub mod robot;
 
 use crate::Error;
-use crate::cli::{RunOptions, ScalarKind};
+use crate::cli::{PlainRun, RunOptions, ScalarKind};
 use crate::output;
 
 /// A system that can be run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum System {
-    /// Foot-mounted IMU with zero-velocity updates
+    /// Foot-mounted IMU with zero-velocity updates.
     Pedestrian,
-    /// A robot among ultra-wideband anchors
+    /// A robot among ultra-wideband anchors.
     Robot,
+    /// A drone that finds and follows a user on the ground.
+    Drone,
+}
+
+/// Runs the pedestrian's experiment and prints its report.
+///
+/// # Errors
+/// Whatever keeps the experiment from running or its report from being printed.
+pub fn run_pedestrian(run: PlainRun) -> Result<(), Error> {
+    output::show(&pedestrian::experiment::run(run.options)?, run.json)
+}
+
+/// Runs the robot's experiment and prints its report.
+///
+/// # Errors
+/// As [`run_pedestrian`].
+pub fn run_robot(run: PlainRun) -> Result<(), Error> {
+    output::show(&robot::experiment::run(run.options)?, run.json)
+}
+
+/// Runs the drone's experiments, or one cell of them, and prints the report.
+///
+/// # Errors
+/// As [`run_pedestrian`].
+pub fn run_drone(run: drone::options::Run) -> Result<(), Error> {
+    output::show(&drone::experiment::run(run)?, run.json)
 }
 
 impl System {
     /// Every system, in the order in which they run.
-    pub const ALL: [Self; 2] = [Self::Pedestrian, Self::Robot];
+    pub const ALL: [Self; 3] = [Self::Pedestrian, Self::Robot, Self::Drone];
 
     /// Runs the system on its synthetic streams and prints the report.
     ///
     /// # Errors
-    /// Whatever keeps the experiment from running or its report from being printed.
-    pub fn run(self, options: RunOptions, json: bool) -> Result<(), Error> {
+    /// As [`run_pedestrian`].
+    pub fn run_by_default(self) -> Result<(), Error> {
+        let plain = PlainRun { options: RunOptions::default(), json: false };
         match self {
-            Self::Pedestrian => output::show(&pedestrian::experiment::run(options)?, json),
-            Self::Robot => output::show(&robot::experiment::run(options)?, json),
+            Self::Pedestrian => run_pedestrian(plain),
+            Self::Robot => run_robot(plain),
+            Self::Drone => run_drone(drone::options::Run::default()),
         }
     }
 
@@ -36,6 +65,7 @@ impl System {
         match self {
             Self::Pedestrian => pedestrian::DESCRIPTION,
             Self::Robot => robot::DESCRIPTION,
+            Self::Drone => drone::DESCRIPTION,
         }
     }
 }

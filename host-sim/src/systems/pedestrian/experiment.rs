@@ -78,7 +78,7 @@ pub fn run(options: RunOptions) -> Result<Report, Error> {
     let trials = options.trials.unwrap_or(DEFAULT_TRIALS);
     let methods = [Options { scalar, ..Options::of_the_paper() }, Options { scalar, ..default }];
     let walks = u64::from(trials) * WALKS;
-    let progress = output::progress(walks * RATES.len() as u64);
+    let progress = output::progress(walks * RATES.len() as u64, "walks");
     let row = |(rate_hz, published): (u32, PathLengths)| {
         let outcomes = (0..walks)
             .into_par_iter()

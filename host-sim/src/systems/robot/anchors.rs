@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::table;
 use crate::Error;
+use crate::table;
 use crate::text::printable;
 
 /// The most anchors that the trackers are built for.

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::anchors::Anchors;
-use super::table;
 use crate::metrics::percentile;
+use crate::table;
 use crate::text::printable;
 use crate::{Error, output};
 

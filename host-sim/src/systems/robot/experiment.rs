@@ -87,7 +87,7 @@ pub fn run(options: RunOptions) -> Result<Report, Error> {
     let trials = options.trials.unwrap_or(TRIALS);
     let days: Result<Vec<Day>, Error> = (0..u64::from(trials))
         .into_par_iter()
-        .progress_with(output::progress(u64::from(trials)))
+        .progress_with(output::progress(u64::from(trials), "days"))
         .map(|trial| Day::run(options.seed, trial, scalar))
         .collect();
     let days = days?;

@@ -21,7 +21,6 @@ pub mod printed;
 pub mod ranges;
 pub mod replay;
 pub mod scenario;
-pub mod table;
 
 /// What `host-sim list` says of this system.
 pub(super) const DESCRIPTION: &str = "\

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::table::{self, Row};
 use crate::Error;
+use crate::table::{self, Row};
 use crate::text::Header;
 
 /// Standard gravity, m/s².

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::table;
 use crate::Error;
+use crate::table;
 use crate::text::printable;
 
 /// Where the tag was put down: each coordinate if the file has it.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::anchors::Anchors;
-use super::table::{self, Row};
 use crate::Error;
+use crate::table::{self, Row};
 use crate::text::printable;
 
 /// Time between the epochs of a static recording, µs.

@@ -1,0 +1,156 @@
+//! Received levels over open ground, from a transmitter whose power nobody knows.
+
+use kestirim_scalar::Scalar;
+
+use crate::Measurement;
+
+/// Degrees of freedom of Student's distribution: tails as antenna nulls and buildings make them.
+const FREEDOM: f64 = 3.0;
+/// Its scale, dB (a standard deviation of 6 dB).
+const SCALE: f64 = 3.5;
+/// What a dipole still receives along its axis.
+const NULL_FILL: f64 = 0.1;
+/// The level's curvature is never taken for less than this share of that of perfect data.
+const LEAST_CURVATURE: f64 = 0.05;
+
+/// How many of a link's two antennas are upright dipoles, which are deaf upwards and downwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Antennas {
+    /// None: all directions alike.
+    Isotropic,
+    /// One end.
+    OneDipole,
+    /// Both ends.
+    TwoDipoles,
+}
+
+impl Antennas {
+    /// All there are.
+    pub const ALL: [Self; 3] = [Self::Isotropic, Self::OneDipole, Self::TwoDipoles];
+}
+
+/// What is known of the level before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LevelPrior<T> {
+    /// Mean of the level received at one metre, dB.
+    pub mean: T,
+    /// Its standard deviation, dB.
+    pub sigma: T,
+}
+
+/// A free-space channel of unknown level: received level = level at one metre − 20·log₁₀(distance) +
+/// antennas + noise.
+///
+/// The noise has Student's distribution (ν = 3, scale 3.5 dB); which antennas there are is not known either, so
+/// that all three kinds are averaged. Shadowing is alike along tens of metres, therefore measurements are no
+/// independent witnesses: their likelihood is raised to a power, (1 − ρ)/(1 + ρ) for neighbours of correlation
+/// ρ, wherever its width matters. A composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeSpace<T> {
+    /// What is known of the level; all levels alike if nothing is.
+    pub level: Option<LevelPrior<T>>,
+}
+
+/// How well measurements fit if the transmitter is at a place.
+#[derive(Clone, Copy)]
+struct Fit<T> {
+    /// The level that fits best, dB.
+    level: T,
+    /// ln ∫ likelihood^power · prior d(level).
+    log_likelihood: T,
+}
+
+impl<T: Scalar> FreeSpace<T> {
+    /// Logarithm of the measurements' density if the transmitter is at `place`, to a power, levels and antennas
+    /// integrated over; it lacks a constant. A measurement's loss is the negative received level.
+    pub fn log_likelihood(&self, measurements: &[Measurement<T>], place: [T; 2], power: T) -> T {
+        let fits = Antennas::ALL
+            .map(|antennas| self.fit(measurements, place, antennas, power).log_likelihood);
+        let largest = fits[0].max(fits[1]).max(fits[2]);
+        let sum = fits.iter().fold(T::ZERO, |sum, &fit| sum + (fit - largest).exp());
+        largest + sum.ln()
+    }
+
+    /// The level received at one metre (dB) if the transmitter is at `place`, by the antennas that fit best.
+    pub fn level(&self, measurements: &[Measurement<T>], place: [T; 2]) -> T {
+        let fits = Antennas::ALL.map(|antennas| self.fit(measurements, place, antennas, T::ONE));
+        let better = |best: Fit<T>, fit: Fit<T>| {
+            if fit.log_likelihood > best.log_likelihood { fit } else { best }
+        };
+        better(better(fits[0], fits[1]), fits[2]).level
+    }
+
+    /// Fits the level by iterated weights, and integrates over it by Laplace's approximation.
+    fn fit(
+        &self,
+        measurements: &[Measurement<T>],
+        place: [T; 2],
+        antennas: Antennas,
+        power: T,
+    ) -> Fit<T> {
+        let width = T::from_f64(FREEDOM * SCALE * SCALE);
+        let (prior, known) = match self.level {
+            Some(LevelPrior { mean, sigma }) => (mean, (sigma * sigma).max(T::EPSILON).recip()),
+            None => (T::ZERO, T::ZERO),
+        };
+        let excess =
+            |measurement: &Measurement<T>| -measurement.loss() - gain(measurement, place, antennas);
+        // From a wide kernel, which all measurements reach, to the true one.
+        let mut level = prior;
+        for widening in [1e3, 16.0, 4.0, 1.0, 1.0, 1.0] {
+            let wide = width * T::from_f64(widening);
+            let (mut sum, mut weights) = (T::ZERO, T::ZERO);
+            for measurement in measurements {
+                let excess = excess(measurement);
+                let error = (excess - level) * T::from_f64(0.1);
+                // In tens of decibels, of which squares fit into fixed point.
+                let weight = (wide * T::from_f64(0.01) + error * error).recip();
+                sum += weight * (excess - level);
+                weights += weight;
+            }
+            let pull = known * T::from_f64(100.0 / (FREEDOM + 1.0)) / power;
+            level += (sum + pull * (prior - level)) / (weights + pull).max(T::EPSILON);
+        }
+        let (mut logs, mut curvature) = (T::ZERO, T::ZERO);
+        for measurement in measurements {
+            let error = excess(measurement) - level;
+            let error = error.clamp(-T::from_f64(150.0), T::from_f64(150.0));
+            let share = error / width * error;
+            logs += (T::ONE + share).ln();
+            let fall = (T::ONE + share).recip();
+            curvature += (T::ONE - share) * fall * fall;
+        }
+        let count = T::from_binary(measurements.len() as i32, 0);
+        let freedom = T::from_f64(FREEDOM + 1.0);
+        let least = count * T::from_f64(LEAST_CURVATURE);
+        let curvature = curvature.max(least) * power * (freedom / width) + known;
+        let from_prior = (level - prior) * known.sqrt();
+        let log_likelihood = -power * (freedom * T::HALF) * logs
+            - from_prior * from_prior * T::HALF
+            - curvature.max(T::EPSILON).ln() * T::HALF;
+        Fit { level, log_likelihood }
+    }
+}
+
+/// What a distance and antennas leave of a level of 0 dB at one metre, dB.
+fn gain<T: Scalar>(measurement: &Measurement<T>, place: [T; 2], antennas: Antennas) -> T {
+    let horizontal = measurement.horizontal_distance(place);
+    let distance = T::norm(&[horizontal, measurement.height()]);
+    let decibels = T::from_f64(10.0 / core::f64::consts::LN_10);
+    let distance_gain = -distance.ln() * decibels * T::TWO;
+    // A short dipole's power pattern is cos² of the elevation.
+    let cosine = horizontal / distance;
+    let pattern = cosine * cosine * T::from_f64(1.0 - NULL_FILL) + T::from_f64(NULL_FILL);
+    let dipole = pattern.ln() * decibels;
+    match antennas {
+        Antennas::Isotropic => distance_gain,
+        Antennas::OneDipole => distance_gain + dipole,
+        Antennas::TwoDipoles => distance_gain + dipole + dipole,
+    }
+}

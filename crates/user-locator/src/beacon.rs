@@ -1,0 +1,101 @@
+use heapless::Vec;
+use kestirim_air_to_ground::{FreeSpace, Measurement};
+use kestirim_particle_filter::{Error as FilterError, Moments, PointMass, Region};
+use kestirim_scalar::Scalar;
+
+use crate::Error;
+
+/// The power of the likelihood that makes credible regions honest: (1 − ρ)/(1 + ρ) for hovers whose shadowing
+/// correlates by 0.82, as it does 20 m apart if it decays over 100 m.
+const HONEST: f64 = 0.1;
+
+/// Finds a transmitter of unknown power over open ground, from the levels received at hovers of a real flight.
+///
+/// Up to M measurements are stored; the posterior is computed from all of them on a lattice of L points when
+/// it is asked for. 16·M bytes in single precision.
+#[derive(Clone, Debug)]
+pub struct Beacon<T, const M: usize> {
+    channel: FreeSpace<T>,
+    measurements: Vec<Measurement<T>, M>,
+}
+
+/// Where a [`Beacon`] is.
+#[derive(Clone, Debug)]
+pub struct BeaconEstimate<T, const L: usize> {
+    /// The place, m: the mean of the posterior that takes measurements for independent. That is the sharper
+    /// one, whose mean is not drawn to where nobody has flown; its width means nothing.
+    pub place: [T; 2],
+    /// The level received at one metre, dB.
+    pub level: T,
+    /// The posterior that allows for their correlation: for how well the place is known.
+    pub posterior: PointMass<T, 2, L>,
+}
+
+impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
+    /// Mean and spread of the posterior that allows for correlation.
+    pub fn moments(&self) -> Moments<T, 2> {
+        self.posterior.moments()
+    }
+}
+
+impl<T: Scalar, const M: usize> Beacon<T, M> {
+    /// Without measurements.
+    pub fn new(channel: FreeSpace<T>) -> Self {
+        Self { channel, measurements: Vec::new() }
+    }
+
+    /// Takes in a measurement, of which the loss is the negative received level.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `TooMany` after M measurements; then nothing has changed.
+    pub fn measure(&mut self, measurement: &Measurement<T>) -> Result<(), Error> {
+        self.measurements.push(*measurement).map_err(|_| FilterError::TooMany.into())
+    }
+
+    /// Where in a region the transmitter is, if it is where `inside` says that it can be.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `Degenerate` if it can be nowhere.
+    pub fn estimate<const L: usize>(
+        &self,
+        region: &Region<T, 2>,
+        inside: impl Fn([T; 2]) -> bool,
+    ) -> Result<BeaconEstimate<T, L>, Error> {
+        let log_posterior = |place, power| {
+            if inside(place) {
+                self.channel.log_likelihood(&self.measurements, place, power)
+            } else {
+                T::ZERO.ln()
+            }
+        };
+        let mut sharp = PointMass::<T, 2, L>::new(region);
+        sharp.update(|place| log_posterior(place, T::ONE))?;
+        if let Some(finer) = sharp.finer(T::from_f64(12.0)) {
+            sharp = finer;
+            sharp.update(|place| log_posterior(place, T::ONE))?;
+        }
+        let mut posterior = PointMass::new(region);
+        posterior.update(|place| log_posterior(place, T::from_f64(HONEST)))?;
+        let place = sharp.moments().mean();
+        Ok(BeaconEstimate {
+            place,
+            level: self.channel.level(&self.measurements, place),
+            posterior,
+        })
+    }
+
+    /// Whether a place belongs to the smallest region that holds the transmitter with this probability.
+    pub fn credible<const L: usize>(
+        &self,
+        estimate: &BeaconEstimate<T, L>,
+        place: [T; 2],
+        probability: T,
+    ) -> bool {
+        let density =
+            |place| self.channel.log_likelihood(&self.measurements, place, T::from_f64(HONEST));
+        let posterior = &estimate.posterior;
+        let Some(heaviest) = posterior.point(posterior.heaviest()) else { return false };
+        posterior.region().contains(&place)
+            && density(place) - density(heaviest) >= posterior.density_level(probability)
+    }
+}

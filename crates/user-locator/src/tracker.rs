@@ -1,0 +1,235 @@
+use core::f64::consts::FRAC_1_SQRT_2;
+
+use kestirim_air_to_ground::{Channel, Likelihood, Measurement};
+use kestirim_particle_filter::{
+    Error as FilterError, Moments, Particles, Region, Resampler, Start, Update,
+};
+use kestirim_scalar::Scalar;
+use rand_core::Rng;
+
+use crate::Error;
+
+/// How users move, and when a cloud is no longer believed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Motion<T> {
+    /// Standard deviation of each component of a user's velocity before anything is known, m/s.
+    pub speed: T,
+    /// How fast a velocity changes: standard deviation after a second, m/s.
+    pub unsteadiness: T,
+    /// How far a user strays from a steady course: standard deviation after a second, m.
+    pub straying: T,
+    /// The cloud is widened at each step by at least this share of its own spread: a cloud that is still wide
+    /// must not commit itself to a velocity.
+    pub widening: T,
+    /// The mean logarithm of the evidence (per dB) of the last ten measurements below which the cloud is spread
+    /// anew; never if none.
+    pub least_evidence: Option<T>,
+}
+
+impl<T: Scalar> Motion<T> {
+    /// People on foot or by bicycle, measured through the thesis' channel as it is: to a quarter of a decibel
+    /// from nearby.
+    #[inline]
+    pub fn people() -> Self {
+        Self {
+            speed: T::from_f64(1.2),
+            unsteadiness: T::from_f64(0.053_7),
+            straying: T::from_f64(1.79),
+            widening: T::from_f64(0.1),
+            least_evidence: Some(T::from_f64(-4.0)),
+        }
+    }
+
+    /// The same, measured to `sigma` (dB) at best: see
+    /// [`Channel::with_least_sigma`](kestirim_air_to_ground::Channel::with_least_sigma). What is measured less
+    /// precisely is less dense.
+    #[inline]
+    pub fn people_measured_to(sigma: T) -> Self {
+        let quarters = (sigma * T::from_f64(4.0)).max(T::ONE);
+        let people = Self::people();
+        Self { least_evidence: people.least_evidence.map(|least| least - quarters.ln()), ..people }
+    }
+}
+
+/// Follows a user who moves.
+///
+/// Each particle is a place and the mean velocity that its own way implies; the velocity's variance is the same
+/// for all, because it follows a Kalman filter whose measurements are the steps drawn (a Rao–Blackwellised
+/// filter: Schön, Gustafsson and Nordlund, IEEE Trans. Signal Processing 53(7), 2005). A cloud of places *and*
+/// velocities would need many times as many particles, and diverges from a start that knows neither.
+/// 28·L bytes in single precision.
+#[derive(Clone, Debug)]
+pub struct Tracker<T, const L: usize, C = Channel<T>> {
+    channel: C,
+    motion: Motion<T>,
+    region: Region<T, 2>,
+    /// Place (m) and mean velocity (m/s).
+    particles: Particles<T, 4, L>,
+    /// Standard deviation of each component of the velocity, m/s.
+    velocity_deviation: T,
+    /// After the last measurement.
+    estimate: TrackEstimate<T>,
+    /// Mean logarithm of the evidence lately.
+    evidence: T,
+}
+
+/// Where a user is and goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TrackEstimate<T> {
+    /// Place at the time of the last measurement, m.
+    pub place: [T; 2],
+    /// Velocity, m/s.
+    pub velocity: [T; 2],
+    /// Root mean square distance of the cloud from the place, m.
+    pub spread: T,
+}
+
+impl<T, C, const L: usize> Tracker<T, L, C>
+where
+    T: Scalar,
+    C: Likelihood<T>,
+{
+    /// A user who is equally likely to be anywhere in a region (m).
+    #[inline]
+    pub fn new<R: Rng + ?Sized>(
+        channel: C,
+        motion: Motion<T>,
+        region: &Region<T, 2>,
+        rng: &mut R,
+    ) -> Self {
+        let particles = Particles::new(Start::QuasiRandom, &region.extended(), rng);
+        Self::of(particles, channel, motion, region)
+    }
+
+    /// The same with `count` particles.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `NotPositive` for none, with `TooMany` for more than L.
+    #[inline]
+    pub fn with_count<R: Rng + ?Sized>(
+        count: usize,
+        channel: C,
+        motion: Motion<T>,
+        region: &Region<T, 2>,
+        rng: &mut R,
+    ) -> Result<Self, Error> {
+        let region_of_states = region.extended();
+        let particles = Particles::with_count(count, Start::QuasiRandom, &region_of_states, rng)?;
+        Ok(Self::of(particles, channel, motion, region))
+    }
+
+    fn of(
+        particles: Particles<T, 4, L>,
+        channel: C,
+        motion: Motion<T>,
+        region: &Region<T, 2>,
+    ) -> Self {
+        let estimate = Self::look(&particles);
+        Self {
+            channel,
+            motion,
+            region: *region,
+            particles,
+            velocity_deviation: motion.speed,
+            estimate,
+            evidence: T::ZERO,
+        }
+    }
+
+    /// Lets `interval` (s) pass.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `NotFinite` or `NotPositive` for such an interval; then nothing has changed.
+    pub fn predict<R: Rng + ?Sized>(&mut self, interval: T, rng: &mut R) -> Result<(), Error> {
+        if !interval.is_finite() {
+            return Err(FilterError::NotFinite.into());
+        }
+        if interval < T::ZERO {
+            return Err(FilterError::NotPositive.into());
+        }
+        let motion = &self.motion;
+        let root = interval.sqrt();
+        // Of each coordinate: the spread is that of both.
+        let widening = motion.widening * self.estimate.spread * T::from_f64(FRAC_1_SQRT_2);
+        let straying = (motion.straying * root).max(widening);
+        let drift = self.velocity_deviation * interval;
+        // A step deviates by √(drift² + straying²); what of it is velocity, the Kalman gain says.
+        let step = T::norm(&[drift, straying]).max(T::EPSILON);
+        let share = drift / step;
+        let gain = share * (self.velocity_deviation / step);
+        self.particles.predict(
+            |[x, y, vx, vy], [nx, ny]| {
+                let (dx, dy) = (nx * step, ny * step);
+                [x + vx * interval + dx, y + vy * interval + dy, vx + gain * dx, vy + gain * dy]
+            },
+            rng,
+        );
+        let remaining = self.velocity_deviation * (T::ONE - share * share).max(T::ZERO).sqrt();
+        self.velocity_deviation = T::norm(&[remaining, motion.unsteadiness * root]);
+        Ok(())
+    }
+
+    /// Takes in a measurement of the time that has come.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `Degenerate` if no particle explains it; then nothing has changed.
+    pub fn measure<R: Rng + ?Sized>(
+        &mut self,
+        measurement: &Measurement<T>,
+        rng: &mut R,
+    ) -> Result<Update<T>, Error> {
+        let channel = &self.channel;
+        let update =
+            self.particles.update(|[x, y, ..]| channel.log_likelihood(measurement, [x, y]))?;
+        self.judge(update.log_evidence, rng);
+        if self.particles.effective() < T::from_binary(self.particles.len() as i32, 0) * T::HALF {
+            self.particles.resample(Resampler::Systematic, rng)?;
+        }
+        self.estimate = Self::look(&self.particles);
+        Ok(update)
+    }
+
+    /// Spreads a cloud anew that has not explained the last measurements.
+    fn judge<R: Rng + ?Sized>(&mut self, log_evidence: T, rng: &mut R) {
+        // One measurement alone must not do it.
+        let evidence = log_evidence.max(-T::from_f64(20.0));
+        self.evidence += (evidence - self.evidence) * T::from_f64(0.1);
+        if self.motion.least_evidence.is_some_and(|least| self.evidence < least) {
+            self.particles.spread(Start::Random, &self.region.extended(), rng);
+            self.velocity_deviation = self.motion.speed;
+            self.evidence = T::ZERO;
+        }
+    }
+
+    fn look(particles: &Particles<T, 4, L>) -> TrackEstimate<T> {
+        let moments = particles.moments_of(place);
+        let velocity = particles.mean_of(|[.., vx, vy]| [vx, vy]);
+        TrackEstimate { place: moments.mean(), velocity, spread: moments.spread() }
+    }
+
+    /// Where the user was and went at the last measurement.
+    #[inline]
+    pub fn estimate(&self) -> TrackEstimate<T> {
+        self.estimate
+    }
+
+    /// Mean and spread of the place now.
+    #[inline]
+    pub fn moments(&self) -> Moments<T, 2> {
+        self.particles.moments_of(place)
+    }
+
+    /// The cloud itself: place (m) and mean velocity (m/s).
+    #[inline]
+    pub fn particles(&self) -> &Particles<T, 4, L> {
+        &self.particles
+    }
+}
+
+#[inline(always)]
+fn place<T>([x, y, ..]: [T; 4]) -> [T; 2] {
+    [x, y]
+}

@@ -1,0 +1,111 @@
+//! Recorded flights.
+
+use std::path::Path;
+
+use crate::text::Header;
+use crate::{Error, table};
+
+/// What was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Path loss, dB.
+    PathLoss,
+    /// Received level of unknown offset, dB.
+    Level,
+}
+
+/// One measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// s.
+    pub t: f64,
+    /// Where the drone was, m.
+    pub place: [f64; 2],
+    /// Its height above the user, m.
+    pub height: f64,
+    /// The path loss, or the negative level, dB.
+    pub loss: f64,
+}
+
+/// A log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flight {
+    /// What was measured.
+    pub quantity: Quantity,
+    /// In the order of their times.
+    pub stops: Vec<Stop>,
+    /// Rows that no channel can use: without height, or a loss that no radio measures.
+    pub unusable: usize,
+}
+
+/// Heights above which no drone flies, m.
+const HIGHEST_M: f64 = 20_000.0;
+
+/// Reads columns t,x,y,h and `path_loss_db` or `rssi_db`.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read(path: &Path) -> Result<Flight, Error> {
+    let mut flight = Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0 };
+    let mut quantity = Quantity::PathLoss;
+    table::read(
+        path,
+        "a recorded flight",
+        |header| {
+            let columns = columns(header)?;
+            quantity = columns.1;
+            Ok(columns)
+        },
+        |&([t, x, y, h, value], quantity), row| {
+            let t = row.time_us(t)? as f64 * 1e-6;
+            let place = [row.coordinate("x", x)?, row.coordinate("y", y)?];
+            let height = row.number("h", h)?;
+            // An empty field means that no measurement came.
+            if row.text(value).is_empty() {
+                flight.unusable += 1;
+                return Ok(());
+            }
+            let loss = match quantity {
+                Quantity::PathLoss => row.number("path_loss_db", value)?,
+                Quantity::Level => -row.number("rssi_db", value)?,
+            };
+            if height > 0.0 && height < HIGHEST_M && loss.abs() <= 300.0 {
+                flight.stops.push(Stop { t, place, height, loss });
+            } else {
+                flight.unusable += 1;
+            }
+            Ok(())
+        },
+    )?;
+    flight.quantity = quantity;
+    flight.stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+    Ok(flight)
+}
+
+fn columns(header: &Header<'_>) -> Result<([usize; 5], Quantity), Error> {
+    if header.find("path_loss_db").is_some() {
+        return Ok((header.require(["t", "x", "y", "h", "path_loss_db"])?, Quantity::PathLoss));
+    }
+    Ok((header.require(["t", "x", "y", "h", "rssi_db"])?, Quantity::Level))
+}
+
+/// Reads the user's true place: columns x,y, one line.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_truth(path: &Path) -> Result<[f64; 2], Error> {
+    let mut places = Vec::new();
+    table::read(
+        path,
+        "the user's place",
+        |header| header.require(["x", "y"]),
+        |&[x, y], row| {
+            if !places.is_empty() {
+                return Err(row.line.error("expected one place, found a second one"));
+            }
+            places.push([row.coordinate("x", x)?, row.coordinate("y", y)?]);
+            Ok(())
+        },
+    )?;
+    Ok(places.first().copied().unwrap_or_default())
+}

@@ -1,0 +1,244 @@
+//! One trial of a user who walks a circle, and of a drone that follows.
+
+use std::f64::consts::TAU;
+
+use kestirim_air_to_ground::{Channel, Measurement, Rotor};
+use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_user_locator::{
+    Height, Motion, Orbit, PrintedLocator, PrintedSettings, Tracker, Waypoint,
+};
+use rand_core::{Rng, SeedableRng};
+
+use super::scenario::{EnvironmentKind, measure, uniform};
+use crate::cli::ScalarKind;
+use crate::metrics::{distance, mean};
+use crate::random::{normal, stream};
+
+/// Side of the square, m.
+pub const SIDE_M: f64 = 4000.0;
+/// Most particles of a filter.
+const MOST: usize = 4096;
+/// Filters of no more particles than this are kept in less memory, which stays in the cache.
+const FEW: usize = 1024;
+/// From one measurement to the next, s: the thesis counts steps. With its five seconds of hovering a measurement
+/// the user of most of its figures walks at 2.5 m/s.
+pub const INTERVAL_S: f64 = 5.0;
+/// Errors from here on count as lost, m.
+pub const LOST_M: f64 = 300.0;
+
+/// What the drone does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Policy {
+    /// The thesis: its cloud, and the drone flies to the estimate (Table 3.5).
+    Hover(Resampler),
+    /// Round the estimate of a cloud whose particles know their velocity.
+    Orbit,
+    /// The same, low when it knows where the user is and high when not.
+    OrbitLow,
+}
+
+/// One cell of the sweeps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walk {
+    /// Particles L.
+    pub particles: usize,
+    /// Height of the drone, m.
+    pub height_m: f64,
+    /// Radius of the user's circle, m.
+    pub user_radius_m: f64,
+    /// Steps in which it is walked.
+    pub end_time: u32,
+    /// What is built on the ground.
+    pub environment: EnvironmentKind,
+    /// What the drone does.
+    pub policy: Policy,
+    /// Noise that the channel does not know of, dB.
+    pub unknown_noise_db: f64,
+    /// The smallest deviation that the filter believes, dB.
+    pub least_sigma_db: Option<f64>,
+}
+
+impl Walk {
+    /// What most of the thesis' figures were made with.
+    pub const fn thesis(policy: Policy) -> Self {
+        Self {
+            particles: 1000,
+            height_m: 500.0,
+            user_radius_m: 1000.0,
+            end_time: 500,
+            environment: EnvironmentKind::Urban,
+            policy,
+            unknown_noise_db: 0.0,
+            least_sigma_db: None,
+        }
+    }
+}
+
+/// What came out of a trial.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Mean error over all steps, m.
+    pub error_m: f64,
+    /// Way of the drone, m.
+    pub way_m: f64,
+    /// Sum of its climbs, m.
+    pub climb_m: f64,
+}
+
+impl Outcome {
+    /// Energy of the flight, J: the way at a constant speed and no hovering, as in the thesis, and the climbs.
+    pub fn energy_j(&self, speed_kmh: f64) -> f64 {
+        let rotor = Rotor::<f64>::base_station();
+        let flying = rotor.energy(self.way_m, speed_kmh / 3.6, 0.0).expect("a speed above zero");
+        flying + rotor.weight * self.climb_m
+    }
+}
+
+/// A filter with the drone's rule of where to go.
+trait Follower {
+    /// Takes in a loss measured at a waypoint, and says where the user is and where to go.
+    fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>);
+}
+
+/// One user, one flight.
+pub fn trial(walk: &Walk, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
+    match (scalar, walk.particles <= FEW) {
+        (ScalarKind::F32, true) => with_scalar::<f32, FEW>(walk, seed, index),
+        (ScalarKind::F32, false) => with_scalar::<f32, MOST>(walk, seed, index),
+        (ScalarKind::F64, true) => with_scalar::<f64, FEW>(walk, seed, index),
+        (ScalarKind::F64, false) => with_scalar::<f64, MOST>(walk, seed, index),
+        (ScalarKind::Fixed, true) => with_scalar::<Q16_16, FEW>(walk, seed, index),
+        (ScalarKind::Fixed, false) => with_scalar::<Q16_16, MOST>(walk, seed, index),
+    }
+}
+
+fn with_scalar<T: Scalar, const L: usize>(walk: &Walk, seed: u64, index: u64) -> Outcome {
+    let mut world = stream(seed, index);
+    let phase = TAU * uniform(&mut world);
+    let rng = Xoshiro128PlusPlus::seed_from_u64(world.next_u64());
+    let mut follower: Box<dyn Follower> = match walk.policy {
+        Policy::Hover(resampler) => Box::new(Hovering::<T, L>::new(walk, resampler, rng)),
+        Policy::Orbit => {
+            Box::new(Orbiting::<T, L>::new(walk, Height::Fixed(T::from_f64(walk.height_m)), rng))
+        }
+        Policy::OrbitLow => {
+            let heights = Height::Between(T::from_f64(100.0), T::from_f64(1000.0));
+            Box::new(Orbiting::<T, L>::new(walk, heights, rng))
+        }
+    };
+    let channel = walk.environment.channel::<f64>();
+    let start = if walk.policy == Policy::OrbitLow { 1000.0 } else { walk.height_m };
+    let mut waypoint = Waypoint { place: [SIDE_M / 2.0; 2], height: start };
+    let (mut errors, mut way_m, mut climb_m) = (Vec::new(), 0.0, 0.0);
+    for step in 0..walk.end_time {
+        let (sine, cosine) = (phase + TAU * f64::from(step) / f64::from(walk.end_time)).sin_cos();
+        let user = [cosine, sine].map(|part| SIDE_M / 2.0 + walk.user_radius_m * part);
+        let loss = measure(&channel, user, waypoint.place, waypoint.height, &mut world)
+            + normal(&mut world, walk.unknown_noise_db);
+        let (estimate, next) = follower.step(waypoint, loss);
+        errors.push(distance(user, estimate));
+        way_m += distance(waypoint.place, next.place).hypot(next.height - waypoint.height);
+        climb_m += (next.height - waypoint.height).max(0.0);
+        waypoint = next;
+    }
+    Outcome { error_m: mean(&errors), way_m, climb_m }
+}
+
+/// The thesis' way.
+struct Hovering<T: Scalar, const L: usize> {
+    filter: PrintedLocator<T, L>,
+    rng: Xoshiro128PlusPlus,
+}
+
+impl<T: Scalar, const L: usize> Hovering<T, L> {
+    fn new(walk: &Walk, resampler: Resampler, mut rng: Xoshiro128PlusPlus) -> Self {
+        // The thesis does not print it. It must exceed the user's step, or the cloud stays behind.
+        let step = TAU * walk.user_radius_m / f64::from(walk.end_time);
+        let jitter = T::from_f64((1.27 * step).max(16.0));
+        let settings = PrintedSettings { resampler, jitter, ..PrintedSettings::thesis() };
+        let filter = PrintedLocator::with_count(
+            walk.particles,
+            channel(walk),
+            &square(),
+            settings,
+            &mut rng,
+        );
+        Self { filter: filter.expect("the number of particles is within bounds"), rng }
+    }
+}
+
+impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
+    fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
+        if let Some(measurement) = measurement(from, loss_db) {
+            // What no particle explains leaves the cloud as it was.
+            let _ = self.filter.measure(&measurement, &mut self.rng);
+        }
+        let place = self.filter.moments().mean().map(T::to_f64);
+        (place, Waypoint { place, height: from.height })
+    }
+}
+
+/// Ours.
+struct Orbiting<T: Scalar, const L: usize> {
+    tracker: Tracker<T, L>,
+    orbit: Orbit<T>,
+    rng: Xoshiro128PlusPlus,
+    begun: bool,
+}
+
+impl<T: Scalar, const L: usize> Orbiting<T, L> {
+    fn new(walk: &Walk, height: Height<T>, mut rng: Xoshiro128PlusPlus) -> Self {
+        let tracker = Tracker::with_count(
+            walk.particles,
+            channel(walk),
+            motion(walk.least_sigma_db),
+            &square(),
+            &mut rng,
+        );
+        let tracker = tracker.expect("the number of particles is within bounds");
+        Self { tracker, orbit: Orbit::new(height), rng, begun: false }
+    }
+}
+
+/// What is assumed of the user's motion, with the deviation (dB) of the best measurements.
+fn motion<T: Scalar>(least_sigma_db: Option<f64>) -> Motion<T> {
+    match least_sigma_db {
+        Some(sigma) => Motion::people_measured_to(T::from_f64(sigma)),
+        None => Motion::people(),
+    }
+}
+
+impl<T: Scalar, const L: usize> Follower for Orbiting<T, L> {
+    fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
+        let interval = T::from_f64(INTERVAL_S);
+        if self.begun {
+            self.tracker.predict(interval, &mut self.rng).expect("an interval above zero");
+        }
+        self.begun = true;
+        if let Some(measurement) = measurement(from, loss_db) {
+            // What no particle explains leaves the cloud as it was.
+            let _ = self.tracker.measure(&measurement, &mut self.rng);
+        }
+        let estimate = self.tracker.estimate();
+        let next = self.orbit.next(&estimate, interval);
+        let next = Waypoint { place: next.place.map(T::to_f64), height: next.height.to_f64() };
+        (estimate.place.map(T::to_f64), next)
+    }
+}
+
+fn channel<T: Scalar>(walk: &Walk) -> Channel<T> {
+    let channel = walk.environment.channel::<T>();
+    let limited = walk.least_sigma_db.map(|sigma| channel.with_least_sigma(T::from_f64(sigma)));
+    limited.and_then(Result::ok).unwrap_or(channel)
+}
+
+fn measurement<T: Scalar>(from: Waypoint<f64>, loss_db: f64) -> Option<Measurement<T>> {
+    let number = T::from_f64;
+    Measurement::new(from.place.map(number), number(from.height), number(loss_db)).ok()
+}
+
+/// The square in which the filters look for the user.
+pub(super) fn square<T: Scalar>() -> Region<T, 2> {
+    Region::new([T::ZERO; 2], [T::from_f64(SIDE_M); 2]).expect("a square")
+}

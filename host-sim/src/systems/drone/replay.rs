@@ -1,0 +1,375 @@
+//! `host-sim replay drone`: a recorded flight becomes a place.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use kestirim_air_to_ground::{FreeSpace, LevelPrior, Measurement};
+use kestirim_particle_filter::Region;
+use kestirim_user_locator::{Beacon, Locator};
+use serde::Serialize;
+
+use super::area::Area;
+use super::flight::{self, Flight, Quantity, Stop};
+use super::scenario::{EnvironmentKind, WAVELENGTH_M};
+use crate::metrics::distance;
+use crate::text::printable_path;
+use crate::{Error, output};
+
+/// Points of a lattice.
+const POINTS: usize = 2000;
+/// Most measurements of a flight; of more as many are taken, evenly.
+const MOST: usize = 400;
+/// How far beyond the flight the user may be if no area is given, m.
+const BEYOND_M: f64 = 500.0;
+/// Levels of the transmitter that are thought possible about the nominal one, dB.
+const LEVELS_DB: f64 = 100.0;
+/// How well a path loss is calibrated, dB.
+const CALIBRATION_DB: f64 = 3.0;
+/// Errors are told after each of these, s.
+const MINUTE_S: f64 = 60.0;
+
+/// Options of the command.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Replay {
+    /// The flight: CSV with columns t,x,y,h and `path_loss_db` or `rssi_db` (s, m, dB)
+    #[arg(long, value_name = "FILE")]
+    log: PathBuf,
+    /// Where the user really is: CSV with columns x,y and one line (m); serves accuracy alone
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// What is built on the ground: the thesis' channel at 2 GHz
+    #[arg(long, value_name = "NAME", value_enum, conflicts_with = "free_space")]
+    environment: Option<EnvironmentKind>,
+    /// Nothing is built on the ground, and what antennas there are is unknown [default]
+    #[arg(long)]
+    free_space: bool,
+    /// Where the user can be: CSV with columns x,y, the corners of a polygon (m)
+    #[arg(long, value_name = "FILE")]
+    area: Option<PathBuf>,
+    /// Write t,x,y,sd of each measurement to this file
+    #[arg(long, value_name = "OUT.csv")]
+    track: Option<PathBuf>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Where the user is after some measurements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Estimate {
+    t: f64,
+    place: [f64; 2],
+    sd_m: f64,
+    level_db: Option<f64>,
+    /// Whether the 90 % region holds the true place, if that is known.
+    covered: Option<bool>,
+}
+
+impl Replay {
+    /// Reads, locates, compares, writes and prints.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the options or the files; then nothing is printed.
+    pub fn run(&self) -> Result<(), Error> {
+        let report = self.report()?;
+        for warning in &report.warnings {
+            output::warn(&format!("warning: {}: {warning}", printable_path(&self.log)));
+        }
+        output::show(&report, self.json)
+    }
+
+    fn report(&self) -> Result<Report, Error> {
+        let inputs = [Some(&self.log), self.truth.as_ref(), self.area.as_ref()];
+        output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())?;
+        let mut flight = flight::read(&self.log)?;
+        let truth = self.truth.as_deref().map(flight::read_truth).transpose()?;
+        let area = self.area.as_deref().map(Area::read).transpose()?;
+        let mut warnings = Vec::new();
+        if flight.unusable > 0 {
+            let count = flight.unusable;
+            warnings.push(format!("{count} rows without a usable height or measurement: left out"));
+        }
+        thin_out(&mut flight.stops, &mut warnings);
+        if flight.stops.len() < 3 {
+            return Err(Error::File {
+                path: self.log.clone(),
+                problem: "expected at least three usable measurements".to_owned(),
+            });
+        }
+        if area.is_none() {
+            warnings.push(format!(
+                "the user is looked for up to {BEYOND_M} m beyond the flight (--area)"
+            ));
+        }
+        let search = Search::new(&flight, area.as_ref(), truth);
+        let estimates = match self.environment {
+            None => search.in_free_space(flight.quantity),
+            Some(environment) => search.among_buildings(environment, flight.quantity),
+        };
+        let Some(last) = estimates.last() else {
+            return Err(Error::File {
+                path: self.log.clone(),
+                problem: "no place explains the measurements".to_owned(),
+            });
+        };
+        if estimates.len() < flight.stops.len() {
+            warnings.push("some measurements are explained by no place: left out".to_owned());
+        }
+        if let Some(path) = &self.track {
+            write_track(path, &estimates)?;
+        }
+        Ok(Report {
+            system: "drone",
+            measurements: flight.stops.len(),
+            estimate: Place { x: last.place[0], y: last.place[1] },
+            sd_m: last.sd_m,
+            level_db: last.level_db,
+            warnings,
+            accuracy: truth.map(|truth| Accuracy::of(&estimates, truth)),
+        })
+    }
+}
+
+/// Keeps as many stops as can be remembered.
+fn thin_out(stops: &mut Vec<Stop>, warnings: &mut Vec<String>) {
+    let count = stops.len();
+    if count <= MOST {
+        return;
+    }
+    warnings.push(format!("of {count} measurements {MOST} are used, evenly"));
+    *stops = (0..MOST).map(|k| stops[k * count / MOST]).collect();
+}
+
+/// Where a user is looked for.
+struct Search<'a> {
+    stops: &'a [Stop],
+    area: Option<&'a Area>,
+    /// Coordinates are counted from here, so that they stay small.
+    origin: [f64; 2],
+    high: [f64; 2],
+    truth: Option<[f64; 2]>,
+}
+
+impl<'a> Search<'a> {
+    fn new(flight: &'a Flight, area: Option<&'a Area>, truth: Option<[f64; 2]>) -> Self {
+        let (low, high) = area.map_or_else(|| surroundings(&flight.stops), Area::bounds);
+        Self { stops: &flight.stops, area, origin: low, high, truth }
+    }
+
+    fn inside(&self, place: [f64; 2]) -> bool {
+        self.area.is_none_or(|area| area.contains(self.outward(place)))
+    }
+
+    fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x - self.origin[0], y - self.origin[1]]
+    }
+
+    fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x + self.origin[0], y + self.origin[1]]
+    }
+
+    fn measurement(&self, stop: &Stop) -> Option<Measurement<f64>> {
+        Measurement::new(self.inward(stop.place), stop.height, stop.loss).ok()
+    }
+
+    fn region(&self) -> Region<f64, 2> {
+        Region::new([0.0; 2], self.inward(self.high)).expect("a box of finite corners")
+    }
+
+    /// Over open ground.
+    fn in_free_space(&self, quantity: Quantity) -> Vec<Estimate> {
+        let level = match quantity {
+            Quantity::Level => None,
+            // What 2 GHz loses on the first metre.
+            Quantity::PathLoss => Some(LevelPrior {
+                mean: -20.0 * (4.0 * std::f64::consts::PI / WAVELENGTH_M).log10(),
+                sigma: CALIBRATION_DB,
+            }),
+        };
+        let mut beacon = Box::new(Beacon::<f64, MOST>::new(FreeSpace { level }));
+        let mut estimates = Vec::new();
+        for stop in self.stops {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            if beacon.measure(&measurement).is_err() {
+                continue;
+            }
+            let found = beacon.estimate::<POINTS>(&self.region(), |place| self.inside(place));
+            let Ok(found) = found else { continue };
+            let covered = self.truth.map(|truth| beacon.credible(&found, self.inward(truth), 0.9));
+            estimates.push(Estimate {
+                t: stop.t,
+                place: self.outward(found.place),
+                sd_m: found.moments().spread(),
+                level_db: (quantity == Quantity::Level).then_some(found.level),
+                covered,
+            });
+        }
+        estimates
+    }
+
+    /// Through the thesis' channel.
+    fn among_buildings(&self, environment: EnvironmentKind, quantity: Quantity) -> Vec<Estimate> {
+        let channel = Fenced { channel: environment.channel(), search: self };
+        match quantity {
+            Quantity::PathLoss => {
+                let region = self.region();
+                self.follow::<2>(Locator::new(channel, &region))
+            }
+            Quantity::Level => {
+                let [width, height] = self.inward(self.high);
+                let corners = ([0.0, 0.0, -LEVELS_DB], [width, height, LEVELS_DB]);
+                let region = Region::new(corners.0, corners.1).expect("a box of finite corners");
+                self.follow::<3>(Locator::new(channel, &region))
+            }
+        }
+    }
+
+    fn follow<const D: usize>(
+        &self,
+        locator: Locator<f64, POINTS, MOST, D, Fenced<'_>>,
+    ) -> Vec<Estimate> {
+        let mut locator = Box::new(locator);
+        let mut estimates = Vec::new();
+        for stop in self.stops {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            if locator.measure(&measurement).is_err() {
+                continue;
+            }
+            let moments = locator.moments();
+            let (mean, deviation) = (moments.mean(), moments.deviation());
+            let covered = self.truth.and_then(|truth| {
+                let [x, y] = self.inward(truth);
+                let state = std::array::from_fn(|axis| [x, y, mean[D - 1]][axis]);
+                locator.credible(&state, 0.9)
+            });
+            estimates.push(Estimate {
+                t: stop.t,
+                place: self.outward([mean[0], mean[1]]),
+                sd_m: deviation[0].hypot(deviation[1]),
+                // A level received is the negative loss: the more the transmitter sends, the less.
+                level_db: mean.get(2).map(|loss| -loss),
+                covered,
+            });
+        }
+        estimates
+    }
+}
+
+/// A channel to users within the area only.
+struct Fenced<'a> {
+    channel: kestirim_air_to_ground::Channel<f64>,
+    search: &'a Search<'a>,
+}
+
+impl kestirim_air_to_ground::Likelihood<f64> for Fenced<'_> {
+    fn log_likelihood(&self, measurement: &Measurement<f64>, user: [f64; 2]) -> f64 {
+        if self.search.inside(user) {
+            self.channel.log_likelihood(measurement, user)
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+}
+
+/// The box around a flight, and some more.
+fn surroundings(stops: &[Stop]) -> ([f64; 2], [f64; 2]) {
+    let bound = |axis: usize, sign: f64| {
+        let outermost = stops.iter().map(|stop| sign * stop.place[axis]).fold(f64::MIN, f64::max);
+        sign * (outermost + BEYOND_M)
+    };
+    ([bound(0, -1.0), bound(1, -1.0)], [bound(0, 1.0), bound(1, 1.0)])
+}
+
+fn write_track(path: &Path, estimates: &[Estimate]) -> Result<(), Error> {
+    output::write_file(path, |file| {
+        let mut table = csv::Writer::from_writer(file);
+        table.write_record(["t", "x", "y", "sd"])?;
+        for Estimate { t, place: [x, y], sd_m, .. } in estimates {
+            table.write_record([t, x, y, sd_m].map(|number| format!("{number:.3}")))?;
+        }
+        table.flush()
+    })
+}
+
+/// What the command prints.
+#[derive(Debug, Clone, Serialize)]
+struct Report {
+    system: &'static str,
+    measurements: usize,
+    estimate: Place,
+    /// Root mean square distance from the estimate that the filter expects, m.
+    sd_m: f64,
+    /// Level received at one metre, dB, where it was not known.
+    level_db: Option<f64>,
+    warnings: Vec<String>,
+    accuracy: Option<Accuracy>,
+}
+
+/// m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Place {
+    x: f64,
+    y: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Accuracy {
+    /// Distance of the last estimate from the truth, m.
+    error_m: f64,
+    /// The same after each minute since the first measurement.
+    error_after_s: Vec<ErrorAfter>,
+    /// Whether the last 90 % region holds the truth.
+    in_90_percent_region: Option<bool>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct ErrorAfter {
+    s: f64,
+    error_m: f64,
+}
+
+impl Accuracy {
+    fn of(estimates: &[Estimate], truth: [f64; 2]) -> Self {
+        let error = |estimate: &Estimate| distance(estimate.place, truth);
+        let begin = estimates.first().map_or(0.0, |first| first.t);
+        let end = estimates.last().map_or(0.0, |last| last.t);
+        let minutes = ((end - begin) / MINUTE_S).ceil().clamp(1.0, 1000.0) as u32;
+        let error_after_s = (1..=minutes)
+            .filter_map(|minute| {
+                let s = f64::from(minute) * MINUTE_S;
+                let last = estimates.iter().rev().find(|estimate| estimate.t - begin <= s)?;
+                Some(ErrorAfter { s, error_m: error(last) })
+            })
+            .collect();
+        Self {
+            error_m: estimates.last().map_or(f64::NAN, error),
+            error_after_s,
+            in_90_percent_region: estimates.last().and_then(|last| last.covered),
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        let mut row = |name: &str, value: String| {
+            table.add_row([name, value.as_str()]);
+        };
+        row("measurements", self.measurements.to_string());
+        row("place", format!("{:.1} m, {:.1} m", self.estimate.x, self.estimate.y));
+        row("standard deviation", format!("{:.1} m", self.sd_m));
+        if let Some(level) = self.level_db {
+            row("level at one metre", format!("{level:.1} dB"));
+        }
+        if let Some(accuracy) = &self.accuracy {
+            row("error", format!("{:.1} m", accuracy.error_m));
+            for ErrorAfter { s, error_m } in &accuracy.error_after_s {
+                row(&format!("error after {s} s"), format!("{error_m:.1} m"));
+            }
+            if let Some(inside) = accuracy.in_90_percent_region {
+                row("in the 90 % region", if inside { "yes" } else { "no" }.to_owned());
+            }
+        }
+        table.fmt(f)
+    }
+}

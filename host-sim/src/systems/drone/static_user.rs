@@ -1,0 +1,188 @@
+//! One trial of a user who stays: all filters on the same measurements.
+
+use kestirim_air_to_ground::{Measurement, Rotor};
+use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_user_locator::{Locator, PrintedLocator, PrintedSettings};
+use rand_core::{Rng, SeedableRng};
+
+use super::scenario::{EnvironmentKind, measure, uniform};
+use super::trajectory::{SIDE_M, Trajectory};
+use crate::cli::ScalarKind;
+use crate::metrics::distance;
+use crate::random::stream;
+
+/// Most particles of a filter.
+const MOST: usize = 4096;
+/// Filters of no more particles than this are kept in less memory, which stays in the cache.
+const FEW: usize = 1024;
+/// Most measurements that a lattice remembers.
+const MEMORY: usize = 400;
+/// Points of the lattice that stands for the exact posterior.
+const DENSE: usize = 640;
+/// Time of a measurement, s.
+const HOVER_S: f64 = 5.0;
+
+/// Where and how the user is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometry {
+    /// Points at which the drone stops.
+    pub stops: u32,
+    /// Measurements at each.
+    pub per_stop: u32,
+    /// Height of the drone, m.
+    pub height_m: f64,
+    /// Where the points are.
+    pub trajectory: Trajectory,
+    /// What is built on the ground.
+    pub environment: EnvironmentKind,
+}
+
+impl Geometry {
+    /// The thesis' circle in a city.
+    pub const fn circle(stops: u32, height_m: f64) -> Self {
+        let (trajectory, environment) = (Trajectory::CIRCLE, EnvironmentKind::Urban);
+        Self { stops, per_stop: 1, height_m, trajectory, environment }
+    }
+
+    /// Energy of the flight by the printed formulas and constants (eqs 2.12 to 2.17), J.
+    pub fn energy_j(&self, speed_kmh: f64) -> f64 {
+        let way = self.trajectory.length(self.stops);
+        let hover = f64::from(self.stops) * HOVER_S;
+        Rotor::base_station().energy(way, speed_kmh / 3.6, hover).expect("a speed above zero")
+    }
+}
+
+/// The thesis' filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paper {
+    /// Particles L.
+    pub particles: usize,
+    /// How they are resampled.
+    pub resampler: Resampler,
+}
+
+/// Which filters are compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Job {
+    /// On these measurements.
+    pub geometry: Geometry,
+    /// The thesis' filters.
+    pub papers: Vec<Paper>,
+    /// Numbers of points of our filters.
+    pub bests: Vec<usize>,
+}
+
+/// What came out of a trial, m.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// Errors of the thesis' filters.
+    pub papers: Vec<f64>,
+    /// Errors of ours.
+    pub bests: Vec<f64>,
+    /// Error of the exact posterior's mean.
+    pub limit: f64,
+    /// Measurements that a filter refused.
+    pub refused: u32,
+    /// Of our first filter, whether its 90 % region holds the user.
+    pub credible: bool,
+}
+
+/// One user, one flight.
+pub fn trial(job: &Job, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
+    match scalar {
+        ScalarKind::F32 => with_scalar::<f32>(job, seed, index),
+        ScalarKind::F64 => with_scalar::<f64>(job, seed, index),
+        ScalarKind::Fixed => with_scalar::<Q16_16>(job, seed, index),
+    }
+}
+
+fn with_scalar<T: Scalar>(job: &Job, seed: u64, index: u64) -> Outcome {
+    let mut rng = stream(seed, index);
+    let user = [SIDE_M * uniform(&mut rng), SIDE_M * uniform(&mut rng)];
+    let geometry = &job.geometry;
+    let channel = geometry.environment.channel::<f64>();
+    let mut losses = Vec::new();
+    for place in geometry.trajectory.points(geometry.stops) {
+        for _ in 0..geometry.per_stop {
+            losses.push((place, measure(&channel, user, place, geometry.height_m, &mut rng)));
+        }
+    }
+    let seed = rng.next_u64();
+    let flight = Flight { geometry, losses, user, seed };
+    let mut outcome = Outcome::default();
+    for paper in &job.papers {
+        let (error, refused) = if paper.particles <= FEW {
+            flight.paper::<T, FEW>(*paper)
+        } else {
+            flight.paper::<T, MOST>(*paper)
+        };
+        outcome.papers.push(error);
+        outcome.refused += refused;
+    }
+    for (place, &points) in job.bests.iter().enumerate() {
+        let (error, refused, credible) = if points <= FEW {
+            flight.best::<T, FEW>(points)
+        } else {
+            flight.best::<T, MOST>(points)
+        };
+        outcome.bests.push(error);
+        outcome.refused += refused;
+        outcome.credible = if place == 0 { credible } else { outcome.credible };
+    }
+    outcome.limit = flight.best::<f32, DENSE>(DENSE).0;
+    outcome
+}
+
+struct Flight<'a> {
+    geometry: &'a Geometry,
+    losses: Vec<([f64; 2], f64)>,
+    user: [f64; 2],
+    seed: u64,
+}
+
+impl Flight<'_> {
+    /// Error of the thesis' filter, and how many measurements it refused.
+    fn paper<T: Scalar, const L: usize>(&self, paper: Paper) -> (f64, u32) {
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(self.seed);
+        let settings = PrintedSettings { resampler: paper.resampler, ..PrintedSettings::thesis() };
+        let channel = self.geometry.environment.channel::<T>();
+        let filter = PrintedLocator::<T, L>::with_count(
+            paper.particles,
+            channel,
+            &square(),
+            settings,
+            &mut rng,
+        );
+        let mut filter = Box::new(filter.expect("the number of particles is within bounds"));
+        let measurements = self.measurements::<T>();
+        let refused = measurements.filter(|m| filter.measure(m, &mut rng).is_err()).count() as u32;
+        (self.error(filter.moments().mean()), refused)
+    }
+
+    /// Error of our filter, how many measurements it refused, and whether its 90 % region holds the user.
+    fn best<T: Scalar, const L: usize>(&self, points: usize) -> (f64, u32, bool) {
+        let channel = self.geometry.environment.channel::<T>();
+        let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
+        let mut filter = Box::new(filter.expect("the number of points is within bounds"));
+        let refused = self.measurements::<T>().filter(|m| filter.measure(m).is_err()).count();
+        let credible = filter.credible(&self.user.map(T::from_f64), T::from_f64(0.9));
+        (self.error(filter.moments().mean()), refused as u32, credible == Some(true))
+    }
+
+    fn measurements<T: Scalar>(&self) -> impl Iterator<Item = Measurement<T>> {
+        let height = T::from_f64(self.geometry.height_m);
+        self.losses.iter().filter_map(move |(place, loss)| {
+            Measurement::new(place.map(T::from_f64), height, T::from_f64(*loss)).ok()
+        })
+    }
+
+    fn error<T: Scalar>(&self, place: [T; 2]) -> f64 {
+        distance(self.user, place.map(T::to_f64))
+    }
+}
+
+/// The square in which the user is.
+fn square<T: Scalar>() -> Region<T, 2> {
+    Region::new([T::ZERO; 2], [T::from_f64(SIDE_M); 2]).expect("a square")
+}
