@@ -172,8 +172,8 @@ impl<T: Scalar> Shadowing<T> {
 /// Elevation (rad) of the drone above the user's horizon, and 20·log₁₀ of the distance (dB re 1 m).
 #[inline(always)]
 fn geometry<T: Scalar>(horizontal_distance: T, height: T) -> (T, T) {
-    let distance = T::norm(&[horizontal_distance, height]);
-    (height.atan2(horizontal_distance), distance.ln() * decibels_per_neper())
+    let log_distance = T::ln_norm(&[horizontal_distance, height]);
+    (height.atan2(horizontal_distance), log_distance * decibels_per_neper())
 }
 
 #[inline(always)]

@@ -71,6 +71,10 @@ macro_rules! impl_scalar_for_float {
                 $root(Self::dot(components, components))
             }
             #[inline]
+            fn ln_norm<const N: usize>(components: &[Self; N]) -> Self {
+                0.5 * $ln(Self::dot(components, components))
+            }
+            #[inline]
             fn recip(self) -> Self {
                 $float::recip(self)
             }

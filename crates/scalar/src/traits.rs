@@ -101,6 +101,8 @@ pub trait Scalar:
     /// √(Σ xᵢ²), for lengths of everyday size: where a square overflows or vanishes, so does the float's
     /// result ([`Scalar::hypot`] is more careful, and slower).
     fn norm<const N: usize>(components: &[Self; N]) -> Self;
+    /// The logarithm of that norm, without its square root.
+    fn ln_norm<const N: usize>(components: &[Self; N]) -> Self;
     /// 1/x; of zero an infinity, or the upper rail in fixed point.
     fn recip(self) -> Self;
     /// Prepares `self` as the divisor of [`Scalar::divided_by`]; any number will do, zero too.

@@ -128,6 +128,10 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
         Self::length(components)
     }
     #[inline]
+    fn ln_norm<const N: usize>(components: &[Self; N]) -> Self {
+        Self::log_length(components)
+    }
+    #[inline]
     fn recip(self) -> Self {
         if self.0 == 0 { Self(i32::MAX) } else { Self::ONE / self }
     }
