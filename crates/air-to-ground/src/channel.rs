@@ -131,7 +131,7 @@ impl<T: Scalar> Channel<T> {
         let odds = self.odds * (-fading).exp();
         let (larger, apart) =
             if hidden > seen { (hidden, seen - hidden) } else { (seen, hidden - seen) };
-        larger + ((T::ONE + apart.exp()) / (T::ONE + odds)).ln()
+        larger + (T::ONE + apart.exp()).divided_by((T::ONE + odds).divisor()).ln()
     }
 }
 
