@@ -21,8 +21,9 @@ pub struct Channel<T> {
 struct Shadowing<T> {
     /// Mean loss at a distance of one metre, dB.
     loss_at_one_metre: T,
-    /// 1/α, and its logarithm with that of the factor before the density.
-    inverse_sigma: T,
+    /// ln 1/α.
+    log_inverse_sigma: T,
+    /// Logarithm of the factor before the density of a unit deviation.
     log_weight: T,
     /// β per radian of elevation.
     decay: T,
@@ -142,30 +143,36 @@ impl<T: Scalar> Shadowing<T> {
         let log_root_tau = T::from_f64(0.918_938_533_204_672_7);
         Self {
             loss_at_one_metre: free_space + propagation.excess_loss,
-            inverse_sigma: propagation.sigma.recip(),
-            log_weight: log_factor - propagation.sigma.ln() - log_root_tau,
+            log_inverse_sigma: -propagation.sigma.ln(),
+            log_weight: log_factor - log_root_tau,
             decay: propagation.sigma_decay * degrees_per_radian(),
         }
     }
 
     fn numbers(&self) -> [T; 4] {
-        [self.loss_at_one_metre, self.inverse_sigma, self.log_weight, self.decay]
+        [self.loss_at_one_metre, self.log_inverse_sigma, self.log_weight, self.decay]
+    }
+
+    /// ln 1/σ.
+    #[inline(always)]
+    fn log_precision(&self, elevation: T) -> T {
+        self.decay * elevation + self.log_inverse_sigma
     }
 
     fn sigma(&self, elevation: T) -> T {
-        (-self.decay * elevation).exp() / self.inverse_sigma
+        (-self.log_precision(elevation)).exp()
     }
 
     /// ln of the normal density of what remains of a loss without that of the distance.
     #[inline(always)]
     fn log_density(&self, excess: T, elevation: T) -> T {
-        let steepness = self.decay * elevation;
-        let sigmas = (excess - self.loss_at_one_metre) * self.inverse_sigma * steepness.exp();
+        let log_precision = self.log_precision(elevation);
+        let sigmas = (excess - self.loss_at_one_metre) * log_precision.exp();
         // 127²/2 is a number in every format that can hold a kilometre.
         let limit = T::from_f64(127.0);
         let sigmas = if sigmas > limit { limit } else { sigmas };
         let sigmas = if sigmas < -limit { -limit } else { sigmas };
-        self.log_weight + steepness - sigmas * (sigmas * T::HALF)
+        self.log_weight + log_precision - sigmas * (sigmas * T::HALF)
     }
 }
 
