@@ -68,14 +68,15 @@ pub(crate) fn sums<T: Scalar, const D: usize, const N: usize, const R: usize, co
 ) -> [[T; C]; R] {
     let mut lanes = [[[T::accumulator(); LANES]; C]; R];
     let mut room = [[T::ZERO; BLOCK]; D];
+    let mut weight = [T::ZERO; BLOCK];
     let mut base = 0;
     while let Some(logs) = weights.block(base) {
         let block = points.load(base, logs.len(), &mut room);
-        // What is not used of the last block has no weight.
-        let mut weight = [T::ZERO; BLOCK];
         for (weight, &log) in weight.iter_mut().zip(logs) {
             *weight = log.exp();
         }
+        // What is not used of the last block has no weight.
+        weight.iter_mut().skip(logs.len()).for_each(|weight| *weight = T::ZERO);
         let mut first = 0;
         while first < logs.len() && first <= BLOCK - LANES {
             for lane in 0..LANES {
