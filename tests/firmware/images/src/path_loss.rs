@@ -55,8 +55,7 @@ pub struct Printed<T: Scalar> {
 impl<T: Scalar> Default for Printed<T> {
     fn default() -> Self {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
-        let locator =
-            PrintedLocator::new(channel(), &city(), PrintedSettings::thesis(), &mut rng);
+        let locator = PrintedLocator::new(channel(), &city(), PrintedSettings::thesis(), &mut rng);
         Self { locator, rng, mean: [T::ZERO; 2] }
     }
 }
