@@ -11,14 +11,14 @@ use crate::Error;
 pub struct PrintedSettings<T> {
     /// How particles are resampled.
     pub resampler: Resampler,
-    /// Share of effective particles below which they are resampled: N_th/L.
+    /// Share of effective particles below which they are resampled: `N_th/L`.
     pub threshold: T,
     /// Standard deviation of the jitter of each coordinate and step, m.
     pub jitter: T,
 }
 
 impl<T: Scalar> PrintedSettings<T> {
-    /// Systematic resampling, N_th = L/10, 10 m: what the thesis' tables were made with.
+    /// Systematic resampling, `N_th` = L/10, 10 m: what the thesis' tables were made with.
     #[inline]
     pub fn thesis() -> Self {
         Self {
