@@ -1,9 +1,7 @@
 //! The drone's filters, as the replay sees them: a user somewhere in a city of 2 km × 2 km.
 
-use core::hint::black_box;
-
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
-use kestirim_particle_filter::{Region, Xoshiro128PlusPlus};
+use kestirim_particle_filter::{Moments, Region, Xoshiro128PlusPlus};
 use kestirim_scalar::Scalar;
 use kestirim_user_locator::{PrintedLocator, PrintedSettings};
 use rand_core::SeedableRng;
@@ -49,14 +47,14 @@ fn measurement<T: Scalar>(record: &PathLoss) -> Measurement<T> {
 pub struct Printed<T: Scalar> {
     locator: PrintedLocator<T, PARTICLES>,
     rng: Xoshiro128PlusPlus,
-    mean: [T; 2],
+    moments: Option<Moments<T, 2>>,
 }
 
 impl<T: Scalar> Default for Printed<T> {
     fn default() -> Self {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
         let locator = PrintedLocator::new(channel(), &city(), PrintedSettings::thesis(), &mut rng);
-        Self { locator, rng, mean: [T::ZERO; 2] }
+        Self { locator, rng, moments: None }
     }
 }
 
@@ -76,13 +74,14 @@ impl<T: Named> Tracker for Printed<T> {
         if self.locator.measure(measurement, &mut self.rng).is_err() {
             return Class::Rejected;
         }
-        // Whole: nobody reads the spread, and the compiler would leave it out.
-        self.mean = black_box(self.locator.moments()).mean();
+        self.moments = Some(self.locator.moments());
         Class::Update
     }
 
+    /// The mean, and how far the cloud spreads about it.
     fn position(&self) -> [f32; 3] {
-        let [x, y] = self.mean.map(T::to_f32);
-        [x, y, 0.0]
+        let Some(moments) = self.moments else { fail("a position before the first step") };
+        let [x, y] = moments.mean();
+        [x, y, moments.spread()].map(T::to_f32)
     }
 }
