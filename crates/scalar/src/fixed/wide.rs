@@ -58,7 +58,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
     /// From a value with 2·FRAC fractional bits: rounded once, saturating.
     #[inline(always)]
     pub(super) fn narrowed(sum: i64) -> Self {
-        let rounded = (sum >> FRAC) + ((sum >> (FRAC - 1)) & 1);
+        let rounded = ((sum >> (FRAC - 1)) + 1) >> 1;
         let (low, high) = (rounded as i32, (rounded >> 32) as i32);
         // It fits if the upper half is nothing but the sign.
         Self(if high == low >> 31 { low } else { (high >> 31) ^ i32::MAX })
