@@ -32,7 +32,7 @@ fn step<T: Scalar>(resample: bool) -> f64 {
     let mut k = 0;
     fastest(200, 50, || {
         k += 1;
-        let angle = f64::from(k % 12) * 0.5236;
+        let angle = f64::from(k % 12) * std::f64::consts::FRAC_PI_6;
         let place = [n(1000.0 + 667.0 * angle.cos()), n(1000.0 + 667.0 * angle.sin())];
         let measurement = Measurement::new(place, n(500.0), n(100.0 + f64::from(k % 7))).unwrap();
         let update = particles.update(|user| channel.log_likelihood(&measurement, user));

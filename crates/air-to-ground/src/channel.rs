@@ -21,13 +21,14 @@ pub struct Channel<T> {
 struct Shadowing<T> {
     /// Mean loss at a distance of one metre, dB.
     loss_at_one_metre: T,
-    /// 1/α, and its logarithm with that of the factor before the density.
-    inverse_sigma: T,
+    /// ln 1/α.
+    log_inverse_sigma: T,
+    /// Logarithm of the factor before the density of a unit deviation.
     log_weight: T,
     /// β per radian of elevation.
     decay: T,
-    /// ln α less that of the smallest deviation believed in.
-    steepest: T,
+    /// −ln of the smallest deviation believed in.
+    most_precise: T,
 }
 
 /// What a channel expects of a measurement (eqs 2.1 and 2.7 to 2.10).
@@ -108,10 +109,8 @@ impl<T: Scalar> Channel<T> {
         if sigma <= T::ZERO {
             return Err(Error::NotPositive);
         }
-        let limited = |shadowing: &Shadowing<T>| Shadowing {
-            steepest: -(sigma * shadowing.inverse_sigma).ln(),
-            ..*shadowing
-        };
+        let limited =
+            |shadowing: &Shadowing<T>| Shadowing { most_precise: -sigma.ln(), ..*shadowing };
         let line_of_sight = limited(&self.line_of_sight);
         Ok(Self { line_of_sight, obstructed: limited(&self.obstructed), ..*self })
     }
@@ -155,7 +154,7 @@ impl<T: Scalar> Channel<T> {
         let hidden = self.obstructed.log_density(excess, elevation) - fading;
         let odds = self.odds * (-fading).exp();
         let apart = -(hidden - seen).abs();
-        hidden.max(seen) + ((T::ONE + apart.exp()) / (T::ONE + odds)).ln()
+        hidden.max(seen) + (T::ONE + apart.exp()).divided_by((T::ONE + odds).divisor()).ln()
     }
 }
 
@@ -173,35 +172,35 @@ impl<T: Scalar> Shadowing<T> {
         let log_root_tau = T::from_f64(0.918_938_533_204_672_7);
         Self {
             loss_at_one_metre: free_space + propagation.excess_loss,
-            inverse_sigma: propagation.sigma.recip(),
-            log_weight: log_factor - propagation.sigma.ln() - log_root_tau,
+            log_inverse_sigma: -propagation.sigma.ln(),
+            log_weight: log_factor - log_root_tau,
             decay: propagation.sigma_decay * degrees_per_radian(),
-            steepest: T::MAX,
+            most_precise: T::MAX,
         }
     }
 
     fn numbers(&self) -> [T; 4] {
-        [self.loss_at_one_metre, self.inverse_sigma, self.log_weight, self.decay]
+        [self.loss_at_one_metre, self.log_inverse_sigma, self.log_weight, self.decay]
+    }
+
+    /// ln 1/σ.
+    #[inline(always)]
+    fn log_precision(&self, elevation: T) -> T {
+        (self.decay * elevation + self.log_inverse_sigma).min(self.most_precise)
     }
 
     fn sigma(&self, elevation: T) -> T {
-        (-self.steepness(elevation)).exp() / self.inverse_sigma
-    }
-
-    /// ln(α/σ) at an elevation.
-    #[inline(always)]
-    fn steepness(&self, elevation: T) -> T {
-        (self.decay * elevation).min(self.steepest)
+        (-self.log_precision(elevation)).exp()
     }
 
     /// ln of the normal density of what remains of a loss without that of the distance.
     #[inline(always)]
     fn log_density(&self, excess: T, elevation: T) -> T {
-        let steepness = self.steepness(elevation);
-        let sigmas = (excess - self.loss_at_one_metre) * self.inverse_sigma * steepness.exp();
+        let log_precision = self.log_precision(elevation);
+        let sigmas = (excess - self.loss_at_one_metre) * log_precision.exp();
         // 127²/2 is a number in every format that can hold a kilometre.
         let sigmas = sigmas.abs().min(T::from_f64(127.0));
-        self.log_weight + steepness - sigmas * (sigmas * T::HALF)
+        self.log_weight + log_precision - sigmas * (sigmas * T::HALF)
     }
 }
 

@@ -1,5 +1,5 @@
-//! Passes over particles in blocks that fit into registers and cache lines: copied into local arrays first, so
-//! that the compiler sees neither bounds nor aliases and makes vector instructions of the rest.
+//! Passes over particles in blocks that fit into registers and cache lines: arrays of a known length, so that the
+//! compiler sees no bounds and makes vector instructions of the rest.
 
 use kestirim_scalar::Scalar;
 
@@ -10,21 +10,42 @@ pub(crate) const BLOCK: usize = 32;
 /// Sums are kept in so many lanes, so that they become vector instructions, and round alike everywhere.
 const LANES: usize = 4;
 
+/// Coordinates of the points of a block.
+pub(crate) type Block<T, const D: usize> = [[T; BLOCK]; D];
+
 /// Where the points of a filter are.
 pub(crate) trait Points<T, const D: usize> {
-    /// Copies the coordinates of `used` points from number `base` on.
-    fn load(&self, base: usize, used: usize, block: &mut [[T; BLOCK]; D]);
+    /// The coordinates of `used` points from number `base` on: where they are stored, or written into `room`.
+    fn load<'a>(
+        &'a self,
+        base: usize,
+        used: usize,
+        room: &'a mut Block<T, D>,
+    ) -> [&'a [T; BLOCK]; D];
 }
 
 impl<T: Scalar, const D: usize, const N: usize> Points<T, D> for [[T; N]; D] {
     #[inline(always)]
-    fn load(&self, base: usize, used: usize, block: &mut [[T; BLOCK]; D]) {
-        for axis in 0..D {
-            let source = self[axis].get(base..base.saturating_add(used)).unwrap_or_default();
-            for (to, &from) in block[axis].iter_mut().zip(source) {
-                *to = from;
+    fn load<'a>(
+        &'a self,
+        base: usize,
+        used: usize,
+        room: &'a mut Block<T, D>,
+    ) -> [&'a [T; BLOCK]; D] {
+        let stored = self.each_ref().map(|axis| axis.get(base..).unwrap_or_default());
+        if stored.iter().any(|rest| rest.len() < BLOCK) {
+            // The last block is not whole.
+            for (to, from) in room.iter_mut().zip(stored) {
+                for (to, &from) in to.iter_mut().zip(from.iter().take(used)) {
+                    *to = from;
+                }
             }
         }
+        let mut block = room.each_ref();
+        for (block, rest) in block.iter_mut().zip(stored) {
+            *block = rest.first_chunk().unwrap_or(block);
+        }
+        block
     }
 }
 
@@ -41,21 +62,27 @@ where
     F: Fn([T; D]) -> [T; K],
 {
     #[inline(always)]
-    fn load(&self, base: usize, used: usize, block: &mut [[T; BLOCK]; K]) {
-        let mut states = [[T::ZERO; BLOCK]; D];
-        self.points.load(base, used, &mut states);
+    fn load<'a>(
+        &'a self,
+        base: usize,
+        used: usize,
+        room: &'a mut Block<T, K>,
+    ) -> [&'a [T; BLOCK]; K] {
+        let mut copies = [[T::ZERO; BLOCK]; D];
+        let states = self.points.load(base, used, &mut copies);
         for index in 0..BLOCK {
             let point = (self.of)(gather(&states, index));
             for axis in 0..K {
-                block[axis][index] = point[axis];
+                room[axis][index] = point[axis];
             }
         }
+        room.each_ref()
     }
 }
 
 /// The point number `index` of a block.
 #[inline(always)]
-pub(crate) fn gather<T: Scalar, const D: usize>(block: &[[T; BLOCK]; D], index: usize) -> [T; D] {
+pub(crate) fn gather<T: Scalar, const D: usize>(block: &[&[T; BLOCK]; D], index: usize) -> [T; D] {
     let mut point = [T::ZERO; D];
     for axis in 0..D {
         point[axis] = block[axis][index];
@@ -71,15 +98,16 @@ pub(crate) fn sums<T: Scalar, const D: usize, const N: usize, const R: usize, co
     factors: impl Fn(T, [T; D]) -> [[(T, T); C]; R],
 ) -> [[T; C]; R] {
     let mut lanes = [[[T::accumulator(); LANES]; C]; R];
-    let mut block = [[T::ZERO; BLOCK]; D];
+    let mut room = [[T::ZERO; BLOCK]; D];
+    let mut weight = [T::ZERO; BLOCK];
     let mut base = 0;
     while let Some(logs) = weights.block(base) {
-        points.load(base, logs.len(), &mut block);
-        // What is not used of the last block has no weight.
-        let mut weight = [T::ZERO; BLOCK];
+        let block = points.load(base, logs.len(), &mut room);
         for (weight, &log) in weight.iter_mut().zip(logs) {
             *weight = log.exp();
         }
+        // What is not used of the last block has no weight.
+        weight.iter_mut().skip(logs.len()).for_each(|weight| *weight = T::ZERO);
         let mut first = 0;
         while first < logs.len() && first <= BLOCK - LANES {
             for lane in 0..LANES {

@@ -140,10 +140,10 @@ pub(crate) fn bounds<T: Scalar, const D: usize, const N: usize>(
     wanted: impl Fn(T) -> bool,
 ) -> ([T; D], [T; D]) {
     let (mut low, mut high) = ([[T::MAX; BLOCK]; D], [[T::MIN; BLOCK]; D]);
-    let mut block = [[T::ZERO; BLOCK]; D];
+    let mut room = [[T::ZERO; BLOCK]; D];
     let mut base = 0;
     while let Some(logs) = weights.block(base) {
-        points.load(base, logs.len(), &mut block);
+        let block = points.load(base, logs.len(), &mut room);
         for axis in 0..D {
             for (index, &log) in (0..BLOCK).zip(logs) {
                 let value = block[axis][index];

@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-use crate::blocks::{BLOCK, Points};
+use crate::blocks::{BLOCK, Block, Points};
 use crate::moments::bounds;
 use crate::particles::check;
 use crate::sequence::{Steps, lattice_point, placed};
@@ -163,12 +163,18 @@ impl<T: Scalar, const D: usize> Lattice<T, D> {
 
 impl<T: Scalar, const D: usize> Points<T, D> for Lattice<T, D> {
     #[inline(always)]
-    fn load(&self, base: usize, used: usize, block: &mut [[T; BLOCK]; D]) {
+    fn load<'a>(
+        &'a self,
+        base: usize,
+        used: usize,
+        room: &'a mut Block<T, D>,
+    ) -> [&'a [T; BLOCK]; D] {
         for index in 0..used.min(BLOCK) {
             let point = self.at((base + index) as u32);
             for axis in 0..D {
-                block[axis][index] = point[axis];
+                room[axis][index] = point[axis];
             }
         }
+        room.each_ref()
     }
 }

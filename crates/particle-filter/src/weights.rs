@@ -1,7 +1,7 @@
 use kestirim_scalar::Scalar;
 
 use crate::Error;
-use crate::blocks::{BLOCK, Points, gather, sums};
+use crate::blocks::{BLOCK, Block, Points, gather, sums};
 
 /// What an update has to tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,10 +102,10 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         log_likelihood: impl Fn([T; D]) -> T,
     ) -> Result<Update<T>, Error> {
         let never = never::<T>();
-        let mut block = [[T::ZERO; BLOCK]; D];
+        let mut room = [[T::ZERO; BLOCK]; D];
         let (mut largest, mut base) = (never, 0);
         while let Some(logs) = self.block(base) {
-            points.load(base, logs.len(), &mut block);
+            let block = points.load(base, logs.len(), &mut room);
             let mut fresh = [never; BLOCK];
             for (index, (slot, &log)) in fresh.iter_mut().zip(logs).enumerate() {
                 let gain = log_likelihood(gather(&block, index));
@@ -155,7 +155,9 @@ struct Nowhere;
 
 impl<T> Points<T, 0> for Nowhere {
     #[inline(always)]
-    fn load(&self, _: usize, _: usize, _: &mut [[T; BLOCK]; 0]) {}
+    fn load<'a>(&'a self, _: usize, _: usize, _: &'a mut Block<T, 0>) -> [&'a [T; BLOCK]; 0] {
+        []
+    }
 }
 
 /// The largest of a block, in lanes.

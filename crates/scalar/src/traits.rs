@@ -101,7 +101,7 @@ pub trait Scalar:
     /// √(Σ xᵢ²), for lengths of everyday size: where a square overflows or vanishes, so does the float's
     /// result ([`Scalar::hypot`] is more careful, and slower).
     fn norm<const N: usize>(components: &[Self; N]) -> Self;
-    /// ln √(Σ xᵢ²), for the same lengths as [`Scalar::norm`]; a float takes no root for it.
+    /// The logarithm of that norm, without its square root.
     fn ln_norm<const N: usize>(components: &[Self; N]) -> Self;
     /// 1/x; of zero an infinity, or the upper rail in fixed point.
     fn recip(self) -> Self;

@@ -1,7 +1,7 @@
 //! Every elementary function against f64 over its whole domain, edges included. The bounds asserted are
 //! those of the crate's documentation.
 
-use kestirim_scalar::{Fixed, Q12_20, Q16_16, Scalar};
+use kestirim_scalar::{Fixed, Q8_24, Q12_20, Q16_16, Scalar};
 
 /// Bits over the whole range of an i32: both rails, every power of two and its neighbours, small numbers one
 /// by one, and 200 000 spread evenly.
@@ -231,10 +231,35 @@ fn a_norm_is_rounded_once_and_saturates() {
     let exact = (x * x + y * y + z * z).sqrt();
     assert!((norm([x, y, z]).to_f64() - exact).abs() < 1.5 / 1_048_576.0);
     assert_eq!(f64::norm(&[2.0, -3.0, 6.0]), 7.0);
-    let seven = [2.0, -3.0, 6.0];
-    assert!((f64::ln_norm(&seven) - 7.0_f64.ln()).abs() < 1e-15);
-    assert!((f32::ln_norm(&seven.map(|x| x as f32)) - 7.0_f32.ln()).abs() < 3e-7);
-    assert!((Q12_20::ln_norm(&seven.map(Q12_20::from_f64)).to_f64() - 7.0_f64.ln()).abs() < 1e-6);
+}
+
+fn check_ln_norm<T: Scalar>(last_place: f64) {
+    for step in 0..4000 {
+        let length = 1e-3 * f64::from(step).powf(1.7);
+        let [x, y] = [0.6, -0.8].map(|share| T::from_f64(share * length));
+        let exact = x.to_f64().hypot(y.to_f64()).ln();
+        let got = T::ln_norm(&[x, y]);
+        if exact == f64::NEG_INFINITY {
+            assert!(!got.is_finite());
+        } else {
+            let error = (got.to_f64() - exact).abs();
+            assert!(error <= 2e-7 + last_place + 1.2e-7 * exact.abs(), "{length}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_logarithm_of_a_norm_needs_no_norm() {
+    check_ln_norm::<f64>(0.0);
+    check_ln_norm::<f32>(0.0);
+    check_ln_norm::<Fixed<8>>(0.51 / 256.0);
+    check_ln_norm::<Q16_16>(0.51 / 65_536.0);
+    check_ln_norm::<Q12_20>(0.51 / 1_048_576.0);
+    // The norm is beyond the format, its logarithm is not.
+    let rails = Q16_16::ln_norm(&[Q16_16::MIN; 4]);
+    assert!((rails.to_f64() - 65_536_f64.ln()).abs() < 1e-4);
+    let least = Q8_24::ln_norm(&[Q8_24::EPSILON, Q8_24::ZERO]);
+    assert!((least.to_f64() + 24.0 * 2_f64.ln()).abs() < 1e-6);
 }
 
 #[test]

@@ -94,29 +94,50 @@ impl<const FRAC: u32> Fixed<FRAC> {
     /// ln x within 3·10⁻⁷ and half a unit.
     #[inline]
     pub(super) fn logarithm(self) -> Self {
-        /// ln 2 in Q26.
-        const LN_2: i32 = 46_516_320;
-        /// ln(1 + t) without its factor t, highest power first, in Q30.
-        const C: [i32; 7] = [
-            126_996_643,
-            -202_958_491,
-            221_240_990,
-            -267_161_345,
-            357_591_443,
-            -536_892_013,
-            1_073_745_311,
-        ];
         if self.0 <= 0 {
             return Self(i32::MIN);
         }
         let zeros = self.0.leading_zeros();
-        // 1 to 2 in Q31; its logarithm is that of its half, where that is nearer to 1.
-        let mantissa = (self.0 as u32) << zeros;
-        let halved = mantissa >= 3_037_000_500;
-        let t = if halved { mantissa } else { mantissa << 1 } as i32;
-        let whole = 31 - zeros as i32 - FRAC as i32 + i32::from(halved);
-        let sum = C.into_iter().fold(0, |sum, c| c + high(sum, t));
-        let value = ((high(sum, t) + 8) >> 4) + whole * LN_2;
-        Self::rescaled(value, 26)
+        let (whole, part) = split_logarithm((self.0 as u32) << zeros);
+        let whole = whole + 31 - zeros as i32 - FRAC as i32;
+        Self::rescaled(((part + 8) >> 4) + whole * LN_2, 26)
     }
+
+    /// The logarithm of a vector's length within 2·10⁻⁷ and half a unit.
+    #[inline]
+    pub(super) fn log_length(components: &[Self]) -> Self {
+        let square = Self::square_length(components);
+        if square == 0 {
+            return Self(i32::MIN);
+        }
+        let zeros = square.leading_zeros();
+        let (whole, part) = split_logarithm(((square << zeros) >> 32) as u32);
+        let whole = whole + 63 - zeros as i32 - 2 * FRAC as i32;
+        // Half of it is the root's.
+        Self::rescaled(((part + 16) >> 5) + whole * (LN_2 / 2), 26)
+    }
+}
+
+/// ln 2 in Q26.
+const LN_2: i32 = 46_516_320;
+
+/// Of a number from 1 to 2 in Q31: how many times ln 2, and what remains of its logarithm in Q30.
+///
+/// Where the number's half is nearer to 1, that is taken.
+#[inline]
+fn split_logarithm(mantissa: u32) -> (i32, i32) {
+    /// ln(1 + t) without its factor t, highest power first, in Q30.
+    const C: [i32; 7] = [
+        126_996_643,
+        -202_958_491,
+        221_240_990,
+        -267_161_345,
+        357_591_443,
+        -536_892_013,
+        1_073_745_311,
+    ];
+    let halved = mantissa >= 3_037_000_500;
+    let t = if halved { mantissa } else { mantissa << 1 } as i32;
+    let sum = C.into_iter().fold(0, |sum, c| c + high(sum, t));
+    (i32::from(halved), high(sum, t))
 }

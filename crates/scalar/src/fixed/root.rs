@@ -21,13 +21,20 @@ impl<const FRAC: u32> Fixed<FRAC> {
 
     #[inline]
     pub(super) fn length(components: &[Self]) -> Self {
+        // Beyond 2⁶² the root is beyond the rail.
+        let square = Self::square_length(components).min(1 << 62);
+        Self(i32::try_from(nearest_root(square)).unwrap_or(i32::MAX))
+    }
+
+    /// Σ xᵢ² with 2·FRAC fractional bits; saturates.
+    #[inline]
+    pub(super) fn square_length(components: &[Self]) -> u64 {
         let mut square = 0_u64;
         for component in components {
             let size = component.0.unsigned_abs();
             square = square.saturating_add(unsigned_product(size, size));
         }
-        // Beyond 2⁶² the root is beyond the rail.
-        Self(i32::try_from(nearest_root(square.min(1 << 62))).unwrap_or(i32::MAX))
+        square
     }
 }
 
@@ -57,9 +64,10 @@ fn nearest_root(n: u64) -> u32 {
     let root = root.wrapping_add_signed((error * (y >> 16) as i32) >> 16) >> half_zeros;
     // (r + ½)² lies between r² + r and r² + r + 1.
     let rest = n.wrapping_sub(unsigned_product(root, root));
+    let above = rest.wrapping_sub(u64::from(root));
     if rest <= u64::from(root) {
         root
-    } else if rest <= 3 * u64::from(root) + 2 {
+    } else if above <= 2 * u64::from(root) + 2 {
         root + 1
     } else {
         root + 2

@@ -129,7 +129,7 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     }
     #[inline]
     fn ln_norm<const N: usize>(components: &[Self; N]) -> Self {
-        Self::length(components).logarithm()
+        Self::log_length(components)
     }
     #[inline]
     fn recip(self) -> Self {

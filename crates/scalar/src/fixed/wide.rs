@@ -42,14 +42,15 @@ fn product_by_halves(a: i32, b: i32) -> i64 {
     (i64::from(high) << 32) | i64::from(a.wrapping_mul(b) as u32)
 }
 
-/// The same without signs.
+/// The same without signs, yet by way of them: LLVM 22 recognises halves without signs as a product, and calls
+/// the general multiplication, which they were to avoid.
 #[inline(always)]
 fn unsigned_product_by_halves(a: u32, b: u32) -> u64 {
-    let (a_low, a_high) = (a & 0xFFFF, a >> 16);
-    let (b_low, b_high) = (b & 0xFFFF, b >> 16);
-    let middle = a_high * b_low + ((a_low * b_low) >> 16);
-    let crossed = a_low * b_high + (middle & 0xFFFF);
-    let high = a_high * b_high + (middle >> 16) + (crossed >> 16);
+    let signed = product_by_halves(a as i32, b as i32);
+    let a_negative = (a as i32 >> 31) as u32;
+    let b_negative = (b as i32 >> 31) as u32;
+    // A number read as negative is 2³² too small.
+    let high = ((signed >> 32) as u32).wrapping_add(a_negative & b).wrapping_add(b_negative & a);
     (u64::from(high) << 32) | u64::from(a.wrapping_mul(b))
 }
 

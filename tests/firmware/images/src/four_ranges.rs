@@ -32,6 +32,10 @@ impl Named for kestirim_scalar::Q12_20 {
     const NAME: &str = "q12.20";
 }
 
+impl Named for kestirim_scalar::Q16_16 {
+    const NAME: &str = "q16.16";
+}
+
 fn anchors<T: Scalar>() -> [SVector<T, 3>; 4] {
     [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 8.0, 0.0], [0.0, 8.0, 0.0]]
         .map(|place| SVector::from(place.map(T::from_f64)))

@@ -6,6 +6,7 @@
 #![no_std]
 
 pub mod four_ranges;
+pub mod path_loss;
 pub mod pedestrian;
 pub mod replay;
 pub mod stream;

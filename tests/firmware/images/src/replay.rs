@@ -5,15 +5,14 @@ use support::{Class, Meter, line, line_of_text};
 
 use crate::stream::{Record, Stream};
 
-/// A position is told every so many samples, and after the last.
-const SAMPLES_A_POSITION: u32 = 50;
-
 /// A tracker of any kind and scalar, as the replay sees it.
 pub trait Tracker: Default {
     /// The name of the workload in tables.
     const NAME: &str;
     /// The name of the scalar in tables: `f32`, `q12.20` …
     const SCALAR: &str;
+    /// A position is told every so many samples, and after the last.
+    const SAMPLES_A_POSITION: u32 = 50;
     /// What the stream holds.
     type Record: Record;
     /// A record in the tracker's own scalar.
@@ -32,7 +31,7 @@ pub trait Tracker: Default {
 /// Runs a tracker over the whole stream. Tells the host
 ///
 /// - `name`, `scalar` and `object_bytes` (size of the tracker);
-/// - `position=µs µm µm µm` every [`SAMPLES_A_POSITION`] samples and after the last;
+/// - `position=µs µm µm µm` every [`Tracker::SAMPLES_A_POSITION`] samples and after the last;
 /// - `samples`, and the meter's report as `step`.
 pub fn run<T: Tracker>() {
     line_of_text("name", T::NAME);
@@ -48,11 +47,11 @@ pub fn run<T: Tracker>() {
         meter.measure(|| tracker.step(&input));
         samples += 1;
         time_us = recorded_us;
-        if samples.is_multiple_of(SAMPLES_A_POSITION) {
+        if samples.is_multiple_of(T::SAMPLES_A_POSITION) {
             tell(time_us, tracker.position());
         }
     }
-    if !samples.is_multiple_of(SAMPLES_A_POSITION) {
+    if !samples.is_multiple_of(T::SAMPLES_A_POSITION) {
         tell(time_us, tracker.position());
     }
     line("samples", &[samples.into()]);

@@ -85,6 +85,27 @@ impl Record for Ranges {
     }
 }
 
+/// A path loss that a drone measured: four `f32`.
+#[derive(Clone, Copy)]
+pub struct PathLoss {
+    /// Where the drone was, m.
+    pub place: [f32; 2],
+    /// How high it flew, m.
+    pub height: f32,
+    /// dB.
+    pub loss: f32,
+}
+
+impl Record for PathLoss {
+    const WORDS: usize = 5;
+
+    fn new(_: u64, words: &[[u8; WORD]]) -> Option<Self> {
+        let &words: &[[u8; WORD]; 4] = words.as_array()?;
+        let [x, y, height, loss] = words.map(f32::from_le_bytes);
+        Some(Self { place: [x, y], height, loss })
+    }
+}
+
 /// The open stream: an iterator over its records and their times.
 pub struct Stream<R> {
     file: File,

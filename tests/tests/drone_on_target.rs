@@ -1,0 +1,145 @@
+//! The drone's filter on emulated boards: the same estimates as on the host, within the budgets.
+//!
+//! On a machine without the tools these tests say SKIPPED and pass; with
+//! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
+
+use std::f64::consts::TAU;
+
+use anyhow::{Context, Result};
+use host_sim::random::{normal, stream};
+use kestirim_air_to_ground::{Channel, Environment, Measurement};
+use kestirim_particle_filter::{Particles, Region, Xoshiro128PlusPlus};
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_tests::firmware::{
+    CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target,
+};
+use kestirim_user_locator::{PrintedLocator, PrintedSettings};
+use rand_core::{Rng, SeedableRng};
+
+/// Bit for bit the same arithmetic; the numbers are told with the 24 bits of an `f32`, in micrometres (m).
+const SAME: f64 = 0.5e-6;
+/// Without an FPU the norm of an `f32` may differ in its last bit, by which a weight and so the mean of the cloud
+/// may (m): 2.6·10⁻⁴ m were seen, where a unit in the last place is up to 1.2·10⁻⁴ m. It is not amplified as long
+/// as no particle has an offspring more or less for it.
+const NEARLY_SAME: f64 = 1e-3;
+
+/// Where the user is, m.
+const USER: [f64; 2] = [1400.0, 700.0];
+/// How high the drone flies, m.
+const HEIGHT: f64 = 500.0;
+const WAVELENGTH: f64 = 0.15;
+
+fn channel<T: Scalar>() -> Channel<T> {
+    Channel::new(&Environment::urban(), T::from_f64(WAVELENGTH)).expect("a channel")
+}
+
+/// Drone x, y, h (m) and path loss (dB).
+type Records = Vec<[f32; 4]>;
+
+/// Two rounds about the middle of the city.
+fn circle() -> Records {
+    let mut rng = stream(4, 0);
+    let channel = channel::<f64>();
+    let record = |step: u32| {
+        let angle = TAU * f64::from(step) / 12.0;
+        let place = [1000.0 + 667.0 * angle.cos(), 1000.0 + 667.0 * angle.sin()];
+        let distance = (USER[0] - place[0]).hypot(USER[1] - place[1]);
+        let expected = channel.path_loss(distance, HEIGHT).expect("a distance");
+        let seen = rng.next_u32() as f64 / 2_f64.powi(32) < expected.line_of_sight_probability;
+        let loss = if seen {
+            expected.line_of_sight_mean + normal(&mut rng, expected.line_of_sight_sigma)
+        } else {
+            expected.obstructed_mean + normal(&mut rng, expected.obstructed_sigma)
+        };
+        [place[0], place[1], HEIGHT, loss].map(|number| number as f32)
+    };
+    (0..24).map(record).collect()
+}
+
+/// Mean and spread of the cloud after each step, as the image computes them.
+fn estimates<T: Scalar, const L: usize>(records: &Records) -> Vec<[f32; 3]> {
+    let region = Region::new([T::ZERO; 2], [T::from_f64(2000.0); 2]).expect("a city");
+    let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
+    let settings = PrintedSettings::thesis();
+    let mut locator = PrintedLocator::<T, L>::new(channel(), &region, settings, &mut rng);
+    let step = |record: &[f32; 4]| {
+        let [x, y, height, loss] = record.map(T::from_f32);
+        let measurement = Measurement::new([x, y], height, loss).expect("a measurement");
+        locator.measure(&measurement, &mut rng).expect("somebody explains it");
+        let moments = locator.moments();
+        let [x, y] = moments.mean();
+        [x, y, moments.spread()].map(T::to_f32)
+    };
+    records.iter().map(step).collect()
+}
+
+/// Runs an image and compares what it tells after each step with the host.
+fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Result<Output> {
+    let output = images.run(image, stream)?;
+    let row = Row::of(images, image, &output)?;
+    println!("{row}");
+    let exact = row.scalar != "f32" || images.target.triple == CORTEX_M4F.triple;
+    let tolerance = if exact { SAME } else { NEARLY_SAME };
+    let told = output.positions()?;
+    assert_eq!(told.len(), host.len());
+    let mut apart = 0_f64;
+    for (told, host) in told.iter().zip(host) {
+        for (ours, theirs) in told.metres.iter().zip(host) {
+            // As the image tells it.
+            let theirs = f64::from((theirs * 1e6) as i32) * 1e-6;
+            apart = apart.max((ours - theirs).abs());
+        }
+    }
+    println!("    at most {apart} m apart");
+    assert!(apart < tolerance, "{image}: {apart} m apart");
+    let elf = images.elf(image)?;
+    assert_eq!(elf.panic_symbols(), Vec::<String>::new(), "{image} cannot panic");
+    assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{image} has no double precision");
+    Ok(output)
+}
+
+/// Budgets: instructions a particle and step at most, in `f32` and in fixed point.
+fn check<const L: usize>(target: &'static Target, budgets: [f64; 2]) -> Result<()> {
+    let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
+    let records = circle();
+    let stream: Vec<u8> = records
+        .iter()
+        .flat_map(|record| {
+            let numbers = record.iter().flat_map(|number| number.to_le_bytes());
+            1_000_000_u32.to_le_bytes().into_iter().chain(numbers).collect::<Vec<u8>>()
+        })
+        .collect();
+    let cases = [
+        ("locator-f32", estimates::<f32, L>(&records)),
+        ("locator-fixed", estimates::<Q16_16, L>(&records)),
+    ];
+    for ((image, host), budget) in cases.into_iter().zip(budgets) {
+        let output = agree(&images, image, &stream, &host)?;
+        let cost = output.cost("step", "update")?.context("every step is an update")?;
+        let [mean, min, max] = [cost.mean(), cost.min as f64, cost.max as f64]
+            .map(|instructions| instructions / L as f64);
+        println!("    L = {L}: {mean:.0} instructions a particle ({min:.0} to {max:.0})");
+        assert!(mean <= budget, "{image}: {mean} instructions a particle");
+    }
+    Ok(())
+}
+
+#[test]
+fn five_hundred_particles_fit_into_eight_kilobytes() {
+    assert!(size_of::<Particles<f32, 2, 500>>() <= 8192);
+}
+
+#[test]
+fn cortex_m0() -> Result<()> {
+    check::<100>(&CORTEX_M0, [f64::INFINITY, 4_000.0])
+}
+
+#[test]
+fn cortex_m4f() -> Result<()> {
+    check::<500>(&CORTEX_M4F, [900.0, f64::INFINITY])
+}
+
+#[test]
+fn rv32imc() -> Result<()> {
+    check::<500>(&RV32IMC, [f64::INFINITY; 2])
+}
