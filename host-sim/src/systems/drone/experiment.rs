@@ -20,13 +20,13 @@ use crate::systems::choose_scalar;
 use crate::{Error, output};
 
 /// Trials of a cell of a user who stays unless told otherwise: portions of so many, until …
-const PORTION: u32 = 240;
+const PORTION: u32 = 110;
 /// … the standard error is this share of the mean, …
 const PRECISION: f64 = 0.03;
 /// … or there are so many portions.
-const MOST_PORTIONS: u32 = 8;
+const MOST_PORTIONS: u32 = 16;
 /// Trials of a cell of a user who moves, of whom each has hundreds of measurements.
-const MOVING_TRIALS: u32 = 20;
+const MOVING_TRIALS: u32 = 12;
 /// Speed of the drone unless told otherwise, km/h.
 const SPEED_KMH: f64 = 40.0;
 
@@ -69,7 +69,7 @@ impl Experiment {
         let beyond = beyond::walks();
         let still = staying.jobs.len() + Stay::ALL.len();
         let under_way = moving.walks.len() + beyond.len() + 1;
-        let flights = u64::from(self.trials.unwrap_or(2 * PORTION)) * still as u64
+        let flights = u64::from(self.trials.unwrap_or(4 * PORTION)) * still as u64
             + u64::from(self.moving_trials) * under_way as u64;
         let bar = output::progress(flights, "flights");
         let outcomes: Vec<_> = staying.jobs.iter().map(|job| self.staying(job, &bar)).collect();
@@ -114,7 +114,7 @@ impl Experiment {
             FilterKind::Best => (vec![], vec![particles]),
         };
         let job = Job { geometry, papers, bests };
-        let bar = output::progress(self.trials.unwrap_or(2 * PORTION).into(), "flights");
+        let bar = output::progress(self.trials.unwrap_or(4 * PORTION).into(), "flights");
         let outcomes = self.staying(&job, &bar);
         bar.finish_and_clear();
         let refused = outcomes.iter().map(|outcome| outcome.refused).sum();
@@ -182,7 +182,7 @@ impl Experiment {
         const TABLE: &str = "beyond the thesis";
         let mut rows = Vec::new();
         for stay in Stay::ALL {
-            let errors: Vec<f64> = (0..u64::from(self.trials.unwrap_or(PORTION)))
+            let errors: Vec<f64> = (0..u64::from(self.trials.unwrap_or(2 * PORTION)))
                 .into_par_iter()
                 .progress_with(bar.clone())
                 .map(|index| stay.trial(self.seed, index))

@@ -1,7 +1,7 @@
 //! One trial of a user who stays: all filters on the same measurements.
 
 use kestirim_air_to_ground::{Measurement, Rotor};
-use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
+use kestirim_particle_filter::{PointMass, Region, Resampler, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{Locator, PrintedLocator, PrintedSettings};
 use rand_core::{Rng, SeedableRng};
@@ -121,17 +121,24 @@ fn with_scalar<T: Scalar>(job: &Job, seed: u64, index: u64) -> Outcome {
         outcome.refused += refused;
     }
     for (place, &points) in job.bests.iter().enumerate() {
-        let (error, refused, credible) = if points <= FEW {
-            flight.best::<T, FEW>(points)
+        let found = if points <= FEW {
+            flight.best::<T, FEW>(points, place == 0)
         } else {
-            flight.best::<T, MOST>(points)
+            flight.best::<T, MOST>(points, place == 0)
         };
-        outcome.bests.push(error);
-        outcome.refused += refused;
-        outcome.credible = if place == 0 { credible } else { outcome.credible };
+        outcome.bests.push(found.error);
+        outcome.refused += found.refused;
+        outcome.credible |= found.credible;
     }
-    outcome.limit = flight.best::<f32, DENSE>(DENSE).0;
+    outcome.limit = flight.exact();
     outcome
+}
+
+/// What our filter found.
+struct Found {
+    error: f64,
+    refused: u32,
+    credible: bool,
 }
 
 struct Flight<'a> {
@@ -160,14 +167,35 @@ impl Flight<'_> {
         (self.error(filter.moments().mean()), refused)
     }
 
-    /// Error of our filter, how many measurements it refused, and whether its 90 % region holds the user.
-    fn best<T: Scalar, const L: usize>(&self, points: usize) -> (f64, u32, bool) {
+    /// Our filter; whether its 90 % region holds the user takes a while, and is only found if asked for.
+    fn best<T: Scalar, const L: usize>(&self, points: usize, region: bool) -> Found {
         let channel = self.geometry.environment.channel::<T>();
         let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
         let mut filter = Box::new(filter.expect("the number of points is within bounds"));
         let refused = self.measurements::<T>().filter(|m| filter.measure(m).is_err()).count();
-        let credible = filter.credible(&self.user.map(T::from_f64), T::from_f64(0.9));
-        (self.error(filter.moments().mean()), refused as u32, credible == Some(true))
+        let user = self.user.map(T::from_f64);
+        let credible = region && filter.credible(&user, T::from_f64(0.9)) == Some(true);
+        Found { error: self.error(filter.moments().mean()), refused: refused as u32, credible }
+    }
+
+    /// Error of the mean of the exact posterior, on a lattice laid anew until it is fine enough.
+    fn exact(&self) -> f64 {
+        let channel = self.geometry.environment.channel::<f32>();
+        let weigh = |mut posterior: PointMass<f32, 2, DENSE>| {
+            for measurement in self.measurements() {
+                // What nothing explains is left out.
+                let _ = posterior.update(|user| channel.log_likelihood(&measurement, user));
+            }
+            posterior
+        };
+        let mut posterior = weigh(PointMass::new(&square()));
+        for _ in 0..3 {
+            let finer =
+                posterior.finer(12.0).filter(|_| posterior.effective() < 0.1 * DENSE as f32);
+            let Some(finer) = finer else { break };
+            posterior = weigh(finer);
+        }
+        self.error(posterior.moments().mean())
     }
 
     fn measurements<T: Scalar>(&self) -> impl Iterator<Item = Measurement<T>> {
