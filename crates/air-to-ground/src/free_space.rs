@@ -6,8 +6,12 @@ use crate::Measurement;
 
 /// Degrees of freedom of Student's distribution: tails as antenna nulls and buildings make them.
 const FREEDOM: f64 = 3.0;
-/// Its scale, dB (a standard deviation of 6 dB).
+/// Its scale, dB (a standard deviation of 6 dB): open ground seen from some tens of metres.
 const SCALE: f64 = 3.5;
+/// No scale is below this, dB: receivers count in halves of decibels.
+const LEAST_SCALE: f64 = 0.5;
+/// Place, level and antennas are fitted, too: so many measurements do not count for the scale.
+const FITTED: u16 = 4;
 /// What a dipole still receives along its axis.
 const NULL_FILL: f64 = 0.1;
 /// The level's curvature is never taken for less than this share of that of perfect data.
@@ -45,7 +49,7 @@ pub struct LevelPrior<T> {
 /// A free-space channel of unknown level: received level = level at one metre − 20·log₁₀(distance) +
 /// antennas + noise.
 ///
-/// The noise has Student's distribution (ν = 3, scale 3.5 dB); which antennas there are is not known either, so
+/// The noise has Student's distribution (ν = 3, scale 3.5 dB or what [`FreeSpace::fitted`] finds); which antennas there are is not known either, so
 /// that all three kinds are averaged. Shadowing is alike along tens of metres, therefore measurements are no
 /// independent witnesses: their likelihood is raised to a power, (1 − ρ)/(1 + ρ) for neighbours of correlation
 /// ρ, wherever its width matters. A composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011).
@@ -53,8 +57,9 @@ pub struct LevelPrior<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeSpace<T> {
-    /// What is known of the level; all levels alike if nothing is.
-    pub level: Option<LevelPrior<T>>,
+    level: Option<LevelPrior<T>>,
+    /// Of Student's distribution, dB.
+    scale: T,
 }
 
 /// How well measurements fit if the transmitter is at a place.
@@ -67,6 +72,38 @@ struct Fit<T> {
 }
 
 impl<T: Scalar> FreeSpace<T> {
+    /// A channel of which this is known of the level; all levels are alike if nothing is.
+    pub fn new(level: Option<LevelPrior<T>>) -> Self {
+        Self { level, scale: T::from_f64(SCALE) }
+    }
+
+    /// The same channel with the scale of the noise that the measurements show if the transmitter is at `place`,
+    /// where that is smaller: cleaner flights than expected say more. A larger one is not believed, since a
+    /// wrong place shows it as well.
+    pub fn fitted(&self, measurements: &[Measurement<T>], place: [T; 2]) -> Self {
+        let Some(free) = measurements.len().checked_sub(usize::from(FITTED)).filter(|&n| n > 0)
+        else {
+            return *self;
+        };
+        let (antennas, fit) = self.best_fit(measurements, place);
+        let free = T::from_binary(free as i32, 0);
+        let freedom = T::from_f64(FREEDOM);
+        let mut scale = self.scale;
+        // The likelihood's own fixed point: s² = Σ (ν + 1)·e²/(ν + e²/s²)/n.
+        for _ in 0..8 {
+            let mut sum = T::ZERO;
+            for measurement in measurements {
+                let error = (excess(measurement, place, antennas) - fit.level) / scale;
+                let square = error.clamp(-T::from_f64(100.0), T::from_f64(100.0));
+                let square = square * square;
+                sum += square / (freedom + square) * (freedom + T::ONE);
+            }
+            scale *= (sum / free).sqrt();
+            scale = scale.clamp(T::from_f64(LEAST_SCALE), self.scale);
+        }
+        Self { scale, ..*self }
+    }
+
     /// Logarithm of the measurements' density if the transmitter is at `place`, to a power, levels and antennas
     /// integrated over; it lacks a constant. A measurement's loss is the negative received level.
     pub fn log_likelihood(&self, measurements: &[Measurement<T>], place: [T; 2], power: T) -> T {
@@ -79,11 +116,16 @@ impl<T: Scalar> FreeSpace<T> {
 
     /// The level received at one metre (dB) if the transmitter is at `place`, by the antennas that fit best.
     pub fn level(&self, measurements: &[Measurement<T>], place: [T; 2]) -> T {
-        let fits = Antennas::ALL.map(|antennas| self.fit(measurements, place, antennas, T::ONE));
-        let better = |best: Fit<T>, fit: Fit<T>| {
-            if fit.log_likelihood > best.log_likelihood { fit } else { best }
+        self.best_fit(measurements, place).1.level
+    }
+
+    fn best_fit(&self, measurements: &[Measurement<T>], place: [T; 2]) -> (Antennas, Fit<T>) {
+        let fit = |antennas| (antennas, self.fit(measurements, place, antennas, T::ONE));
+        let [first, second, third] = Antennas::ALL.map(fit);
+        let better = |best: (Antennas, Fit<T>), fit: (Antennas, Fit<T>)| {
+            if fit.1.log_likelihood > best.1.log_likelihood { fit } else { best }
         };
-        better(better(fits[0], fits[1]), fits[2]).level
+        better(better(first, second), third)
     }
 
     /// Fits the level by iterated weights, and integrates over it by Laplace's approximation.
@@ -94,7 +136,7 @@ impl<T: Scalar> FreeSpace<T> {
         antennas: Antennas,
         power: T,
     ) -> Fit<T> {
-        let width = T::from_f64(FREEDOM * SCALE * SCALE);
+        let width = self.scale * self.scale * T::from_f64(FREEDOM);
         let (prior, known) = match self.level {
             Some(LevelPrior { mean, sigma }) => (mean, (sigma * sigma).max(T::EPSILON).recip()),
             None => (T::ZERO, T::ZERO),
@@ -104,7 +146,8 @@ impl<T: Scalar> FreeSpace<T> {
         // From a wide kernel, which all measurements reach, to the true one.
         let mut level = prior;
         for widening in [1e3, 16.0, 4.0, 1.0, 1.0, 1.0] {
-            let wide = width * T::from_f64(widening);
+            // Never narrower than expected of open ground, or what is far from the level would not be reached.
+            let wide = width.max(T::from_f64(FREEDOM)) * T::from_f64(widening);
             let (mut sum, mut weights) = (T::ZERO, T::ZERO);
             for measurement in measurements {
                 let excess = excess(measurement);
@@ -136,6 +179,11 @@ impl<T: Scalar> FreeSpace<T> {
             - curvature.max(T::EPSILON).ln() * T::HALF;
         Fit { level, log_likelihood }
     }
+}
+
+/// What a received level has beyond one of 0 dB at one metre, dB.
+fn excess<T: Scalar>(measurement: &Measurement<T>, place: [T; 2], antennas: Antennas) -> T {
+    -measurement.loss() - gain(measurement, place, antennas)
 }
 
 /// What a distance and antennas leave of a level of 0 dB at one metre, dB.

@@ -29,6 +29,8 @@ pub struct BeaconEstimate<T, const L: usize> {
     pub level: T,
     /// The posterior that allows for their correlation: for how well the place is known.
     pub posterior: PointMass<T, 2, L>,
+    /// With the noise that was found.
+    channel: FreeSpace<T>,
 }
 
 impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
@@ -61,27 +63,21 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         region: &Region<T, 2>,
         inside: impl Fn([T; 2]) -> bool,
     ) -> Result<BeaconEstimate<T, L>, Error> {
-        let log_posterior = |place, power| {
-            if inside(place) {
-                self.channel.log_likelihood(&self.measurements, place, power)
-            } else {
-                T::ZERO.ln()
-            }
-        };
-        let mut sharp = PointMass::<T, 2, L>::new(region);
-        sharp.update(|place| log_posterior(place, T::ONE))?;
-        if let Some(finer) = sharp.finer(T::from_f64(12.0)) {
-            sharp = finer;
-            sharp.update(|place| log_posterior(place, T::ONE))?;
+        let mut channel = self.channel;
+        let mut posterior = sharp::<T, L>(&channel, &self.measurements, region, &inside)?;
+        if let Some(likeliest) = posterior.point(posterior.heaviest()) {
+            // Once more with the noise that the likeliest place leaves.
+            channel = channel.fitted(&self.measurements, likeliest);
+            posterior = sharp(&channel, &self.measurements, region, &inside)?;
         }
+        let place = posterior.moments().mean();
         let mut posterior = PointMass::new(region);
-        posterior.update(|place| log_posterior(place, T::from_f64(HONEST)))?;
-        let place = sharp.moments().mean();
-        Ok(BeaconEstimate {
-            place,
-            level: self.channel.level(&self.measurements, place),
-            posterior,
-        })
+        posterior.update(|place| {
+            let honest = T::from_f64(HONEST);
+            log_posterior(&channel, &self.measurements, place, honest, &inside)
+        })?;
+        let level = channel.level(&self.measurements, place);
+        Ok(BeaconEstimate { place, level, posterior, channel })
     }
 
     /// Whether a place belongs to the smallest region that holds the transmitter with this probability.
@@ -91,11 +87,42 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         place: [T; 2],
         probability: T,
     ) -> bool {
+        let channel = &estimate.channel;
         let density =
-            |place| self.channel.log_likelihood(&self.measurements, place, T::from_f64(HONEST));
+            |place| channel.log_likelihood(&self.measurements, place, T::from_f64(HONEST));
         let posterior = &estimate.posterior;
         let Some(heaviest) = posterior.point(posterior.heaviest()) else { return false };
         posterior.region().contains(&place)
             && density(place) - density(heaviest) >= posterior.density_level(probability)
     }
+}
+
+/// The posterior that takes measurements for independent.
+fn sharp<T: Scalar, const L: usize>(
+    channel: &FreeSpace<T>,
+    measurements: &[Measurement<T>],
+    region: &Region<T, 2>,
+    inside: &impl Fn([T; 2]) -> bool,
+) -> Result<PointMass<T, 2, L>, FilterError> {
+    let weigh = |place| log_posterior(channel, measurements, place, T::ONE, inside);
+    let mut posterior = PointMass::<T, 2, L>::new(region);
+    posterior.update(weigh)?;
+    while let Some(mut finer) = posterior.finer(T::from_f64(12.0)) {
+        finer.update(weigh)?;
+        posterior = finer;
+        if posterior.effective() > T::from_binary(L as i32, 0) * T::from_f64(0.05) {
+            break;
+        }
+    }
+    Ok(posterior)
+}
+
+fn log_posterior<T: Scalar>(
+    channel: &FreeSpace<T>,
+    measurements: &[Measurement<T>],
+    place: [T; 2],
+    power: T,
+    inside: &impl Fn([T; 2]) -> bool,
+) -> T {
+    if inside(place) { channel.log_likelihood(measurements, place, power) } else { T::ZERO.ln() }
 }

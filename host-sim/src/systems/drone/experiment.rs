@@ -113,7 +113,7 @@ impl Experiment {
             FilterKind::Paper => (vec![paper], vec![]),
             FilterKind::Best => (vec![], vec![particles]),
         };
-        let job = Job { geometry, papers, bests };
+        let job = Job { geometry, papers, bests, limit: true };
         let bar = output::progress(self.trials.unwrap_or(4 * PORTION).into(), "flights");
         let outcomes = self.staying(&job, &bar);
         bar.finish_and_clear();

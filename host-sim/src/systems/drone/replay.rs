@@ -33,25 +33,25 @@ const MINUTE_S: f64 = 60.0;
 pub struct Replay {
     /// The flight: CSV with columns t,x,y,h and `path_loss_db` or `rssi_db` (s, m, dB)
     #[arg(long, value_name = "FILE")]
-    log: PathBuf,
+    pub log: PathBuf,
     /// Where the user really is: CSV with columns x,y and one line (m); serves accuracy alone
     #[arg(long, value_name = "FILE")]
-    truth: Option<PathBuf>,
+    pub truth: Option<PathBuf>,
     /// What is built on the ground: the thesis' channel at 2 GHz
     #[arg(long, value_name = "NAME", value_enum, conflicts_with = "free_space")]
-    environment: Option<EnvironmentKind>,
+    pub environment: Option<EnvironmentKind>,
     /// Nothing is built on the ground, and what antennas there are is unknown [default]
     #[arg(long)]
-    free_space: bool,
+    pub free_space: bool,
     /// Where the user can be: CSV with columns x,y, the corners of a polygon (m)
     #[arg(long, value_name = "FILE")]
-    area: Option<PathBuf>,
+    pub area: Option<PathBuf>,
     /// Write t,x,y,sd of each measurement to this file
     #[arg(long, value_name = "OUT.csv")]
-    track: Option<PathBuf>,
+    pub track: Option<PathBuf>,
     /// Print one JSON object instead of a table
     #[arg(long)]
-    json: bool,
+    pub json: bool,
 }
 
 /// Where the user is after some measurements.
@@ -78,7 +78,11 @@ impl Replay {
         output::show(&report, self.json)
     }
 
-    fn report(&self) -> Result<Report, Error> {
+    /// What [`Replay::run`] prints.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn report(&self) -> Result<Report, Error> {
         let inputs = [Some(&self.log), self.truth.as_ref(), self.area.as_ref()];
         output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())?;
         let mut flight = flight::read(&self.log)?;
@@ -186,7 +190,7 @@ impl<'a> Search<'a> {
                 sigma: CALIBRATION_DB,
             }),
         };
-        let mut beacon = Box::new(Beacon::<f64, MOST>::new(FreeSpace { level }));
+        let mut beacon = Box::new(Beacon::<f64, MOST>::new(FreeSpace::new(level)));
         let mut estimates = Vec::new();
         for stop in self.stops {
             let Some(measurement) = self.measurement(stop) else { continue };
@@ -293,39 +297,50 @@ fn write_track(path: &Path, estimates: &[Estimate]) -> Result<(), Error> {
 
 /// What the command prints.
 #[derive(Debug, Clone, Serialize)]
-struct Report {
-    system: &'static str,
-    measurements: usize,
-    estimate: Place,
+pub struct Report {
+    /// Always `drone`.
+    pub system: &'static str,
+    /// How many were used.
+    pub measurements: usize,
+    /// Where the user is.
+    pub estimate: Place,
     /// Root mean square distance from the estimate that the filter expects, m.
-    sd_m: f64,
+    pub sd_m: f64,
     /// Level received at one metre, dB, where it was not known.
-    level_db: Option<f64>,
-    warnings: Vec<String>,
-    accuracy: Option<Accuracy>,
+    pub level_db: Option<f64>,
+    /// What a reader should know.
+    pub warnings: Vec<String>,
+    /// How far that is from the truth, if it is known.
+    pub accuracy: Option<Accuracy>,
 }
 
-/// m.
+/// A place, m.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct Place {
-    x: f64,
-    y: f64,
+pub struct Place {
+    /// As x in the log.
+    pub x: f64,
+    /// As y in the log.
+    pub y: f64,
 }
 
+/// How good an estimate is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Accuracy {
+pub struct Accuracy {
     /// Distance of the last estimate from the truth, m.
-    error_m: f64,
+    pub error_m: f64,
     /// The same after each minute since the first measurement.
-    error_after_s: Vec<ErrorAfter>,
+    pub error_after_s: Vec<ErrorAfter>,
     /// Whether the last 90 % region holds the truth.
-    in_90_percent_region: Option<bool>,
+    pub in_90_percent_region: Option<bool>,
 }
 
+/// An error at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct ErrorAfter {
-    s: f64,
-    error_m: f64,
+pub struct ErrorAfter {
+    /// Time since the first measurement, s.
+    pub s: f64,
+    /// Distance of the estimate from the truth, m.
+    pub error_m: f64,
 }
 
 impl Accuracy {

@@ -6,7 +6,7 @@ use comfy_table::Table;
 use serde::Serialize;
 
 use crate::cli::ScalarKind;
-use crate::metrics::{mean, rms, standard_deviation};
+use crate::metrics::{mean, percentile, rms, standard_deviation};
 use crate::output;
 
 /// Trials of which each of the thesis' numbers is a mean, or the maximum.
@@ -72,22 +72,28 @@ impl Row {
     }
 
     /// The expected maximum of a hundred such errors beside the published one, with its own deviation.
+    ///
+    /// A maximum of hundreds says little of the next hundred's. So the tail above the 95th percentile is taken
+    /// to be exponential, with the mean excess over it; the maximum's law is then Gumbel's.
     pub fn of_maximum(errors: &[f64], published: f64) -> Self {
-        let mut sorted = errors.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let count = sorted.len() as f64;
-        let below = |rank: usize| (rank as f64 / count).powf(PUBLISHED_TRIALS);
-        let moment = |of: &dyn Fn(f64) -> f64| -> f64 {
-            let ranked = sorted.iter().enumerate();
-            ranked.map(|(rank, &error)| (below(rank + 1) - below(rank)) * of(error)).sum()
-        };
-        let expected = moment(&|error| error);
-        let deviation = moment(&|error| (error - expected).powi(2)).sqrt();
+        const TAIL: f64 = 0.05;
+        const EULER: f64 = 0.577_215_664_901_532_9;
+        let threshold = percentile(errors, 100.0 * (1.0 - TAIL));
+        let excess: Vec<f64> = errors
+            .iter()
+            .filter(|&&error| error > threshold)
+            .map(|error| error - threshold)
+            .collect();
+        let scale = mean(&excess);
+        let expected = threshold + scale * ((TAIL * PUBLISHED_TRIALS).ln() + EULER);
+        let deviation = scale * std::f64::consts::PI / 6.0_f64.sqrt();
+        // The scale is known to a share of 1/√exceedances.
+        let own = scale * 2.2 / (excess.len().max(1) as f64).sqrt();
         Self {
             trials: errors.len(),
             mean_m: Some(expected),
-            se_m: Some(deviation / (count / PUBLISHED_TRIALS).sqrt()),
-            max_m: sorted.last().copied(),
+            se_m: Some(own),
+            max_m: Some(errors.iter().copied().fold(0.0, f64::max)),
             published: Some(published),
             published_z: (deviation > 0.0).then(|| (published - expected) / deviation),
             ..Self::default()
@@ -190,9 +196,10 @@ mod tests {
     #[test]
     fn the_maximum_of_many_is_that_of_the_last_percent() {
         let errors: Vec<f64> = (0..10_000).map(|k| f64::from(k) / 1e4).collect();
-        // Of 100 uniform numbers: 100/101, and 1/101 off.
-        let row = Row::of_maximum(&errors, 1.0);
-        assert!((row.mean_m.unwrap() - 100.0 / 101.0).abs() < 1e-3);
-        assert!((row.published_z.unwrap() - 1.0).abs() < 0.05);
+        // −ln of uniform numbers is exponentially distributed: the expected maximum of 100 is the harmonic sum.
+        let errors: Vec<f64> = errors.iter().map(|u| -(u + 5e-5).ln()).collect();
+        let row = Row::of_maximum(&errors, 5.187 + 1.28);
+        assert!((row.mean_m.unwrap() - 5.187).abs() < 0.05, "{row:?}");
+        assert!((row.published_z.unwrap() - 1.0).abs() < 0.1);
     }
 }

@@ -140,7 +140,7 @@ impl StaticSweeps {
     ) {
         let known = self.jobs.iter().position(|job| job.geometry == geometry);
         let job = known.unwrap_or_else(|| {
-            self.jobs.push(Job { geometry, papers: Vec::new(), bests: Vec::new() });
+            self.jobs.push(Job { geometry, papers: Vec::new(), bests: Vec::new(), limit: true });
             self.jobs.len() - 1
         });
         let paper = place_of(&mut self.jobs[job].papers, paper);
