@@ -62,7 +62,7 @@ struct Stop {
     loss: f64,
 }
 
-fn main() -> anyhow::Result<()> {
+fn main() {
     let vectors = if cfg!(target_feature = "avx2") {
         "avx2"
     } else if cfg!(target_feature = "sse2") {
@@ -89,7 +89,6 @@ fn main() -> anyhow::Result<()> {
         let times = [&double, &single, &c, &rust].map(|column| time(column));
         line(what, times.each_ref().map(String::as_str), published, target);
     }
-    Ok(())
 }
 
 /// The thesis' circle round a user in the urban environment.
@@ -192,7 +191,7 @@ fn fastest(rounds: usize, mut work: impl FnMut()) -> f64 {
     let round = |_| {
         let begin = now();
         work();
-        (now() - begin).as_secs_f64()
+        now().saturating_sub(begin).as_secs_f64()
     };
     (0..rounds).map(round).fold(f64::INFINITY, f64::min)
 }
