@@ -13,7 +13,7 @@ mod point_mass;
 mod random;
 mod region;
 mod sequence;
-mod sorted;
+mod uniform;
 mod weights;
 
 pub use error::Error;

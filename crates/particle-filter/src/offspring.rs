@@ -2,7 +2,7 @@ use kestirim_scalar::Scalar;
 use rand_core::Rng;
 
 use crate::Error;
-use crate::sorted::Sorted;
+use crate::uniform::Uniform;
 
 /// By which law particles have offspring (the thesis' Tables 2.2 to 2.5). The expected number is always
 /// N·w.
@@ -92,13 +92,13 @@ fn independently<R: Rng + ?Sized>(
     split: impl Fn(u32) -> (u64, u64),
     rng: &mut R,
 ) {
-    let mut sorted = Sorted::new(draws);
+    let mut uniform = Uniform::new(draws);
     let places = Places::new(mass);
     let mut cumulative = 0;
     for weight in weights {
         let (certain, rest) = split(*weight);
         cumulative += rest;
-        *weight = certain as u32 + sorted.below(places.of(cumulative), rng);
+        *weight = certain as u32 + uniform.below(places.of(cumulative), rng);
     }
 }
 

@@ -51,7 +51,8 @@ fn check_unbiased<T: Scalar>() -> Result<(), Error> {
             .sum();
         assert!(chi2 < 161.0, "{law:?}: {chi2}");
         for [mean, variance, expected] in &statistics {
-            let error = (variance.max(1e-3) / REPETITIONS as f64).sqrt();
+            // Of a handful of draws the variance found says little, of none nothing: Poisson's then.
+            let error = (variance.max(expected.min(0.01)) / REPETITIONS as f64).sqrt();
             assert!((mean - expected).abs() < 4.5 * error, "{law:?}: {mean} for {expected}");
         }
         variances.push(statistics.iter().map(|[_, variance, _]| variance).sum::<f64>());
