@@ -92,7 +92,7 @@ impl StaticSweeps {
         for (table, published, maximum) in figures {
             for (kind, published) in ResamplerKind::ALL.into_iter().zip(published) {
                 for (stops, published) in MEASUREMENTS.into_iter().zip(published) {
-                    let cell = format!("{kind:?} T={stops}").to_lowercase();
+                    let cell = format!("{} T={stops}", format!("{kind:?}").to_lowercase());
                     let paper = Paper { particles: 500, resampler: kind.into() };
                     let geometry = Geometry::circle(stops, 800.0);
                     self.add(table, cell, published, geometry, paper, POINTS);
