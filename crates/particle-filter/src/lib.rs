@@ -13,6 +13,8 @@ mod point_mass;
 mod random;
 mod region;
 mod sequence;
+#[cfg(feature = "serde")]
+mod serialize;
 mod uniform;
 mod weights;
 

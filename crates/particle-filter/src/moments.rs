@@ -9,20 +9,12 @@ use crate::weights::{Weights, never};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "T: serde::Serialize")))]
 pub struct Moments<T, const D: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "as_slice"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::array"))]
     mean: [T; D],
     /// Lower triangular F with F·Fᵀ the covariance: in the unit of the state, where a square of metres would
     /// not fit into fixed point.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::matrix"))]
     factor: [[T; D]; D],
-}
-
-#[cfg(feature = "serde")]
-fn as_slice<S: serde::Serializer, T: serde::Serialize, const D: usize>(
-    array: &[T; D],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(array)
 }
 
 impl<T: Scalar, const D: usize> Moments<T, D> {

@@ -6,8 +6,11 @@ use crate::Error;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(bound(serialize = "T: serde::Serialize")))]
 pub struct Region<T, const D: usize> {
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::array"))]
     low: [T; D],
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::array"))]
     high: [T; D],
 }
 

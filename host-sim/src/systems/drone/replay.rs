@@ -40,7 +40,7 @@ pub struct Replay {
     /// What is built on the ground: the thesis' channel at 2 GHz
     #[arg(long, value_name = "NAME", value_enum, conflicts_with = "free_space")]
     pub environment: Option<EnvironmentKind>,
-    /// Nothing is built on the ground, and what antennas there are is unknown [default]
+    /// Nothing is built on the ground, and what antennas there are is unknown: the default
     #[arg(long)]
     pub free_space: bool,
     /// Where the user can be: CSV with columns x,y, the corners of a polygon (m)
