@@ -105,7 +105,9 @@ impl Replay {
                 "the user is looked for up to {BEYOND_M} m beyond the flight (--area)"
             ));
         }
-        let search = Search::new(&flight, area.as_ref(), truth);
+        let mut search = Search::new(&flight, area.as_ref(), truth);
+        // What comes in between takes as long as the end, each time.
+        search.only_last = truth.is_none() && self.track.is_none();
         let estimates = match self.environment {
             None => search.in_free_space(flight.quantity),
             Some(environment) => search.among_buildings(environment, flight.quantity),
@@ -116,7 +118,8 @@ impl Replay {
                 problem: "no place explains the measurements".to_owned(),
             });
         };
-        if estimates.len() < flight.stops.len() {
+        let every = self.environment.is_some() || !search.only_last;
+        if every && estimates.len() < flight.stops.len() {
             warnings.push("some measurements are explained by no place: left out".to_owned());
         }
         if let Some(path) = &self.track {
@@ -152,12 +155,14 @@ struct Search<'a> {
     origin: [f64; 2],
     high: [f64; 2],
     truth: Option<[f64; 2]>,
+    /// Whether only the last estimate is wanted.
+    only_last: bool,
 }
 
 impl<'a> Search<'a> {
     fn new(flight: &'a Flight, area: Option<&'a Area>, truth: Option<[f64; 2]>) -> Self {
         let (low, high) = area.map_or_else(|| surroundings(&flight.stops), Area::bounds);
-        Self { stops: &flight.stops, area, origin: low, high, truth }
+        Self { stops: &flight.stops, area, origin: low, high, truth, only_last: false }
     }
 
     fn inside(&self, place: [f64; 2]) -> bool {
@@ -192,9 +197,9 @@ impl<'a> Search<'a> {
         };
         let mut beacon = Box::new(Beacon::<f64, MOST>::new(FreeSpace::new(level)));
         let mut estimates = Vec::new();
-        for stop in self.stops {
-            let Some(measurement) = self.measurement(stop) else { continue };
-            if beacon.measure(&measurement).is_err() {
+        for (number, stop) in self.stops.iter().enumerate() {
+            let taken = self.measurement(stop).is_some_and(|m| beacon.measure(&m).is_ok());
+            if !taken || (self.only_last && number + 1 < self.stops.len()) {
                 continue;
             }
             let found = beacon.estimate::<POINTS>(&self.region(), |place| self.inside(place));
