@@ -52,7 +52,7 @@ pub struct LevelPrior<T> {
 /// The noise has Student's distribution (ν = 3, scale 3.5 dB or what [`FreeSpace::fitted`] finds); which antennas there are is not known either, so
 /// that all three kinds are averaged. Shadowing is alike along tens of metres, therefore measurements are no
 /// independent witnesses: their likelihood is raised to a power, (1 − ρ)/(1 + ρ) for neighbours of correlation
-/// ρ, wherever its width matters. A composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011).
+/// ρ, wherever its width matters. At most 128 measurements are read. A composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -60,6 +60,51 @@ pub struct FreeSpace<T> {
     level: Option<LevelPrior<T>>,
     /// Of Student's distribution, dB.
     scale: T,
+}
+
+/// So many measurements are read at most.
+const MOST: usize = 128;
+
+/// What measurements have to do with a place, whatever the level and the antennas.
+struct Sight<T> {
+    /// Received level beyond one of 0 dB at one metre, dB.
+    excess: [T; MOST],
+    /// What a dipole leaves in that direction, dB.
+    dipole: [T; MOST],
+    count: usize,
+}
+
+impl<T: Scalar> Sight<T> {
+    fn new(measurements: &[Measurement<T>], place: [T; 2]) -> Self {
+        let mut sight = Self {
+            excess: [T::ZERO; MOST],
+            dipole: [T::ZERO; MOST],
+            count: measurements.len().min(MOST),
+        };
+        let slots = sight.excess.iter_mut().zip(&mut sight.dipole);
+        for ((excess, dipole), measurement) in slots.zip(measurements) {
+            let horizontal = measurement.horizontal_distance(place);
+            let distance = T::norm(&[horizontal, measurement.height()]);
+            let decibels = T::from_f64(10.0 / core::f64::consts::LN_10);
+            *excess = distance.ln() * decibels * T::TWO - measurement.loss();
+            // A short dipole's power pattern is cos² of the elevation.
+            let cosine = horizontal / distance;
+            let pattern = cosine * cosine * T::from_f64(1.0 - NULL_FILL) + T::from_f64(NULL_FILL);
+            *dipole = pattern.ln() * decibels;
+        }
+        sight
+    }
+
+    /// Levels at one metre that the measurements suggest, dB.
+    fn levels(&self, antennas: Antennas) -> impl Iterator<Item = T> {
+        let dipoles = match antennas {
+            Antennas::Isotropic => T::ZERO,
+            Antennas::OneDipole => T::ONE,
+            Antennas::TwoDipoles => T::TWO,
+        };
+        let pairs = self.excess.iter().zip(&self.dipole).take(self.count);
+        pairs.map(move |(&excess, &dipole)| excess - dipole * dipoles)
+    }
 }
 
 /// How well measurements fit if the transmitter is at a place.
@@ -81,19 +126,19 @@ impl<T: Scalar> FreeSpace<T> {
     /// where that is smaller: cleaner flights than expected say more. A larger one is not believed, since a
     /// wrong place shows it as well.
     pub fn fitted(&self, measurements: &[Measurement<T>], place: [T; 2]) -> Self {
-        let Some(free) = measurements.len().checked_sub(usize::from(FITTED)).filter(|&n| n > 0)
-        else {
+        let sight = Sight::new(measurements, place);
+        let Some(free) = sight.count.checked_sub(usize::from(FITTED)).filter(|&n| n > 0) else {
             return *self;
         };
-        let (antennas, fit) = self.best_fit(measurements, place);
+        let (antennas, fit) = self.best_fit(&sight);
         let free = T::from_binary(free as i32, 0);
         let freedom = T::from_f64(FREEDOM);
         let mut scale = self.scale;
         // The likelihood's own fixed point: s² = Σ (ν + 1)·e²/(ν + e²/s²)/n.
         for _ in 0..8 {
             let mut sum = T::ZERO;
-            for measurement in measurements {
-                let error = (excess(measurement, place, antennas) - fit.level) / scale;
+            for level in sight.levels(antennas) {
+                let error = (level - fit.level) / scale;
                 let square = error.clamp(-T::from_f64(100.0), T::from_f64(100.0));
                 let square = square * square;
                 sum += square / (freedom + square) * (freedom + T::ONE);
@@ -107,8 +152,8 @@ impl<T: Scalar> FreeSpace<T> {
     /// Logarithm of the measurements' density if the transmitter is at `place`, to a power, levels and antennas
     /// integrated over; it lacks a constant. A measurement's loss is the negative received level.
     pub fn log_likelihood(&self, measurements: &[Measurement<T>], place: [T; 2], power: T) -> T {
-        let fits = Antennas::ALL
-            .map(|antennas| self.fit(measurements, place, antennas, power).log_likelihood);
+        let sight = Sight::new(measurements, place);
+        let fits = Antennas::ALL.map(|antennas| self.fit(&sight, antennas, power).log_likelihood);
         let largest = fits[0].max(fits[1]).max(fits[2]);
         let sum = fits.iter().fold(T::ZERO, |sum, &fit| sum + (fit - largest).exp());
         largest + sum.ln()
@@ -116,11 +161,11 @@ impl<T: Scalar> FreeSpace<T> {
 
     /// The level received at one metre (dB) if the transmitter is at `place`, by the antennas that fit best.
     pub fn level(&self, measurements: &[Measurement<T>], place: [T; 2]) -> T {
-        self.best_fit(measurements, place).1.level
+        self.best_fit(&Sight::new(measurements, place)).1.level
     }
 
-    fn best_fit(&self, measurements: &[Measurement<T>], place: [T; 2]) -> (Antennas, Fit<T>) {
-        let fit = |antennas| (antennas, self.fit(measurements, place, antennas, T::ONE));
+    fn best_fit(&self, sight: &Sight<T>) -> (Antennas, Fit<T>) {
+        let fit = |antennas| (antennas, self.fit(sight, antennas, T::ONE));
         let [first, second, third] = Antennas::ALL.map(fit);
         let better = |best: (Antennas, Fit<T>), fit: (Antennas, Fit<T>)| {
             if fit.1.log_likelihood > best.1.log_likelihood { fit } else { best }
@@ -129,47 +174,38 @@ impl<T: Scalar> FreeSpace<T> {
     }
 
     /// Fits the level by iterated weights, and integrates over it by Laplace's approximation.
-    fn fit(
-        &self,
-        measurements: &[Measurement<T>],
-        place: [T; 2],
-        antennas: Antennas,
-        power: T,
-    ) -> Fit<T> {
+    fn fit(&self, sight: &Sight<T>, antennas: Antennas, power: T) -> Fit<T> {
         let width = self.scale * self.scale * T::from_f64(FREEDOM);
         let (prior, known) = match self.level {
             Some(LevelPrior { mean, sigma }) => (mean, (sigma * sigma).max(T::EPSILON).recip()),
             None => (T::ZERO, T::ZERO),
         };
-        let excess =
-            |measurement: &Measurement<T>| -measurement.loss() - gain(measurement, place, antennas);
         // From a wide kernel, which all measurements reach, to the true one.
         let mut level = prior;
         for widening in [1e3, 16.0, 4.0, 1.0, 1.0, 1.0] {
             // Never narrower than expected of open ground, or what is far from the level would not be reached.
             let wide = width.max(T::from_f64(FREEDOM)) * T::from_f64(widening);
             let (mut sum, mut weights) = (T::ZERO, T::ZERO);
-            for measurement in measurements {
-                let excess = excess(measurement);
-                let error = (excess - level) * T::from_f64(0.1);
+            for suggested in sight.levels(antennas) {
+                let error = (suggested - level) * T::from_f64(0.1);
                 // In tens of decibels, of which squares fit into fixed point.
                 let weight = (wide * T::from_f64(0.01) + error * error).recip();
-                sum += weight * (excess - level);
+                sum += weight * (suggested - level);
                 weights += weight;
             }
             let pull = known * T::from_f64(100.0 / (FREEDOM + 1.0)) / power;
             level += (sum + pull * (prior - level)) / (weights + pull).max(T::EPSILON);
         }
         let (mut logs, mut curvature) = (T::ZERO, T::ZERO);
-        for measurement in measurements {
-            let error = excess(measurement) - level;
+        for suggested in sight.levels(antennas) {
+            let error = suggested - level;
             let error = error.clamp(-T::from_f64(150.0), T::from_f64(150.0));
             let share = error / width * error;
             logs += (T::ONE + share).ln();
             let fall = (T::ONE + share).recip();
             curvature += (T::ONE - share) * fall * fall;
         }
-        let count = T::from_binary(measurements.len() as i32, 0);
+        let count = T::from_binary(sight.count as i32, 0);
         let freedom = T::from_f64(FREEDOM + 1.0);
         let least = count * T::from_f64(LEAST_CURVATURE);
         let curvature = curvature.max(least) * power * (freedom / width) + known;
@@ -178,27 +214,5 @@ impl<T: Scalar> FreeSpace<T> {
             - from_prior * from_prior * T::HALF
             - curvature.max(T::EPSILON).ln() * T::HALF;
         Fit { level, log_likelihood }
-    }
-}
-
-/// What a received level has beyond one of 0 dB at one metre, dB.
-fn excess<T: Scalar>(measurement: &Measurement<T>, place: [T; 2], antennas: Antennas) -> T {
-    -measurement.loss() - gain(measurement, place, antennas)
-}
-
-/// What a distance and antennas leave of a level of 0 dB at one metre, dB.
-fn gain<T: Scalar>(measurement: &Measurement<T>, place: [T; 2], antennas: Antennas) -> T {
-    let horizontal = measurement.horizontal_distance(place);
-    let distance = T::norm(&[horizontal, measurement.height()]);
-    let decibels = T::from_f64(10.0 / core::f64::consts::LN_10);
-    let distance_gain = -distance.ln() * decibels * T::TWO;
-    // A short dipole's power pattern is cos² of the elevation.
-    let cosine = horizontal / distance;
-    let pattern = cosine * cosine * T::from_f64(1.0 - NULL_FILL) + T::from_f64(NULL_FILL);
-    let dipole = pattern.ln() * decibels;
-    match antennas {
-        Antennas::Isotropic => distance_gain,
-        Antennas::OneDipole => distance_gain + dipole,
-        Antennas::TwoDipoles => distance_gain + dipole + dipole,
     }
 }

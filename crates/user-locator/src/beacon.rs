@@ -43,6 +43,7 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
 impl<T: Scalar, const M: usize> Beacon<T, M> {
     /// Without measurements.
     pub fn new(channel: FreeSpace<T>) -> Self {
+        const { assert!(M <= 128, "the channel reads no more") };
         Self { channel, measurements: Vec::new() }
     }
 

@@ -98,6 +98,11 @@ where
         &self.posterior
     }
 
+    /// Logarithm of the posterior's density at a state, without a constant, from the stored measurements.
+    pub fn log_posterior(&self, state: &[T; D]) -> T {
+        log_posterior(&self.channel, &self.measurements, state)
+    }
+
     /// Whether a state belongs to the smallest region that holds the true one with this probability (0 to 1):
     /// where the density is highest. None once measurements have been forgotten.
     pub fn credible(&self, state: &[T; D], probability: T) -> Option<bool> {
@@ -108,7 +113,7 @@ where
             return Some(false);
         }
         // The lattice knows densities relative to that of its heaviest point.
-        let density = |state| log_posterior(&self.channel, &self.measurements, state);
+        let density = |state| self.log_posterior(state);
         let heaviest = self.posterior.point(self.posterior.heaviest())?;
         let level = self.posterior.density_level(probability);
         Some(density(state) - density(&heaviest) >= level)

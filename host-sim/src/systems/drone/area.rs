@@ -29,7 +29,8 @@ impl Area {
         )?;
         let area = Self { corners };
         if area.size() < 1.0 {
-            let problem = "expected the corners of an area of a square metre at least";
+            let problem =
+                "expected the corners of an area of a square metre at least, one after the other";
             return Err(TextFile::read(path)?.error(problem));
         }
         Ok(area)

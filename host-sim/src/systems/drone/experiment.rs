@@ -123,7 +123,8 @@ impl Experiment {
             FilterKind::Best => best_row(&outcomes, 0),
         };
         let Geometry { stops, height_m, .. } = geometry;
-        let cell_name = format!("L={particles} T={stops} h={height_m} r={radius_m:.0}");
+        let cell_name =
+            format!("L={particles} T={stops} h={height_m} r={radius_m:.1}, {}", described(cell));
         let energy_j = Some(geometry.energy_j(cell.speed.unwrap_or(SPEED_KMH)));
         let row = Row { table: "static user", cell: cell_name, energy_j, ..row };
         self.report(vec![row], refused)
@@ -146,7 +147,10 @@ impl Experiment {
         let outcomes = self.walking(&walk, &bar);
         bar.finish_and_clear();
         let Walk { particles, height_m, user_radius_m, end_time, .. } = walk;
-        let cell_name = format!("L={particles} h={height_m} r={user_radius_m} T_end={end_time}");
+        let cell_name = format!(
+            "L={particles} h={height_m} r={user_radius_m} T_end={end_time}, {}",
+            described(cell)
+        );
         let row = moving_row(&walk, &outcomes, cell.speed.unwrap_or(SPEED_KMH));
         self.report(vec![Row { table: "moving user", cell: cell_name, ..row }], 0)
     }
@@ -204,6 +208,19 @@ impl Experiment {
         rows.push(Row { table: TABLE, cell, filter: "best", lost_percent, ..Row::of(&errors) });
         rows
     }
+}
+
+/// Options of a cell that are no numbers.
+fn described(cell: &CellOptions) -> String {
+    let environment = format!("{:?}", cell.environment.unwrap_or_default()).to_lowercase();
+    if cell.filter == Some(FilterKind::Paper) {
+        let resampler = format!("{:?}", cell.resampler.unwrap_or_default()).to_lowercase();
+        return format!("{environment}, {resampler}");
+    }
+    if cell.resampler.is_some() {
+        output::warn("warning: only --filter paper resamples by --resampler");
+    }
+    environment
 }
 
 /// The thesis' filter and ours in one cell.

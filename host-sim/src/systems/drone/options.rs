@@ -109,8 +109,8 @@ impl From<ResamplerKind> for Resampler {
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= 10_000.0 => Ok(value),
-        _ => Err("expected a number above 0, at most 10000".to_owned()),
+        Ok(value) if (0.1..=10_000.0).contains(&value) => Ok(value),
+        _ => Err("expected a number from 0.1 to 10000".to_owned()),
     }
 }
 

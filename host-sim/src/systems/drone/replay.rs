@@ -17,10 +17,14 @@ use crate::{Error, output};
 
 /// Points of a lattice.
 const POINTS: usize = 2000;
-/// Most measurements of a flight; of more as many are taken, evenly.
+/// Most measurements of a flight among buildings; of more as many are taken, evenly.
 const MOST: usize = 400;
+/// And over open ground, where what is measured close together says the same.
+const MOST_OPEN: usize = 100;
 /// How far beyond the flight the user may be if no area is given, m.
 const BEYOND_M: f64 = 500.0;
+/// From here on a drone hears nothing, m.
+const FAR_M: f64 = 20_000.0;
 /// Levels of the transmitter that are thought possible about the nominal one, dB.
 const LEVELS_DB: f64 = 100.0;
 /// How well a path loss is calibrated, dB.
@@ -91,19 +95,28 @@ impl Replay {
         let mut warnings = Vec::new();
         if flight.unusable > 0 {
             let count = flight.unusable;
-            warnings.push(format!("{count} rows without a usable height or measurement: left out"));
+            warnings.push(format!(
+                "rows left out: {count} (a height is above 0 and below 20000 m, a measurement within \
+                 ±300 dB)"
+            ));
         }
-        thin_out(&mut flight.stops, &mut warnings);
+        let most = if self.environment.is_some() { MOST } else { MOST_OPEN };
+        thin_out(&mut flight.stops, most, &mut warnings);
         if flight.stops.len() < 3 {
             return Err(Error::File {
                 path: self.log.clone(),
-                problem: "expected at least three usable measurements".to_owned(),
+                problem:
+                    "expected at least three measurements within ±300 dB, from above the ground"
+                        .to_owned(),
             });
         }
         if area.is_none() {
             warnings.push(format!(
                 "the user is looked for up to {BEYOND_M} m beyond the flight (--area)"
             ));
+        }
+        if area.as_ref().is_some_and(|area| far(area, &flight.stops)) {
+            warnings.push("no measurement was made within 20 km of the area".to_owned());
         }
         let mut search = Search::new(&flight, area.as_ref(), truth);
         // What comes in between takes as long as the end, each time.
@@ -131,6 +144,11 @@ impl Replay {
             estimate: Place { x: last.place[0], y: last.place[1] },
             sd_m: last.sd_m,
             level_db: last.level_db,
+            level_name: if self.environment.is_some() {
+                "level of the transmitter"
+            } else {
+                "level at one metre"
+            },
             warnings,
             accuracy: truth.map(|truth| Accuracy::of(&estimates, truth)),
         })
@@ -138,13 +156,13 @@ impl Replay {
 }
 
 /// Keeps as many stops as can be remembered.
-fn thin_out(stops: &mut Vec<Stop>, warnings: &mut Vec<String>) {
+fn thin_out(stops: &mut Vec<Stop>, most: usize, warnings: &mut Vec<String>) {
     let count = stops.len();
-    if count <= MOST {
+    if count <= most {
         return;
     }
-    warnings.push(format!("of {count} measurements {MOST} are used, evenly"));
-    *stops = (0..MOST).map(|k| stops[k * count / MOST]).collect();
+    warnings.push(format!("of {count} measurements {most} are used, evenly"));
+    *stops = (0..most).map(|k| stops[k * count / most]).collect();
 }
 
 /// Where a user is looked for.
@@ -195,7 +213,7 @@ impl<'a> Search<'a> {
                 sigma: CALIBRATION_DB,
             }),
         };
-        let mut beacon = Box::new(Beacon::<f64, MOST>::new(FreeSpace::new(level)));
+        let mut beacon = Box::new(Beacon::<f64, MOST_OPEN>::new(FreeSpace::new(level)));
         let mut estimates = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
             let taken = self.measurement(stop).is_some_and(|m| beacon.measure(&m).is_ok());
@@ -233,24 +251,62 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether the 90 % region of places holds the true one. The level, where it is a third coordinate, is
+    /// integrated over: nobody knows the true one.
+    fn covered<const D: usize>(
+        &self,
+        locator: &Locator<f64, POINTS, MOST, D, Fenced<'_>>,
+        truth: [f64; 2],
+    ) -> Option<bool> {
+        let truth = self.inward(truth);
+        if D == 2 {
+            let state = std::array::from_fn(|axis| truth[axis]);
+            return locator.credible(&state, 0.9);
+        }
+        let moments = locator.moments();
+        let (level, deviation) = (moments.mean()[D - 1], moments.deviation()[D - 1]);
+        let levels = (0..LEVELS)
+            .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
+        let density = |[x, y]: [f64; 2]| {
+            log_sum(levels.clone().map(|level| {
+                let state = std::array::from_fn(|axis| [x, y, level][axis]);
+                locator.log_posterior(&state)
+            }))
+        };
+        let posterior = locator.posterior();
+        let mut points: Vec<(f64, f64)> = (0..posterior.len())
+            .filter_map(|index| {
+                Some((posterior.point(index)?, posterior.log_weights().get(index)?))
+            })
+            .filter(|(_, log_weight)| **log_weight > -12.0)
+            .map(|(state, log_weight)| (density([state[0], state[1]]), log_weight.exp()))
+            .collect();
+        points.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let all: f64 = points.iter().map(|(_, weight)| weight).sum();
+        let mut sum = 0.0;
+        let border = points.iter().find(|(_, weight)| {
+            sum += weight;
+            sum >= 0.9 * all
+        });
+        border.map(|(least, _)| density(truth) >= *least)
+    }
+
     fn follow<const D: usize>(
         &self,
         locator: Locator<f64, POINTS, MOST, D, Fenced<'_>>,
     ) -> Vec<Estimate> {
         let mut locator = Box::new(locator);
         let mut estimates = Vec::new();
-        for stop in self.stops {
+        for (number, stop) in self.stops.iter().enumerate() {
             let Some(measurement) = self.measurement(stop) else { continue };
             if locator.measure(&measurement).is_err() {
                 continue;
             }
             let moments = locator.moments();
             let (mean, deviation) = (moments.mean(), moments.deviation());
-            let covered = self.truth.and_then(|truth| {
-                let [x, y] = self.inward(truth);
-                let state = std::array::from_fn(|axis| [x, y, mean[D - 1]][axis]);
-                locator.credible(&state, 0.9)
-            });
+            let last = number + 1 == self.stops.len();
+            let covered =
+                self.truth.filter(|_| last).and_then(|truth| self.covered(&locator, truth));
             estimates.push(Estimate {
                 t: stop.t,
                 place: self.outward([mean[0], mean[1]]),
@@ -262,6 +318,16 @@ impl<'a> Search<'a> {
         }
         estimates
     }
+}
+
+/// How many levels stand for all.
+const LEVELS: u32 = 41;
+
+/// Adds up exponentials of logarithms, as a logarithm.
+fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
+    let logs: Vec<f64> = logs.collect();
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln()
 }
 
 /// A channel to users within the area only.
@@ -278,6 +344,13 @@ impl kestirim_air_to_ground::Likelihood<f64> for Fenced<'_> {
             f64::NEG_INFINITY
         }
     }
+}
+
+/// Whether no stop is anywhere near an area.
+fn far(area: &Area, stops: &[Stop]) -> bool {
+    let (low, high) = area.bounds();
+    let beside = |axis: usize, at: f64| at < low[axis] - FAR_M || at > high[axis] + FAR_M;
+    stops.iter().all(|stop| beside(0, stop.place[0]) || beside(1, stop.place[1]))
 }
 
 /// The box around a flight, and some more.
@@ -311,8 +384,11 @@ pub struct Report {
     pub estimate: Place,
     /// Root mean square distance from the estimate that the filter expects, m.
     pub sd_m: f64,
-    /// Level received at one metre, dB, where it was not known.
+    /// Where the level was not known, what the transmitter sends, dB (received level = this − path loss); over
+    /// open ground, where no frequency is known either, what is received at one metre.
     pub level_db: Option<f64>,
+    #[serde(skip)]
+    level_name: &'static str,
     /// What a reader should know.
     pub warnings: Vec<String>,
     /// How far that is from the truth, if it is known.
@@ -379,7 +455,7 @@ impl fmt::Display for Report {
         row("place", format!("{:.1} m, {:.1} m", self.estimate.x, self.estimate.y));
         row("standard deviation", format!("{:.1} m", self.sd_m));
         if let Some(level) = self.level_db {
-            row("level at one metre", format!("{level:.1} dB"));
+            row(self.level_name, format!("{level:.1} dB"));
         }
         if let Some(accuracy) = &self.accuracy {
             row("error", format!("{:.1} m", accuracy.error_m));
