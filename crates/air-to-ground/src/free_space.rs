@@ -149,6 +149,12 @@ impl<T: Scalar> FreeSpace<T> {
         Self { scale, ..*self }
     }
 
+    /// The same channel with twice the scale, but no more than is expected of open ground: for regions, since
+    /// measurements leave less noise at the place that they were fitted to than there is.
+    pub fn doubtful(&self) -> Self {
+        Self { scale: (self.scale * T::TWO).min(T::from_f64(SCALE)), ..*self }
+    }
+
     /// Logarithm of the measurements' density if the transmitter is at `place`, to a power, levels and antennas
     /// integrated over; it lacks a constant. A measurement's loss is the negative received level.
     pub fn log_likelihood(&self, measurements: &[Measurement<T>], place: [T; 2], power: T) -> T {

@@ -29,7 +29,7 @@ pub struct BeaconEstimate<T, const L: usize> {
     pub level: T,
     /// The posterior that allows for their correlation: for how well the place is known.
     pub posterior: PointMass<T, 2, L>,
-    /// With the noise that was found.
+    /// By which the posterior was computed.
     channel: FreeSpace<T>,
 }
 
@@ -72,12 +72,13 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
             posterior = sharp(&channel, &self.measurements, region, &inside)?;
         }
         let place = posterior.moments().mean();
+        let level = channel.level(&self.measurements, place);
+        let channel = channel.doubtful();
         let mut posterior = PointMass::new(region);
         posterior.update(|place| {
             let honest = T::from_f64(HONEST);
             log_posterior(&channel, &self.measurements, place, honest, &inside)
         })?;
-        let level = channel.level(&self.measurements, place);
         Ok(BeaconEstimate { place, level, posterior, channel })
     }
 
