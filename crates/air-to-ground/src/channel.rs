@@ -140,8 +140,8 @@ impl<T: Scalar> Channel<T> {
     /// Logarithm of the density (per dB) of a measured loss if the user is there (eq. 2.11).
     ///
     /// Beyond 127 standard deviations it does not fall any further. Without branches, so that a loop over
-    /// particles becomes vector instructions; five exponentials and logarithms where the equations as
-    /// printed have nine. What is not finite in `user` gives what is not finite.
+    /// particles becomes vector instructions, and never underflowing as the printed sum of densities does.
+    /// What is not finite in `user` gives what is not finite.
     #[inline(always)]
     pub fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
         let distance = measurement.horizontal_distance(user);
