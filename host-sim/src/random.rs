@@ -1,7 +1,7 @@
 //! Reproducible randomness: a seed and an index give a stream, whatever thread asks for it.
 
 use rand_core::{Rng, SeedableRng};
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use rand_xoshiro::{SplitMix64, Xoshiro256PlusPlus};
 
 /// The generator of trial number `index` of the experiment with this `seed`.
@@ -10,6 +10,11 @@ pub fn stream(seed: u64, index: u64) -> Xoshiro256PlusPlus {
     // streams.
     let key = SplitMix64::seed_from_u64(seed).next_u64();
     Xoshiro256PlusPlus::seed_from_u64(key ^ index)
+}
+
+/// Uniform in 0 ≤ u < 1.
+pub fn uniform<R: Rng + ?Sized>(rng: &mut R) -> f64 {
+    StandardUniform.sample(rng)
 }
 
 /// A normally distributed number of mean zero.

@@ -6,10 +6,10 @@ use kestirim_user_locator::{Height, Locator, Motion, Orbit, Tracker, Waypoint};
 use rand_core::{Rng, SeedableRng};
 
 use super::moving_user::{self, Policy, Walk};
-use super::scenario::{EnvironmentKind, measure, uniform};
+use super::scenario::{EnvironmentKind, measure};
 use super::trajectory::{SIDE_M, Trajectory};
 use crate::metrics::{distance, mean};
-use crate::random::stream;
+use crate::random::{stream, uniform};
 
 /// Points of a lattice of places and levels.
 const POINTS: usize = 1500;

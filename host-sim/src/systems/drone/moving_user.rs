@@ -10,10 +10,10 @@ use kestirim_user_locator::{
 };
 use rand_core::{Rng, SeedableRng};
 
-use super::scenario::{EnvironmentKind, measure, uniform};
+use super::scenario::{EnvironmentKind, measure};
 use crate::cli::ScalarKind;
 use crate::metrics::{distance, mean};
-use crate::random::{normal, stream};
+use crate::random::{normal, stream, uniform};
 
 /// Side of the square, m.
 pub const SIDE_M: f64 = 4000.0;

@@ -5,7 +5,7 @@ use kestirim_scalar::Scalar;
 use rand_core::Rng;
 
 use crate::metrics::distance;
-use crate::random::normal;
+use crate::random::{normal, uniform};
 
 /// Wavelength of 2 GHz with the thesis' speed of light, m.
 pub const WAVELENGTH_M: f64 = 0.15;
@@ -54,9 +54,4 @@ pub fn measure<R: Rng + ?Sized>(
         (expected.obstructed_mean, expected.obstructed_sigma)
     };
     mean + normal(rng, sigma)
-}
-
-/// Uniform in 0 ≤ u < 1.
-pub fn uniform<R: Rng + ?Sized>(rng: &mut R) -> f64 {
-    (rng.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
 }

@@ -6,11 +6,11 @@ use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{Locator, PrintedLocator, PrintedSettings};
 use rand_core::{Rng, SeedableRng};
 
-use super::scenario::{EnvironmentKind, measure, uniform};
+use super::scenario::{EnvironmentKind, measure};
 use super::trajectory::{SIDE_M, Trajectory};
 use crate::cli::ScalarKind;
 use crate::metrics::distance;
-use crate::random::stream;
+use crate::random::{stream, uniform};
 
 /// Most particles of a filter.
 const MOST: usize = 4096;

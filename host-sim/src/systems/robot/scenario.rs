@@ -5,10 +5,10 @@
 //! trilateration errs as much as the paper's does.
 
 use rand_core::Rng;
-use rand_distr::{Distribution, Exp, StandardUniform};
+use rand_distr::{Distribution, Exp};
 
 use super::ranges::RangeRow;
-use crate::random::normal;
+use crate::random::{normal, uniform};
 
 /// The anchors A1 to A4, m.
 pub const ANCHORS: [[f64; 3]; 4] =
@@ -138,8 +138,4 @@ impl Person {
         let in_the_way = (self.from..self.from + BLOCKED_EPOCHS).contains(&epoch);
         if anchor == self.anchor && in_the_way { self.length } else { 0.0 }
     }
-}
-
-fn uniform<R: Rng>(rng: &mut R) -> f64 {
-    StandardUniform.sample(rng)
 }
