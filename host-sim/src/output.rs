@@ -44,6 +44,13 @@ pub fn warn(message: &str) {
     let _ = writeln!(io::stderr(), "{message}");
 }
 
+/// Says on standard error what a reader of a file should know.
+pub fn warn_of(path: &Path, warnings: &[String]) {
+    for warning in warnings {
+        warn(&format!("warning: {}: {warning}", printable_path(path)));
+    }
+}
+
 /// An empty table in the house style.
 pub fn table() -> Table {
     let mut table = Table::new();

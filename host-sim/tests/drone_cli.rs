@@ -104,20 +104,11 @@ fn path_losses_through_a_city_need_no_level() {
     let log = desk.file("city.csv", "t,x,y,h,path_loss_db\n".to_owned() + &rows);
     let truth = desk.file("truth.csv", "x,y\n900,1100\n");
     let area = desk.file("area.csv", "x,y\n0,0\n2000,0\n2000,2000\n0,2000\n");
-    let arguments = [
-        "replay",
-        "drone",
-        "--log",
-        &log,
-        "--truth",
-        &truth,
-        "--area",
-        &area,
-        "--environment",
-        "urban",
-        "--json",
-    ];
-    let report = json(&host_sim(&arguments));
+    let replay = |log: &str| {
+        let files = ["replay", "drone", "--log", log, "--truth", &truth, "--area", &area];
+        json(&host_sim(&[&files[..], &["--environment", "urban", "--json"]].concat()))
+    };
+    let report = replay(&log);
     assert!(report["accuracy"]["error_m"].as_f64().is_some_and(|error| error < 60.0));
     assert!(report["level_db"].is_null());
     // As levels of a transmitter that nobody knows.
@@ -127,19 +118,7 @@ fn path_losses_through_a_city_need_no_level() {
     });
     let levels = "t,x,y,h,rssi_db\n".to_owned() + &levels.collect::<String>();
     let log = desk.file("levels.csv", levels);
-    let report = json(&host_sim(&[
-        "replay",
-        "drone",
-        "--log",
-        &log,
-        "--truth",
-        &truth,
-        "--area",
-        &area,
-        "--environment",
-        "urban",
-        "--json",
-    ]));
+    let report = replay(&log);
     assert!(report["accuracy"]["error_m"].as_f64().is_some_and(|error| error < 150.0));
     assert!(report["level_db"].as_f64().is_some_and(|level| (level - 17.0).abs() < 4.0));
 }

@@ -11,7 +11,7 @@ const SCALE: f64 = 3.5;
 /// No scale is below this, dB: receivers count in halves of decibels.
 const LEAST_SCALE: f64 = 0.5;
 /// Place, level and antennas are fitted, too: so many measurements do not count for the scale.
-const FITTED: u16 = 4;
+const FITTED: usize = 4;
 /// What a dipole still receives along its axis.
 const NULL_FILL: f64 = 0.1;
 /// The level's curvature is never taken for less than this share of that of perfect data.
@@ -127,7 +127,7 @@ impl<T: Scalar> FreeSpace<T> {
     /// wrong place shows it as well.
     pub fn fitted(&self, measurements: &[Measurement<T>], place: [T; 2]) -> Self {
         let sight = Sight::new(measurements, place);
-        let Some(free) = sight.count.checked_sub(usize::from(FITTED)).filter(|&n| n > 0) else {
+        let Some(free) = sight.count.checked_sub(FITTED).filter(|&n| n > 0) else {
             return *self;
         };
         let (antennas, fit) = self.best_fit(&sight);

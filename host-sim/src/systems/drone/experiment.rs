@@ -11,7 +11,7 @@ use super::moving_user::{self, LOST_M, Policy, Walk};
 use super::options::{CellOptions, FilterKind, Run};
 use super::report::{Report, Row};
 use super::static_user::{self, Geometry, Job, Paper};
-use super::sweeps::{MovingSweeps, STOPS, StaticSweeps};
+use super::sweeps::{MovingSweeps, STOPS, StaticSweeps, place_of};
 use super::trajectory::{SIDE_M, Trajectory};
 use crate::cli::ScalarKind;
 use crate::metrics::mean;
@@ -27,6 +27,8 @@ const PRECISION: f64 = 0.03;
 const MOST_PORTIONS: u32 = 16;
 /// Trials of a cell of a user who moves, of whom each has hundreds of measurements.
 const MOVING_TRIALS: u32 = 12;
+/// What no table of the thesis has.
+const BEYOND: &str = "beyond the thesis";
 /// Speed of the drone unless told otherwise, km/h.
 const SPEED_KMH: f64 = 40.0;
 
@@ -65,10 +67,14 @@ impl Experiment {
     }
 
     fn everything(&self) -> Report {
-        let (staying, moving) = (StaticSweeps::thesis(), MovingSweeps::thesis());
-        let beyond = beyond::walks();
+        let (staying, mut moving) = (StaticSweeps::thesis(), MovingSweeps::thesis());
+        // Beside the sweeps' own cells, which some of these are.
+        let beyond: Vec<_> = beyond::walks()
+            .into_iter()
+            .map(|(description, walk)| (description, place_of(&mut moving.walks, walk)))
+            .collect();
         let still = staying.jobs.len() + Stay::ALL.len();
-        let under_way = moving.walks.len() + beyond.len() + 1;
+        let under_way = moving.walks.len() + 1;
         let flights = u64::from(self.trials.unwrap_or(4 * PORTION)) * still as u64
             + u64::from(self.moving_trials) * under_way as u64;
         let bar = output::progress(flights, "flights");
@@ -92,7 +98,12 @@ impl Experiment {
             let row = moving_row(walk, &walks[cell.walk], cell.speed_kmh);
             rows.push(Row { table: cell.table, cell: cell.cell.clone(), ..row });
         }
-        rows.extend(self.beyond(&beyond, &bar));
+        rows.extend(self.beyond_staying(&bar));
+        for (description, walk) in beyond {
+            let row = moving_row(&moving.walks[walk], &walks[walk], SPEED_KMH);
+            rows.push(Row { table: BEYOND, cell: format!("walks: {description}"), ..row });
+        }
+        rows.push(self.several_users(&bar));
         bar.finish_and_clear();
         self.report(rows, refused)
     }
@@ -182,22 +193,20 @@ impl Experiment {
             .collect()
     }
 
-    fn beyond(&self, walks: &[(&'static str, Walk)], bar: &ProgressBar) -> Vec<Row> {
-        const TABLE: &str = "beyond the thesis";
-        let mut rows = Vec::new();
-        for stay in Stay::ALL {
+    fn beyond_staying(&self, bar: &ProgressBar) -> Vec<Row> {
+        let row = |stay: Stay| {
             let errors: Vec<f64> = (0..u64::from(self.trials.unwrap_or(2 * PORTION)))
                 .into_par_iter()
                 .progress_with(bar.clone())
                 .map(|index| stay.trial(self.seed, index))
                 .collect();
             let cell = format!("stays: {}", stay.description());
-            rows.push(Row { table: TABLE, cell, filter: "best", ..Row::of(&errors) });
-        }
-        for (description, walk) in walks {
-            let row = moving_row(walk, &self.walking(walk, bar), SPEED_KMH);
-            rows.push(Row { table: TABLE, cell: format!("walks: {description}"), ..row });
-        }
+            Row { table: BEYOND, cell, filter: "best", ..Row::of(&errors) }
+        };
+        Stay::ALL.into_iter().map(row).collect()
+    }
+
+    fn several_users(&self, bar: &ProgressBar) -> Row {
         let errors: Vec<f64> = (0..u64::from(self.moving_trials))
             .into_par_iter()
             .progress_with(bar.clone())
@@ -205,8 +214,7 @@ impl Experiment {
             .collect();
         let cell = "walk: three users, one filter each".to_owned();
         let lost_percent = Some(lost_percent(&errors));
-        rows.push(Row { table: TABLE, cell, filter: "best", lost_percent, ..Row::of(&errors) });
-        rows
+        Row { table: BEYOND, cell, filter: "best", lost_percent, ..Row::of(&errors) }
     }
 }
 

@@ -1,7 +1,8 @@
 //! A drone base station that finds and follows a user on the ground.
 //!
 //! `trajectory` and `scenario` make measurements; `static_user` and `moving_user` run one cell of the thesis'
-//! tables; `experiment` runs them all; `flight` and `area` read recordings for a [replay](replay::Replay).
+//! tables; `experiment` runs them all; `flight` and `area` read recordings, in which
+//! `search` finds the user for a [replay](replay::Replay).
 //!
 //! Frame: a plane in metres (such as east and north), heights above the user.
 
@@ -19,6 +20,7 @@ pub mod options;
 pub mod replay;
 pub mod report;
 pub mod scenario;
+mod search;
 pub mod static_user;
 pub mod sweeps;
 pub mod trajectory;

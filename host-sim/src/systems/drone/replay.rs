@@ -3,32 +3,17 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use kestirim_air_to_ground::{FreeSpace, LevelPrior, Measurement};
-use kestirim_particle_filter::Region;
-use kestirim_user_locator::{Beacon, Locator};
 use serde::Serialize;
 
 use super::area::Area;
-use super::flight::{self, Flight, Quantity, Stop};
-use super::scenario::{EnvironmentKind, WAVELENGTH_M};
+use super::flight::{self, Stop};
+use super::scenario::EnvironmentKind;
+use super::search::{BEYOND_M, Estimate, MOST, MOST_OPEN, Search};
 use crate::metrics::distance;
-use crate::text::printable_path;
 use crate::{Error, output};
 
-/// Points of a lattice.
-const POINTS: usize = 2000;
-/// Most measurements of a flight among buildings; of more as many are taken, evenly.
-const MOST: usize = 400;
-/// And over open ground, where what is measured close together says the same.
-const MOST_OPEN: usize = 100;
-/// How far beyond the flight the user may be if no area is given, m.
-const BEYOND_M: f64 = 500.0;
 /// From here on a drone hears nothing, m.
 const FAR_M: f64 = 20_000.0;
-/// Levels of the transmitter that are thought possible about the nominal one, dB.
-const LEVELS_DB: f64 = 100.0;
-/// How well a path loss is calibrated, dB.
-const CALIBRATION_DB: f64 = 3.0;
 /// Errors are told after each of these, s.
 const MINUTE_S: f64 = 60.0;
 
@@ -58,17 +43,6 @@ pub struct Replay {
     pub json: bool,
 }
 
-/// Where the user is after some measurements.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Estimate {
-    t: f64,
-    place: [f64; 2],
-    sd_m: f64,
-    level_db: Option<f64>,
-    /// Whether the 90 % region holds the true place, if that is known.
-    covered: Option<bool>,
-}
-
 impl Replay {
     /// Reads, locates, compares, writes and prints.
     ///
@@ -76,9 +50,7 @@ impl Replay {
     /// Whatever is wrong with the options or the files; then nothing is printed.
     pub fn run(&self) -> Result<(), Error> {
         let report = self.report()?;
-        for warning in &report.warnings {
-            output::warn(&format!("warning: {}: {warning}", printable_path(&self.log)));
-        }
+        output::warn_of(&self.log, &report.warnings);
         output::show(&report, self.json)
     }
 
@@ -118,9 +90,9 @@ impl Replay {
         if area.as_ref().is_some_and(|area| far(area, &flight.stops)) {
             warnings.push("no measurement was made within 20 km of the area".to_owned());
         }
-        let mut search = Search::new(&flight, area.as_ref(), truth);
         // What comes in between takes as long as the end, each time.
-        search.only_last = truth.is_none() && self.track.is_none();
+        let only_last = truth.is_none() && self.track.is_none();
+        let search = Search::new(&flight, area.as_ref(), truth, only_last);
         let estimates = match self.environment {
             None => search.in_free_space(flight.quantity),
             Some(environment) => search.among_buildings(environment, flight.quantity),
@@ -131,7 +103,7 @@ impl Replay {
                 problem: "no place explains the measurements".to_owned(),
             });
         };
-        let every = self.environment.is_some() || !search.only_last;
+        let every = self.environment.is_some() || !only_last;
         if every && estimates.len() < flight.stops.len() {
             warnings.push("some measurements are explained by no place: left out".to_owned());
         }
@@ -165,201 +137,11 @@ fn thin_out(stops: &mut Vec<Stop>, most: usize, warnings: &mut Vec<String>) {
     *stops = (0..most).map(|k| stops[k * count / most]).collect();
 }
 
-/// Where a user is looked for.
-struct Search<'a> {
-    stops: &'a [Stop],
-    area: Option<&'a Area>,
-    /// Coordinates are counted from here, so that they stay small.
-    origin: [f64; 2],
-    high: [f64; 2],
-    truth: Option<[f64; 2]>,
-    /// Whether only the last estimate is wanted.
-    only_last: bool,
-}
-
-impl<'a> Search<'a> {
-    fn new(flight: &'a Flight, area: Option<&'a Area>, truth: Option<[f64; 2]>) -> Self {
-        let (low, high) = area.map_or_else(|| surroundings(&flight.stops), Area::bounds);
-        Self { stops: &flight.stops, area, origin: low, high, truth, only_last: false }
-    }
-
-    fn inside(&self, place: [f64; 2]) -> bool {
-        self.area.is_none_or(|area| area.contains(self.outward(place)))
-    }
-
-    fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [x - self.origin[0], y - self.origin[1]]
-    }
-
-    fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [x + self.origin[0], y + self.origin[1]]
-    }
-
-    fn measurement(&self, stop: &Stop) -> Option<Measurement<f64>> {
-        Measurement::new(self.inward(stop.place), stop.height, stop.loss).ok()
-    }
-
-    fn region(&self) -> Region<f64, 2> {
-        Region::new([0.0; 2], self.inward(self.high)).expect("a box of finite corners")
-    }
-
-    /// Over open ground.
-    fn in_free_space(&self, quantity: Quantity) -> Vec<Estimate> {
-        let level = match quantity {
-            Quantity::Level => None,
-            // What 2 GHz loses on the first metre.
-            Quantity::PathLoss => Some(LevelPrior {
-                mean: -20.0 * (4.0 * std::f64::consts::PI / WAVELENGTH_M).log10(),
-                sigma: CALIBRATION_DB,
-            }),
-        };
-        let mut beacon = Box::new(Beacon::<f64, MOST_OPEN>::new(FreeSpace::new(level)));
-        let mut estimates = Vec::new();
-        for (number, stop) in self.stops.iter().enumerate() {
-            let taken = self.measurement(stop).is_some_and(|m| beacon.measure(&m).is_ok());
-            if !taken || (self.only_last && number + 1 < self.stops.len()) {
-                continue;
-            }
-            let found = beacon.estimate::<POINTS>(&self.region(), |place| self.inside(place));
-            let Ok(found) = found else { continue };
-            let covered = self.truth.map(|truth| beacon.credible(&found, self.inward(truth), 0.9));
-            estimates.push(Estimate {
-                t: stop.t,
-                place: self.outward(found.place),
-                sd_m: found.moments().spread(),
-                level_db: (quantity == Quantity::Level).then_some(found.level),
-                covered,
-            });
-        }
-        estimates
-    }
-
-    /// Through the thesis' channel.
-    fn among_buildings(&self, environment: EnvironmentKind, quantity: Quantity) -> Vec<Estimate> {
-        let channel = Fenced { channel: environment.channel(), search: self };
-        match quantity {
-            Quantity::PathLoss => {
-                let region = self.region();
-                self.follow::<2>(Locator::new(channel, &region))
-            }
-            Quantity::Level => {
-                let [width, height] = self.inward(self.high);
-                let corners = ([0.0, 0.0, -LEVELS_DB], [width, height, LEVELS_DB]);
-                let region = Region::new(corners.0, corners.1).expect("a box of finite corners");
-                self.follow::<3>(Locator::new(channel, &region))
-            }
-        }
-    }
-
-    /// Whether the 90 % region of places holds the true one. The level, where it is a third coordinate, is
-    /// integrated over: nobody knows the true one.
-    fn covered<const D: usize>(
-        &self,
-        locator: &Locator<f64, POINTS, MOST, D, Fenced<'_>>,
-        truth: [f64; 2],
-    ) -> Option<bool> {
-        let truth = self.inward(truth);
-        if D == 2 {
-            let state = std::array::from_fn(|axis| truth[axis]);
-            return locator.credible(&state, 0.9);
-        }
-        let moments = locator.moments();
-        let (level, deviation) = (moments.mean()[D - 1], moments.deviation()[D - 1]);
-        let levels = (0..LEVELS)
-            .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
-        let density = |[x, y]: [f64; 2]| {
-            log_sum(levels.clone().map(|level| {
-                let state = std::array::from_fn(|axis| [x, y, level][axis]);
-                locator.log_posterior(&state)
-            }))
-        };
-        let posterior = locator.posterior();
-        let mut points: Vec<(f64, f64)> = (0..posterior.len())
-            .filter_map(|index| {
-                Some((posterior.point(index)?, posterior.log_weights().get(index)?))
-            })
-            .filter(|(_, log_weight)| **log_weight > -12.0)
-            .map(|(state, log_weight)| (density([state[0], state[1]]), log_weight.exp()))
-            .collect();
-        points.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let all: f64 = points.iter().map(|(_, weight)| weight).sum();
-        let mut sum = 0.0;
-        let border = points.iter().find(|(_, weight)| {
-            sum += weight;
-            sum >= 0.9 * all
-        });
-        border.map(|(least, _)| density(truth) >= *least)
-    }
-
-    fn follow<const D: usize>(
-        &self,
-        locator: Locator<f64, POINTS, MOST, D, Fenced<'_>>,
-    ) -> Vec<Estimate> {
-        let mut locator = Box::new(locator);
-        let mut estimates = Vec::new();
-        for (number, stop) in self.stops.iter().enumerate() {
-            let Some(measurement) = self.measurement(stop) else { continue };
-            if locator.measure(&measurement).is_err() {
-                continue;
-            }
-            let moments = locator.moments();
-            let (mean, deviation) = (moments.mean(), moments.deviation());
-            let last = number + 1 == self.stops.len();
-            let covered =
-                self.truth.filter(|_| last).and_then(|truth| self.covered(&locator, truth));
-            estimates.push(Estimate {
-                t: stop.t,
-                place: self.outward([mean[0], mean[1]]),
-                sd_m: deviation[0].hypot(deviation[1]),
-                // A level received is the negative loss: the more the transmitter sends, the less.
-                level_db: mean.get(2).map(|loss| -loss),
-                covered,
-            });
-        }
-        estimates
-    }
-}
-
-/// How many levels stand for all.
-const LEVELS: u32 = 41;
-
-/// Adds up exponentials of logarithms, as a logarithm.
-fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
-    let logs: Vec<f64> = logs.collect();
-    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln()
-}
-
-/// A channel to users within the area only.
-struct Fenced<'a> {
-    channel: kestirim_air_to_ground::Channel<f64>,
-    search: &'a Search<'a>,
-}
-
-impl kestirim_air_to_ground::Likelihood<f64> for Fenced<'_> {
-    fn log_likelihood(&self, measurement: &Measurement<f64>, user: [f64; 2]) -> f64 {
-        if self.search.inside(user) {
-            self.channel.log_likelihood(measurement, user)
-        } else {
-            f64::NEG_INFINITY
-        }
-    }
-}
-
 /// Whether no stop is anywhere near an area.
 fn far(area: &Area, stops: &[Stop]) -> bool {
     let (low, high) = area.bounds();
     let beside = |axis: usize, at: f64| at < low[axis] - FAR_M || at > high[axis] + FAR_M;
     stops.iter().all(|stop| beside(0, stop.place[0]) || beside(1, stop.place[1]))
-}
-
-/// The box around a flight, and some more.
-fn surroundings(stops: &[Stop]) -> ([f64; 2], [f64; 2]) {
-    let bound = |axis: usize, sign: f64| {
-        let outermost = stops.iter().map(|stop| sign * stop.place[axis]).fold(f64::MIN, f64::max);
-        sign * (outermost + BEYOND_M)
-    };
-    ([bound(0, -1.0), bound(1, -1.0)], [bound(0, 1.0), bound(1, 1.0)])
 }
 
 fn write_track(path: &Path, estimates: &[Estimate]) -> Result<(), Error> {

@@ -157,7 +157,7 @@ fn measured(geometry: &Geometry) -> String {
 }
 
 /// Where a value stands in a list; at its end if it did not yet.
-fn place_of<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
+pub(super) fn place_of<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
     list.iter().position(|known| *known == value).unwrap_or_else(|| {
         list.push(value);
         list.len() - 1

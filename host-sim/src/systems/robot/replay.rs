@@ -14,7 +14,6 @@ use super::ranges::RangeLog;
 use super::{anchors, calibration, follow, motion, ranges};
 use crate::cli::ScalarKind;
 use crate::systems::choose_scalar;
-use crate::text::printable_path;
 use crate::{Error, output};
 
 /// Options of the command.
@@ -71,9 +70,7 @@ impl Replay {
     /// Whatever is wrong with the options or the files; then nothing is printed.
     pub fn run(&self) -> Result<(), Error> {
         let report = self.report()?;
-        for warning in &report.warnings {
-            output::warn(&format!("warning: {}: {warning}", printable_path(&self.log)));
-        }
+        output::warn_of(&self.log, &report.warnings);
         output::show(&report, self.json)
     }
 
