@@ -19,14 +19,28 @@ pub fn eigenvalues<const N: usize>(
     if !finite(matrix) {
         return Err(Error::NotFinite);
     }
-    Ok(spectrum(&complex(&extend(matrix)))?.map(round_complex))
+    Ok(eigenvalues_extended(&extend(matrix))?.map(round_complex))
 }
 
-/// The eigenvalues of a real matrix of 106 bits.
+/// The eigenvalues of a real matrix of 106 bits: real ones, and pairs that are conjugate to the last bit.
 pub(crate) fn eigenvalues_extended<const N: usize>(
     matrix: &Square<Extended, N>,
 ) -> Result<[Complex<Extended>; N], Error> {
-    spectrum(&complex(matrix))
+    let mut values = spectrum(&complex(matrix))?;
+    let mut done = [false; N];
+    for index in 0..N {
+        if done[index] {
+            continue;
+        }
+        let conjugate = values[index].conjugate();
+        let distance = |&other: &usize| (values[other] - conjugate).magnitude();
+        let free = (index..N).filter(|&other| !done[other]);
+        let partner = free.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(index);
+        let mean = (values[partner] + conjugate).scaled(Extended::from(0.5));
+        (values[partner], values[index]) = (mean, mean.conjugate());
+        (done[index], done[partner]) = (true, true);
+    }
+    Ok(values)
 }
 
 fn spectrum<R: Real, const N: usize>(

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 use super::case::{Case, Problem};
 use super::sized::{self, MOST_STATES, MOST_WIDE, Observed};
@@ -9,11 +10,28 @@ use super::sized::{self, MOST_STATES, MOST_WIDE, Observed};
 /// What was asked, and what came of it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Answered {
-    /// The case.
-    pub id: String,
+    /// The case, as the file names it.
+    pub id: Value,
     /// The answer.
     #[serde(flatten)]
     pub answer: Answer,
+}
+
+impl Answered {
+    /// Answers a case. What is wrong with it is its answer.
+    pub(super) fn new(value: &Value, answer: fn(&Case) -> Result<Solution, Problem>) -> Self {
+        let id = value.get("id").cloned().unwrap_or_default();
+        let answer = match Case::new(value).and_then(|case| answer(&case)) {
+            Ok(solution) => Answer::Solved(solution),
+            Err(error) => Answer::Refused { error },
+        };
+        Self { id, answer }
+    }
+
+    /// The name of the case, for people.
+    pub fn name(&self) -> String {
+        self.id.as_str().map_or_else(|| self.id.to_string(), str::to_owned)
+    }
 }
 
 /// A solution, or why there is none.
@@ -78,25 +96,18 @@ fn rows<S: Serializer>(matrix: &DMatrix<f64>, serializer: S) -> Result<S::Ok, S:
     serializer.collect_seq(matrix.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()))
 }
 
-type Section = (&'static str, fn(&Case) -> Answer);
+type Section = (&'static str, fn(&Case) -> Result<Solution, Problem>);
 
 /// The sections of a file, and how their cases are answered.
 pub(super) const SECTIONS: [Section; 7] = [
-    ("pole_placement", |case| answer(placement(case))),
-    ("must_reject", |case| answer(placement(case))),
-    ("dare", |case| answer(riccati(case))),
-    ("dare_reject", |case| answer(riccati(case))),
-    ("c2d", |case| answer(discretisation(case))),
-    ("lyapunov", |case| answer(covariance(case))),
-    ("reduced_order", |case| answer(reduced_order(case))),
+    ("pole_placement", placement),
+    ("must_reject", placement),
+    ("dare", riccati),
+    ("dare_reject", riccati),
+    ("c2d", discretisation),
+    ("lyapunov", covariance),
+    ("reduced_order", reduced_order),
 ];
-
-fn answer(result: Result<Solution, Problem>) -> Answer {
-    match result {
-        Ok(solution) => Answer::Solved(solution),
-        Err(error) => Answer::Refused { error },
-    }
-}
 
 fn placement(case: &Case) -> Result<Solution, Problem> {
     let a = case.square("A", MOST_STATES)?;

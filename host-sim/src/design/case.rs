@@ -3,9 +3,8 @@
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Map, Value};
 
-/// An object with an `id`. What else it holds is looked at when it is asked for.
+/// An object. What it holds is looked at when it is asked for.
 pub(super) struct Case<'a> {
-    id: &'a str,
     fields: &'a Map<String, Value>,
 }
 
@@ -13,13 +12,9 @@ pub(super) struct Case<'a> {
 pub(super) type Problem = String;
 
 impl<'a> Case<'a> {
-    pub(super) fn new(value: &'a Value) -> Option<Self> {
-        let fields = value.as_object()?;
-        Some(Self { id: fields.get("id")?.as_str()?, fields })
-    }
-
-    pub(super) fn id(&self) -> &str {
-        self.id
+    pub(super) fn new(value: &'a Value) -> Result<Self, Problem> {
+        let fields = value.as_object().ok_or("expected an object")?;
+        Ok(Self { fields })
     }
 
     fn field(&self, name: &str) -> Result<&'a Value, Problem> {

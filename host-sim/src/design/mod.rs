@@ -15,7 +15,6 @@ use serde_json::{Map, Value};
 
 use crate::text::TextFile;
 use crate::{Error, output};
-use case::Case;
 
 /// Options of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -49,7 +48,10 @@ impl Design {
     fn answers(&self) -> Result<Vec<(&'static str, Vec<Answered>)>, Error> {
         let file = TextFile::read(&self.input)?;
         let cases: Map<String, Value> = serde_json::from_str(file.text()).map_err(|error| {
-            file.error_at(error.line(), format!("expected a JSON object of cases: {error}"))
+            file.error_at(
+                error.line(),
+                format!("expected a JSON object of cases: {}", reason(&error)),
+            )
         })?;
         let mut sections = Vec::new();
         for (name, answer) in answer::SECTIONS {
@@ -57,17 +59,7 @@ impl Design {
             let list = section
                 .as_array()
                 .ok_or_else(|| file.error(format!("{name}: expected a list of cases")))?;
-            let mut answers = Vec::new();
-            for (index, value) in list.iter().enumerate() {
-                let case = Case::new(value).ok_or_else(|| {
-                    file.error(format!(
-                        "{name}, case {}: expected an object with an \"id\"",
-                        index + 1
-                    ))
-                })?;
-                let answer = answer(&case);
-                answers.push(Answered { id: case.id().to_owned(), answer });
-            }
+            let answers = list.iter().map(|value| Answered::new(value, answer)).collect();
             sections.push((name, answers));
         }
         if sections.is_empty() {
@@ -76,4 +68,10 @@ impl Design {
         }
         Ok(sections)
     }
+}
+
+/// What the parser says, without the place, which the sentence begins with.
+fn reason(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split(" at line ").next().unwrap_or_default().to_owned()
 }

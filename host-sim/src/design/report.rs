@@ -31,7 +31,7 @@ impl fmt::Display for Report {
             let mut table = output::table();
             table.set_header([*name, "answer"]);
             for answered in answers {
-                table.add_row([answered.id.clone(), summary(&answered.answer)]);
+                table.add_row([answered.name(), summary(&answered.answer)]);
             }
             writeln!(formatter, "{table}\n")?;
         }

@@ -14,9 +14,10 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
     let mut used = BTreeSet::new();
     for (section, answers) in &report.sections {
         for answered in answers {
-            let id = answered.id.replace(char::is_control, " ");
+            let id = answered.name().replace(char::is_control, " ");
             let mut constant = |suffix: &str, what: &str, matrix: &DMatrix<f64>| {
-                let name = unique(&format!("{}_{suffix}", constant_case(&answered.id)), &mut used);
+                let name =
+                    unique(&format!("{}_{suffix}", constant_case(&answered.name())), &mut used);
                 let (rows, columns) = matrix.shape();
                 writeln!(file, "\n/// {what}: {id} ({section}).")?;
                 writeln!(file, "pub const {name}: [[f64; {columns}]; {rows}] = [")?;
@@ -24,7 +25,7 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
                     let numbers: Vec<_> = row.iter().map(|value| format!("{value:?}")).collect();
                     writeln!(file, "    [{}],", numbers.join(", "))?;
                 }
-                writeln!(file, "];")
+                file.write_all(b"];\n")
             };
             match &answered.answer {
                 Answer::Refused { error } => {
