@@ -108,28 +108,34 @@ fn a_settled_kalman_filter_is_an_observer() {
     }
 }
 
-#[test]
-fn a_reduced_observer_finds_what_is_not_measured() {
-    // States 2 and 0 are measured, in this order; the pole is at 0.9 − (0.5·0.02 + 3·0.1) = 0.59.
+fn reduced<T: Scalar>(most: f64) {
+    // States 2 and 0 are measured, in this order.
     let l = SMatrix::<f64, 1, 2>::new(0.5, 3.0);
     let gains = ReducedGains::<3, 1, 2, 1>::new(&PLANT.a, &PLANT.b, &[2, 0], &l).unwrap();
-    let mut state = START;
-    let seen = |state: &Vector3<f64>| Vector2::new(state[2], state[0]);
-    let mut observer =
-        ReducedObserver::<f64, 3, 1, 2, 1>::new(&gains, &Vector1::zeros(), &seen(&state)).unwrap();
-    assert!(observer.unmeasured(&seen(&state))[0].abs() < 1e-14);
     let pole = 0.9 - (0.5 * 0.0 + 3.0 * 0.1);
+    let mut state = START;
+    let seen = |state: &Vector3<f64>| SVector::from([state[2], state[0]].map(T::from_f64));
+    let zero = SVector::<T, 1>::zeros();
+    let mut observer = ReducedObserver::<T, 3, 1, 2, 1>::new(&gains, &zero, &seen(&state)).unwrap();
+    assert!(observer.unmeasured(&seen(&state))[0].abs().to_f64() < most);
     let mut error = -2.0;
     for k in 0..50 {
         let (u, _) = signals(k);
-        let estimate = observer.estimate(&seen(&state));
-        assert_close(&(state - estimate), &Vector3::new(0.0, error, 0.0), 1e-13);
-        observer.step(&u, &seen(&state)).unwrap();
+        let estimate = observer.estimate(&seen(&state)).map(T::to_f64);
+        assert_close(&(state - estimate), &Vector3::new(0.0, error, 0.0), most);
+        observer.step(&u.map(T::from_f64), &seen(&state)).unwrap();
         state = PLANT.a * state + PLANT.b * u;
         error *= pole;
     }
-    observer.reset(&Vector1::new(7.0), &seen(&state)).unwrap();
-    assert!((observer.unmeasured(&seen(&state))[0] - 7.0).abs() < 1e-13);
+    observer.reset(&SVector::from([T::TWO]), &seen(&state)).unwrap();
+    assert!((observer.unmeasured(&seen(&state))[0] - T::TWO).abs().to_f64() < most);
+}
+
+#[test]
+fn a_reduced_observer_finds_what_is_not_measured() {
+    reduced::<f64>(1e-13);
+    reduced::<f32>(1e-5);
+    reduced::<Q16_16>(3e-4);
 }
 
 /// A cart whose pusher has an offset, and whose actuator saturates.

@@ -193,7 +193,7 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     #[inline(always)]
     fn advanced(self, sum: i64, shift: u32) -> (Self, i64) {
         let shift = shift.min(62 - FRAC) + FRAC;
-        let whole = ((sum >> (shift - 1)) + 1) >> 1;
+        let whole = (sum >> (shift - 1)).wrapping_add(1) >> 1;
         let next = Self::saturate(i64::from(self.0) + whole);
         (next, sum.wrapping_sub(whole << shift))
     }
