@@ -1,0 +1,23 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod carried;
+mod current;
+mod dense;
+mod disturbance;
+mod error;
+mod integers;
+mod plant;
+mod predictor;
+mod reduced;
+mod rows;
+mod saturation;
+
+pub use current::{CurrentGains, CurrentObserver};
+pub use disturbance::{DisturbanceGains, DisturbanceObserver};
+pub use error::Error;
+pub use plant::Plant;
+pub use predictor::{Predictor, PredictorGains};
+pub use reduced::{ReducedGains, ReducedObserver};
+pub use saturation::Saturation;
