@@ -39,7 +39,7 @@ pub(super) fn polish<const N: usize, const P: usize>(
     let mut best = (worst(&start), SMatrix::<f64, N, P>::zeros());
     for neighbour in 0..NEIGHBOURS {
         let reach = if neighbour == 0 { 0.0 } else { REACH };
-        let mut steps = slopes.map(|_| 0.0).map(|_: f64| libm::round(reach * random.next()));
+        let mut steps = SMatrix::<f64, N, P>::from_fn(|_, _| libm::round(reach * random.next()));
         let mut offsets = start;
         for (slope, &step) in slopes.iter().zip(steps.iter()) {
             offsets += slope.map(|slope| slope * step);

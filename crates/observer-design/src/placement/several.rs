@@ -136,26 +136,22 @@ fn sweep<const N: usize>(
     Some(())
 }
 
-/// The second of a pair is the conjugate of the first.
+/// Where the pole is the second of a pair nothing, as the first has set both vectors.
 fn set<const N: usize>(
     vectors: &mut Square<Narrow, N>,
     index: usize,
     vector: &SVector<Narrow, N>,
     poles: &[Narrow; N],
 ) {
-    let second = |index: usize| index > 0 && poles[index].im != 0.0 && is_second(index, poles);
-    if second(index) {
-        return;
+    let real = poles[index].im == 0.0;
+    // Complex poles come last and in pairs: the second has an odd number of them before it.
+    let before = poles.iter().take(index).filter(|pole| pole.im != 0.0).count();
+    if real || before % 2 == 0 {
+        vectors.set_column(index, vector);
     }
-    vectors.set_column(index, vector);
-    if index + 1 < N && second(index + 1) {
+    if !real && before % 2 == 0 && index + 1 < N {
         vectors.set_column(index + 1, &vector.map(Number::conjugate));
     }
-}
-
-/// Whether a complex pole stands at an odd place among the complex ones, which come last and in pairs.
-fn is_second<const N: usize>(index: usize, poles: &[Narrow; N]) -> bool {
-    poles.iter().take(index).filter(|pole| pole.im != 0.0).count() % 2 == 1
 }
 
 /// ‖X⁻¹‖ for columns of length 1: by how much a change of A or L can move a pole.
