@@ -1,0 +1,47 @@
+//! Which matrices are covariances.
+
+use crate::Error;
+use crate::eigenvalues::eigenvalues_extended;
+use crate::extended::Extended;
+use crate::number::{Square, extend, finite, symmetrised};
+use nalgebra::SMatrix;
+
+/// Asymmetry and negative eigenvalues that rounding explains, beside the variances.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// The covariance with more digits, exactly symmetric, and its smallest eigenvalue on a scale on which all
+/// variances are 1.
+///
+/// # Errors
+/// [`Error::NotFinite`], [`Error::NotSymmetric`], or [`Error::NotPositive`] for a negative eigenvalue.
+pub(crate) fn checked<const N: usize>(
+    covariance: &SMatrix<f64, N, N>,
+) -> Result<(Square<Extended, N>, f64), Error> {
+    if !finite(covariance) {
+        return Err(Error::NotFinite);
+    }
+    let mut scales = [0.0; N];
+    for (index, scale) in scales.iter_mut().enumerate() {
+        *scale = libm::sqrt(covariance[(index, index)].max(0.0));
+    }
+    let mut correlation = Square::<f64, N>::zeros();
+    for row in 0..N {
+        for column in 0..N {
+            let (here, there) = (covariance[(row, column)], covariance[(column, row)]);
+            if (here - there).abs() > NEGLIGIBLE * here.abs().max(there.abs()) {
+                return Err(Error::NotSymmetric);
+            }
+            let scale = scales[row] * scales[column];
+            correlation[(row, column)] = if scale > 0.0 { here / scale } else { 0.0 };
+            if covariance[(row, row)] < 0.0 || (scale == 0.0 && here != 0.0) {
+                return Err(Error::NotPositive);
+            }
+        }
+    }
+    let values = eigenvalues_extended(&symmetrised(&extend(&correlation)))?;
+    let least = values.iter().map(|value| value.re.to_f64()).fold(f64::INFINITY, f64::min);
+    if least < -NEGLIGIBLE {
+        return Err(Error::NotPositive);
+    }
+    Ok((symmetrised(&extend(covariance)), least))
+}

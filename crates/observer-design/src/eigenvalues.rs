@@ -1,0 +1,239 @@
+//! Eigenvalues by the shifted QR algorithm.
+
+use crate::Error;
+use crate::extended::Extended;
+use crate::number::{Number, Real, Square, complex, extend, finite, norm, round_complex};
+use nalgebra::{Complex, SMatrix};
+
+/// Steps a single eigenvalue may take.
+const MOST_STEPS: u32 = 200;
+
+/// The eigenvalues of a matrix, computed with 106 bits: right to the last place of a double even where they lie
+/// so close together that a computation in doubles keeps none.
+///
+/// # Errors
+/// [`Error::NotFinite`] or [`Error::NotConverged`].
+pub fn eigenvalues<const N: usize>(
+    matrix: &SMatrix<f64, N, N>,
+) -> Result<[Complex<f64>; N], Error> {
+    if !finite(matrix) {
+        return Err(Error::NotFinite);
+    }
+    Ok(spectrum(&complex(&extend(matrix)))?.map(round_complex))
+}
+
+/// The eigenvalues of a real matrix of 106 bits.
+pub(crate) fn eigenvalues_extended<const N: usize>(
+    matrix: &Square<Extended, N>,
+) -> Result<[Complex<Extended>; N], Error> {
+    spectrum(&complex(matrix))
+}
+
+fn spectrum<R: Real, const N: usize>(
+    matrix: &Square<Complex<R>, N>,
+) -> Result<[Complex<R>; N], Error> {
+    let mut h = *matrix;
+    reduce(&mut h);
+    let tiny = norm(&h) * R::EPSILON * R::EPSILON;
+    let mut end = N;
+    let mut steps = 0;
+    while end > 1 {
+        let start = decoupled(&mut h, end, tiny);
+        if start + 1 == end {
+            end -= 1;
+            steps = 0;
+            continue;
+        }
+        if steps == MOST_STEPS || !h[(end - 1, end - 1)].magnitude().is_finite() {
+            return Err(Error::NotConverged);
+        }
+        steps += 1;
+        // An exceptional shift now and then breaks a cycle.
+        let shift = if steps % 15 == 0 {
+            h[(end - 1, end - 1)] + Complex::from(R::from(h[(end - 1, end - 2)].magnitude()))
+        } else {
+            wilkinson(&h, end)
+        };
+        step(&mut h, start, end, shift);
+    }
+    let mut values = [Complex::from(R::from(0.0)); N];
+    for (index, value) in values.iter_mut().enumerate() {
+        *value = h[(index, index)];
+    }
+    Ok(values)
+}
+
+/// A plane rotation: unitary, and it turns (a, b) into (r, 0).
+struct Rotation<R: Real> {
+    cosine: Complex<R>,
+    sine: Complex<R>,
+}
+
+impl<R: Real> Rotation<R> {
+    fn new(a: Complex<R>, b: Complex<R>) -> Self {
+        let length = (a.squared() + b.squared()).square_root();
+        if length.rounded() == 0.0 {
+            return Self { cosine: Complex::from(R::from(1.0)), sine: Complex::from(R::from(0.0)) };
+        }
+        let reciprocal = R::from(1.0) / length;
+        Self { cosine: a.scaled(reciprocal), sine: b.scaled(reciprocal) }
+    }
+
+    /// Rows `first` and `second`, from a column on.
+    fn from_the_left<const N: usize>(
+        &self,
+        h: &mut Square<Complex<R>, N>,
+        [first, second]: [usize; 2],
+        from: usize,
+    ) {
+        for column in from..N {
+            let (a, b) = (h[(first, column)], h[(second, column)]);
+            h[(first, column)] = self.cosine.conjugate() * a + self.sine.conjugate() * b;
+            h[(second, column)] = self.cosine * b - self.sine * a;
+        }
+    }
+
+    /// Columns `first` and `second`, down to a row: the inverse rotation, so that both make a similarity.
+    fn from_the_right<const N: usize>(
+        &self,
+        h: &mut Square<Complex<R>, N>,
+        [first, second]: [usize; 2],
+        to: usize,
+    ) {
+        for row in 0..to {
+            let (a, b) = (h[(row, first)], h[(row, second)]);
+            h[(row, first)] = a * self.cosine + b * self.sine;
+            h[(row, second)] = b * self.cosine.conjugate() - a * self.sine.conjugate();
+        }
+    }
+}
+
+/// Similar, and zero below the first subdiagonal.
+fn reduce<R: Real, const N: usize>(h: &mut Square<Complex<R>, N>) {
+    for column in 0..N.saturating_sub(2) {
+        for row in (column + 2..N).rev() {
+            let rotation = Rotation::new(h[(row - 1, column)], h[(row, column)]);
+            rotation.from_the_left(h, [row - 1, row], column);
+            rotation.from_the_right(h, [row - 1, row], N);
+            h[(row, column)] = Complex::from(R::from(0.0));
+        }
+    }
+}
+
+/// Where the last block begins that no negligible subdiagonal element divides.
+fn decoupled<R: Real, const N: usize>(
+    h: &mut Square<Complex<R>, N>,
+    end: usize,
+    tiny: f64,
+) -> usize {
+    for row in (1..end).rev() {
+        let beside = h[(row - 1, row - 1)].magnitude() + h[(row, row)].magnitude();
+        if h[(row, row - 1)].magnitude() <= R::EPSILON * beside + tiny {
+            h[(row, row - 1)] = Complex::from(R::from(0.0));
+            return row;
+        }
+    }
+    0
+}
+
+/// The eigenvalue of the last 2 × 2 block that lies nearer its last element. A double is good enough: the shift
+/// only hastens the convergence.
+fn wilkinson<R: Real, const N: usize>(h: &Square<Complex<R>, N>, end: usize) -> Complex<R> {
+    let element = |row, column| round_complex(h[(end - row, end - column)]);
+    let half_difference = (element(2, 2) - element(1, 1)) * 0.5;
+    let root = square_root(half_difference * half_difference + element(2, 1) * element(1, 2));
+    let same_side = (half_difference.conjugate() * root).re >= 0.0;
+    let sum = if same_side { half_difference + root } else { half_difference - root };
+    if sum.magnitude() == 0.0 {
+        return h[(end - 1, end - 1)];
+    }
+    let shift = element(1, 1) - element(2, 1) * element(1, 2) / sum;
+    Complex { re: R::from(shift.re), im: R::from(shift.im) }
+}
+
+fn square_root(value: Complex<f64>) -> Complex<f64> {
+    let modulus = value.magnitude();
+    let re = libm::sqrt(((modulus + value.re) / 2.0).max(0.0));
+    let im = libm::sqrt(((modulus - value.re) / 2.0).max(0.0));
+    Complex { re, im: if value.im < 0.0 { -im } else { im } }
+}
+
+/// One QR step with a shift, on the block from `start` to `end`.
+fn step<R: Real, const N: usize>(
+    h: &mut Square<Complex<R>, N>,
+    start: usize,
+    end: usize,
+    shift: Complex<R>,
+) {
+    for index in start..end {
+        h[(index, index)] -= shift;
+    }
+    let mut waiting: Option<(Rotation<R>, usize)> = None;
+    for row in start..end - 1 {
+        let rotation = Rotation::new(h[(row, row)], h[(row + 1, row)]);
+        rotation.from_the_left(h, [row, row + 1], row);
+        if let Some((previous, at)) = waiting.replace((rotation, row)) {
+            previous.from_the_right(h, [at, at + 1], at + 2);
+        }
+    }
+    if let Some((last, at)) = waiting {
+        last.from_the_right(h, [at, at + 1], end);
+    }
+    for index in start..end {
+        h[(index, index)] += shift;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix4, SMatrix};
+
+    fn sorted<const N: usize>(mut values: [Complex<f64>; N]) -> [Complex<f64>; N] {
+        values.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
+        values
+    }
+
+    #[test]
+    fn a_companion_matrix_has_the_roots_of_its_polynomial() {
+        // (s + 1)(s + 2)(s² + 2 s + 5)
+        let companion = Matrix4::new(
+            0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, -10.0, -19.0, -13.0, -5.0,
+        );
+        let expected = [(-2.0, 0.0), (-1.0, -2.0), (-1.0, 0.0), (-1.0, 2.0)];
+        let values = sorted(eigenvalues(&companion).unwrap());
+        for (value, (re, im)) in values.iter().zip(expected) {
+            assert!((value - Complex::new(re, im)).norm_sqr() < 1e-60, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_rotation_by_a_permutation_converges() {
+        let mut cycle = SMatrix::<f64, 5, 5>::zeros();
+        for index in 0..5 {
+            cycle[(index, (index + 1) % 5)] = 1.0;
+        }
+        for value in eigenvalues(&cycle).unwrap() {
+            assert!((value.norm_sqr() - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn close_eigenvalues_keep_their_digits() {
+        // A Jordan block disturbed in its corner: λ = 1 + 1e-5 · fourth roots of one.
+        let mut matrix = Matrix4::<f64>::identity();
+        for index in 0..3 {
+            matrix[(index, index + 1)] = 1.0;
+        }
+        matrix[(3, 0)] = 1e-20;
+        for value in eigenvalues(&matrix).unwrap() {
+            let distance = libm::hypot(value.re - 1.0, value.im);
+            assert!((distance / 1e-5 - 1.0).abs() < 1e-10, "{value}");
+        }
+    }
+
+    #[test]
+    fn nothing_finite_is_refused() {
+        assert_eq!(eigenvalues(&Matrix4::repeat(f64::NAN)), Err(Error::NotFinite));
+    }
+}

@@ -1,0 +1,101 @@
+use core::fmt;
+use nalgebra::Complex;
+
+/// A mode of a linear system: one eigenvalue of its dynamics, and where it lives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Mode {
+    /// Real part of the eigenvalue: in 1/s, or per step in discrete time.
+    pub re: f64,
+    /// Imaginary part of the eigenvalue.
+    pub im: f64,
+    /// The state, counted from 0, which the mode moves most (on the balanced scale).
+    pub state: usize,
+}
+
+/// Why a design was refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument, or what would have become of the answer, is NaN or infinite.
+    NotFinite,
+    /// The interval is not positive.
+    Interval,
+    /// A complex pole stands there without its conjugate: no real gain has it.
+    NotConjugate,
+    /// No output sees this mode.
+    Unobservable(Mode),
+    /// No input moves this mode.
+    Uncontrollable(Mode),
+    /// This mode does not decay, and no output sees it.
+    Undetectable(Mode),
+    /// This mode neither decays nor grows, and no noise drives it: the filter would learn it once and for all,
+    /// and no steady gain is left.
+    Undriven(Mode),
+    /// This mode does not decay.
+    Unstable(Mode),
+    /// A covariance is not symmetric.
+    NotSymmetric,
+    /// A covariance has a negative variance, or the measurement noise is zero in some direction.
+    NotPositive,
+    /// A matrix that has to be inverted is singular.
+    Singular,
+    /// A gain of double precision cannot hold these poles: the best one leaves a pole off by this fraction.
+    IllConditioned(f64),
+    /// An iteration did not settle.
+    NotConverged,
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Zero up to rounding is written as zero.
+        let least = 1e-12 * self.re.abs().max(self.im.abs()).max(1e-3);
+        let tidy = |value: f64| if value.abs() < least { 0.0 } else { value };
+        write!(formatter, "{:.6}", tidy(self.re))?;
+        if tidy(self.im) != 0.0 {
+            write!(formatter, " ± {:.6}i", self.im.abs())?;
+        }
+        write!(formatter, " (mostly state {})", self.state)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => formatter.write_str("a number is not finite"),
+            Self::Interval => formatter.write_str("the interval is not positive"),
+            Self::NotConjugate => {
+                formatter.write_str("a complex pole stands without its conjugate")
+            }
+            Self::Unobservable(mode) => write!(formatter, "no output sees the mode {mode}"),
+            Self::Uncontrollable(mode) => write!(formatter, "no input moves the mode {mode}"),
+            Self::Undetectable(mode) => {
+                write!(formatter, "no output sees the mode {mode}, which does not decay")
+            }
+            Self::Undriven(mode) => {
+                write!(formatter, "no noise drives the mode {mode}, which neither decays nor grows")
+            }
+            Self::Unstable(mode) => write!(formatter, "the mode {mode} does not decay"),
+            Self::NotSymmetric => formatter.write_str("a covariance is not symmetric"),
+            Self::NotPositive => formatter.write_str("a covariance is not positive"),
+            Self::Singular => formatter.write_str("a matrix is singular"),
+            Self::IllConditioned(error) => write!(
+                formatter,
+                "no gain of double precision holds these poles: one would be off by {:.1e} of itself",
+                error
+            ),
+            Self::NotConverged => formatter.write_str("an iteration did not settle"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}
+
+impl Mode {
+    pub(crate) fn new(pole: Complex<f64>, state: usize) -> Self {
+        Self { re: pole.re, im: pole.im, state }
+    }
+}

@@ -1,0 +1,168 @@
+//! What the linear algebra inside needs of a number: real or complex, of 53 or 106 bits.
+
+use core::ops::Neg;
+
+use crate::extended::{EPSILON, Extended};
+use nalgebra::{Complex, SMatrix};
+use num_traits::NumAssign;
+
+/// A field element that can be ordered by magnitude.
+pub(crate) trait Number: nalgebra::Scalar + Copy + NumAssign + Neg<Output = Self> {
+    /// The real number it is made of.
+    type Real: Real;
+
+    /// |x|, as far as a double can tell.
+    fn magnitude(self) -> f64;
+    /// The complex conjugate.
+    fn conjugate(self) -> Self;
+    /// |x|².
+    fn squared(self) -> Self::Real;
+    /// r x.
+    fn scaled(self, factor: Self::Real) -> Self;
+}
+
+/// A real [`Number`].
+pub(crate) trait Real: Number<Real = Self> + PartialOrd + From<f64> {
+    /// The distance from 1 to the next number.
+    const EPSILON: f64;
+
+    fn square_root(self) -> Self;
+    fn rounded(self) -> f64;
+}
+
+impl Number for f64 {
+    type Real = Self;
+    fn magnitude(self) -> f64 {
+        self.abs()
+    }
+    fn conjugate(self) -> Self {
+        self
+    }
+    fn squared(self) -> Self {
+        self * self
+    }
+    fn scaled(self, factor: Self) -> Self {
+        self * factor
+    }
+}
+
+impl Real for f64 {
+    const EPSILON: f64 = f64::EPSILON;
+
+    fn square_root(self) -> Self {
+        libm::sqrt(self.max(0.0))
+    }
+    fn rounded(self) -> f64 {
+        self
+    }
+}
+
+impl Number for Extended {
+    type Real = Self;
+    fn magnitude(self) -> f64 {
+        self.to_f64().abs()
+    }
+    fn conjugate(self) -> Self {
+        self
+    }
+    fn squared(self) -> Self {
+        self * self
+    }
+    fn scaled(self, factor: Self) -> Self {
+        self * factor
+    }
+}
+
+impl Real for Extended {
+    const EPSILON: f64 = EPSILON;
+
+    fn square_root(self) -> Self {
+        self.sqrt()
+    }
+    fn rounded(self) -> f64 {
+        self.to_f64()
+    }
+}
+
+impl<R: Real> Number for Complex<R> {
+    type Real = R;
+    fn magnitude(self) -> f64 {
+        libm::hypot(self.re.rounded(), self.im.rounded())
+    }
+    fn conjugate(self) -> Self {
+        Self { re: self.re, im: -self.im }
+    }
+    fn squared(self) -> R {
+        self.re * self.re + self.im * self.im
+    }
+    fn scaled(self, factor: R) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+}
+
+/// A square matrix.
+pub(crate) type Square<T, const N: usize> = SMatrix<T, N, N>;
+
+/// Every element as a number of 106 bits.
+pub(crate) fn extend<const R: usize, const C: usize>(
+    matrix: &SMatrix<f64, R, C>,
+) -> SMatrix<Extended, R, C> {
+    matrix.map(Extended::from)
+}
+
+/// Every element rounded to the nearest double.
+pub(crate) fn round<const R: usize, const C: usize>(
+    matrix: &SMatrix<Extended, R, C>,
+) -> SMatrix<f64, R, C> {
+    matrix.map(Extended::to_f64)
+}
+
+/// A real matrix among the complex ones.
+pub(crate) fn complex<T: Real, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+) -> SMatrix<Complex<T>, R, C> {
+    matrix.map(|value| Complex { re: value, im: T::zero() })
+}
+
+/// A complex double with more digits.
+pub(crate) fn extend_complex<T: Real>(value: Complex<f64>) -> Complex<T> {
+    Complex { re: T::from(value.re), im: T::from(value.im) }
+}
+
+/// The nearest complex double.
+pub(crate) fn round_complex<T: Real>(value: Complex<T>) -> Complex<f64> {
+    Complex { re: value.re.rounded(), im: value.im.rounded() }
+}
+
+/// The conjugate transpose.
+pub(crate) fn adjoint<T: Number, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+) -> SMatrix<T, C, R> {
+    matrix.transpose().map(T::conjugate)
+}
+
+/// The largest sum of magnitudes in a column.
+pub(crate) fn norm<T: Number, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> f64 {
+    let sum = |column: &[T; R]| column.iter().map(|value| value.magnitude()).sum::<f64>();
+    matrix.data.0.iter().map(sum).fold(0.0, f64::max)
+}
+
+/// Whether every element is a number.
+pub(crate) fn finite<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> bool {
+    matrix.iter().all(|value| value.is_finite())
+}
+
+/// A with `shift` taken from its diagonal.
+pub(crate) fn shifted<T: Number, const N: usize>(matrix: &Square<T, N>, shift: T) -> Square<T, N> {
+    let mut result = *matrix;
+    for index in 0..N {
+        result[(index, index)] -= shift;
+    }
+    result
+}
+
+/// ½ (A + Aᵀ).
+pub(crate) fn symmetrised<const N: usize>(matrix: &Square<Extended, N>) -> Square<Extended, N> {
+    let half = Extended::from(0.5);
+    (matrix + matrix.transpose()).map(|value| value * half)
+}

@@ -1,0 +1,123 @@
+//! Which modes the outputs see.
+
+use crate::Error;
+use crate::eigenvalues::eigenvalues_extended;
+use crate::error::Mode;
+use crate::extended::Extended;
+use crate::number::{Real, Square, adjoint, complex, norm, round_complex, shifted};
+use crate::orthonormal::{inner, length, normalised};
+use crate::pair::Pair;
+use crate::solve::solve;
+use nalgebra::{Complex, SMatrix, SVector};
+
+/// How well the outputs see the least visible mode: the smallest singular value that [A − λ; C] has at an
+/// eigenvalue λ, on a balanced scale on which A (without its mean diagonal) and C have size 1.
+///
+/// The test of Popov, Belevitch and Hautus. The rank of [C; CA; …] and its determinant say little: at 100 Hz,
+/// powers of A are so alike that the determinant of a perfectly observable aircraft vanishes in rounding.
+///
+/// # Errors
+/// [`Error::Unobservable`] with the mode that nothing sees, if the singular value is no larger than what the
+/// rounding of A and C to doubles explains; [`Error::NotFinite`]; [`Error::NotConverged`].
+pub fn observability<const N: usize, const P: usize>(
+    a: &SMatrix<f64, N, N>,
+    c: &SMatrix<f64, P, N>,
+) -> Result<f64, Error> {
+    let (pair, _) = Pair::new(a, c)?;
+    let worst = least_visible(&pair, |_| true)?;
+    worst.map_or(Ok(f64::INFINITY), |(margin, hidden)| match hidden {
+        Some(mode) => Err(Error::Unobservable(mode)),
+        None => Ok(margin),
+    })
+}
+
+/// How well the inputs move the mode that they move least: the [`observability`] of (Aᵀ, Bᵀ).
+///
+/// # Errors
+/// [`Error::Uncontrollable`] with the mode that nothing moves; [`Error::NotFinite`]; [`Error::NotConverged`].
+pub fn controllability<const N: usize, const M: usize>(
+    a: &SMatrix<f64, N, N>,
+    b: &SMatrix<f64, N, M>,
+) -> Result<f64, Error> {
+    observability(&a.transpose(), &b.transpose()).map_err(|error| match error {
+        Error::Unobservable(mode) => Error::Uncontrollable(mode),
+        other => other,
+    })
+}
+
+/// The least visible of the modes that count, and whether it is hidden.
+pub(crate) fn least_visible<const N: usize>(
+    pair: &Pair<N>,
+    counts: impl Fn(Complex<f64>) -> bool,
+) -> Result<Option<(f64, Option<Mode>)>, Error> {
+    // A shift of the diagonal changes no eigenvector, and at high rates A is nearly the identity.
+    let mut mean = Extended::from(0.0);
+    for state in 0..N {
+        mean += pair.dynamics[(state, state)];
+    }
+    mean /= Extended::from(N as f64);
+    let centred = shifted(&pair.dynamics, mean);
+    let size = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
+    let unit = Extended::from(1.0 / size(norm(&centred)));
+    let dynamics = complex(&centred.map(|value| value * unit));
+    let output_unit = Extended::from(1.0 / size(pair.outputs_norm()));
+    let outputs = complex(&pair.outputs.map(|value| value * output_unit));
+    let rounding = 4.0 * f64::EPSILON * (1.0 + norm(&pair.dynamics) / size(norm(&centred)));
+
+    let mut worst: Option<(f64, Option<Mode>)> = None;
+    for eigenvalue in eigenvalues_extended(&pair.dynamics)? {
+        if !counts(round_complex(eigenvalue)) {
+            continue;
+        }
+        let start = Complex { re: (eigenvalue.re - mean) * unit, im: eigenvalue.im * unit };
+        let (sight, at, vector) =
+            visibility(&dynamics, &outputs, start).ok_or(Error::NotConverged)?;
+        if worst.is_none_or(|(least, _)| sight < least) {
+            let pole = Complex { re: at.re / unit + mean, im: at.im / unit };
+            let hidden =
+                (sight <= rounding).then(|| Mode::new(round_complex(pole), dominant(&vector)));
+            worst = Some((sight, hidden));
+        }
+    }
+    Ok(worst)
+}
+
+/// The smallest singular value of [A − λ; C] near an eigenvalue, where it is reached, and with which vector.
+///
+/// An eigenvalue that is several at once is only known roughly: λ follows the singular vector to the place where
+/// the singular value is smallest.
+fn visibility<R: Real, const N: usize>(
+    dynamics: &Square<Complex<R>, N>,
+    outputs: &Square<Complex<R>, N>,
+    eigenvalue: Complex<R>,
+) -> Option<(f64, Complex<R>, SVector<Complex<R>, N>)> {
+    let outputs_squared = adjoint(outputs) * outputs;
+    let mut at = eigenvalue;
+    let mut vector = SVector::<Complex<R>, N>::from_fn(|index, _| {
+        Complex::from(R::from(1.0 + index as f64 / 7.0))
+    });
+    let mut best: Option<(f64, Complex<R>, SVector<Complex<R>, N>)> = None;
+    for _ in 0..8 {
+        let distance = shifted(dynamics, at);
+        // What keeps an exactly singular matrix from stopping the inverse iteration.
+        let gram = shifted(
+            &(adjoint(&distance) * distance + outputs_squared),
+            Complex::from(R::from(-1e-60)),
+        );
+        for _ in 0..2 {
+            vector = normalised(&solve(&gram, &vector).unwrap_or(vector), 0.0)?;
+        }
+        let seen = length(&(distance * vector)).rounded();
+        let sight = libm::hypot(seen, length(&(outputs * vector)).rounded());
+        if best.as_ref().is_none_or(|(least, ..)| sight < *least) {
+            best = Some((sight, at, vector));
+        }
+        at = inner(&vector, &(dynamics * vector));
+    }
+    best
+}
+
+fn dominant<R: Real, const N: usize>(vector: &SVector<Complex<R>, N>) -> usize {
+    let size = |index: &usize| vector[*index].norm_sqr().rounded();
+    (0..N).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0)
+}

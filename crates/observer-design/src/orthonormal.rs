@@ -1,0 +1,76 @@
+//! Orthonormal bases.
+
+use crate::number::{Number, Real, Square};
+use nalgebra::SVector;
+
+/// A basis of the whole space whose first `count` vectors span, one after the other, the first `count` columns;
+/// nothing where these are linearly dependent. The other vectors span what is orthogonal to them.
+pub(crate) fn complete<T: Number, const N: usize>(
+    columns: &Square<T, N>,
+    count: usize,
+) -> Option<Square<T, N>> {
+    let mut basis = Square::<T, N>::zeros();
+    for index in 0..N {
+        let vector = if index < count {
+            let column = columns.column(index).into_owned();
+            normalised(&column, 0.0)
+                .and_then(|column| normalised(&residual(&column, &basis, index), 1e-24))
+        } else {
+            farthest(&basis, index)
+        };
+        basis.set_column(index, &vector?);
+    }
+    Some(basis)
+}
+
+/// The unit vector of the axis that lies farthest from the first `count` vectors, made orthogonal to them.
+fn farthest<T: Number, const N: usize>(
+    basis: &Square<T, N>,
+    count: usize,
+) -> Option<SVector<T, N>> {
+    let covered =
+        |axis: usize| (0..count).map(|index| basis[(axis, index)].squared().rounded()).sum::<f64>();
+    let axis = (0..N).min_by(|&a, &b| covered(a).total_cmp(&covered(b)))?;
+    let mut unit = SVector::zeros();
+    unit[axis] = T::one();
+    normalised(&residual(&unit, basis, count), 0.0)
+}
+
+/// What is left of a vector orthogonal to the first `count` vectors of a basis; projected twice, as once leaves
+/// rounding behind.
+fn residual<T: Number, const N: usize>(
+    vector: &SVector<T, N>,
+    basis: &Square<T, N>,
+    count: usize,
+) -> SVector<T, N> {
+    let mut rest = *vector;
+    for _ in 0..2 {
+        for index in 0..count {
+            let base = basis.column(index).into_owned();
+            let part = inner(&base, &rest);
+            rest -= base * part;
+        }
+    }
+    rest
+}
+
+/// aᴴ b.
+pub(crate) fn inner<T: Number, const N: usize>(a: &SVector<T, N>, b: &SVector<T, N>) -> T {
+    a.iter().zip(b.iter()).fold(T::zero(), |sum, (&a, &b)| sum + a.conjugate() * b)
+}
+
+/// ‖a‖.
+pub(crate) fn length<T: Number, const N: usize>(a: &SVector<T, N>) -> T::Real {
+    a.iter().fold(T::Real::from(0.0), |sum, &value| sum + value.squared()).square_root()
+}
+
+/// A vector of length 1; nothing where it is no longer than `least`.
+pub(crate) fn normalised<T: Number, const N: usize>(
+    vector: &SVector<T, N>,
+    least: f64,
+) -> Option<SVector<T, N>> {
+    let length = length(vector);
+    let long_enough = length.rounded() > least && length.rounded().is_finite();
+    let reciprocal = T::Real::from(1.0) / length;
+    long_enough.then(|| vector.map(|value| value.scaled(reciprocal)))
+}

@@ -1,0 +1,151 @@
+//! A pair (A, C) made ready for numbers: outputs that say the same are merged, and units are evened out.
+
+use crate::Error;
+use crate::extended::Extended;
+use crate::number::{Square, extend, finite, norm};
+use crate::orthonormal::{inner, length};
+use nalgebra::SMatrix;
+
+/// x = D x̃ with powers of two D: Ã = D⁻¹ A D and S = W C D, where W has as many rows as C has independent ones.
+pub(crate) struct Pair<const N: usize> {
+    /// Ã.
+    pub(crate) dynamics: Square<Extended, N>,
+    /// S in the first `rank` rows, zeros below.
+    pub(crate) outputs: Square<Extended, N>,
+    /// How many outputs are independent.
+    pub(crate) rank: usize,
+    scale: [Extended; N],
+}
+
+/// W, which makes independent outputs of those that there are.
+pub(crate) struct Merging<const N: usize, const P: usize>(SMatrix<Extended, P, N>);
+
+/// What rounding may have made of nothing, beside the longest column.
+const NEGLIGIBLE: f64 = 1e-13;
+
+impl<const N: usize> Pair<N> {
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub(crate) fn new<const P: usize>(
+        a: &Square<f64, N>,
+        c: &SMatrix<f64, P, N>,
+    ) -> Result<(Self, Merging<N, P>), Error> {
+        if !finite(a) || !finite(c) {
+            return Err(Error::NotFinite);
+        }
+        let (outputs, rank, merging) = merge(c);
+        let mut pair = Self { dynamics: extend(a), outputs, rank, scale: [Extended::from(1.0); N] };
+        pair.balance();
+        Ok((pair, merging))
+    }
+
+    /// Evens out rows and columns (Osborne 1960), the outputs counting among the columns.
+    fn balance(&mut self) {
+        for _ in 0..50 {
+            let mut settled = true;
+            for state in 0..N {
+                let off_diagonal = |index: usize| if index == state { 0.0 } else { 1.0 };
+                let mut column: f64 =
+                    (0..self.rank).map(|row| self.outputs[(row, state)].to_f64().abs()).sum();
+                let mut row = 0.0;
+                for index in 0..N {
+                    column += off_diagonal(index) * self.dynamics[(index, state)].to_f64().abs();
+                    row += off_diagonal(index) * self.dynamics[(state, index)].to_f64().abs();
+                }
+                if column == 0.0 || row == 0.0 {
+                    continue;
+                }
+                let exponent = libm::round(libm::log2(row / column) / 2.0);
+                let factor = libm::exp2(exponent);
+                if exponent == 0.0 || !(factor.is_normal() && (1.0 / factor).is_normal()) {
+                    continue;
+                }
+                settled = false;
+                self.rescale(state, factor);
+            }
+            if settled {
+                return;
+            }
+        }
+    }
+
+    fn rescale(&mut self, state: usize, factor: f64) {
+        let (factor, reciprocal) = (Extended::from(factor), Extended::from(1.0 / factor));
+        self.scale[state] *= factor;
+        for index in 0..N {
+            self.dynamics[(index, state)] *= factor;
+            self.dynamics[(state, index)] *= reciprocal;
+            self.outputs[(index, state)] *= factor;
+        }
+    }
+
+    /// L of x⁺ = A x + L (y − C x) from L̃ of the pair, whose columns beyond the rank are not looked at.
+    pub(crate) fn gain<const P: usize>(
+        &self,
+        gain: &Square<Extended, N>,
+        Merging(merging): &Merging<N, P>,
+    ) -> SMatrix<Extended, N, P> {
+        let mut merged = gain * merging.transpose();
+        for row in 0..N {
+            for column in 0..P {
+                merged[(row, column)] *= self.scale[row];
+            }
+        }
+        merged
+    }
+
+    /// D⁻¹ M D of a matrix of the original states.
+    pub(crate) fn balanced(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
+        SMatrix::from_fn(|row, column| matrix[(row, column)] * self.scale[column] / self.scale[row])
+    }
+
+    /// ‖S‖.
+    pub(crate) fn outputs_norm(&self) -> f64 {
+        norm(&self.outputs)
+    }
+}
+
+/// C = Q S with orthonormal columns Q, after every output was brought to length 1.
+fn merge<const N: usize, const P: usize>(
+    c: &SMatrix<f64, P, N>,
+) -> (Square<Extended, N>, usize, Merging<N, P>) {
+    let mut weights = [Extended::from(0.0); P];
+    let mut rest = extend(c);
+    for row in 0..P {
+        let size = c.row(row).iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        if size > 0.0 {
+            weights[row] = Extended::from(libm::exp2(-libm::floor(libm::log2(size))));
+        }
+        for column in 0..N {
+            rest[(row, column)] *= weights[row];
+        }
+    }
+    let weighted = rest;
+    let mut basis = SMatrix::<Extended, P, N>::zeros();
+    let mut largest = 0.0;
+    let mut rank = 0;
+    while rank < N.min(P) {
+        let size = |column: usize| length(&rest.column(column).into_owned()).to_f64();
+        let Some(pivot) = (0..N).max_by(|&a, &b| size(a).total_cmp(&size(b))) else { break };
+        largest = f64::max(largest, size(pivot));
+        if size(pivot) <= NEGLIGIBLE * largest {
+            break;
+        }
+        let reciprocal = Extended::from(1.0) / length(&rest.column(pivot).into_owned());
+        let direction = rest.column(pivot).map(|value| value * reciprocal);
+        basis.set_column(rank, &direction);
+        rank += 1;
+        for column in 0..N {
+            let vector = rest.column(column).into_owned();
+            let left = vector - direction * inner(&direction, &vector);
+            rest.set_column(column, &left);
+        }
+    }
+    let outputs = basis.transpose() * weighted;
+    for row in 0..P {
+        for column in 0..N {
+            basis[(row, column)] *= weights[row];
+        }
+    }
+    (outputs, rank, Merging(basis))
+}

@@ -1,0 +1,144 @@
+//! Pole placement.
+
+mod several;
+mod single;
+
+use crate::Error;
+use crate::eigenvalues::eigenvalues_extended;
+use crate::extended::Extended;
+use crate::number::{Square, extend, extend_complex, finite, round, round_complex};
+use crate::observability::least_visible;
+use crate::pair::{Merging, Pair};
+use crate::poles::{arrange, compare, multiplicity, size};
+use nalgebra::{Complex, SMatrix};
+
+/// A gain and what it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Placement<const N: usize, const P: usize> {
+    /// L of x̂⁺ = A x̂ + B u + L (y − C x̂), N × P.
+    pub gain: SMatrix<f64, N, P>,
+    /// The eigenvalues which A − L C really has, in the order in which they were wanted: computed with 106 bits
+    /// from the doubles in `gain`.
+    pub poles: [PlacedPole; N],
+    /// How far the worst of them is off, beside its own size (beside the largest, if it should be zero).
+    pub error: f64,
+    /// How well the outputs see the least visible mode, see [`observability`](crate::observability).
+    pub visibility: f64,
+}
+
+/// An eigenvalue of A − L C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlacedPole {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+}
+
+impl<const N: usize, const P: usize> Placement<N, P> {
+    /// How many of the 16 digits of a double the worst pole has lost, because the gain is rounded to doubles.
+    pub fn digits_lost(&self) -> f64 {
+        libm::log10((self.error / f64::EPSILON).max(1.0))
+    }
+}
+
+/// A pole that is off by more than this beside its size was not placed.
+const HOPELESS: f64 = 1e-2;
+
+/// Finds L such that A − L C has the wanted eigenvalues.
+///
+/// In continuous time give A and poles in 1/s, in discrete time the transition matrix and poles within the unit
+/// circle. With one output the gain is unique. With several there is freedom left, and it is used to make the
+/// poles insensitive: every eigenvector is turned, within what the outputs allow, as far as it goes from the
+/// others (Kautsky, Nichols & Van Dooren, "Robust pole assignment in linear state feedback", Int. J. Control 41
+/// (1985), method 0, extended to complex pairs). Poles may coincide with those of A, and with each other; one
+/// that is wanted more often than there are independent outputs is necessarily a sensitive one.
+///
+/// # Errors
+/// [`Error::Unobservable`] with the mode that no output sees, [`Error::NotConjugate`], [`Error::NotFinite`],
+/// [`Error::NotConverged`], and [`Error::IllConditioned`] where rounding the gain to doubles moves a pole by
+/// more than a hundredth of itself.
+pub fn place<const N: usize, const P: usize>(
+    a: &SMatrix<f64, N, N>,
+    c: &SMatrix<f64, P, N>,
+    poles: &[Complex<f64>; N],
+) -> Result<Placement<N, P>, Error> {
+    let (arranged, origin) = arrange(poles)?;
+    let (pair, merging) = Pair::new(a, c)?;
+    let visibility = match least_visible(&pair, |_| true)? {
+        Some((_, Some(hidden))) => return Err(Error::Unobservable(hidden)),
+        Some((visibility, None)) => visibility,
+        None => f64::INFINITY,
+    };
+    let problem = Problem { a, c, pair: &pair, merging: &merging, poles: &arranged };
+    let (gain, placed, error) = if pair.rank == 1 {
+        problem.check(
+            &single::place(&pair.dynamics, &pair.outputs, &arranged).ok_or(Error::NotConverged)?,
+        )?
+    } else if multiplicity(&arranged) <= pair.rank
+        && let Some(gain) = several::place(&pair, &arranged)
+    {
+        problem.check(&gain)?
+    } else {
+        problem.through_one_output()?
+    };
+    if !(error <= HOPELESS) {
+        return Err(Error::IllConditioned(error));
+    }
+    let mut in_order = [PlacedPole { re: 0.0, im: 0.0 }; N];
+    for (pole, &place) in placed.iter().zip(&origin) {
+        in_order[place] = PlacedPole { re: pole.re, im: pole.im };
+    }
+    Ok(Placement { gain, poles: in_order, error, visibility })
+}
+
+/// L, the poles that it gives, and how far the worst is off.
+type Checked<const N: usize, const P: usize> = (SMatrix<f64, N, P>, [Complex<f64>; N], f64);
+
+struct Problem<'a, const N: usize, const P: usize> {
+    a: &'a Square<f64, N>,
+    c: &'a SMatrix<f64, P, N>,
+    pair: &'a Pair<N>,
+    merging: &'a Merging<N, P>,
+    poles: &'a [Complex<f64>; N],
+}
+
+impl<const N: usize, const P: usize> Problem<'_, N, P> {
+    /// Rounds a gain of the balanced pair and looks where the poles of the rounded one are.
+    fn check(&self, gain: &Square<Extended, N>) -> Result<Checked<N, P>, Error> {
+        let gain = round(&self.pair.gain(gain, self.merging));
+        if !finite(&gain) {
+            return Err(Error::NotFinite);
+        }
+        let closed = extend(self.a) - extend(&gain) * extend(self.c);
+        let placed = eigenvalues_extended(&self.pair.balanced(&closed))?;
+        let distance = |wanted: usize, got: usize| {
+            let difference = placed[got] - extend_complex::<Extended>(self.poles[wanted]);
+            size(round_complex(difference))
+        };
+        let (matched, error) = compare(self.poles, &placed.map(round_complex), distance);
+        Ok((gain, matched, error))
+    }
+
+    /// Poles wanted more often than there are outputs: a first gain makes all modes visible in one combination of
+    /// the outputs (Heymann 1968), which then places them.
+    fn through_one_output(&self) -> Result<Checked<N, P>, Error> {
+        let mut best: Option<Checked<N, P>> = None;
+        for attempt in 0..ATTEMPTS {
+            let Some(gain) = single::through_a_mixture(self.pair, self.poles, attempt) else {
+                continue;
+            };
+            let Ok(checked) = self.check(&gain) else { continue };
+            if best.as_ref().is_none_or(|(.., error)| checked.2 < *error) {
+                best = Some(checked);
+            }
+        }
+        best.ok_or(Error::NotConverged)
+    }
+}
+
+/// Mixtures of outputs that are tried.
+const ATTEMPTS: u32 = 12;

@@ -1,0 +1,165 @@
+//! Several outputs: eigenvectors can be chosen.
+
+use crate::extended::Extended;
+use crate::number::{
+    Number, Square, adjoint, complex, extend_complex, norm, round_complex, shifted,
+};
+use crate::orthonormal::{complete, normalised};
+use crate::pair::Pair;
+use crate::sequence::Sequence;
+use crate::solve::{inverse, solve};
+use nalgebra::{Complex, SVector};
+
+type Wide = Complex<Extended>;
+type Narrow = Complex<f64>;
+
+/// Places from which the eigenvectors are turned, and how often each is.
+const STARTS: u32 = 8;
+const SWEEPS: u32 = 24;
+
+/// A gain for the balanced pair, in its first columns. Real poles first, pairs side by side.
+///
+/// Everything is done for the dual: F = Aᵀ and B = Sᵀ, where (F − λ) x = B g makes x an eigenvector of
+/// F − B K, with K = G X⁻¹.
+pub(crate) fn place<const N: usize>(
+    pair: &Pair<N>,
+    poles: &[Narrow; N],
+) -> Option<Square<Extended, N>> {
+    let transposed = complex(&pair.dynamics.transpose());
+    let inputs = complex(&pair.outputs.transpose());
+    let range = complete(&inputs, pair.rank)?;
+
+    let mut spaces = [Square::<Wide, N>::zeros(); N];
+    for (space, &pole) in spaces.iter_mut().zip(poles) {
+        *space = eigenvectors(&shifted(&transposed, extend_complex(pole)), &range, pair.rank)?;
+    }
+    let vectors = insensitive(&spaces, pair, poles)?;
+
+    // B = U R with the first columns of U: g = R⁻¹ Uᴴ (F − λ) x.
+    let mut triangle = adjoint(&range) * inputs;
+    for index in pair.rank..N {
+        triangle[(index, index)] = Wide::from(Extended::from(1.0));
+    }
+    let mut wanted = Square::<Wide, N>::zeros();
+    let mut exact = Square::<Wide, N>::zeros();
+    for (index, space) in spaces.iter().enumerate() {
+        let vector = vectors.column(index).map(extend_complex::<Extended>);
+        let vector = normalised(&(space * (adjoint(space) * vector)), 0.0)?;
+        let image = adjoint(&range) * (shifted(&transposed, extend_complex(poles[index])) * vector);
+        exact.set_column(index, &vector);
+        wanted.set_column(index, &image);
+    }
+    for row in pair.rank..N {
+        wanted.row_mut(row).fill(Wide::from(Extended::from(0.0)));
+    }
+    let directions = solve(&triangle, &wanted)?;
+    // K X = G, transposed: L = Kᵀ.
+    Some(solve(&exact.transpose(), &directions.transpose())?.map(|value| value.re))
+}
+
+/// The space from which an eigenvector can be chosen, in the first `rank` columns: what F − λ maps into the
+/// range of B.
+fn eigenvectors<const N: usize>(
+    distance: &Square<Wide, N>,
+    range: &Square<Wide, N>,
+    rank: usize,
+) -> Option<Square<Wide, N>> {
+    let mut conditions = Square::<Wide, N>::zeros();
+    for index in rank..N {
+        conditions.set_column(index - rank, &(adjoint(distance) * range.column(index)));
+    }
+    let basis = complete(&conditions, N - rank)?;
+    let mut space = Square::<Wide, N>::zeros();
+    for index in 0..rank {
+        space.set_column(index, &basis.column(N - rank + index));
+    }
+    Some(space)
+}
+
+/// One vector of each space, such that the poles are as insensitive as they get. Doubles suffice to choose.
+fn insensitive<const N: usize>(
+    spaces: &[Square<Wide, N>; N],
+    pair: &Pair<N>,
+    poles: &[Narrow; N],
+) -> Option<Square<Narrow, N>> {
+    let spaces = spaces.map(|space| space.map(round_complex));
+    let mut best: Option<(f64, Square<Narrow, N>)> = None;
+    for start in 0..STARTS {
+        let Some(mut vectors) = anywhere(&spaces, pair.rank, poles, start) else { continue };
+        for _ in 0..SWEEPS {
+            let Some(sensitivity) = sensitivity(&vectors) else { break };
+            let improved = best.as_ref().is_none_or(|(least, _)| sensitivity < *least);
+            if improved {
+                best = Some((sensitivity, vectors));
+            }
+            if sweep(&mut vectors, &spaces, poles).is_none() {
+                break;
+            }
+        }
+    }
+    best.map(|(_, vectors)| vectors)
+}
+
+/// Some vector of each space; real for a real pole, conjugate for conjugate ones.
+fn anywhere<const N: usize>(
+    spaces: &[Square<Narrow, N>; N],
+    rank: usize,
+    poles: &[Narrow; N],
+    seed: u32,
+) -> Option<Square<Narrow, N>> {
+    let mut random = Sequence::new(seed);
+    let mut vectors = Square::<Narrow, N>::zeros();
+    for index in 0..N {
+        let real = poles[index].im == 0.0;
+        let mut mixture = SVector::<Narrow, N>::zeros();
+        for row in 0..rank {
+            mixture[row] =
+                Complex { re: random.next(), im: if real { 0.0 } else { random.next() } };
+        }
+        let vector = normalised(&(spaces[index] * mixture), 0.0)?;
+        set(&mut vectors, index, &vector, poles);
+    }
+    Some(vectors)
+}
+
+/// Turns every vector, within its space, to where it is farthest from the plane of all others.
+fn sweep<const N: usize>(
+    vectors: &mut Square<Narrow, N>,
+    spaces: &[Square<Narrow, N>; N],
+    poles: &[Narrow; N],
+) -> Option<()> {
+    for index in 0..N {
+        let normal = inverse(vectors)?.row(index).map(Number::conjugate).transpose();
+        let projected = spaces[index] * (adjoint(&spaces[index]) * normal);
+        set(vectors, index, &normalised(&projected, 0.0)?, poles);
+    }
+    Some(())
+}
+
+/// The second of a pair is the conjugate of the first.
+fn set<const N: usize>(
+    vectors: &mut Square<Narrow, N>,
+    index: usize,
+    vector: &SVector<Narrow, N>,
+    poles: &[Narrow; N],
+) {
+    let second = |index: usize| index > 0 && poles[index].im != 0.0 && is_second(index, poles);
+    if second(index) {
+        return;
+    }
+    vectors.set_column(index, vector);
+    if index + 1 < N && second(index + 1) {
+        vectors.set_column(index + 1, &vector.map(Number::conjugate));
+    }
+}
+
+/// Whether a complex pole stands at an odd place among the complex ones, which come last and in pairs.
+fn is_second<const N: usize>(index: usize, poles: &[Narrow; N]) -> bool {
+    poles.iter().take(index).filter(|pole| pole.im != 0.0).count() % 2 == 1
+}
+
+/// ‖X⁻¹‖ for columns of length 1: by how much a change of A or L can move a pole.
+fn sensitivity<const N: usize>(vectors: &Square<Narrow, N>) -> Option<f64> {
+    let size = norm(&inverse(vectors)?.transpose());
+    size.is_finite().then_some(size)
+}

@@ -1,0 +1,18 @@
+//! Numbers without a pattern, always the same ones: where a search has to start somewhere.
+
+/// A linear congruential generator (Numerical Recipes' constants).
+pub(crate) struct Sequence(u32);
+
+impl Sequence {
+    pub(crate) fn new(seed: u32) -> Self {
+        let mut sequence = Self(seed.wrapping_mul(0x9E37_79B9) ^ 0x5DEE_CE66);
+        sequence.next();
+        sequence
+    }
+
+    /// In −1..1.
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(self.0 >> 8) / f64::from(1_u32 << 23) - 1.0
+    }
+}
