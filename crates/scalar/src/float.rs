@@ -130,6 +130,16 @@ macro_rules! impl_scalar_for_float {
             fn finish(sum: Self) -> Self {
                 sum
             }
+
+            #[inline]
+            fn headroom(exponent: i32) -> Option<u32> {
+                (exponent <= $float::MAX_EXP).then_some(0)
+            }
+            #[inline(always)]
+            fn advanced(self, sum: Self, _shift: u32) -> (Self, Self) {
+                let next = self + sum;
+                (next, sum - (next - self))
+            }
         }
     };
 }

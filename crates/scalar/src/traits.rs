@@ -25,7 +25,7 @@ pub trait Scalar:
     + DivAssign
 {
     /// A sum of products, wider than `Self`: fixed point rounds once when it is finished.
-    type Accumulator: Copy;
+    type Accumulator: nalgebra::Scalar + Copy;
     /// A divisor prepared once for several quotients, over the whole range of `Self`: the reciprocal
     /// for floats, mantissa and shift for fixed point (whose reciprocal of a small number would
     /// overflow).
@@ -132,6 +132,16 @@ pub trait Scalar:
     fn mac(sum: Self::Accumulator, a: Self, b: Self) -> Self::Accumulator;
     /// The sum, rounded once; saturates.
     fn finish(sum: Self::Accumulator) -> Self;
+
+    /// By how many bits coefficients can be scaled up whose magnitudes add up to less than 2^exponent, so that
+    /// sums of their products keep more digits than `Self` has; for [`Scalar::advanced`]. In fixed point as many as
+    /// fit: the sum cannot saturate then, whatever the other factors. For floats 0. `None` if the coefficients
+    /// do not fit as they are.
+    fn headroom(exponent: i32) -> Option<u32>;
+    /// `self + sum · 2^−shift`, rounded once and saturating, and what the rounding has left of the sum: the next sum
+    /// begins with it, so that steps below the last place add up. The shift is a [`Scalar::headroom`] (floats
+    /// ignore it).
+    fn advanced(self, sum: Self::Accumulator, shift: u32) -> (Self, Self::Accumulator);
 
     /// Σ aᵢ·bᵢ with one rounding in fixed point.
     #[inline]

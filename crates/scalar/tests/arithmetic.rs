@@ -44,6 +44,19 @@ proptest! {
         check_arithmetic::<30>(a, b);
     }
 
+    /// The value that a step shows and what it keeps are together what was there before, exactly.
+    #[test]
+    fn an_advance_loses_nothing(value in -1_000_000_i32..1_000_000, sum in any::<i64>(), scale in 0_u32..99) {
+        let sum = sum >> 2;
+        let shift = Q16_16::headroom(15 - scale as i32).expect("less than one");
+        let (next, rest) = Q16_16::from_bits(value).advanced(sum, shift);
+        let exact = (i128::from(value) << (16 + shift)) + i128::from(sum);
+        prop_assert_eq!(next.to_bits(), saturated(rounded_shift(exact, 16 + shift)));
+        if next.is_finite() {
+            prop_assert_eq!((i128::from(next.to_bits()) << (16 + shift)) + i128::from(rest), exact);
+        }
+    }
+
     #[test]
     fn doubles_and_singles_go_there_and_back(bits in any::<i32>()) {
         let x = Q12_20::from_bits(bits);
@@ -102,4 +115,28 @@ fn one_that_is_not_finite_is_found_among_many() {
     }
     assert!(Q12_20::all_finite(&[Q12_20::ONE, Q12_20::ZERO]));
     assert!(!Q12_20::all_finite(&[Q12_20::ONE, Q12_20::MIN]));
+}
+
+#[test]
+fn headroom_is_what_the_coefficients_leave() {
+    assert_eq!(Q16_16::headroom(15), Some(0));
+    assert_eq!(Q16_16::headroom(16), None);
+    assert_eq!(Q16_16::headroom(-5), Some(20));
+    assert_eq!(Q16_16::headroom(-60), Some(46));
+    assert_eq!(f32::headroom(-60), Some(0));
+    assert_eq!(f32::headroom(129), None);
+}
+
+#[test]
+fn a_million_steps_below_the_last_place_add_up() {
+    fn walk<T: Scalar>(coefficient: T, shift: u32) -> f64 {
+        let (mut place, mut rest) = (T::from_f64(40.0), T::accumulator());
+        for _ in 0..1_000_000 {
+            (place, rest) = place.advanced(T::mac(rest, coefficient, T::ONE), shift);
+        }
+        place.to_f64()
+    }
+    // A step is a tenth of the last place of Q16.16 at 40, and less of that of an f32.
+    assert!((walk(Q16_16::from_f64(1.5), 20) - (40.0 + 1.5e6 / 1_048_576.0)).abs() < 1.6e-5);
+    assert!((walk(1.5e-6_f32, 0) - 41.5).abs() < 4e-6);
 }

@@ -179,4 +179,18 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     fn finish(sum: i64) -> Self {
         Self::narrowed(sum)
     }
+
+    #[inline]
+    fn headroom(exponent: i32) -> Option<u32> {
+        // Coefficients of 2³¹ bits in all and factors of 2³¹ make sums up to 2⁶²; what a rounding leaves may take
+        // as many.
+        u32::try_from(31 - FRAC as i32 - exponent).ok().map(|bits| bits.min(62 - FRAC))
+    }
+    #[inline(always)]
+    fn advanced(self, sum: i64, shift: u32) -> (Self, i64) {
+        let shift = shift.min(62 - FRAC) + FRAC;
+        let whole = ((sum >> (shift - 1)) + 1) >> 1;
+        let next = Self::saturate(i64::from(self.0) + whole);
+        (next, sum.wrapping_sub(whole << shift))
+    }
 }

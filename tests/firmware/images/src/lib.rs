@@ -6,8 +6,10 @@
 #![no_std]
 
 pub mod four_ranges;
+pub mod observer;
 pub mod path_loss;
 pub mod pedestrian;
 pub mod replay;
 pub mod stream;
+pub mod uav;
 pub mod uwb;

@@ -106,6 +106,27 @@ impl Record for PathLoss {
     }
 }
 
+/// A moment of a flight: two `f32` and three `f32`.
+#[derive(Clone, Copy)]
+pub struct Flight {
+    /// Elevator (rad) and throttle.
+    pub inputs: [f32; 2],
+    /// Pitch rate (rad/s), airspeed (m/s) and pitch (rad).
+    pub outputs: [f32; 3],
+}
+
+impl Record for Flight {
+    const WORDS: usize = 6;
+
+    fn new(_: u64, words: &[[u8; WORD]]) -> Option<Self> {
+        let &[elevator, throttle, rate, airspeed, pitch] = words.as_array()?;
+        Some(Self {
+            inputs: [elevator, throttle].map(f32::from_le_bytes),
+            outputs: [rate, airspeed, pitch].map(f32::from_le_bytes),
+        })
+    }
+}
+
 /// The open stream: an iterator over its records and their times.
 pub struct Stream<R> {
     file: File,

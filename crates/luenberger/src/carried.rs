@@ -1,0 +1,73 @@
+use crate::Error;
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// A state, and what rounding has left of its last step: steps far below the last place add up.
+///
+/// At 1 kHz a slow mode moves by a thousandth of its distance a step; rounded away, it would stand still at a
+/// wrong place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Carried<T: Scalar, const N: usize> {
+    pub(crate) value: SVector<T, N>,
+    rest: SVector<T::Accumulator, N>,
+}
+
+#[cfg(feature = "defmt")]
+impl<T: Scalar + defmt::Format, const N: usize> defmt::Format for Carried<T, N> {
+    fn format(&self, formatter: defmt::Formatter<'_>) {
+        self.value.format(formatter);
+    }
+}
+
+impl<T: Scalar, const N: usize> Carried<T, N> {
+    pub(crate) fn new(value: &SVector<T, N>) -> Result<Self, Error> {
+        if !T::all_finite(&value.data.0[0]) {
+            return Err(Error::NotFinite);
+        }
+        Ok(Self { value: *value, rest: SMatrix::from([[T::accumulator(); N]; 1]) })
+    }
+
+    /// The sums by which a step begins.
+    #[inline(always)]
+    pub(crate) fn sums(&self) -> [T::Accumulator; N] {
+        self.rest.data.0[0]
+    }
+
+    /// The state moved on by these sums, if it stays finite.
+    #[inline(always)]
+    pub(crate) fn advanced(
+        &self,
+        sums: &[T::Accumulator; N],
+        shifts: &SVector<u32, N>,
+    ) -> Result<Self, Error> {
+        let mut next = *self;
+        let (value, rest) = (&mut next.value.data.0[0], &mut next.rest.data.0[0]);
+        for i in 0..N {
+            (value[i], rest[i]) = value[i].advanced(sums[i], shifts.data.0[0][i]);
+        }
+        if T::all_finite(value) { Ok(next) } else { Err(Error::NotFinite) }
+    }
+}
+
+/// `sums + block · vector`.
+#[inline(always)]
+pub(crate) fn mac<T: Scalar, const R: usize, const C: usize>(
+    sums: &mut [T::Accumulator; R],
+    block: &SMatrix<T, R, C>,
+    vector: &SVector<T, C>,
+) {
+    for column in 0..C {
+        for row in 0..R {
+            let (a, b) = (block.data.0[column][row], vector.data.0[0][column]);
+            sums[row] = T::mac(sums[row], a, b);
+        }
+    }
+}

@@ -1,0 +1,168 @@
+use crate::carried::{Carried, mac};
+use crate::dense::{less_identity, negative};
+use crate::integers::{and_magnitudes, exponents, integers, larger, scaled, shifts};
+use crate::rows::{IntegerRows, Rows};
+use crate::{Error, Plant};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// The coefficients of a [`Current`] observer, independent of its scalar.
+///
+/// In a `const` it costs a target no double-precision arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurrentGains<const N: usize, const M: usize, const P: usize> {
+    exponents: [i32; N],
+    state: [[i64; N]; N],
+    input: [[i64; N]; M],
+    gain: [[i64; N]; P],
+    unseen: IntegerRows<P, N>,
+}
+
+impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
+    /// From a plant and the gain K, N × P: that of a settled Kalman filter, or A⁻¹ L of a predictor's L, with
+    /// which the poles are the predictor's.
+    pub const fn new(plant: &Plant<N, M, P>, k: &SMatrix<f64, N, P>) -> Self {
+        let (b, c, k) = (&plant.b.data.0, &plant.c.data.0, &k.data.0);
+        let state = less_identity(&plant.a.data.0);
+        // What a rounding leaves goes from one half of the step to the other: both are scaled alike.
+        let exponents = larger(
+            exponents(and_magnitudes(and_magnitudes([0.0; N], &state), b)),
+            exponents(and_magnitudes([0.0; N], k)),
+        );
+        Self {
+            exponents,
+            state: integers(&state, &exponents),
+            input: integers(b, &exponents),
+            gain: integers(k, &exponents),
+            unseen: IntegerRows::new(&negative(c)),
+        }
+    }
+}
+
+/// A full-order observer in current form: x̂⁻ = A x̂ + B u, then x̂ = x̂⁻ + K (y − C x̂⁻).
+///
+/// The estimate has seen the newest measurement, where a [`Predictor`](crate::Predictor)'s is one interval
+/// older. Its error obeys e⁺ = (A − K C A) e, whose poles are those of A − A K C: with K = A⁻¹ L both forms
+/// have the same. With the gain of [a settled Kalman filter](https://docs.rs/kestirim-kalman) it is that
+/// filter.
+///
+/// Units are the plant's. Cost: N (N + M + 2 P) multiplications.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Current<T: Scalar, const N: usize, const M: usize, const P: usize> {
+    estimate: Carried<T, N>,
+    /// A − I, B and K; row i is scaled by 2^shift i.
+    state: SMatrix<T, N, N>,
+    input: SMatrix<T, N, M>,
+    gain: SMatrix<T, N, P>,
+    shifts: SVector<u32, N>,
+    /// −C.
+    unseen: Rows<T, P, N>,
+}
+
+impl<T: Scalar, const N: usize, const M: usize, const P: usize> Current<T, N, M, P> {
+    /// An observer that starts at this state.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::TooLarge`].
+    #[inline]
+    pub fn new(gains: &CurrentGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
+        let shifts = shifts::<T, N>(&gains.exponents)?;
+        Ok(Self {
+            estimate: Carried::new(start)?,
+            state: scaled(&gains.state, &gains.exponents, &shifts),
+            input: scaled(&gains.input, &gains.exponents, &shifts),
+            gain: scaled(&gains.gain, &gains.exponents, &shifts),
+            shifts,
+            unseen: Rows::new(&gains.unseen)?,
+        })
+    }
+
+    /// Starts again at this state.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn reset(&mut self, start: &SVector<T, N>) -> Result<(), Error> {
+        self.estimate = Carried::new(start)?;
+        Ok(())
+    }
+
+    /// x̂ after the last prediction or correction.
+    #[inline]
+    pub const fn estimate(&self) -> &SVector<T, N> {
+        &self.estimate.value
+    }
+
+    /// Moves on by one interval, over which these inputs were applied.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn predict(&mut self, input: &SVector<T, M>) -> Result<(), Error> {
+        self.estimate = self.predicted(input)?;
+        Ok(())
+    }
+
+    /// Takes in a measurement of the estimate's time, and answers with the innovation y − C x̂⁻.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn correct(&mut self, measured: &SVector<T, P>) -> Result<SVector<T, P>, Error> {
+        let (estimate, innovation) = self.corrected(&self.estimate, measured)?;
+        self.estimate = estimate;
+        Ok(innovation)
+    }
+
+    /// [`Current::predict`] with the inputs since the last measurement, and [`Current::correct`] with the new
+    /// one; both or neither.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn step(
+        &mut self,
+        input: &SVector<T, M>,
+        measured: &SVector<T, P>,
+    ) -> Result<SVector<T, P>, Error> {
+        let (estimate, innovation) = self.corrected(&self.predicted(input)?, measured)?;
+        self.estimate = estimate;
+        Ok(innovation)
+    }
+
+    #[inline(always)]
+    fn predicted(&self, input: &SVector<T, M>) -> Result<Carried<T, N>, Error> {
+        if !T::all_finite(&input.data.0[0]) {
+            return Err(Error::NotFinite);
+        }
+        let mut sums = self.estimate.sums();
+        mac(&mut sums, &self.state, &self.estimate.value);
+        mac(&mut sums, &self.input, input);
+        self.estimate.advanced(&sums, &self.shifts)
+    }
+
+    #[inline(always)]
+    fn corrected(
+        &self,
+        prior: &Carried<T, N>,
+        measured: &SVector<T, P>,
+    ) -> Result<(Carried<T, N>, SVector<T, P>), Error> {
+        let innovation = self.unseen.added(measured, &prior.value);
+        // A rail may hide in a difference.
+        if !(T::all_finite(&measured.data.0[0]) && T::all_finite(&innovation.data.0[0])) {
+            return Err(Error::NotFinite);
+        }
+        let mut sums = prior.sums();
+        mac(&mut sums, &self.gain, &innovation);
+        Ok((prior.advanced(&sums, &self.shifts)?, innovation))
+    }
+}

@@ -1,0 +1,31 @@
+use core::fmt;
+
+/// Why an observer was not built, or did not step. An estimate is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument, or what would have become of the estimate, is NaN, infinite or on a rail of fixed
+    /// point.
+    NotFinite,
+    /// The coefficients of a row add up to more than the scalar can hold.
+    TooLarge,
+    /// A measured state does not exist, or is named twice.
+    WrongState,
+    /// A lower limit is above the upper one, or is not a number.
+    WrongLimits,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::TooLarge => "the coefficients do not fit the scalar",
+            Self::WrongState => "a measured state does not exist or is named twice",
+            Self::WrongLimits => "a lower limit is above the upper one",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

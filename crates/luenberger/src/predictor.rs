@@ -1,0 +1,139 @@
+use crate::carried::{Carried, mac};
+use crate::dense::{less_identity, less_product, negative};
+use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
+use crate::rows::{IntegerRows, Rows};
+use crate::{Error, Plant};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// The coefficients of a [`Predictor`], independent of its scalar.
+///
+/// In a `const` it costs a target no double-precision arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictorGains<const N: usize, const M: usize, const P: usize> {
+    exponents: [i32; N],
+    state: [[i64; N]; N],
+    input: [[i64; N]; M],
+    output: [[i64; N]; P],
+    unseen: IntegerRows<P, N>,
+}
+
+impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
+    /// From a plant and the gain L, N × P, that places the poles of A − L C; or A K, where K is the gain of a
+    /// settled Kalman filter.
+    pub const fn new(plant: &Plant<N, M, P>, l: &SMatrix<f64, N, P>) -> Self {
+        let (b, c, l) = (&plant.b.data.0, &plant.c.data.0, &l.data.0);
+        let state = less_product(&less_identity(&plant.a.data.0), l, c);
+        let sums = and_magnitudes(and_magnitudes(and_magnitudes([0.0; N], &state), b), l);
+        let exponents = exponents(sums);
+        Self {
+            exponents,
+            state: integers(&state, &exponents),
+            input: integers(b, &exponents),
+            output: integers(l, &exponents),
+            unseen: IntegerRows::new(&negative(c)),
+        }
+    }
+}
+
+/// A full-order observer in predictor form: x̂⁺ = A x̂ + B u + L (y − C x̂) (the thesis' eq. 4.14, in discrete
+/// time).
+///
+/// A step takes what was applied and measured at one time and gives the estimate for the next: there is a
+/// whole interval for the arithmetic, and the estimate is as old. It is computed as
+/// x̂⁺ = x̂ + (A − I − L C) x̂ + B u + L y, whose coefficients are small where the modes are slow and keep all
+/// their digits, and what rounding leaves of a step is carried to the next.
+///
+/// Units are the plant's. Cost: N (N + M + P) multiplications.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Predictor<T: Scalar, const N: usize, const M: usize, const P: usize> {
+    estimate: Carried<T, N>,
+    /// A − I − L C, B and L; row i is scaled by 2^shift i.
+    state: SMatrix<T, N, N>,
+    input: SMatrix<T, N, M>,
+    output: SMatrix<T, N, P>,
+    shifts: SVector<u32, N>,
+    /// −C.
+    unseen: Rows<T, P, N>,
+}
+
+impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, M, P> {
+    /// An observer that starts at this state.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::TooLarge`].
+    #[inline]
+    pub fn new(gains: &PredictorGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
+        let shifts = shifts::<T, N>(&gains.exponents)?;
+        Ok(Self {
+            estimate: Carried::new(start)?,
+            state: scaled(&gains.state, &gains.exponents, &shifts),
+            input: scaled(&gains.input, &gains.exponents, &shifts),
+            output: scaled(&gains.output, &gains.exponents, &shifts),
+            shifts,
+            unseen: Rows::new(&gains.unseen)?,
+        })
+    }
+
+    /// Starts again at this state.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn reset(&mut self, start: &SVector<T, N>) -> Result<(), Error> {
+        self.estimate = Carried::new(start)?;
+        Ok(())
+    }
+
+    /// x̂, the state at the time of the next measurement.
+    #[inline]
+    pub const fn estimate(&self) -> &SVector<T, N> {
+        &self.estimate.value
+    }
+
+    /// y − C x̂, by which [`Predictor::step`] with this measurement would correct. The step itself does without
+    /// it.
+    #[inline]
+    pub fn innovation(&self, measured: &SVector<T, P>) -> SVector<T, P> {
+        self.unseen.added(measured, &self.estimate.value)
+    }
+
+    /// Moves on with what the actuators applied and the sensors measured at the estimate's time.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn step(&mut self, input: &SVector<T, M>, measured: &SVector<T, P>) -> Result<(), Error> {
+        if !(T::all_finite(&input.data.0[0]) && T::all_finite(&measured.data.0[0])) {
+            return Err(Error::NotFinite);
+        }
+        let mut sums = self.estimate.sums();
+        mac(&mut sums, &self.state, &self.estimate.value);
+        mac(&mut sums, &self.input, input);
+        mac(&mut sums, &self.output, measured);
+        self.estimate = self.estimate.advanced(&sums, &self.shifts)?;
+        Ok(())
+    }
+
+    /// Moves on where nothing was measured: as if it had been what was expected.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn coast(&mut self, input: &SVector<T, M>) -> Result<(), Error> {
+        let mut expected = self.innovation(&SMatrix::from([[T::ZERO; P]; 1]));
+        for output in &mut expected.data.0[0] {
+            *output = -*output;
+        }
+        self.step(input, &expected)
+    }
+}

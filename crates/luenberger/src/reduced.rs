@@ -1,0 +1,216 @@
+use crate::Error;
+use crate::carried::{Carried, mac};
+use crate::dense::{Dense, all, less_identity, less_product, negative, part};
+use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
+use crate::rows::{IntegerRows, Rows};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// The coefficients of a [`Reduced`] observer of N states, of which P are measured and R are not, with M inputs;
+/// independent of its scalar.
+///
+/// In a `const` it costs a target no double-precision arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReducedGains<const N: usize, const M: usize, const P: usize, const R: usize> {
+    measured: [usize; P],
+    unmeasured: [usize; R],
+    exponents: [i32; R],
+    state: [[i64; R]; R],
+    output: [[i64; R]; P],
+    input: [[i64; R]; M],
+    shown: IntegerRows<R, P>,
+    hidden: IntegerRows<R, P>,
+}
+
+impl<const N: usize, const M: usize, const P: usize, const R: usize> ReducedGains<N, M, P, R> {
+    /// From a plant x⁺ = A x + B u, the indices of the states that are measured (in the order of the outputs),
+    /// and the gain L, R × P, that places the poles of A_uu − L A_mu (u: the unmeasured states in ascending order, m:
+    /// the measured ones).
+    ///
+    /// # Errors
+    /// [`Error::WrongState`]. In a constant: `match … { Ok(gains) => gains, Err(_) => panic!() }`.
+    pub const fn new(
+        a: &SMatrix<f64, N, N>,
+        b: &SMatrix<f64, N, M>,
+        measured: &[usize; P],
+        l: &SMatrix<f64, R, P>,
+    ) -> Result<Self, Error> {
+        const { assert!(P + R == N, "a state is either measured or not") };
+        let Some(unmeasured) = others::<N, P, R>(measured) else { return Err(Error::WrongState) };
+        let (a, b, l) = (&a.data.0, &b.data.0, &l.data.0);
+        let inputs = all::<M>();
+        let from_unmeasured = part(a, measured, &unmeasured);
+        let state =
+            less_product(&less_identity(&part(a, &unmeasured, &unmeasured)), l, &from_unmeasured);
+        let input: Dense<R, M> =
+            less_product(&part(b, &unmeasured, &inputs), l, &part(b, measured, &inputs));
+        // G = A_um − L A_mm + F L = A_um + L − L A_mm + (F − I) L.
+        let direct: Dense<R, P> = less_product(
+            &part(a, &unmeasured, measured),
+            l,
+            &less_identity(&part(a, measured, measured)),
+        );
+        let output = less_product(&direct, &negative(&state), l);
+        let sums =
+            and_magnitudes(and_magnitudes(and_magnitudes([0.0; R], &state), &output), &input);
+        let exponents = exponents(sums);
+        Ok(Self {
+            measured: *measured,
+            unmeasured,
+            exponents,
+            state: integers(&state, &exponents),
+            output: integers(&output, &exponents),
+            input: integers(&input, &exponents),
+            shown: IntegerRows::new(l),
+            hidden: IntegerRows::new(&negative(l)),
+        })
+    }
+}
+
+/// The states that are not measured, ascending; `None` if one measured does not exist or is named twice.
+const fn others<const N: usize, const P: usize, const R: usize>(
+    measured: &[usize; P],
+) -> Option<[usize; R]> {
+    let mut is_measured = [false; N];
+    let mut i = 0;
+    while i < P {
+        if measured[i] >= N || is_measured[measured[i]] {
+            return None;
+        }
+        is_measured[measured[i]] = true;
+        i += 1;
+    }
+    let mut others = [0; R];
+    let (mut state, mut count) = (0, 0);
+    while state < N {
+        if !is_measured[state] {
+            others[count] = state;
+            count += 1;
+        }
+        state += 1;
+    }
+    Some(others)
+}
+
+/// A reduced-order observer: only what is not measured is estimated, w⁺ = F w + G y + H u, x̂_u = w + L y.
+///
+/// F = A_uu − L A_mu, G = F L + A_um − L A_mm, H = B_u − L B_m (Luenberger 1971). The estimate follows a
+/// measurement at once, as the current form's does, and so does the noise of it: what is measured is believed.
+///
+/// Units are the plant's. Cost: R (R + 2 P + M) multiplications.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Reduced<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize> {
+    measured: SVector<usize, P>,
+    unmeasured: SVector<usize, R>,
+    w: Carried<T, R>,
+    /// F − I, G and H; row i is scaled by 2^shift i.
+    state: SMatrix<T, R, R>,
+    output: SMatrix<T, R, P>,
+    input: SMatrix<T, R, M>,
+    shifts: SVector<u32, R>,
+    /// L and −L.
+    shown: Rows<T, R, P>,
+    hidden: Rows<T, R, P>,
+}
+
+impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
+    Reduced<T, N, M, P, R>
+{
+    /// An observer that starts with these unmeasured states, and the first measurement.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::TooLarge`].
+    #[inline]
+    pub fn new(
+        gains: &ReducedGains<N, M, P, R>,
+        unmeasured: &SVector<T, R>,
+        measured: &SVector<T, P>,
+    ) -> Result<Self, Error> {
+        let shifts = shifts::<T, R>(&gains.exponents)?;
+        let hidden = Rows::new(&gains.hidden)?;
+        Ok(Self {
+            measured: SVector::from(gains.measured),
+            unmeasured: SVector::from(gains.unmeasured),
+            w: start(&hidden, unmeasured, measured)?,
+            state: scaled(&gains.state, &gains.exponents, &shifts),
+            output: scaled(&gains.output, &gains.exponents, &shifts),
+            input: scaled(&gains.input, &gains.exponents, &shifts),
+            shifts,
+            shown: Rows::new(&gains.shown)?,
+            hidden,
+        })
+    }
+
+    /// Starts again with these unmeasured states, and what is measured with them.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn reset(
+        &mut self,
+        unmeasured: &SVector<T, R>,
+        measured: &SVector<T, P>,
+    ) -> Result<(), Error> {
+        self.w = start(&self.hidden, unmeasured, measured)?;
+        Ok(())
+    }
+
+    /// x̂_u, the unmeasured states at the time of this measurement, in ascending order of their indices.
+    #[inline]
+    pub fn unmeasured(&self, measured: &SVector<T, P>) -> SVector<T, R> {
+        self.shown.added(&self.w.value, measured)
+    }
+
+    /// All states at the time of this measurement; the measured ones are as measured.
+    #[inline]
+    pub fn estimate(&self, measured: &SVector<T, P>) -> SVector<T, N> {
+        let mut estimate = SMatrix::from([[T::ZERO; N]; 1]);
+        let estimated = self.unmeasured(measured);
+        let values = measured.data.0[0].iter().chain(&estimated.data.0[0]);
+        let indices = self.measured.data.0[0].iter().chain(&self.unmeasured.data.0[0]);
+        for (&index, &value) in indices.zip(values) {
+            if let Some(state) = estimate.data.0[0].get_mut(index) {
+                *state = value;
+            }
+        }
+        estimate
+    }
+
+    /// Moves on to the next measurement, with this one and what the actuators apply from now on.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    #[inline]
+    pub fn step(&mut self, input: &SVector<T, M>, measured: &SVector<T, P>) -> Result<(), Error> {
+        if !(T::all_finite(&input.data.0[0]) && T::all_finite(&measured.data.0[0])) {
+            return Err(Error::NotFinite);
+        }
+        let mut sums = self.w.sums();
+        mac(&mut sums, &self.state, &self.w.value);
+        mac(&mut sums, &self.output, measured);
+        mac(&mut sums, &self.input, input);
+        self.w = self.w.advanced(&sums, &self.shifts)?;
+        Ok(())
+    }
+}
+
+/// w = x_u − L y.
+fn start<T: Scalar, const P: usize, const R: usize>(
+    hidden: &Rows<T, R, P>,
+    unmeasured: &SVector<T, R>,
+    measured: &SVector<T, P>,
+) -> Result<Carried<T, R>, Error> {
+    if !(T::all_finite(&unmeasured.data.0[0]) && T::all_finite(&measured.data.0[0])) {
+        return Err(Error::NotFinite);
+    }
+    Carried::new(&hidden.added(unmeasured, measured))
+}

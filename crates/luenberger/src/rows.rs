@@ -1,0 +1,55 @@
+use crate::Error;
+use crate::carried::mac;
+use crate::dense::Dense;
+use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+/// A matrix on its way to a scalar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct IntegerRows<const R: usize, const C: usize> {
+    exponents: [i32; R],
+    integers: [[i64; R]; C],
+}
+
+impl<const R: usize, const C: usize> IntegerRows<R, C> {
+    pub(crate) const fn new(matrix: &Dense<R, C>) -> Self {
+        let exponents = exponents(and_magnitudes([0.0; R], matrix));
+        Self { exponents, integers: integers(matrix, &exponents) }
+    }
+}
+
+/// A matrix that is multiplied with one rounding a row, each row scaled up by as many bits as the scalar allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Rows<T: Scalar, const R: usize, const C: usize> {
+    matrix: SMatrix<T, R, C>,
+    shifts: SVector<u32, R>,
+}
+
+impl<T: Scalar, const R: usize, const C: usize> Rows<T, R, C> {
+    pub(crate) fn new(design: &IntegerRows<R, C>) -> Result<Self, Error> {
+        let shifts = shifts::<T, R>(&design.exponents)?;
+        Ok(Self { matrix: scaled(&design.integers, &design.exponents, &shifts), shifts })
+    }
+
+    /// start + matrix · vector.
+    #[inline(always)]
+    pub(crate) fn added(&self, start: &SVector<T, R>, vector: &SVector<T, C>) -> SVector<T, R> {
+        let mut sums = [T::accumulator(); R];
+        mac(&mut sums, &self.matrix, vector);
+        let mut result = *start;
+        for (row, value) in result.data.0[0].iter_mut().enumerate() {
+            *value = value.advanced(sums[row], self.shifts.data.0[0][row]).0;
+        }
+        result
+    }
+}

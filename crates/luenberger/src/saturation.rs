@@ -1,0 +1,49 @@
+use crate::Error;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// The limits of M actuators, in the units of the inputs.
+///
+/// An observer that is told what was commanded, where the plant got less, is wrong by B times the difference a
+/// step, and a disturbance observer learns a disturbance that is none. Tell it what was applied:
+/// `observer.step(&limits.applied(&command), &measured)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Saturation<T: Scalar, const M: usize> {
+    low: SVector<T, M>,
+    high: SVector<T, M>,
+}
+
+impl<T: Scalar, const M: usize> Saturation<T, M> {
+    /// Limits of each input; [`Scalar::MIN`] and [`Scalar::MAX`] where there are none.
+    ///
+    /// # Errors
+    /// [`Error::WrongLimits`].
+    pub fn new(low: &SVector<T, M>, high: &SVector<T, M>) -> Result<Self, Error> {
+        let (lows, highs) = (&low.data.0[0], &high.data.0[0]);
+        if lows.iter().zip(highs).all(|(low, high)| low <= high) {
+            Ok(Self { low: *low, high: *high })
+        } else {
+            Err(Error::WrongLimits)
+        }
+    }
+
+    /// What the actuators make of a command; NaN stays NaN, for the observer to refuse.
+    #[inline]
+    pub fn applied(&self, command: &SVector<T, M>) -> SVector<T, M> {
+        let mut applied = *command;
+        let limits = self.low.data.0[0].iter().zip(&self.high.data.0[0]);
+        for (input, (&low, &high)) in applied.data.0[0].iter_mut().zip(limits) {
+            *input = input.clamp(low, high);
+        }
+        applied
+    }
+}
