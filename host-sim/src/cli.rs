@@ -40,6 +40,8 @@ pub enum Run {
     Robot(PlainRun),
     /// A drone that finds and follows a user on the ground
     Drone(drone::options::Run),
+    /// The longitudinal motion of a fixed-wing aircraft
+    Uav(PlainRun),
 }
 
 /// An experiment without options of its own.

@@ -33,6 +33,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Run(Run::Pedestrian(run))) => systems::run_pedestrian(run),
         Some(Command::Run(Run::Robot(run))) => systems::run_robot(run),
         Some(Command::Run(Run::Drone(run))) => systems::run_drone(run),
+        Some(Command::Run(Run::Uav(run))) => systems::run_uav(run),
         Some(Command::Replay(Replay::Pedestrian(replay))) => replay.run(),
         Some(Command::Replay(Replay::Robot(replay))) => replay.run(),
         Some(Command::Replay(Replay::Drone(replay))) => replay.run(),
