@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::systems::{drone, pedestrian, robot};
+use crate::systems::{drone, pedestrian, robot, uav};
 
 /// Estimators on synthetic and recorded streams.
 ///
@@ -78,6 +78,8 @@ pub enum Replay {
     Robot(robot::replay::Replay),
     /// Path losses that a drone recorded from a user on the ground
     Drone(drone::replay::Replay),
+    /// Inputs and outputs that a fixed-wing aircraft recorded
+    Uav(uav::replay::Replay),
 }
 
 /// `host-sim calibrate`.

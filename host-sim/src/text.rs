@@ -49,6 +49,11 @@ impl TextFile {
         trimmed.filter(|line| !line.text.is_empty())
     }
 
+    /// All of it.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Whether the last line is complete: a logger that is interrupted leaves none.
     pub fn ends_with_line_break(&self) -> bool {
         self.text.ends_with('\n')
@@ -118,6 +123,11 @@ impl<'a> Header<'a> {
     /// Takes the names from the first line of a table.
     pub fn new(line: Line<'a>) -> Self {
         Self { line, names: line.comma_separated() }
+    }
+
+    /// A complaint about the header.
+    pub fn error(&self, problem: impl Into<String>) -> Error {
+        self.line.error(problem)
     }
 
     /// Where the column `name` stands, if there is one. Upper and lower case differ: `T` may well

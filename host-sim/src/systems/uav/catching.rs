@@ -106,7 +106,7 @@ pub fn caught(errors: &[SVector<f64, 4>]) -> [Option<f64>; 4] {
     std::array::from_fn(|state| {
         let outside = |error: &SVector<f64, 4>| error[state].abs() > BANDS[state];
         let last = errors.iter().rposition(outside).map_or(0, |last| last + 1);
-        (last < errors.len()).then(|| last as f64 * INTERVAL_S)
+        (last < errors.len()).then_some(last as f64 * INTERVAL_S)
     })
 }
 

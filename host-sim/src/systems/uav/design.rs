@@ -67,7 +67,9 @@ impl Kind {
                 let (q, r) = (noise.process(plant), noise.measurement(c));
                 Ok(riccati(&plant.a, c, &q, &r)?.predictor_gain)
             }
-            Self::Luenberger(poles) => luenberger(plant, c, *poles, INTERVAL_S),
+            Self::Luenberger(poles) => {
+                luenberger(plant, c, poles.map(|re| Complex { re, im: 0.0 }), INTERVAL_S)
+            }
         }
     }
 }
@@ -84,25 +86,30 @@ pub enum Family {
     Luenberger,
 }
 
-/// The gain of an observer with real poles (1/s) at an interval (s).
+/// The gain of an observer with these poles (1/s) at an interval (s).
 ///
-/// Where every state is measured, L = A − diag(eᵖʰ): each pole is that of one state's error, which none of the
-/// others disturbs. This is what the thesis' times to catch tell of; else the poles are placed where nothing is
-/// sensitive.
+/// Where every state is measured and the poles are real, L = A − diag(eᵖʰ): each pole is that of one state's error,
+/// which none of the others disturbs. This is what the thesis' times to catch tell of; else the poles are placed
+/// where nothing is sensitive.
 ///
 /// # Errors
 /// Why there is none.
 pub fn luenberger<const P: usize>(
     plant: &Discrete<4, 2>,
     c: &SMatrix<f64, P, 4>,
-    poles: [f64; 4],
+    poles: [Complex<f64>; 4],
     interval: f64,
 ) -> Result<SMatrix<f64, 4, P>, Error> {
-    let discrete = poles.map(|pole| (pole * interval).exp());
-    if P == 4 {
-        // Here C is the identity, or a reordering of it.
-        let errors = SMatrix::from_diagonal(&SVector::from(discrete));
+    let discrete = poles.map(|pole| {
+        let size = (pole.re * interval).exp();
+        let (sin, cos) = (pole.im * interval).sin_cos();
+        Complex { re: size * cos, im: size * sin }
+    });
+    // The identity, or one whose transpose is its inverse just as well.
+    let every_state = P == 4 && c.transpose() * c == SMatrix::<f64, 4, 4>::identity();
+    if every_state && poles.iter().all(|pole| pole.im == 0.0) {
+        let errors = SMatrix::from_diagonal(&SVector::from(discrete.map(|pole| pole.re)));
         return Ok((plant.a - errors) * c.transpose());
     }
-    Ok(place(&plant.a, c, &discrete.map(|re| Complex { re, im: 0.0 }))?.gain)
+    Ok(place(&plant.a, c, &discrete)?.gain)
 }

@@ -12,13 +12,19 @@
     reason = "the designs of the experiment are for the plants of the experiment"
 )]
 
+pub mod accounts;
 pub mod accuracy;
 pub mod catching;
 pub mod claims;
 pub mod design;
 pub mod estimator;
 pub mod experiment;
+pub mod follow;
+pub mod log;
+pub mod model;
+pub mod options;
 pub mod plant;
+pub mod replay;
 pub mod report;
 pub mod responses;
 pub mod scenario;
@@ -27,4 +33,8 @@ pub mod scenario;
 pub(super) const DESCRIPTION: &str = "\
 uav         angle of attack, pitch rate, airspeed and pitch angle of a fixed-wing aircraft
   scenario  10 s of an Aerosonde, of the thesis' aircraft and of a Navion, with constant and sine inputs,
-            with and without noise";
+            with and without noise
+  log       CSV with columns t,delta_e,delta_t and some of alpha,q,V,theta in s, rad, rad/s, m/s
+  model     P1, P2, P3, or JSON: A (4 × 4), B (4 × 2), perhaps C with the names of its outputs, trim {x, u}, and
+            h (s) if A and B are of discrete time
+  truth     CSV with columns t and some of alpha,q,V,theta";
