@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::design::Design;
 use crate::systems::{drone, pedestrian, robot, uav};
 
 /// Estimators on synthetic and recorded streams.
@@ -27,6 +28,8 @@ pub enum Command {
     /// Find what a system's sensors measure wrong, from a log with known truth
     #[command(subcommand)]
     Calibrate(Calibrate),
+    /// Design observers: gains, discretisations and covariances of a file of cases
+    Design(Design),
     /// List systems, scenarios and log formats
     List,
 }

@@ -8,6 +8,7 @@
 //! Every system lives in its own folder below [`systems`] and knows nothing of the others.
 
 pub mod cli;
+pub mod design;
 mod error;
 pub mod metrics;
 pub mod output;

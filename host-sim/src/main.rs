@@ -39,6 +39,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Replay(Replay::Drone(replay))) => replay.run(),
         Some(Command::Replay(Replay::Uav(replay))) => replay.run(),
         Some(Command::Calibrate(Calibrate::Robot(calibrate))) => calibrate.run(),
+        Some(Command::Design(design)) => design.run(),
         Some(Command::List) => output::print(&systems::list()),
     }
 }

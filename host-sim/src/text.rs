@@ -41,6 +41,11 @@ impl TextFile {
         Ok(Self { path: path.to_path_buf(), text })
     }
 
+    /// The whole text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// The lines that are not blank, trimmed.
     pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
         let numbered = self.text.lines().enumerate();
@@ -49,14 +54,14 @@ impl TextFile {
         trimmed.filter(|line| !line.text.is_empty())
     }
 
-    /// All of it.
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
     /// Whether the last line is complete: a logger that is interrupted leaves none.
     pub fn ends_with_line_break(&self) -> bool {
         self.text.ends_with('\n')
+    }
+
+    /// A complaint about a line, counted from 1.
+    pub fn error_at(&self, line: usize, problem: impl Into<String>) -> Error {
+        Error::Line { path: self.path.clone(), line, problem: problem.into() }
     }
 
     /// A complaint about the file as a whole.

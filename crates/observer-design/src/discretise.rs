@@ -17,7 +17,7 @@ pub struct Discrete<const N: usize, const M: usize> {
     pub b: SMatrix<f64, N, M>,
 }
 
-/// ẋ = A x + B u with an input that is held for `interval` seconds: e^(A h) and ∫ e^(A s) ds B, exactly, whether
+/// ẋ = A x + B u with an input that is held for `interval` seconds: `e^(A h)` and `∫ e^(A s) ds B`, exactly, whether
 /// A can be inverted or not.
 ///
 /// # Errors
@@ -48,8 +48,8 @@ pub fn tustin<const N: usize, const M: usize>(
     answer(&transition, &solve(&(identity - half), &input).ok_or(Error::Singular)?)
 }
 
-/// The covariance which white noise of spectral density Q_c leaves after `interval` seconds:
-/// ∫ e^(A s) Q_c e^(Aᵀ s) ds (Van Loan 1978).
+/// The covariance which white noise of spectral density Qc leaves after `interval` seconds:
+/// `∫ e^(A s) Qc e^(Aᵀ s) ds` (Van Loan 1978).
 ///
 /// # Errors
 /// [`Error::Interval`] or [`Error::NotFinite`].

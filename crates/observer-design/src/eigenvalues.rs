@@ -19,14 +19,28 @@ pub fn eigenvalues<const N: usize>(
     if !finite(matrix) {
         return Err(Error::NotFinite);
     }
-    Ok(spectrum(&complex(&extend(matrix)))?.map(round_complex))
+    Ok(eigenvalues_extended(&extend(matrix))?.map(round_complex))
 }
 
-/// The eigenvalues of a real matrix of 106 bits.
+/// The eigenvalues of a real matrix of 106 bits: real ones, and pairs that are conjugate to the last bit.
 pub(crate) fn eigenvalues_extended<const N: usize>(
     matrix: &Square<Extended, N>,
 ) -> Result<[Complex<Extended>; N], Error> {
-    spectrum(&complex(matrix))
+    let mut values = spectrum(&complex(matrix))?;
+    let mut done = [false; N];
+    for index in 0..N {
+        if done[index] {
+            continue;
+        }
+        let conjugate = values[index].conjugate();
+        let distance = |&other: &usize| (values[other] - conjugate).magnitude();
+        let free = (index..N).filter(|&other| !done[other]);
+        let partner = free.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(index);
+        let mean = (values[partner] + conjugate).scaled(Extended::from(0.5));
+        (values[partner], values[index]) = (mean, mean.conjugate());
+        (done[index], done[partner]) = (true, true);
+    }
+    Ok(values)
 }
 
 fn spectrum<R: Real, const N: usize>(
@@ -80,7 +94,7 @@ impl<R: Real> Rotation<R> {
     }
 
     /// Rows `first` and `second`, from a column on.
-    fn from_the_left<const N: usize>(
+    fn turn_rows<const N: usize>(
         &self,
         h: &mut Square<Complex<R>, N>,
         [first, second]: [usize; 2],
@@ -94,7 +108,7 @@ impl<R: Real> Rotation<R> {
     }
 
     /// Columns `first` and `second`, down to a row: the inverse rotation, so that both make a similarity.
-    fn from_the_right<const N: usize>(
+    fn turn_columns<const N: usize>(
         &self,
         h: &mut Square<Complex<R>, N>,
         [first, second]: [usize; 2],
@@ -113,8 +127,8 @@ fn reduce<R: Real, const N: usize>(h: &mut Square<Complex<R>, N>) {
     for column in 0..N.saturating_sub(2) {
         for row in (column + 2..N).rev() {
             let rotation = Rotation::new(h[(row - 1, column)], h[(row, column)]);
-            rotation.from_the_left(h, [row - 1, row], column);
-            rotation.from_the_right(h, [row - 1, row], N);
+            rotation.turn_rows(h, [row - 1, row], column);
+            rotation.turn_columns(h, [row - 1, row], N);
             h[(row, column)] = Complex::from(R::from(0.0));
         }
     }
@@ -153,8 +167,8 @@ fn wilkinson<R: Real, const N: usize>(h: &Square<Complex<R>, N>, end: usize) -> 
 
 fn square_root(value: Complex<f64>) -> Complex<f64> {
     let modulus = value.magnitude();
-    let re = libm::sqrt(((modulus + value.re) / 2.0).max(0.0));
-    let im = libm::sqrt(((modulus - value.re) / 2.0).max(0.0));
+    let re = libm::sqrt((0.5 * (modulus + value.re)).max(0.0));
+    let im = libm::sqrt((0.5 * (modulus - value.re)).max(0.0));
     Complex { re, im: if value.im < 0.0 { -im } else { im } }
 }
 
@@ -171,13 +185,13 @@ fn step<R: Real, const N: usize>(
     let mut waiting: Option<(Rotation<R>, usize)> = None;
     for row in start..end - 1 {
         let rotation = Rotation::new(h[(row, row)], h[(row + 1, row)]);
-        rotation.from_the_left(h, [row, row + 1], row);
+        rotation.turn_rows(h, [row, row + 1], row);
         if let Some((previous, at)) = waiting.replace((rotation, row)) {
-            previous.from_the_right(h, [at, at + 1], at + 2);
+            previous.turn_columns(h, [at, at + 1], at + 2);
         }
     }
     if let Some((last, at)) = waiting {
-        last.from_the_right(h, [at, at + 1], end);
+        last.turn_columns(h, [at, at + 1], end);
     }
     for index in start..end {
         h[(index, index)] += shift;

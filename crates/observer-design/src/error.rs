@@ -51,15 +51,30 @@ pub enum Error {
 
 impl fmt::Display for Mode {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Zero up to rounding is written as zero.
-        let least = 1e-12 * self.re.abs().max(self.im.abs()).max(1e-3);
-        let tidy = |value: f64| if value.abs() < least { 0.0 } else { value };
-        write!(formatter, "{:.6}", tidy(self.re))?;
-        if tidy(self.im) != 0.0 {
-            write!(formatter, " ± {:.6}i", self.im.abs())?;
+        let size = libm::hypot(self.re, self.im);
+        write!(formatter, "{}", legible(self.re, size))?;
+        if legible(self.im, size) != 0.0 {
+            write!(formatter, " ± {}i", legible(self.im, size).abs())?;
         }
         write!(formatter, " (mostly state {})", self.state)
     }
+}
+
+/// Rounded to six digits of `size`; what rounding has made of zero is zero again.
+fn legible(value: f64, size: f64) -> f64 {
+    if size < 1e-12 {
+        return 0.0;
+    }
+    // Ten to a positive power is exact, its reciprocal is not.
+    let digits = 5.0 - libm::floor(libm::log10(size));
+    let power = libm::exp10(digits.abs());
+    let rounded = if digits < 0.0 {
+        libm::round(value / power) * power
+    } else {
+        libm::round(value * power) / power
+    };
+    // No minus sign before zero.
+    rounded + 0.0
 }
 
 impl fmt::Display for Error {
@@ -84,8 +99,7 @@ impl fmt::Display for Error {
             Self::Singular => formatter.write_str("a matrix is singular"),
             Self::IllConditioned(error) => write!(
                 formatter,
-                "no gain of double precision holds these poles: one would be off by {:.1e} of itself",
-                error
+                "no gain of double precision holds these poles: one would be off by {error:.1e} of itself"
             ),
             Self::NotConverged => formatter.write_str("an iteration did not settle"),
         }
@@ -97,5 +111,11 @@ impl core::error::Error for Error {}
 impl Mode {
     pub(crate) fn new(pole: Complex<f64>, state: usize) -> Self {
         Self { re: pole.re, im: pole.im, state }
+    }
+
+    /// The same mode, found twice, or the other of a conjugate pair.
+    pub(crate) fn is_twin_of(&self, other: &Self) -> bool {
+        let distance = libm::hypot(self.re - other.re, self.im.abs() - other.im.abs());
+        distance <= 1e-6 * libm::hypot(self.re, self.im).max(1e-6)
     }
 }

@@ -23,7 +23,7 @@ pub use eigenvalues::eigenvalues;
 pub use error::{Error, Mode};
 pub use lyapunov::{error_covariance, lyapunov};
 pub use nalgebra::Complex;
-pub use observability::{controllability, observability};
+pub use observability::{controllability, hidden_modes, observability};
 pub use placement::{PlacedPole, Placement, place};
 pub use response::{Response, StateSpace, singular_values};
 pub use riccati::{Riccati, riccati};

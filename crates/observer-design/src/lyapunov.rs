@@ -6,11 +6,13 @@ use crate::eigenvalues::eigenvalues_extended;
 use crate::error::Mode;
 use crate::extended::Extended;
 use crate::number::{Square, extend, finite, norm, round, round_complex, symmetrised};
-use crate::poles::size;
 use nalgebra::{Complex, SMatrix};
 
 /// Doublings after which the slowest mode a double can hold has settled.
 const MOST_DOUBLINGS: u32 = 64;
+
+/// What is left of a start does not count any more.
+const SETTLED: f64 = 1e-20;
 
 /// P of P = F P Fᵀ + Q, by doubling (Smith 1968).
 ///
@@ -28,25 +30,26 @@ pub fn lyapunov<const N: usize>(
     settled(&extend(f), &noise)
 }
 
-/// The covariance of the error of x̂⁺ = A x̂ + B u + L (y − C x̂), where the plant's state is disturbed by noise of
-/// covariance Q a step and its outputs by R: its diagonal holds the squares of the expected RMSE. Nothing is
-/// rounded in between.
+/// The covariance of the error of x̂⁺ = A x̂ + B u + L (y − C x̂), where noise G w with covariance Q of w disturbs
+/// the plant in every step, and R is the covariance of its outputs' noise: its diagonal holds the squares of the
+/// expected RMSE. For noise on the inputs G is B, for noise on the states it is the identity.
 ///
 /// # Errors
 /// As [`lyapunov`], of A − L C, Q and R.
-pub fn error_covariance<const N: usize, const P: usize>(
-    a: &SMatrix<f64, N, N>,
-    c: &SMatrix<f64, P, N>,
+pub fn error_covariance<const N: usize, const M: usize, const P: usize>(
+    observed: (&SMatrix<f64, N, N>, &SMatrix<f64, P, N>),
     gain: &SMatrix<f64, N, P>,
-    q: &SMatrix<f64, N, N>,
+    process: (&SMatrix<f64, N, M>, &SMatrix<f64, M, M>),
     r: &SMatrix<f64, P, P>,
 ) -> Result<SMatrix<f64, N, N>, Error> {
+    let ((a, c), (input, q)) = (observed, process);
     let (process, measurement) = (checked(q)?.0, checked(r)?.0);
-    if !finite(a) || !finite(c) || !finite(gain) {
+    if !finite(a) || !finite(c) || !finite(gain) || !finite(input) {
         return Err(Error::NotFinite);
     }
-    let gain = extend(gain);
-    settled(&(extend(a) - gain * extend(c)), &(process + gain * measurement * gain.transpose()))
+    let (gain, input) = (extend(gain), extend(input));
+    let disturbance = input * process * input.transpose() + gain * measurement * gain.transpose();
+    settled(&(extend(a) - gain * extend(c)), &symmetrised(&disturbance))
 }
 
 fn settled<const N: usize>(
@@ -59,8 +62,7 @@ fn settled<const N: usize>(
         let step = transition * sum * transition.transpose();
         sum = symmetrised(&(sum + step));
         transition *= transition;
-        // The next step is as much smaller than this one as this one was than the sum.
-        if norm(&step) <= 1e-17 * norm(&sum) {
+        if norm(&transition) <= SETTLED {
             let answer = round(&sum);
             return if finite(&answer) { Ok(answer) } else { Err(Error::NotFinite) };
         }
@@ -74,7 +76,8 @@ pub(crate) fn stable<const N: usize>(f: &Square<Extended, N>) -> Result<(), Erro
     let values = eigenvalues_extended(f)?;
     let radius = |value: &Complex<Extended>| (value.re * value.re + value.im * value.im).to_f64();
     match values.iter().max_by(|a, b| radius(a).total_cmp(&radius(b))) {
-        Some(largest) if size(round_complex(*largest)) >= 1.0 || !(radius(largest) < 1.0) => {
+        // A radius that is not a number does not pass.
+        Some(largest) if radius(largest).total_cmp(&1.0).is_ge() => {
             Err(Error::Unstable(Mode::new(round_complex(*largest), 0)))
         }
         _ => Ok(()),

@@ -24,11 +24,35 @@ pub fn observability<const N: usize, const P: usize>(
     c: &SMatrix<f64, P, N>,
 ) -> Result<f64, Error> {
     let (pair, _) = Pair::new(a, c)?;
-    let worst = least_visible(&pair, |_| true)?;
-    worst.map_or(Ok(f64::INFINITY), |(margin, hidden)| match hidden {
-        Some(mode) => Err(Error::Unobservable(mode)),
-        None => Ok(margin),
-    })
+    match least_visible(&pair)? {
+        (_, Some(mode)) => Err(Error::Unobservable(mode)),
+        (margin, None) => Ok(margin),
+    }
+}
+
+/// The modes that no output sees, each once; nothing in the places that are left.
+///
+/// # Errors
+/// [`Error::NotFinite`]; [`Error::NotConverged`].
+pub fn hidden_modes<const N: usize, const P: usize>(
+    a: &SMatrix<f64, N, N>,
+    c: &SMatrix<f64, P, N>,
+) -> Result<[Option<Mode>; N], Error> {
+    hidden(&Pair::new(a, c)?.0)
+}
+
+pub(crate) fn hidden<const N: usize>(pair: &Pair<N>) -> Result<[Option<Mode>; N], Error> {
+    let (mut modes, mut count) = ([None; N], 0);
+    for (_, hidden) in sights(pair)? {
+        if let Some(mode) = hidden
+            && !modes.iter().flatten().any(|other: &Mode| other.is_twin_of(&mode))
+            && let Some(place) = modes.get_mut(count)
+        {
+            *place = Some(mode);
+            count += 1;
+        }
+    }
+    Ok(modes)
 }
 
 /// How well the inputs move the mode that they move least: the [`observability`] of (Aᵀ, Bᵀ).
@@ -45,11 +69,14 @@ pub fn controllability<const N: usize, const M: usize>(
     })
 }
 
-/// The least visible of the modes that count, and whether it is hidden.
-pub(crate) fn least_visible<const N: usize>(
-    pair: &Pair<N>,
-    counts: impl Fn(Complex<f64>) -> bool,
-) -> Result<Option<(f64, Option<Mode>)>, Error> {
+/// How well the least visible mode is seen, and which one it is if that is no better than rounding.
+pub(crate) fn least_visible<const N: usize>(pair: &Pair<N>) -> Result<(f64, Option<Mode>), Error> {
+    let worst = sights(pair)?.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
+    Ok(worst.unwrap_or((f64::INFINITY, None)))
+}
+
+/// How well each mode is seen, and which one it is if that is no better than rounding.
+fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Error> {
     // A shift of the diagonal changes no eigenvector, and at high rates A is nearly the identity.
     let mut mean = Extended::from(0.0);
     for state in 0..N {
@@ -64,23 +91,20 @@ pub(crate) fn least_visible<const N: usize>(
     let outputs = complex(&pair.outputs.map(|value| value * output_unit));
     let rounding = 4.0 * f64::EPSILON * (1.0 + norm(&pair.dynamics) / size(norm(&centred)));
 
-    let mut worst: Option<(f64, Option<Mode>)> = None;
-    for eigenvalue in eigenvalues_extended(&pair.dynamics)? {
-        if !counts(round_complex(eigenvalue)) {
-            continue;
-        }
+    let mut sights = [(f64::INFINITY, None); N];
+    for (seen, eigenvalue) in sights.iter_mut().zip(eigenvalues_extended(&pair.dynamics)?) {
         let start = Complex { re: (eigenvalue.re - mean) * unit, im: eigenvalue.im * unit };
         let (sight, at, vector) =
             visibility(&dynamics, &outputs, start).ok_or(Error::NotConverged)?;
-        if worst.is_none_or(|(least, _)| sight < least) {
-            let pole = Complex { re: at.re / unit + mean, im: at.im / unit };
-            let hidden =
-                (sight <= rounding).then(|| Mode::new(round_complex(pole), dominant(&vector)));
-            worst = Some((sight, hidden));
-        }
+        let pole = Complex { re: at.re / unit + mean, im: at.im / unit };
+        let hidden = (sight <= rounding).then(|| Mode::new(round_complex(pole), dominant(&vector)));
+        *seen = (sight, hidden);
     }
-    Ok(worst)
+    Ok(sights)
 }
+
+/// How often λ follows the vector: at a mode that is several at once, a step halves the distance.
+const FOLLOWED: u32 = 80;
 
 /// The smallest singular value of [A − λ; C] near an eigenvalue, where it is reached, and with which vector.
 ///
@@ -97,20 +121,24 @@ fn visibility<R: Real, const N: usize>(
         Complex::from(R::from(1.0 + index as f64 / 7.0))
     });
     let mut best: Option<(f64, Complex<R>, SVector<Complex<R>, N>)> = None;
-    for _ in 0..8 {
+    for _ in 0..FOLLOWED {
         let distance = shifted(dynamics, at);
-        // What keeps an exactly singular matrix from stopping the inverse iteration.
+        // The little on the diagonal keeps an exactly singular matrix from stopping the inverse iteration.
         let gram = shifted(
             &(adjoint(&distance) * distance + outputs_squared),
-            Complex::from(R::from(-1e-60)),
+            Complex::from(R::from(-1e-30)),
         );
         for _ in 0..2 {
             vector = normalised(&solve(&gram, &vector).unwrap_or(vector), 0.0)?;
         }
         let seen = length(&(distance * vector)).rounded();
         let sight = libm::hypot(seen, length(&(outputs * vector)).rounded());
-        if best.as_ref().is_none_or(|(least, ..)| sight < *least) {
+        let before = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
+        if sight < before {
             best = Some((sight, at, vector));
+        }
+        if sight > 0.9 * before {
+            break;
         }
         at = inner(&vector, &(dynamics * vector));
     }

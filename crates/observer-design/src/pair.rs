@@ -2,9 +2,9 @@
 
 use crate::Error;
 use crate::extended::Extended;
-use crate::number::{Square, extend, finite, norm};
+use crate::number::{Number, Square, extend, finite, norm};
 use crate::orthonormal::{inner, length};
-use nalgebra::SMatrix;
+use nalgebra::{Complex, SMatrix, SVector};
 
 /// x = D x̃ with powers of two D: Ã = D⁻¹ A D and S = W C D, where W has as many rows as C has independent ones.
 pub(crate) struct Pair<const N: usize> {
@@ -52,6 +52,10 @@ impl<const N: usize> Pair<N> {
                     column += off_diagonal(index) * self.dynamics[(index, state)].to_f64().abs();
                     row += off_diagonal(index) * self.dynamics[(state, index)].to_f64().abs();
                 }
+                // What nothing drives may be scaled at will: to where its effect is of the size of its own motion.
+                if row == 0.0 {
+                    row = self.dynamics[(state, state)].to_f64().abs();
+                }
                 if column == 0.0 || row == 0.0 {
                     continue;
                 }
@@ -85,18 +89,56 @@ impl<const N: usize> Pair<N> {
         gain: &Square<Extended, N>,
         Merging(merging): &Merging<N, P>,
     ) -> SMatrix<Extended, N, P> {
-        let mut merged = gain * merging.transpose();
-        for row in 0..N {
-            for column in 0..P {
-                merged[(row, column)] *= self.scale[row];
-            }
-        }
-        merged
+        self.gain_out(&(gain * merging.transpose()))
     }
 
     /// D⁻¹ M D of a matrix of the original states.
     pub(crate) fn balanced(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
         SMatrix::from_fn(|row, column| matrix[(row, column)] * self.scale[column] / self.scale[row])
+    }
+
+    /// C D.
+    pub(crate) fn scaled<const P: usize>(
+        &self,
+        outputs: &SMatrix<Extended, P, N>,
+    ) -> SMatrix<Extended, P, N> {
+        SMatrix::from_fn(|row, column| outputs[(row, column)] * self.scale[column])
+    }
+
+    /// D L̃.
+    pub(crate) fn gain_out<const P: usize>(
+        &self,
+        gain: &SMatrix<Extended, N, P>,
+    ) -> SMatrix<Extended, N, P> {
+        SMatrix::from_fn(|row, column| gain[(row, column)] * self.scale[row])
+    }
+
+    /// D⁻¹ P D⁻¹.
+    pub(crate) fn covariance_in(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
+        SMatrix::from_fn(|row, column| {
+            matrix[(row, column)] / (self.scale[row] * self.scale[column])
+        })
+    }
+
+    /// D P̃ D.
+    pub(crate) fn covariance_out(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
+        SMatrix::from_fn(|row, column| matrix[(row, column)] * self.scale[row] * self.scale[column])
+    }
+
+    /// D x̃.
+    pub(crate) fn unbalanced(
+        &self,
+        vector: &SVector<Complex<Extended>, N>,
+    ) -> SVector<Complex<Extended>, N> {
+        SVector::from_fn(|state, _| vector[state].scaled(self.scale[state]))
+    }
+
+    /// ỹ D⁻¹.
+    pub(crate) fn unbalanced_row(
+        &self,
+        row: &SVector<Complex<Extended>, N>,
+    ) -> SVector<Complex<Extended>, N> {
+        SVector::from_fn(|state, _| row[state].scaled(Extended::from(1.0) / self.scale[state]))
     }
 
     /// ‖S‖.

@@ -6,7 +6,7 @@ use nalgebra::Complex;
 /// Conjugates may differ by this much, beside their size.
 const SAME: f64 = 1e-12;
 
-/// A pole nearer to zero than this, beside the largest one, is taken for zero.
+/// A pole nearer to zero than this, beside the size of the system, is taken for zero.
 const ZERO: f64 = 1e-9;
 
 /// Real poles first, then conjugate pairs side by side, each exactly conjugate; and where each stood.
@@ -57,32 +57,28 @@ pub(crate) fn multiplicity<const N: usize>(poles: &[Complex<f64>; N]) -> usize {
     poles.iter().map(count).max().unwrap_or(0)
 }
 
-/// The placed poles in the order of the wanted ones, nearest to nearest, and how far the worst is off beside its
-/// own size (beside the largest, if it should be zero).
-pub(crate) fn compare<const N: usize>(
-    wanted: &[Complex<f64>; N],
-    placed: &[Complex<f64>; N],
-    differences: impl Fn(usize, usize) -> f64,
-) -> ([Complex<f64>; N], f64) {
-    let largest = wanted.iter().chain(placed).map(|&pole| size(pole)).fold(0.0, f64::max);
-    let (mut matched, mut error): ([Complex<f64>; N], f64) = (*wanted, 0.0);
-    let (mut done, mut used) = ([false; N], [false; N]);
+/// Which of the placed poles stands for which of the wanted ones: the nearest for the nearest.
+pub(crate) fn pair_up<const N: usize>(distance: impl Fn(usize, usize) -> f64) -> [usize; N] {
+    let (mut partner, mut done, mut used) = ([0; N], [false; N], [false; N]);
     for _ in 0..N {
         let mut nearest: Option<(f64, usize, usize)> = None;
-        for row in (0..N).filter(|&row| !done[row]) {
-            for column in (0..N).filter(|&column| !used[column]) {
-                let distance = differences(row, column);
-                if nearest.is_none_or(|(least, ..)| !(least <= distance)) {
-                    nearest = Some((distance, row, column));
+        for wanted in (0..N).filter(|&index| !done[index]) {
+            for placed in (0..N).filter(|&index| !used[index]) {
+                let here = distance(wanted, placed);
+                if nearest.is_none_or(|(least, ..)| here < least) {
+                    nearest = Some((here, wanted, placed));
                 }
             }
         }
-        let Some((distance, row, column)) = nearest else { break };
-        (done[row], used[column]) = (true, true);
-        matched[row] = placed[column];
-        let own = size(wanted[row]);
-        let reference = if own > ZERO * largest { own } else { largest.max(f64::MIN_POSITIVE) };
-        error = error.max(distance / reference);
+        if let Some((_, wanted, placed)) = nearest {
+            (done[wanted], used[placed]) = (true, true);
+            partner[wanted] = placed;
+        }
     }
-    (matched, error)
+    partner
+}
+
+/// What the error of a pole is measured by: its own size, or that of the system if it should be zero.
+pub(crate) fn reference(pole: Complex<f64>, system: f64) -> f64 {
+    if size(pole) > ZERO * system { size(pole) } else { system }
 }

@@ -160,7 +160,7 @@ fn orthogonalise<const P: usize, const M: usize>(
         gamma += a.conj() * b;
     }
     let modulus = libm::hypot(gamma.re, gamma.im);
-    if !(modulus > 2.0 * f64::EPSILON * libm::sqrt(alpha * beta)) {
+    if modulus <= 2.0 * f64::EPSILON * libm::sqrt(alpha * beta) {
         return false;
     }
     let phase = gamma / modulus;

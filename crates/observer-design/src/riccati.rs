@@ -2,14 +2,14 @@
 
 use crate::Error;
 use crate::covariance::checked;
+use crate::error::Mode;
 use crate::extended::Extended;
 use crate::lyapunov::stable;
 use crate::number::{Square, extend, finite, norm, round, symmetrised};
-use crate::observability::least_visible;
+use crate::observability::hidden;
 use crate::pair::Pair;
-use crate::poles::size;
 use crate::solve::solve;
-use nalgebra::{Complex, SMatrix};
+use nalgebra::SMatrix;
 
 /// What a filter of x⁺ = A x + w, y = C x + v settles at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,10 @@ pub struct Riccati<const N: usize, const P: usize> {
 const MOST_DOUBLINGS: u32 = 40;
 /// A mode this close to the unit circle is taken to lie on it.
 const ON_THE_CIRCLE: f64 = 1e-10;
+/// What is left of the start when a solution is taken: its square counts.
+const SETTLED: f64 = 1e-16;
+/// The covariance of a state of which little is known, beside that which one measurement leaves.
+const DOUBT: f64 = 16.0;
 /// The least eigenvalue of a measurement noise that can be inverted, beside its variances.
 const LEAST_NOISE: f64 = 1e-13;
 
@@ -55,23 +59,27 @@ pub fn riccati<const N: usize, const P: usize>(
     if least < LEAST_NOISE {
         return Err(Error::NotPositive);
     }
-    detectable(a, c)?;
+    let (pair, _) = Pair::new(a, c)?;
+    detectable(&pair)?;
     driven(a, q)?;
 
-    let (dynamics, outputs) = (extend(a), extend(c));
-    let information = solve(&measurement, &outputs).ok_or(Error::NotPositive)?;
-    let (prior, doublings) =
-        doubled(&dynamics.transpose(), &(outputs.transpose() * information), &process)?;
+    let (dynamics, outputs) = (pair.dynamics, pair.scaled(&extend(c)));
+    let information =
+        outputs.transpose() * solve(&measurement, &outputs).ok_or(Error::NotPositive)?;
+    let equation = Equation {
+        f: dynamics.transpose(),
+        g: symmetrised(&information),
+        h: pair.covariance_in(&process),
+    };
+    let (prior, doublings) = equation.solved()?;
 
     let innovation = symmetrised(&(outputs * prior * outputs.transpose())) + measurement;
     let gain = solve(&innovation, &(outputs * prior)).ok_or(Error::NotConverged)?.transpose();
-    let predictor = dynamics * gain;
-    stable(&(dynamics - predictor * outputs)).map_err(|_| Error::NotConverged)?;
     let answer = Riccati {
-        prior: round(&prior),
-        posterior: round(&symmetrised(&(prior - gain * outputs * prior))),
-        filter_gain: round(&gain),
-        predictor_gain: round(&predictor),
+        prior: round(&pair.covariance_out(&prior)),
+        posterior: round(&pair.covariance_out(&symmetrised(&(prior - gain * outputs * prior)))),
+        filter_gain: round(&pair.gain_out(&gain)),
+        predictor_gain: round(&pair.gain_out(&(dynamics * gain))),
         doublings,
     };
     let all_finite =
@@ -79,51 +87,78 @@ pub fn riccati<const N: usize, const P: usize>(
     if all_finite { Ok(answer) } else { Err(Error::NotFinite) }
 }
 
-/// X = Fᵀ X (I + G X)⁻¹ F + H, and the doublings it took.
-fn doubled<const N: usize>(
-    f: &Square<Extended, N>,
-    g: &Square<Extended, N>,
-    h: &Square<Extended, N>,
-) -> Result<(Square<Extended, N>, u32), Error> {
-    let (mut f, mut g, mut h) = (*f, symmetrised(g), *h);
-    for doubling in 1..=MOST_DOUBLINGS {
-        let both = Square::identity() + g * h;
-        let forward = solve(&both, &f).ok_or(Error::NotConverged)?;
-        let cross = solve(&both, &g).ok_or(Error::NotConverged)?;
-        let step = symmetrised(&(f.transpose() * h * forward));
-        g = symmetrised(&(g + f * cross * f.transpose()));
-        h += step;
-        f *= forward;
-        let (change, size) = (norm(&step), norm(&h));
-        if !size.is_finite() {
-            return Err(Error::NotConverged);
+/// X = Fᵀ X (I + G X)⁻¹ F + H.
+struct Equation<const N: usize> {
+    f: Square<Extended, N>,
+    g: Square<Extended, N>,
+    h: Square<Extended, N>,
+}
+
+impl<const N: usize> Equation<N> {
+    /// The stabilising solution, and the doublings it took.
+    fn solved(&self) -> Result<(Square<Extended, N>, u32), Error> {
+        if let Some((solution, doublings)) = self.doubled()
+            && self.settles(&solution)
+        {
+            return Ok((solution, doublings));
         }
-        // Convergence is quadratic: the next change would be the square of this one.
-        if change <= 1e-10 * size {
-            return Ok((h, doubling));
-        }
+        // A mode that grows without being driven is never found from a covariance of zero: begin with a doubt.
+        let size = norm(&self.g);
+        let doubt =
+            Square::<Extended, N>::identity().map(|value| value * Extended::from(DOUBT / size));
+        let moved = self.from(&doubt).and_then(|moved| moved.doubled());
+        let (solution, doublings) =
+            moved.map(|(rest, doublings)| (doubt + rest, doublings)).ok_or(Error::NotConverged)?;
+        if self.settles(&solution) { Ok((solution, doublings)) } else { Err(Error::NotConverged) }
     }
-    Err(Error::NotConverged)
+
+    fn doubled(&self) -> Option<(Square<Extended, N>, u32)> {
+        let Self { mut f, mut g, mut h } = *self;
+        for doubling in 1..=MOST_DOUBLINGS {
+            let both = Square::identity() + g * h;
+            let (forward, cross) = (solve(&both, &f)?, solve(&both, &g)?);
+            let step = symmetrised(&(f.transpose() * h * forward));
+            g = symmetrised(&(g + f * cross * f.transpose()));
+            h += step;
+            f *= forward;
+            // The next step would be quadratic in f.
+            if norm(&f) <= SETTLED {
+                return Some((h, doubling));
+            }
+        }
+        None
+    }
+
+    /// The same equation for X − Y.
+    fn from(&self, y: &Square<Extended, N>) -> Option<Self> {
+        let both = Square::identity() + self.g * y;
+        let (f, g) = (solve(&both, &self.f)?, solve(&both, &self.g)?);
+        let h = self.f.transpose() * y * f + self.h - y;
+        Some(Self { f, g: symmetrised(&g), h: symmetrised(&h) })
+    }
+
+    /// Whether the filter with this prior covariance forgets its past.
+    fn settles(&self, prior: &Square<Extended, N>) -> bool {
+        solve(&(Square::identity() + self.g * prior), &self.f)
+            .is_some_and(|closed| stable(&closed).is_ok())
+    }
 }
 
 /// Every mode that does not decay must be seen.
-fn detectable<const N: usize, const P: usize>(
-    a: &SMatrix<f64, N, N>,
-    c: &SMatrix<f64, P, N>,
-) -> Result<(), Error> {
-    let (pair, _) = Pair::new(a, c)?;
-    match least_visible(&pair, |mode| size(mode) >= 1.0 - ON_THE_CIRCLE)? {
-        Some((_, Some(hidden))) => Err(Error::Undetectable(hidden)),
-        _ => Ok(()),
+fn detectable<const N: usize>(pair: &Pair<N>) -> Result<(), Error> {
+    let lasting = |mode: &Mode| libm::hypot(mode.re, mode.im) >= 1.0 - ON_THE_CIRCLE;
+    match hidden(pair)?.into_iter().flatten().find(lasting) {
+        Some(mode) => Err(Error::Undetectable(mode)),
+        None => Ok(()),
     }
 }
 
 /// Every mode on the unit circle must be driven by noise. What Q does not drive is the null space of its rows.
 fn driven<const N: usize>(a: &SMatrix<f64, N, N>, q: &SMatrix<f64, N, N>) -> Result<(), Error> {
     let (pair, _) = Pair::new(&a.transpose(), q)?;
-    let on_the_circle = |mode: Complex<f64>| (size(mode) - 1.0).abs() <= ON_THE_CIRCLE;
-    match least_visible(&pair, on_the_circle)? {
-        Some((_, Some(hidden))) => Err(Error::Undriven(hidden)),
-        _ => Ok(()),
+    let undying = |mode: &Mode| (libm::hypot(mode.re, mode.im) - 1.0).abs() <= ON_THE_CIRCLE;
+    match hidden(&pair)?.into_iter().flatten().find(undying) {
+        Some(mode) => Err(Error::Undriven(mode)),
+        None => Ok(()),
     }
 }

@@ -1,15 +1,16 @@
 //! Pole placement.
 
+mod polish;
 mod several;
 mod single;
 
 use crate::Error;
 use crate::eigenvalues::eigenvalues_extended;
 use crate::extended::Extended;
-use crate::number::{Square, extend, extend_complex, finite, round, round_complex};
+use crate::number::{Square, extend, extend_complex, finite, norm, round, round_complex};
 use crate::observability::least_visible;
 use crate::pair::{Merging, Pair};
-use crate::poles::{arrange, compare, multiplicity, size};
+use crate::poles::{arrange, multiplicity, pair_up, reference, size};
 use nalgebra::{Complex, SMatrix};
 
 /// A gain and what it does.
@@ -21,7 +22,7 @@ pub struct Placement<const N: usize, const P: usize> {
     /// The eigenvalues which A − L C really has, in the order in which they were wanted: computed with 106 bits
     /// from the doubles in `gain`.
     pub poles: [PlacedPole; N],
-    /// How far the worst of them is off, beside its own size (beside the largest, if it should be zero).
+    /// How far the worst of them is off, beside its own size (beside that of the system, if it should be zero).
     pub error: f64,
     /// How well the outputs see the least visible mode, see [`observability`](crate::observability).
     pub visibility: f64,
@@ -68,35 +69,43 @@ pub fn place<const N: usize, const P: usize>(
 ) -> Result<Placement<N, P>, Error> {
     let (arranged, origin) = arrange(poles)?;
     let (pair, merging) = Pair::new(a, c)?;
-    let visibility = match least_visible(&pair, |_| true)? {
-        Some((_, Some(hidden))) => return Err(Error::Unobservable(hidden)),
-        Some((visibility, None)) => visibility,
-        None => f64::INFINITY,
+    let visibility = match least_visible(&pair)? {
+        (_, Some(hidden)) => return Err(Error::Unobservable(hidden)),
+        (visibility, None) => visibility,
     };
     let problem = Problem { a, c, pair: &pair, merging: &merging, poles: &arranged };
-    let (gain, placed, error) = if pair.rank == 1 {
-        problem.check(
+    let checked = if pair.rank == 1 {
+        problem.rounded(
             &single::place(&pair.dynamics, &pair.outputs, &arranged).ok_or(Error::NotConverged)?,
         )?
     } else if multiplicity(&arranged) <= pair.rank
         && let Some(gain) = several::place(&pair, &arranged)
     {
-        problem.check(&gain)?
+        problem.rounded(&gain)?
     } else {
         problem.through_one_output()?
     };
-    if !(error <= HOPELESS) {
-        return Err(Error::IllConditioned(error));
+    if checked.error.total_cmp(&HOPELESS).is_gt() {
+        return Err(Error::IllConditioned(checked.error));
     }
     let mut in_order = [PlacedPole { re: 0.0, im: 0.0 }; N];
-    for (pole, &place) in placed.iter().zip(&origin) {
+    for (pole, &place) in checked.placed.iter().zip(&origin) {
         in_order[place] = PlacedPole { re: pole.re, im: pole.im };
     }
-    Ok(Placement { gain, poles: in_order, error, visibility })
+    Ok(Placement { gain: checked.gain, poles: in_order, error: checked.error, visibility })
 }
 
-/// L, the poles that it gives, and how far the worst is off.
-type Checked<const N: usize, const P: usize> = (SMatrix<f64, N, P>, [Complex<f64>; N], f64);
+/// A gain, and the poles that it gives.
+#[derive(Clone, Copy)]
+struct Checked<const N: usize, const P: usize> {
+    gain: SMatrix<f64, N, P>,
+    /// In the order of the wanted ones.
+    placed: [Complex<f64>; N],
+    /// By how much they are off.
+    offsets: [Complex<f64>; N],
+    /// By how much the worst is off beside its size.
+    error: f64,
+}
 
 struct Problem<'a, const N: usize, const P: usize> {
     a: &'a Square<f64, N>,
@@ -107,20 +116,40 @@ struct Problem<'a, const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> Problem<'_, N, P> {
-    /// Rounds a gain of the balanced pair and looks where the poles of the rounded one are.
-    fn check(&self, gain: &Square<Extended, N>) -> Result<Checked<N, P>, Error> {
-        let gain = round(&self.pair.gain(gain, self.merging));
-        if !finite(&gain) {
+    /// Rounds a gain of the balanced pair and makes the best of the rounding.
+    fn rounded(&self, gain: &Square<Extended, N>) -> Result<Checked<N, P>, Error> {
+        let first = self.check(&round(&self.pair.gain(gain, self.merging)))?;
+        let polished = polish::polish(self, &first).and_then(|gain| self.check(&gain).ok());
+        Ok(polished.filter(|polished| polished.error < first.error).unwrap_or(first))
+    }
+
+    /// Where the poles are.
+    fn check(&self, gain: &SMatrix<f64, N, P>) -> Result<Checked<N, P>, Error> {
+        if !finite(gain) {
             return Err(Error::NotFinite);
         }
-        let closed = extend(self.a) - extend(&gain) * extend(self.c);
-        let placed = eigenvalues_extended(&self.pair.balanced(&closed))?;
-        let distance = |wanted: usize, got: usize| {
-            let difference = placed[got] - extend_complex::<Extended>(self.poles[wanted]);
-            size(round_complex(difference))
+        let values = eigenvalues_extended(&self.closed(gain))?;
+        let offset = |wanted: usize, got: usize| {
+            round_complex(values[got] - extend_complex(self.poles[wanted]))
         };
-        let (matched, error) = compare(self.poles, &placed.map(round_complex), distance);
-        Ok((gain, matched, error))
+        let partner = pair_up::<N>(|wanted, got| size(offset(wanted, got)));
+        let mut checked =
+            Checked { gain: *gain, placed: *self.poles, offsets: *self.poles, error: 0.0 };
+        for (wanted, &got) in partner.iter().enumerate() {
+            checked.placed[wanted] = round_complex(values[got]);
+            checked.offsets[wanted] = offset(wanted, got);
+            checked.error = checked.error.max(size(offset(wanted, got)) / self.reference(wanted));
+        }
+        Ok(checked)
+    }
+
+    /// A − L C on the balanced scale.
+    fn closed(&self, gain: &SMatrix<f64, N, P>) -> Square<Extended, N> {
+        self.pair.balanced(&(extend(self.a) - extend(gain) * extend(self.c)))
+    }
+
+    fn reference(&self, pole: usize) -> f64 {
+        reference(self.poles[pole], norm(&self.pair.dynamics).max(f64::MIN_POSITIVE))
     }
 
     /// Poles wanted more often than there are outputs: a first gain makes all modes visible in one combination of
@@ -131,8 +160,8 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
             let Some(gain) = single::through_a_mixture(self.pair, self.poles, attempt) else {
                 continue;
             };
-            let Ok(checked) = self.check(&gain) else { continue };
-            if best.as_ref().is_none_or(|(.., error)| checked.2 < *error) {
+            let Ok(checked) = self.rounded(&gain) else { continue };
+            if best.as_ref().is_none_or(|best| checked.error < best.error) {
                 best = Some(checked);
             }
         }

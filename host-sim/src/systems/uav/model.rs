@@ -80,13 +80,12 @@ impl Model {
         let contents: Contents = serde_json::from_str(file.text()).map_err(|error| {
             let problem = error.to_string();
             let problem = problem.split(" at line ").next().unwrap_or_default();
-            Error::Line {
-                path: path.to_path_buf(),
-                line: error.line(),
-                problem: format!(
+            file.error_at(
+                error.line(),
+                format!(
                     "expected a JSON object with A, B and perhaps C, outputs, trim and h: {problem}"
                 ),
-            }
+            )
         })?;
         let outputs = match (contents.c, contents.outputs) {
             (None, None) => states(),

@@ -1,0 +1,136 @@
+//! The best neighbour of a rounded gain.
+//!
+//! Poles that lie close together feel the last bit of every gain. There are more gains than poles, or at least
+//! as many: among the doubles around the exact gain some place the poles far better than the nearest ones.
+
+use super::{Checked, Problem};
+use crate::extended::Extended;
+use crate::number::{Square, complex, extend, extend_complex, round_complex, shifted};
+use crate::orthonormal::normalised;
+use crate::sequence::Sequence;
+use crate::solve::solve;
+use nalgebra::{Complex, SMatrix, SVector};
+
+/// Nothing to gain below this.
+const GOOD_ENOUGH: f64 = 4.0 * f64::EPSILON;
+/// Random neighbours that are tried, so many units in the last place away at most.
+const NEIGHBOURS: u32 = 400;
+const REACH: f64 = 6.0;
+/// Rounds over all gains in which each is improved by itself.
+const ROUNDS: u32 = 6;
+
+/// By how much each pole moves, beside its size, when a gain moves by one unit in its last place.
+type Slopes<const N: usize, const P: usize> = SMatrix<SVector<Complex<f64>, N>, N, P>;
+
+/// A gain next to the checked one that places the poles better, as far as first derivatives tell; nothing where
+/// there is nothing to improve, or poles coincide and have no derivative.
+pub(super) fn polish<const N: usize, const P: usize>(
+    problem: &Problem<N, P>,
+    checked: &Checked<N, P>,
+) -> Option<SMatrix<f64, N, P>> {
+    if checked.error <= GOOD_ENOUGH {
+        return None;
+    }
+    let slopes = slopes(problem, checked)?;
+    let start = SVector::<Complex<f64>, N>::from_fn(|pole, _| {
+        checked.offsets[pole] / problem.reference(pole)
+    });
+    let mut random = Sequence::new(0);
+    let mut best = (worst(&start), SMatrix::<f64, N, P>::zeros());
+    for neighbour in 0..NEIGHBOURS {
+        let reach = if neighbour == 0 { 0.0 } else { REACH };
+        let mut steps = slopes.map(|_| 0.0).map(|_: f64| libm::round(reach * random.next()));
+        let mut offsets = start;
+        for (slope, &step) in slopes.iter().zip(steps.iter()) {
+            offsets += slope.map(|slope| slope * step);
+        }
+        improve(&slopes, &mut offsets, &mut steps);
+        if worst(&offsets) < best.0 {
+            best = (worst(&offsets), steps);
+        }
+    }
+    let moved = checked.gain.zip_map(&best.1, |gain, steps| gain + steps * last_place(gain));
+    (moved != checked.gain).then_some(moved)
+}
+
+/// Moves one gain after the other by whole units to where the sum of squared offsets is least.
+fn improve<const N: usize, const P: usize>(
+    slopes: &Slopes<N, P>,
+    offsets: &mut SVector<Complex<f64>, N>,
+    steps: &mut SMatrix<f64, N, P>,
+) {
+    for _ in 0..ROUNDS {
+        let mut moved = false;
+        for (slope, step) in slopes.iter().zip(steps.iter_mut()) {
+            let along: f64 =
+                slope.iter().zip(offsets.iter()).map(|(a, b)| a.re * b.re + a.im * b.im).sum();
+            let square: f64 = slope.iter().map(Complex::norm_sqr).sum();
+            let units = libm::round(-along / square);
+            if units != 0.0 && units.abs() < 1e6 {
+                *step += units;
+                *offsets += slope.map(|slope| slope * units);
+                moved = true;
+            }
+        }
+        if !moved {
+            return;
+        }
+    }
+}
+
+fn worst<const N: usize>(offsets: &SVector<Complex<f64>, N>) -> f64 {
+    offsets.iter().map(Complex::norm_sqr).fold(0.0, f64::max)
+}
+
+/// The distance from a number to the next double.
+fn last_place(value: f64) -> f64 {
+    f64::from_bits(value.abs().to_bits() + 1) - value.abs()
+}
+
+/// dλ = −y dL C x for left and right eigenvectors with y x = 1, on the balanced scale.
+fn slopes<const N: usize, const P: usize>(
+    problem: &Problem<N, P>,
+    checked: &Checked<N, P>,
+) -> Option<Slopes<N, P>> {
+    let closed = complex(&problem.closed(&checked.gain));
+    let outputs = complex(&extend(problem.c));
+    let mut slopes = Slopes::<N, P>::from_fn(|_, _| SVector::zeros());
+    for pole in 0..N {
+        // A little beside the eigenvalue, so that the equations can be solved.
+        let beside =
+            extend_complex::<Extended>(checked.placed[pole]) + Complex::from(Extended::from(1e-24));
+        let distance = shifted(&closed, beside);
+        let right = eigenvector(&distance)?;
+        let left = eigenvector(&distance.transpose())?;
+        let product = left
+            .iter()
+            .zip(right.iter())
+            .fold(Complex::from(Extended::from(0.0)), |sum, (&y, &x)| sum + y * x);
+        let seen = (outputs * problem.pair.unbalanced(&right)).map(round_complex);
+        let moved =
+            problem.pair.unbalanced_row(&left.map(|value| value / product)).map(round_complex);
+        for row in 0..N {
+            for column in 0..P {
+                let unit = last_place(checked.gain[(row, column)]);
+                slopes[(row, column)][pole] =
+                    -moved[row] * seen[column] * (unit / problem.reference(pole));
+            }
+        }
+    }
+    let finite = slopes
+        .iter()
+        .all(|slope| slope.iter().all(|value| value.re.is_finite() && value.im.is_finite()));
+    finite.then_some(slopes)
+}
+
+/// The vector that a nearly singular matrix all but extinguishes, by inverse iteration.
+fn eigenvector<const N: usize>(
+    distance: &Square<Complex<Extended>, N>,
+) -> Option<SVector<Complex<Extended>, N>> {
+    let mut vector =
+        SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)));
+    for _ in 0..3 {
+        vector = normalised(&solve(distance, &vector)?, 0.0)?;
+    }
+    Some(vector)
+}

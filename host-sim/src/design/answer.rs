@@ -1,0 +1,167 @@
+//! The answer to a case.
+
+use nalgebra::DMatrix;
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+use super::case::{Case, Problem};
+use super::sized::{self, MOST_STATES, MOST_WIDE, Observed};
+
+/// What was asked, and what came of it.
+#[derive(Debug, Clone, Serialize)]
+pub struct Answered {
+    /// The case, as the file names it.
+    pub id: Value,
+    /// The answer.
+    #[serde(flatten)]
+    pub answer: Answer,
+}
+
+impl Answered {
+    /// Answers a case. What is wrong with it is its answer.
+    pub(super) fn new(value: &Value, answer: fn(&Case) -> Result<Solution, Problem>) -> Self {
+        let id = value.get("id").cloned().unwrap_or_default();
+        let answer = match Case::new(value).and_then(|case| answer(&case)) {
+            Ok(solution) => Answer::Solved(solution),
+            Err(error) => Answer::Refused { error },
+        };
+        Self { id, answer }
+    }
+
+    /// The name of the case, for people.
+    pub fn name(&self) -> String {
+        self.id.as_str().map_or_else(|| self.id.to_string(), str::to_owned)
+    }
+}
+
+/// A solution, or why there is none.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum Answer {
+    /// What was asked for.
+    Solved(Solution),
+    /// Why it was refused.
+    Refused {
+        /// One sentence.
+        error: String,
+    },
+}
+
+/// What a design gives.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum Solution {
+    /// An observer gain.
+    Gain {
+        /// L.
+        #[serde(rename = "L", serialize_with = "rows")]
+        gain: DMatrix<f64>,
+        /// How far the worst pole is off, beside its size.
+        pole_error: f64,
+        /// Of the 16 digits of a double.
+        digits_lost: f64,
+    },
+    /// A steady Kalman filter.
+    Filter {
+        /// The prior covariance.
+        #[serde(rename = "P", serialize_with = "rows")]
+        prior: DMatrix<f64>,
+        /// The gain of the update.
+        #[serde(rename = "K_filter", serialize_with = "rows")]
+        filter_gain: DMatrix<f64>,
+        /// The gain of the observer in predictor form.
+        #[serde(rename = "K_predictor", serialize_with = "rows")]
+        predictor_gain: DMatrix<f64>,
+        /// How many it took.
+        doublings: u32,
+    },
+    /// A system in discrete time.
+    Discrete {
+        /// The transition.
+        #[serde(rename = "Ad", serialize_with = "rows")]
+        a: DMatrix<f64>,
+        /// The input matrix.
+        #[serde(rename = "Bd", serialize_with = "rows")]
+        b: DMatrix<f64>,
+    },
+    /// The covariance of an observer's error.
+    Covariance {
+        /// P.
+        #[serde(rename = "P", serialize_with = "rows")]
+        covariance: DMatrix<f64>,
+    },
+}
+
+fn rows<S: Serializer>(matrix: &DMatrix<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(matrix.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()))
+}
+
+type Section = (&'static str, fn(&Case) -> Result<Solution, Problem>);
+
+/// The sections of a file, and how their cases are answered.
+pub(super) const SECTIONS: [Section; 7] = [
+    ("pole_placement", placement),
+    ("must_reject", placement),
+    ("dare", riccati),
+    ("dare_reject", riccati),
+    ("c2d", discretisation),
+    ("lyapunov", covariance),
+    ("reduced_order", reduced_order),
+];
+
+fn placement(case: &Case) -> Result<Solution, Problem> {
+    let a = case.square("A", MOST_STATES)?;
+    let c = case.outputs("C", a.nrows(), MOST_WIDE)?;
+    let states: Vec<_> = (0..a.nrows()).collect();
+    sized::place(&a, &c, &case.poles(a.nrows())?, &states)
+}
+
+/// The states that are not measured are observed through what they do to those that are: a pair of its own.
+fn reduced_order(case: &Case) -> Result<Solution, Problem> {
+    let a = case.square("A", MOST_STATES)?;
+    let measured = case.states("measured", a.nrows())?;
+    let unmeasured = case.states("unmeasured", a.nrows())?;
+    if measured.is_empty()
+        || unmeasured.is_empty()
+        || measured.iter().any(|state| unmeasured.contains(state))
+    {
+        return Err("measured, unmeasured: expected some of each, and none that is both".to_owned());
+    }
+    let part = |rows: &[usize]| a.select_rows(rows).select_columns(&unmeasured);
+    sized::place(&part(&unmeasured), &part(&measured), &case.poles(unmeasured.len())?, &unmeasured)
+}
+
+fn riccati(case: &Case) -> Result<Solution, Problem> {
+    let a = case.square("A", MOST_STATES)?;
+    let c = case.outputs("C", a.nrows(), MOST_WIDE)?;
+    let q = case.matrix_of("Q", a.nrows(), a.nrows())?;
+    let r = case.matrix_of("R", c.nrows(), c.nrows())?;
+    sized::riccati(&a, &c, &q, &r)
+}
+
+fn discretisation(case: &Case) -> Result<Solution, Problem> {
+    let a = case.square("A", MOST_STATES)?;
+    let b = case.inputs("B", a.nrows(), MOST_WIDE)?;
+    sized::discretise(&a, &b, case.number("h")?)
+}
+
+/// P = F P Fᵀ + B Qu Bᵀ + L R Lᵀ with F = A − L C, or with Q instead of B Qu Bᵀ; where there is no L,
+/// P = A P Aᵀ + Q.
+fn covariance(case: &Case) -> Result<Solution, Problem> {
+    let a = case.square("A", MOST_STATES)?;
+    let states = a.nrows();
+    if !case.has("L") {
+        return sized::lyapunov(&a, &case.matrix_of("Q", states, states)?);
+    }
+    let process = if case.has("Q_input") {
+        let b = case.inputs("B", states, MOST_WIDE)?;
+        let q = case.matrix_of("Q_input", b.ncols(), b.ncols())?;
+        [b, q]
+    } else {
+        [DMatrix::identity(states, states), case.matrix_of("Q", states, states)?]
+    };
+    let c = case.outputs("C", states, MOST_WIDE)?;
+    let gain = case.matrix_of("L", states, c.nrows())?;
+    let r = case.matrix_of("R", c.nrows(), c.nrows())?;
+    sized::error_covariance(&Observed { a, c, gain, process, r })
+}

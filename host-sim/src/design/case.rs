@@ -1,0 +1,147 @@
+//! A case, as it stands in the file.
+
+use nalgebra::{Complex, DMatrix};
+use serde_json::{Map, Value};
+
+/// An object. What it holds is looked at when it is asked for.
+pub(super) struct Case<'a> {
+    fields: &'a Map<String, Value>,
+}
+
+/// What is wrong with a case, in a sentence.
+pub(super) type Problem = String;
+
+impl<'a> Case<'a> {
+    pub(super) fn new(value: &'a Value) -> Result<Self, Problem> {
+        let fields = value.as_object().ok_or("expected an object")?;
+        Ok(Self { fields })
+    }
+
+    fn field(&self, name: &str) -> Result<&'a Value, Problem> {
+        self.fields.get(name).ok_or_else(|| format!("{name} is missing"))
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.fields.contains_key(name)
+    }
+
+    /// A number; null is NaN.
+    pub(super) fn number(&self, name: &str) -> Result<f64, Problem> {
+        number(self.field(name)?).ok_or_else(|| format!("{name}: expected a number"))
+    }
+
+    /// A list of rows of equal length; null is NaN.
+    pub(super) fn matrix(&self, name: &str) -> Result<DMatrix<f64>, Problem> {
+        let wrong =
+            || format!("{name}: expected a list of rows of numbers, all of the same length");
+        let row =
+            |value: &Value| -> Option<Vec<f64>> { value.as_array()?.iter().map(number).collect() };
+        let rows = self.field(name)?.as_array().ok_or_else(wrong)?;
+        let rows: Vec<Vec<f64>> = rows.iter().map(row).collect::<Option<_>>().ok_or_else(wrong)?;
+        let columns = rows.first().map_or(0, Vec::len);
+        if columns == 0 || rows.iter().any(|row| row.len() != columns) {
+            return Err(wrong());
+        }
+        Ok(DMatrix::from_row_iterator(rows.len(), columns, rows.into_iter().flatten()))
+    }
+
+    /// A matrix of which the size is known.
+    pub(super) fn matrix_of(
+        &self,
+        name: &str,
+        rows: usize,
+        columns: usize,
+    ) -> Result<DMatrix<f64>, Problem> {
+        let matrix = self.matrix(name)?;
+        if matrix.shape() == (rows, columns) {
+            return Ok(matrix);
+        }
+        let (found_rows, found_columns) = matrix.shape();
+        Err(format!(
+            "{name}: expected {rows} × {columns} numbers, found {found_rows} × {found_columns}"
+        ))
+    }
+
+    /// A, which is square, with no more states than the program was built for.
+    pub(super) fn square(&self, name: &str, most: usize) -> Result<DMatrix<f64>, Problem> {
+        let matrix = self.matrix(name)?;
+        let (rows, columns) = matrix.shape();
+        if rows != columns {
+            return Err(format!(
+                "{name}: expected as many rows as columns, found {rows} × {columns}"
+            ));
+        }
+        if rows > most {
+            return Err(format!("{name}: expected at most {most} states, found {rows}"));
+        }
+        Ok(matrix)
+    }
+
+    /// A matrix of as many columns as there are states, with no more outputs than the program was built for.
+    pub(super) fn outputs(
+        &self,
+        name: &str,
+        states: usize,
+        most: usize,
+    ) -> Result<DMatrix<f64>, Problem> {
+        let outputs = self.matrix(name)?.nrows();
+        if outputs > most {
+            return Err(format!("{name}: expected at most {most} outputs, found {outputs}"));
+        }
+        self.matrix_of(name, outputs, states)
+    }
+
+    /// A matrix of as many rows as there are states, with no more inputs than the program was built for.
+    pub(super) fn inputs(
+        &self,
+        name: &str,
+        states: usize,
+        most: usize,
+    ) -> Result<DMatrix<f64>, Problem> {
+        let inputs = self.matrix(name)?.ncols();
+        if inputs > most {
+            return Err(format!("{name}: expected at most {most} inputs, found {inputs}"));
+        }
+        self.matrix_of(name, states, inputs)
+    }
+
+    /// As many poles as there are states: pairs of real and imaginary part, or real numbers.
+    pub(super) fn poles(&self, states: usize) -> Result<Vec<Complex<f64>>, Problem> {
+        let wrong = || "poles: expected a list of pairs of numbers".to_owned();
+        let pole = |value: &Value| match value.as_array().map(Vec::as_slice) {
+            Some([re, im]) => Some(Complex::new(number(re)?, number(im)?)),
+            Some(_) => None,
+            None => number(value).map(Complex::from),
+        };
+        let list = self.field("poles")?.as_array().ok_or_else(wrong)?;
+        let poles: Vec<_> = list.iter().map(pole).collect::<Option<_>>().ok_or_else(wrong)?;
+        if poles.len() != states {
+            return Err(format!(
+                "poles: expected {states}, one for each state, found {}",
+                poles.len()
+            ));
+        }
+        Ok(poles)
+    }
+
+    /// Which states, counted from 0.
+    pub(super) fn states(&self, name: &str, count: usize) -> Result<Vec<usize>, Problem> {
+        let wrong = || {
+            format!("{name}: expected a list of different states, counted from 0, below {count}")
+        };
+        let list = self.field(name)?.as_array().ok_or_else(wrong)?;
+        let index = |value: &Value| value.as_u64().and_then(|index| usize::try_from(index).ok());
+        let states: Vec<usize> = list.iter().map(index).collect::<Option<_>>().ok_or_else(wrong)?;
+        let different =
+            states.iter().collect::<std::collections::BTreeSet<_>>().len() == states.len();
+        if states.iter().all(|&state| state < count) && different {
+            Ok(states)
+        } else {
+            Err(wrong())
+        }
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    if value.is_null() { Some(f64::NAN) } else { value.as_f64() }
+}

@@ -1,0 +1,77 @@
+//! `host-sim design`: the gains, discretisations and covariances of a file of cases.
+
+mod answer;
+mod case;
+mod report;
+mod rust;
+mod sized;
+
+pub use answer::{Answer, Answered, Solution};
+pub use report::Report;
+
+use std::path::PathBuf;
+
+use serde_json::{Map, Value};
+
+use crate::text::TextFile;
+use crate::{Error, output};
+
+/// Options of the command.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Design {
+    /// What to design: JSON with lists `pole_placement`, `must_reject`, `dare`, `dare_reject`, `c2d`, `lyapunov`
+    /// and `reduced_order`, each optional
+    #[arg(long, value_name = "FILE")]
+    input: PathBuf,
+    /// Write the results as constants for firmware
+    #[arg(long, value_name = "OUT.rs")]
+    rust: Option<PathBuf>,
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
+}
+
+impl Design {
+    /// Reads, designs, writes and prints.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the file as a whole; what is wrong with a case is that case's answer.
+    pub fn run(&self) -> Result<(), Error> {
+        output::refuse_overwriting("--rust", self.rust.as_deref(), [&self.input])?;
+        let report = Report { sections: self.answers()? };
+        if let Some(path) = &self.rust {
+            output::write_file(path, |file| rust::write(file, &report))?;
+        }
+        output::show(&report, self.json)
+    }
+
+    fn answers(&self) -> Result<Vec<(&'static str, Vec<Answered>)>, Error> {
+        let file = TextFile::read(&self.input)?;
+        let cases: Map<String, Value> = serde_json::from_str(file.text()).map_err(|error| {
+            file.error_at(
+                error.line(),
+                format!("expected a JSON object of cases: {}", reason(&error)),
+            )
+        })?;
+        let mut sections = Vec::new();
+        for (name, answer) in answer::SECTIONS {
+            let Some(section) = cases.get(name) else { continue };
+            let list = section
+                .as_array()
+                .ok_or_else(|| file.error(format!("{name}: expected a list of cases")))?;
+            let answers = list.iter().map(|value| Answered::new(value, answer)).collect();
+            sections.push((name, answers));
+        }
+        if sections.is_empty() {
+            let names: Vec<_> = answer::SECTIONS.iter().map(|(name, _)| *name).collect();
+            return Err(file.error(format!("expected one of {}, found none", names.join(", "))));
+        }
+        Ok(sections)
+    }
+}
+
+/// What the parser says, without the place, which the sentence begins with.
+fn reason(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split(" at line ").next().unwrap_or_default().to_owned()
+}

@@ -1,0 +1,72 @@
+//! What `host-sim design` prints.
+
+use std::fmt;
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use super::answer::{Answer, Answered, Solution};
+use crate::output;
+
+/// The answers, section by section, in the order of the program.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// Name and answers of each section that the file has.
+    pub sections: Vec<(&'static str, Vec<Answered>)>,
+}
+
+impl Serialize for Report {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.sections.len()))?;
+        for (name, answers) in &self.sections {
+            map.serialize_entry(name, answers)?;
+        }
+        map.end()
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, answers) in &self.sections {
+            let mut table = output::table();
+            table.set_header([*name, "answer"]);
+            for answered in answers {
+                table.add_row([answered.name(), summary(&answered.answer)]);
+            }
+            writeln!(formatter, "{table}\n")?;
+        }
+        Ok(())
+    }
+}
+
+fn summary(answer: &Answer) -> String {
+    match answer {
+        Answer::Refused { error } => format!("refused: {error}"),
+        Answer::Solved(Solution::Gain { gain, pole_error, digits_lost }) => {
+            format!(
+                "worst pole off by {pole_error:.1e} of itself ({digits_lost:.1} digits lost)\nL = {}",
+                rows(gain)
+            )
+        }
+        Answer::Solved(Solution::Filter { filter_gain, doublings, .. }) => {
+            format!("{doublings} doublings\nK = {}", rows(filter_gain))
+        }
+        Answer::Solved(Solution::Discrete { a, b }) => {
+            format!("Ad = {}\nBd = {}", rows(a), rows(b))
+        }
+        Answer::Solved(Solution::Covariance { covariance }) => {
+            let deviations: Vec<_> =
+                covariance.diagonal().iter().map(|value| format!("{:.4e}", value.sqrt())).collect();
+            format!("RMSE {}", deviations.join(" "))
+        }
+    }
+}
+
+fn rows(matrix: &nalgebra::DMatrix<f64>) -> String {
+    let row = |row: nalgebra::RowDVector<f64>| {
+        let numbers: Vec<_> = row.iter().map(|value| format!("{value:.6}")).collect();
+        numbers.join(" ")
+    };
+    let rows: Vec<_> = matrix.row_iter().map(|view| row(view.into_owned())).collect();
+    rows.join("\n    ")
+}

@@ -1,0 +1,99 @@
+//! The answers as Rust constants.
+
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+
+use nalgebra::DMatrix;
+
+use super::Report;
+use super::answer::{Answer, Solution};
+
+/// Writes every matrix as an array of rows. Refused cases become comments.
+pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
+    writeln!(file, "// Written by `host-sim design --rust`; rows of matrices, SI units.")?;
+    let mut used = BTreeSet::new();
+    for (section, answers) in &report.sections {
+        for answered in answers {
+            let id = answered.name().replace(char::is_control, " ");
+            let mut constant = |suffix: &str, what: &str, matrix: &DMatrix<f64>| {
+                let name =
+                    unique(&format!("{}_{suffix}", constant_case(&answered.name())), &mut used);
+                let (rows, columns) = matrix.shape();
+                writeln!(file, "\n/// {what}: {id} ({section}).")?;
+                writeln!(file, "pub const {name}: [[f64; {columns}]; {rows}] = [")?;
+                for row in matrix.row_iter() {
+                    let numbers: Vec<_> = row.iter().map(|value| format!("{value:?}")).collect();
+                    writeln!(file, "    [{}],", numbers.join(", "))?;
+                }
+                file.write_all(b"];\n")
+            };
+            match &answered.answer {
+                Answer::Refused { error } => {
+                    writeln!(file, "\n// {id} ({section}) was refused: {error}")?
+                }
+                Answer::Solved(Solution::Gain { gain, .. }) => {
+                    constant("L", "Gain of the observer in predictor form", gain)?;
+                }
+                Answer::Solved(Solution::Filter { filter_gain, predictor_gain, .. }) => {
+                    constant("K", "Gain of the steady Kalman filter's update", filter_gain)?;
+                    constant(
+                        "L",
+                        "Gain of the steady Kalman filter in predictor form",
+                        predictor_gain,
+                    )?;
+                }
+                Answer::Solved(Solution::Discrete { a, b }) => {
+                    constant("A", "Transition matrix", a)?;
+                    constant("B", "Input matrix", b)?;
+                }
+                Answer::Solved(Solution::Covariance { covariance }) => {
+                    constant("P", "Covariance of the observer's error", covariance)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Letters, digits and underscores of a text, in capitals.
+fn constant_case(id: &str) -> String {
+    let mut name = String::new();
+    for character in id.chars() {
+        if character.is_ascii_alphanumeric() {
+            name.push(character.to_ascii_uppercase());
+        } else if !name.ends_with('_') && !name.is_empty() {
+            name.push('_');
+        }
+    }
+    let name = name.trim_end_matches('_');
+    if name.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        name.to_owned()
+    } else {
+        format!("CASE_{name}")
+    }
+}
+
+/// The name, with a number if it was taken.
+fn unique(name: &str, used: &mut BTreeSet<String>) -> String {
+    let numbered = (2..).map(|count| format!("{name}_{count}"));
+    let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !used.contains(name));
+    let free = free.unwrap_or_else(|| name.to_owned());
+    used.insert(free.clone());
+    free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_constants() {
+        assert_eq!(
+            constant_case("P2 thesis-like h=0.01 C=[V,theta]"),
+            "P2_THESIS_LIKE_H_0_01_C_V_THETA"
+        );
+        assert_eq!(constant_case("1 § x"), "CASE_1_X");
+        let mut used = BTreeSet::new();
+        assert_eq!([unique("A", &mut used), unique("A", &mut used)], ["A", "A_2"]);
+    }
+}
