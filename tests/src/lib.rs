@@ -3,3 +3,5 @@
 pub mod firmware;
 pub mod recordings;
 pub mod robot;
+#[path = "../firmware/images/src/uav.rs"]
+pub mod uav;

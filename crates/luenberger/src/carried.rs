@@ -67,7 +67,7 @@ pub(crate) fn mac<T: Scalar, const R: usize, const C: usize>(
     for column in 0..C {
         for row in 0..R {
             let (a, b) = (block.data.0[column][row], vector.data.0[0][column]);
-            sums[row] = T::mac(sums[row], a, b);
+            sums[row] = T::mac_within(sums[row], a, b);
         }
     }
 }

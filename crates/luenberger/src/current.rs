@@ -6,7 +6,7 @@ use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`Current`] observer, independent of its scalar.
+/// The coefficients of a [`CurrentObserver`] observer, independent of its scalar.
 ///
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +43,7 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
 ///
 /// The estimate has seen the newest measurement, where a [`Predictor`](crate::Predictor)'s is one interval
 /// older. Its error obeys e⁺ = (A − K C A) e, whose poles are those of A − A K C: with K = A⁻¹ L both forms
-/// have the same. With the gain of [a settled Kalman filter](https://docs.rs/kestirim-kalman) it is that
-/// filter.
+/// have the same. With the gain that `kestirim_kalman::steady_state` settles at, it is that Kalman filter.
 ///
 /// Units are the plant's. Cost: N (N + M + 2 P) multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +56,7 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
         deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
     ))
 )]
-pub struct Current<T: Scalar, const N: usize, const M: usize, const P: usize> {
+pub struct CurrentObserver<T: Scalar, const N: usize, const M: usize, const P: usize> {
     estimate: Carried<T, N>,
     /// A − I, B and K; row i is scaled by 2^shift i.
     state: SMatrix<T, N, N>,
@@ -68,7 +67,7 @@ pub struct Current<T: Scalar, const N: usize, const M: usize, const P: usize> {
     unseen: Rows<T, P, N>,
 }
 
-impl<T: Scalar, const N: usize, const M: usize, const P: usize> Current<T, N, M, P> {
+impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<T, N, M, P> {
     /// An observer that starts at this state.
     ///
     /// # Errors
@@ -123,7 +122,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Current<T, N, M,
         Ok(innovation)
     }
 
-    /// [`Current::predict`] with the inputs since the last measurement, and [`Current::correct`] with the new
+    /// [`CurrentObserver::predict`] with the inputs since the last measurement, and [`CurrentObserver::correct`] with the new
     /// one; both or neither.
     ///
     /// # Errors

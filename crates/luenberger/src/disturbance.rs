@@ -6,20 +6,20 @@ use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`Disturbance`] observer, independent of its scalar.
+/// The coefficients of a [`DisturbanceObserver`] observer, independent of its scalar.
 ///
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisturbanceGains<const N: usize, const M: usize, const P: usize, const D: usize> {
     exponents: [i32; N],
     state: [[i64; N]; N],
-    disturbance: [[i64; N]; D],
+    entry: [[i64; N]; D],
     input: [[i64; N]; M],
     output: [[i64; N]; P],
     learning_exponents: [i32; D],
     learning: [[i64; D]; P],
     unseen_state: IntegerRows<P, N>,
-    unseen_disturbance: IntegerRows<P, D>,
+    unseen_learnt: IntegerRows<P, D>,
 }
 
 impl<const N: usize, const M: usize, const P: usize, const D: usize> DisturbanceGains<N, M, P, D> {
@@ -37,27 +37,27 @@ impl<const N: usize, const M: usize, const P: usize, const D: usize> Disturbance
     ) -> Self {
         let (b, c, s) = (&plant.b.data.0, &plant.c.data.0, &s.data.0);
         let (output, learning) = (&l_state.data.0, &l_disturbance.data.0);
-        let disturbance = less_product(&e.data.0, output, s);
+        let entry = less_product(&e.data.0, output, s);
         let state = less_product(&less_identity(&plant.a.data.0), output, c);
-        let of_states = and_magnitudes(and_magnitudes([0.0; N], &state), &disturbance);
+        let of_states = and_magnitudes(and_magnitudes([0.0; N], &state), &entry);
         let exponents_of_states = exponents(and_magnitudes(and_magnitudes(of_states, b), output));
         let learning_exponents = exponents(and_magnitudes([0.0; D], learning));
         Self {
             exponents: exponents_of_states,
             state: integers(&state, &exponents_of_states),
-            disturbance: integers(&disturbance, &exponents_of_states),
+            entry: integers(&entry, &exponents_of_states),
             input: integers(b, &exponents_of_states),
             output: integers(output, &exponents_of_states),
             learning_exponents,
             learning: integers(learning, &learning_exponents),
             unseen_state: IntegerRows::new(&negative(c)),
-            unseen_disturbance: IntegerRows::new(&negative(s)),
+            unseen_learnt: IntegerRows::new(&negative(s)),
         }
     }
 }
 
 /// An observer of N states and D constant or slowly changing disturbances, in predictor form:
-/// x̂⁺ = A x̂ + B u + E d̂ + L_x ν, d̂⁺ = d̂ + L_d ν with ν = y − C x̂ − S d̂.
+/// `x̂⁺ = A x̂ + B u + E d̂ + L_x ν`, `d̂⁺ = d̂ + L_d ν` with ν = y − C x̂ − S d̂.
 ///
 /// A plant under a constant disturbance leaves an ordinary observer with a constant error; this one has an
 /// integrator for it. Tell it what the actuators applied ([`Saturation`](crate::Saturation)): the
@@ -76,25 +76,31 @@ impl<const N: usize, const M: usize, const P: usize, const D: usize> Disturbance
         deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
     ))
 )]
-pub struct Disturbance<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize> {
+pub struct DisturbanceObserver<
+    T: Scalar,
+    const N: usize,
+    const M: usize,
+    const P: usize,
+    const D: usize,
+> {
     estimate: Carried<T, N>,
     learnt: Carried<T, D>,
-    /// A − I − L_x C, E − L_x S, B and L_x; row i is scaled by 2^shift i.
+    /// A − I − `L_x` C, E − `L_x` S, B and `L_x`; row i is scaled by 2^shift i.
     state: SMatrix<T, N, N>,
-    disturbance: SMatrix<T, N, D>,
+    entry: SMatrix<T, N, D>,
     input: SMatrix<T, N, M>,
     output: SMatrix<T, N, P>,
     shifts: SVector<u32, N>,
-    /// L_d, scaled likewise.
+    /// `L_d`, scaled likewise.
     learning: SMatrix<T, D, P>,
     learning_shifts: SVector<u32, D>,
     /// −C and −S.
     unseen_state: Rows<T, P, N>,
-    unseen_disturbance: Rows<T, P, D>,
+    unseen_learnt: Rows<T, P, D>,
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
-    Disturbance<T, N, M, P, D>
+    DisturbanceObserver<T, N, M, P, D>
 {
     /// An observer that starts at this state and with these disturbances (usually zero).
     ///
@@ -113,14 +119,14 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
             estimate: Carried::new(start)?,
             learnt: Carried::new(disturbance)?,
             state: scaled(&gains.state, exponents, &shifts_of_states),
-            disturbance: scaled(&gains.disturbance, exponents, &shifts_of_states),
+            entry: scaled(&gains.entry, exponents, &shifts_of_states),
             input: scaled(&gains.input, exponents, &shifts_of_states),
             output: scaled(&gains.output, exponents, &shifts_of_states),
             shifts: shifts_of_states,
             learning: scaled(&gains.learning, learning_exponents, &learning_shifts),
             learning_shifts,
             unseen_state: Rows::new(&gains.unseen_state)?,
-            unseen_disturbance: Rows::new(&gains.unseen_disturbance)?,
+            unseen_learnt: Rows::new(&gains.unseen_learnt)?,
         })
     }
 
@@ -150,11 +156,11 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         &self.learnt.value
     }
 
-    /// y − C x̂ − S d̂, by which [`Disturbance::step`] with this measurement would correct.
+    /// y − C x̂ − S d̂, by which [`DisturbanceObserver::step`] with this measurement would correct.
     #[inline]
     pub fn innovation(&self, measured: &SVector<T, P>) -> SVector<T, P> {
         let unexpected = self.unseen_state.added(measured, &self.estimate.value);
-        self.unseen_disturbance.added(&unexpected, &self.learnt.value)
+        self.unseen_learnt.added(&unexpected, &self.learnt.value)
     }
 
     /// Moves on with what the actuators applied and the sensors measured at the estimate's time; answers with
@@ -175,7 +181,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         }
         let mut sums = self.estimate.sums();
         mac(&mut sums, &self.state, &self.estimate.value);
-        mac(&mut sums, &self.disturbance, &self.learnt.value);
+        mac(&mut sums, &self.entry, &self.learnt.value);
         mac(&mut sums, &self.input, input);
         mac(&mut sums, &self.output, measured);
         let estimate = self.estimate.advanced(&sums, &self.shifts)?;

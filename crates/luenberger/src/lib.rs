@@ -14,10 +14,10 @@ mod reduced;
 mod rows;
 mod saturation;
 
-pub use current::{Current, CurrentGains};
-pub use disturbance::{Disturbance, DisturbanceGains};
+pub use current::{CurrentGains, CurrentObserver};
+pub use disturbance::{DisturbanceGains, DisturbanceObserver};
 pub use error::Error;
 pub use plant::Plant;
 pub use predictor::{Predictor, PredictorGains};
-pub use reduced::{Reduced, ReducedGains};
+pub use reduced::{ReducedGains, ReducedObserver};
 pub use saturation::Saturation;

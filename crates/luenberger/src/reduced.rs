@@ -6,7 +6,7 @@ use crate::rows::{IntegerRows, Rows};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`Reduced`] observer of N states, of which P are measured and R are not, with M inputs;
+/// The coefficients of a [`ReducedObserver`] observer of N states, of which P are measured and R are not, with M inputs;
 /// independent of its scalar.
 ///
 /// In a `const` it costs a target no double-precision arithmetic.
@@ -24,7 +24,7 @@ pub struct ReducedGains<const N: usize, const M: usize, const P: usize, const R:
 
 impl<const N: usize, const M: usize, const P: usize, const R: usize> ReducedGains<N, M, P, R> {
     /// From a plant x⁺ = A x + B u, the indices of the states that are measured (in the order of the outputs),
-    /// and the gain L, R × P, that places the poles of A_uu − L A_mu (u: the unmeasured states in ascending order, m:
+    /// and the gain L, R × P, that places the poles of `A_uu − L A_mu` (u: the unmeasured states in ascending order, m:
     /// the measured ones).
     ///
     /// # Errors
@@ -92,9 +92,9 @@ const fn others<const N: usize, const P: usize, const R: usize>(
     Some(others)
 }
 
-/// A reduced-order observer: only what is not measured is estimated, w⁺ = F w + G y + H u, x̂_u = w + L y.
+/// A reduced-order observer: only what is not measured is estimated, w⁺ = F w + G y + H u, `x̂_u = w + L y`.
 ///
-/// F = A_uu − L A_mu, G = F L + A_um − L A_mm, H = B_u − L B_m (Luenberger 1971). The estimate follows a
+/// `F = A_uu − L A_mu`, `G = F L + A_um − L A_mm`, `H = B_u − L B_m` (Luenberger 1971). The estimate follows a
 /// measurement at once, as the current form's does, and so does the noise of it: what is measured is believed.
 ///
 /// Units are the plant's. Cost: R (R + 2 P + M) multiplications.
@@ -108,7 +108,13 @@ const fn others<const N: usize, const P: usize, const R: usize>(
         deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
     ))
 )]
-pub struct Reduced<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize> {
+pub struct ReducedObserver<
+    T: Scalar,
+    const N: usize,
+    const M: usize,
+    const P: usize,
+    const R: usize,
+> {
     measured: SVector<usize, P>,
     unmeasured: SVector<usize, R>,
     w: Carried<T, R>,
@@ -123,7 +129,7 @@ pub struct Reduced<T: Scalar, const N: usize, const M: usize, const P: usize, co
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
-    Reduced<T, N, M, P, R>
+    ReducedObserver<T, N, M, P, R>
 {
     /// An observer that starts with these unmeasured states, and the first measurement.
     ///
@@ -164,7 +170,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
         Ok(())
     }
 
-    /// x̂_u, the unmeasured states at the time of this measurement, in ascending order of their indices.
+    /// `x̂_u`, the unmeasured states at the time of this measurement, in ascending order of their indices.
     #[inline]
     pub fn unmeasured(&self, measured: &SVector<T, P>) -> SVector<T, R> {
         self.shown.added(&self.w.value, measured)
@@ -203,7 +209,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
     }
 }
 
-/// w = x_u − L y.
+/// `w = x_u − L y`.
 fn start<T: Scalar, const P: usize, const R: usize>(
     hidden: &Rows<T, R, P>,
     unmeasured: &SVector<T, R>,

@@ -132,7 +132,7 @@ fn a_million_steps_below_the_last_place_add_up() {
     fn walk<T: Scalar>(coefficient: T, shift: u32) -> f64 {
         let (mut place, mut rest) = (T::from_f64(40.0), T::accumulator());
         for _ in 0..1_000_000 {
-            (place, rest) = place.advanced(T::mac(rest, coefficient, T::ONE), shift);
+            (place, rest) = place.advanced(T::mac_within(rest, coefficient, T::ONE), shift);
         }
         place.to_f64()
     }

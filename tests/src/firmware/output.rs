@@ -88,6 +88,14 @@ impl Output {
         Ok(Some(Cost { steps, min, max, total }))
     }
 
+    /// The numbers of every line of a key.
+    ///
+    /// # Errors
+    /// The key was told, but not with `N` numbers.
+    pub fn rows<const N: usize>(&self, key: &str) -> Result<Vec<[i64; N]>> {
+        self.all(key).map(numbers).collect()
+    }
+
     /// The positions that a replaying image told.
     ///
     /// # Errors

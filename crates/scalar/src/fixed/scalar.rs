@@ -187,9 +187,13 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
         u32::try_from(31 - FRAC as i32 - exponent).ok().map(|bits| bits.min(62 - FRAC))
     }
     #[inline(always)]
+    fn mac_within(sum: i64, a: Self, b: Self) -> i64 {
+        sum.wrapping_add(product(a.0, b.0))
+    }
+    #[inline(always)]
     fn advanced(self, sum: i64, shift: u32) -> (Self, i64) {
         let shift = shift.min(62 - FRAC) + FRAC;
-        let whole = ((sum >> (shift - 1)) + 1) >> 1;
+        let whole = (sum >> (shift - 1)).wrapping_add(1) >> 1;
         let next = Self::saturate(i64::from(self.0) + whole);
         (next, sum.wrapping_sub(whole << shift))
     }

@@ -1,0 +1,108 @@
+//! The aeroplane's observer on emulated boards: the same states as on the host, within the budgets.
+//!
+//! On a machine without the tools these tests say SKIPPED and pass; with
+//! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
+
+use anyhow::{Context, Result};
+use host_sim::random::{normal, stream};
+use kestirim_luenberger::Predictor;
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_tests::firmware::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target};
+use kestirim_tests::uav;
+use nalgebra::SVector;
+
+/// Samples of a flight: elevator (rad), throttle, pitch rate (rad/s), airspeed (m/s), pitch (rad).
+type Flight = Vec<[f32; 5]>;
+
+/// A thousand samples with noise on inputs and outputs.
+fn fly(interval: f64) -> Flight {
+    let plant = uav::plant(interval);
+    let mut rng = stream(6, 0);
+    let mut state = SVector::from([0.0, 0.0, 40.0, 0.53]);
+    let moment = |_| {
+        let outputs = plant.c * state;
+        let measured = [0.0087, 0.5, 0.0087].map(|sigma| normal(&mut rng, sigma));
+        let [rate, airspeed, pitch] = (outputs + SVector::from(measured)).data.0[0];
+        let noise = SVector::from([0.0087, 0.02].map(|sigma| normal(&mut rng, sigma)));
+        state = plant.a * state + plant.b * (SVector::from([0.025, 0.155]) + noise);
+        [0.025, 0.155, rate, airspeed, pitch].map(|number| number as f32)
+    };
+    (0..1000).map(moment).collect()
+}
+
+/// The bits of the estimate after every fifty samples, as the image computes it.
+fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
+    let start = SVector::from(uav::START.map(T::from_f32));
+    let mut observer = Predictor::<T, 4, 2, 3>::new(&uav::gains(interval), &start).expect("gains");
+    let step = |sample: &[f32; 5]| {
+        let [u0, u1, y0, y1, y2] = sample.map(T::from_f32);
+        observer.step(&SVector::from([u0, u1]), &SVector::from([y0, y1, y2])).expect("a sample");
+        observer.estimate().data.0[0].map(|value| i64::from(value.to_f32().to_bits()))
+    };
+    let states: Vec<_> = flight.iter().map(step).collect();
+    states.chunks_exact(50).map(|chunk| chunk[49]).collect()
+}
+
+/// Runs an image, compares its states with the host's, and answers with the instructions of the longest step.
+fn agree(images: &Images, image: &str, flight: &Flight, host: &[[i64; 4]]) -> Result<u64> {
+    let sample = |numbers: &[f32; 5]| -> Vec<u8> {
+        let numbers = numbers.iter().flat_map(|number| number.to_le_bytes());
+        1_000_u32.to_le_bytes().into_iter().chain(numbers).collect()
+    };
+    let stream: Vec<u8> = flight.iter().flat_map(sample).collect();
+    let output = images.run(image, &stream)?;
+    println!("{}", Row::of(images, image, &output)?);
+    assert_eq!(output.rows::<4>("state")?, host, "{image}: the very bits");
+    let elf = images.elf(image)?;
+    assert_eq!(elf.panic_symbols(), Vec::<String>::new(), "{image} cannot panic");
+    assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{image} has no double precision");
+    let cost = output.cost("step", "update")?.context("every step is an update")?;
+    assert_eq!(cost.steps, flight.len() as u64);
+    Ok(cost.max)
+}
+
+/// Instructions of the longest step, in `f32` and in fixed point.
+fn costs(target: &'static Target) -> Result<Option<[u64; 2]>> {
+    let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(None) };
+    let mut longest = [0; 2];
+    for (interval, suffix) in [(0.01, ""), (0.001, "-1khz")] {
+        let flight = fly(interval);
+        let cases = [
+            ("f32", estimates::<f32>(&flight, interval)),
+            ("fixed", estimates::<Q16_16>(&flight, interval)),
+        ];
+        for ((scalar, host), longest) in cases.iter().zip(&mut longest) {
+            let image = format!("observer4-{scalar}{suffix}");
+            *longest = agree(&images, &image, &flight, host)?.max(*longest);
+        }
+    }
+    let [single, fixed] = longest;
+    println!("    fixed point takes {:.2} of f32's instructions", fixed as f64 / single as f64);
+    Ok(Some(longest))
+}
+
+#[test]
+fn cortex_m0() -> Result<()> {
+    if let Some([single, fixed]) = costs(&CORTEX_M0)? {
+        assert!(4 * fixed < single, "{fixed} instructions in fixed point, {single} in f32");
+        assert!(fixed <= 2_000, "{fixed} instructions");
+    }
+    Ok(())
+}
+
+#[test]
+fn cortex_m4f() -> Result<()> {
+    if let Some([single, fixed]) = costs(&CORTEX_M4F)? {
+        assert!(single <= 200, "{single} instructions");
+        assert!(fixed <= 500, "{fixed} instructions");
+    }
+    Ok(())
+}
+
+#[test]
+fn rv32imc() -> Result<()> {
+    if let Some([single, fixed]) = costs(&RV32IMC)? {
+        assert!(4 * fixed < single, "{fixed} instructions in fixed point, {single} in f32");
+    }
+    Ok(())
+}
