@@ -191,7 +191,9 @@ fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -
         return over_a_flight(c, &plant, kind, &q, &r, &(SVector::from(START) - cell.start()));
     }
     let gain = kind.gain(&plant, c).expect("an estimator of the table");
-    let covariance = error_covariance(&plant.a, c, &gain, &q, &r).expect("a stable estimator");
+    let process = (&SMatrix::<f64, 4, 4>::identity(), &q);
+    let covariance =
+        error_covariance((&plant.a, c), &gain, process, &r).expect("a stable estimator");
     covariance.diagonal().map(f64::sqrt).into()
 }
 

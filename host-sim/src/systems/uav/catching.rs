@@ -212,3 +212,28 @@ fn chases() -> Vec<Chase> {
     }
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn caught_is_after_the_last_time_outside() {
+        let error = |alpha: f64, airspeed: f64| SVector::from([alpha, 0.0, airspeed, 1.0]);
+        let errors = [error(1.0, 0.0), error(0.001, 0.2), error(-1.0, 0.0), error(0.0, 0.05)];
+        let caught = caught(&errors);
+        assert_eq!(caught, [Some(3.0 * INTERVAL_S), Some(0.0), Some(2.0 * INTERVAL_S), None]);
+    }
+
+    /// With a pole for each state, every error falls as e^(p·t).
+    #[test]
+    fn times_follow_from_the_poles() {
+        let chase = Chase { plant: Plant::P3, ..THESIS_LUENBERGER };
+        let times = chase.times(ScalarKind::F64).unwrap();
+        for state in 0..4 {
+            let ideal = (chase.off()[state].abs() / BANDS[state]).ln() / -SLOW[state];
+            let samples = (ideal / INTERVAL_S).ceil();
+            assert!((times[state].unwrap() - samples * INTERVAL_S).abs() < 0.0101, "{state}");
+        }
+    }
+}

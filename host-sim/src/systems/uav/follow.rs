@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
-use kestirim_luenberger::{Current, CurrentGains, Plant};
+use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant};
 use kestirim_observer_design::Complex;
 use nalgebra::{SMatrix, SVector};
 
@@ -133,7 +133,8 @@ fn observer_of<const P: usize>(
     let backwards = plant.a.try_inverse().ok_or("the model's transition has no inverse")?;
     let gains = CurrentGains::new(&Plant { a: plant.a, b: plant.b, c }, &(backwards * predictor));
     let mut observer =
-        Current::<f64, 4, 2, P>::new(&gains, &start(&rows, &flight.samples[0])).map_err(words)?;
+        CurrentObserver::<f64, 4, 2, P>::new(&gains, &start(&rows, &flight.samples[0]))
+            .map_err(words)?;
     let mut followed = empty(flight);
     let mut before: Option<&Sample> = None;
     for sample in &flight.samples {
