@@ -57,7 +57,7 @@ impl Steps<'_> {
         if let Some(step) = self.known.get(&interval_us) {
             return Ok(*step);
         }
-        let interval = interval_us as f64 * 1e-6;
+        let interval = interval_us as f64 / 1e6;
         if interval > LONGEST_GAP * self.usual {
             return Err(format!("no estimate outlives a gap of {interval} s"));
         }

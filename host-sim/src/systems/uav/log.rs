@@ -100,7 +100,7 @@ fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, u
 /// The usual interval, s, and how many are much longer.
 fn regular(path: &Path, samples: &[Sample]) -> Result<(f64, usize), Error> {
     let mut steps: Vec<f64> =
-        samples.windows(2).map(|pair| (pair[1].t_us - pair[0].t_us) as f64 * 1e-6).collect();
+        samples.windows(2).map(|pair| (pair[1].t_us - pair[0].t_us) as f64 / 1e6).collect();
     steps.sort_by(f64::total_cmp);
     let wrong = |problem| Error::File { path: path.to_path_buf(), problem };
     let Some(&usual) = steps.get(steps.len() / 2) else {

@@ -229,7 +229,7 @@ fn write_track(
         table.write_field("t")?;
         table.write_record(STATE_COLUMNS)?;
         for estimate in estimates {
-            table.write_field(format!("{:.6}", estimate.t_us as f64 * 1e-6))?;
+            table.write_field(format!("{:.6}", estimate.t_us as f64 / 1e6))?;
             table.write_record(absolute(estimate).iter().map(|number| format!("{number:.9}")))?;
         }
         table.flush()
