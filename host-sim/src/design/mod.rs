@@ -9,7 +9,7 @@ mod sized;
 pub use answer::{Answer, Answered, Solution};
 pub use report::Report;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
@@ -38,36 +38,36 @@ impl Design {
     /// Whatever is wrong with the file as a whole; what is wrong with a case is that case's answer.
     pub fn run(&self) -> Result<(), Error> {
         output::refuse_overwriting("--rust", self.rust.as_deref(), [&self.input])?;
-        let report = Report { sections: self.answers()? };
+        let report = answers(&self.input)?;
         if let Some(path) = &self.rust {
             output::write_file(path, |file| rust::write(file, &report))?;
         }
         output::show(&report, self.json)
     }
+}
 
-    fn answers(&self) -> Result<Vec<(&'static str, Vec<Answered>)>, Error> {
-        let file = TextFile::read(&self.input)?;
-        let cases: Map<String, Value> = serde_json::from_str(file.text()).map_err(|error| {
-            file.error_at(
-                error.line(),
-                format!("expected a JSON object of cases: {}", reason(&error)),
-            )
-        })?;
-        let mut sections = Vec::new();
-        for (name, answer) in answer::SECTIONS {
-            let Some(section) = cases.get(name) else { continue };
-            let list = section
-                .as_array()
-                .ok_or_else(|| file.error(format!("{name}: expected a list of cases")))?;
-            let answers = list.iter().map(|value| Answered::new(value, answer)).collect();
-            sections.push((name, answers));
-        }
-        if sections.is_empty() {
-            let names: Vec<_> = answer::SECTIONS.iter().map(|(name, _)| *name).collect();
-            return Err(file.error(format!("expected one of {}, found none", names.join(", "))));
-        }
-        Ok(sections)
+/// The answers to a file of cases.
+///
+/// # Errors
+/// [`Error::Read`], [`Error::Line`] or [`Error::File`] if the file is none of cases.
+pub fn answers(path: &Path) -> Result<Report, Error> {
+    let file = TextFile::read(path)?;
+    let cases: Map<String, Value> = serde_json::from_str(file.text()).map_err(|error| {
+        file.error_at(error.line(), format!("expected a JSON object of cases: {}", reason(&error)))
+    })?;
+    let mut sections = Vec::new();
+    for (name, answer) in answer::SECTIONS {
+        let Some(section) = cases.get(name) else { continue };
+        let list = section
+            .as_array()
+            .ok_or_else(|| file.error(format!("{name}: expected a list of cases")))?;
+        sections.push((name, list.iter().map(|value| Answered::new(value, answer)).collect()));
     }
+    if sections.is_empty() {
+        let names: Vec<_> = answer::SECTIONS.iter().map(|(name, _)| *name).collect();
+        return Err(file.error(format!("expected one of {}, found none", names.join(", "))));
+    }
+    Ok(Report { sections })
 }
 
 /// What the parser says, without the place, which the sentence begins with.

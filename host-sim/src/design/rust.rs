@@ -18,18 +18,11 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
             let mut constant = |suffix: &str, what: &str, matrix: &DMatrix<f64>| {
                 let name =
                     unique(&format!("{}_{suffix}", constant_case(&answered.name())), &mut used);
-                let (rows, columns) = matrix.shape();
-                writeln!(file, "\n/// {what}: {id} ({section}).")?;
-                writeln!(file, "pub const {name}: [[f64; {columns}]; {rows}] = [")?;
-                for row in matrix.row_iter() {
-                    let numbers: Vec<_> = row.iter().map(|value| format!("{value:?}")).collect();
-                    writeln!(file, "    [{}],", numbers.join(", "))?;
-                }
-                file.write_all(b"];\n")
+                write_constant(file, &name, &format!("{what}: {id} ({section})"), matrix)
             };
             match &answered.answer {
                 Answer::Refused { error } => {
-                    writeln!(file, "\n// {id} ({section}) was refused: {error}")?
+                    writeln!(file, "\n// {id} ({section}) was refused: {error}")?;
                 }
                 Answer::Solved(Solution::Gain { gain, .. }) => {
                     constant("L", "Gain of the observer in predictor form", gain)?;
@@ -53,6 +46,21 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+fn write_constant(
+    file: &mut dyn Write,
+    name: &str,
+    what: &str,
+    matrix: &DMatrix<f64>,
+) -> io::Result<()> {
+    let (rows, columns) = matrix.shape();
+    writeln!(file, "\n/// {what}.\npub const {name}: [[f64; {columns}]; {rows}] = [")?;
+    for row in matrix.row_iter() {
+        let numbers: Vec<_> = row.iter().map(|value| format!("{value:?}")).collect();
+        writeln!(file, "    [{}],", numbers.join(", "))?;
+    }
+    writeln!(file, "];")
 }
 
 /// Letters, digits and underscores of a text, in capitals.

@@ -120,7 +120,8 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
     fn rounded(&self, gain: &Square<Extended, N>) -> Result<Checked<N, P>, Error> {
         let first = self.check(&round(&self.pair.gain(gain, self.merging)))?;
         let polished = polish::polish(self, &first).and_then(|gain| self.check(&gain).ok());
-        Ok(polished.filter(|polished| polished.error < first.error).unwrap_or(first))
+        // Less than a half better is not worth a gain that is not the nearest.
+        Ok(polished.filter(|polished| polished.error < 0.5 * first.error).unwrap_or(first))
     }
 
     /// Where the poles are.
