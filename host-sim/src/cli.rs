@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 
 use crate::design::Design;
-use crate::systems::{drone, pedestrian, robot};
+use crate::systems::{drone, pedestrian, robot, uav};
 
 /// Estimators on synthetic and recorded streams.
 ///
@@ -43,6 +43,8 @@ pub enum Run {
     Robot(PlainRun),
     /// A drone that finds and follows a user on the ground
     Drone(drone::options::Run),
+    /// The longitudinal motion of a fixed-wing aircraft
+    Uav(PlainRun),
 }
 
 /// An experiment without options of its own.
@@ -79,6 +81,8 @@ pub enum Replay {
     Robot(robot::replay::Replay),
     /// Path losses that a drone recorded from a user on the ground
     Drone(drone::replay::Replay),
+    /// Inputs and outputs that a fixed-wing aircraft recorded
+    Uav(uav::replay::Replay),
 }
 
 /// `host-sim calibrate`.

@@ -130,6 +130,11 @@ impl<'a> Header<'a> {
         Self { line, names: line.comma_separated() }
     }
 
+    /// A complaint about the header.
+    pub fn error(&self, problem: impl Into<String>) -> Error {
+        self.line.error(problem)
+    }
+
     /// Where the column `name` stands, if there is one. Upper and lower case differ: `T` may well
     /// be a temperature.
     pub fn find(&self, name: &str) -> Option<usize> {

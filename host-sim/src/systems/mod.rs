@@ -3,6 +3,7 @@
 pub mod drone;
 pub mod pedestrian;
 pub mod robot;
+pub mod uav;
 
 use crate::Error;
 use crate::cli::{PlainRun, RunOptions, ScalarKind};
@@ -17,6 +18,8 @@ pub enum System {
     Robot,
     /// A drone that finds and follows a user on the ground.
     Drone,
+    /// The longitudinal motion of a fixed-wing aircraft.
+    Uav,
 }
 
 /// Runs the pedestrian's experiment and prints its report.
@@ -43,9 +46,17 @@ pub fn run_drone(run: drone::options::Run) -> Result<(), Error> {
     output::show(&drone::experiment::run(run)?, run.json)
 }
 
+/// Runs the UAV's experiments and prints the report.
+///
+/// # Errors
+/// As [`run_pedestrian`].
+pub fn run_uav(run: PlainRun) -> Result<(), Error> {
+    output::show(&uav::experiment::run(run.options)?, run.json)
+}
+
 impl System {
     /// Every system, in the order in which they run.
-    pub const ALL: [Self; 3] = [Self::Pedestrian, Self::Robot, Self::Drone];
+    pub const ALL: [Self; 4] = [Self::Pedestrian, Self::Robot, Self::Drone, Self::Uav];
 
     /// Runs the system on its synthetic streams and prints the report.
     ///
@@ -57,6 +68,7 @@ impl System {
             Self::Pedestrian => run_pedestrian(plain),
             Self::Robot => run_robot(plain),
             Self::Drone => run_drone(drone::options::Run::default()),
+            Self::Uav => run_uav(plain),
         }
     }
 
@@ -66,6 +78,7 @@ impl System {
             Self::Pedestrian => pedestrian::DESCRIPTION,
             Self::Robot => robot::DESCRIPTION,
             Self::Drone => drone::DESCRIPTION,
+            Self::Uav => uav::DESCRIPTION,
         }
     }
 }

@@ -1,0 +1,239 @@
+//! How long an estimator that starts somewhere else takes to catch the plant, without noise.
+
+use kestirim_scalar::{Q16_16, Scalar};
+use nalgebra::{SMatrix, SVector};
+use serde::Serialize;
+
+use super::design::{FAST, Family, Kind, MIDDLE, SLOW};
+use super::estimator::{Estimator, Impossible};
+use super::plant::{Outputs, Plant, with_outputs};
+use super::scenario::{FAR, INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START, fly};
+use crate::cli::ScalarKind;
+use crate::published::{UAV_KALMAN_CAUGHT, UAV_LUENBERGER_CAUGHT, UAV_SINE_CAUGHT};
+use crate::random::stream;
+
+/// A state is caught where its error stays within these.
+pub const BANDS: [f64; 4] = [0.005, 0.005, 0.1, 0.005];
+
+/// A start, and what follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chase {
+    /// The aircraft.
+    pub plant: Plant,
+    /// What is measured.
+    pub outputs: Outputs,
+    /// Which estimator.
+    pub kind: Kind,
+    /// Where it starts.
+    pub start: [f64; 4],
+    /// What the pilot does.
+    pub inputs: Inputs,
+}
+
+/// Errors x − x̂ of a run, sample by sample.
+pub type Errors = Vec<SVector<f64, 4>>;
+
+impl Chase {
+    /// The errors, with the estimator in this scalar.
+    ///
+    /// # Errors
+    /// Why there is no such estimator.
+    pub fn errors(&self, scalar: ScalarKind) -> Result<Errors, Impossible> {
+        match scalar {
+            ScalarKind::F32 => with_outputs!(self.outputs, run::<f32, _>, self),
+            ScalarKind::F64 => with_outputs!(self.outputs, run::<f64, _>, self),
+            ScalarKind::Fixed => with_outputs!(self.outputs, run::<Q16_16, _>, self),
+        }
+    }
+
+    /// How far the start is off.
+    fn off(&self) -> SVector<f64, 4> {
+        SVector::from(START) - SVector::from(self.start)
+    }
+
+    /// Times to catch, s.
+    fn times(&self, scalar: ScalarKind) -> Option<[Option<f64>; 4]> {
+        self.errors(scalar).ok().map(|errors| caught(&errors))
+    }
+
+    /// What the error recursion alone leads to: neither plant nor input, in double precision.
+    fn predicted(&self) -> Option<[Option<f64>; 4]> {
+        let alone = Self { inputs: Inputs::None, ..*self };
+        let errors = with_outputs!(self.outputs, from_nothing, &alone);
+        errors.ok().map(|errors| caught(&errors))
+    }
+}
+
+fn run<T: Scalar, const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    chase: &Chase,
+) -> Result<Errors, Impossible> {
+    follow::<T, P>(c, chase, START.into(), chase.start.into())
+}
+
+/// The plant rests at nothing, the estimator is as far off as ever.
+fn from_nothing<const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    chase: &Chase,
+) -> Result<Errors, Impossible> {
+    follow::<f64, P>(c, chase, SVector::zeros(), -chase.off())
+}
+
+fn follow<T: Scalar, const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    chase: &Chase,
+    truth: SVector<f64, 4>,
+    start: SVector<f64, 4>,
+) -> Result<Errors, Impossible> {
+    let plant = chase.plant.discrete(INTERVAL_S);
+    let mut estimator = Estimator::<T, P>::new(&chase.kind, &plant, c, &start, &chase.off())?;
+    // Nothing is drawn from it.
+    let quiet = stream(0, 0);
+    let flight = fly(plant, truth, chase.inputs, Noise::NONE, quiet);
+    Ok(flight
+        .take(SAMPLES)
+        .map(|sample| {
+            let error = sample.x - estimator.estimate();
+            // Where fixed point is at its rails, the estimate stays, and so does its error.
+            estimator.step(&sample.u, &(c * sample.y));
+            error
+        })
+        .collect())
+}
+
+/// When each state's error was outside its band for the last time, and a sample later: s.
+pub fn caught(errors: &[SVector<f64, 4>]) -> [Option<f64>; 4] {
+    std::array::from_fn(|state| {
+        let outside = |error: &SVector<f64, 4>| error[state].abs() > BANDS[state];
+        let last = errors.iter().rposition(outside).map_or(0, |last| last + 1);
+        (last < errors.len()).then_some(last as f64 * INTERVAL_S)
+    })
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The aircraft.
+    pub plant: Plant,
+    /// What is measured.
+    pub outputs: Outputs,
+    /// Which estimator.
+    pub estimator: String,
+    /// Of which family.
+    pub family: Family,
+    /// Where it starts.
+    pub start: [f64; 4],
+    /// What the pilot does.
+    pub inputs: Inputs,
+    /// What the thesis reads off its figures for α, q, V and θ.
+    pub published: Option<[&'static str; 4]>,
+    /// Where.
+    pub source: Option<&'static str>,
+    /// Times to catch α, q, V, θ, s; none: not within ten seconds.
+    pub ours_s: Option<[Option<f64>; 4]>,
+    /// The same of the error recursion, in double precision.
+    pub limit_s: Option<[Option<f64>; 4]>,
+}
+
+/// All chases.
+pub fn rows(scalar: ScalarKind) -> Vec<Row> {
+    let all = chases().into_iter().map(|chase| {
+        let (published, source) = chase.published().unzip();
+        Row {
+            plant: chase.plant,
+            outputs: chase.outputs,
+            estimator: chase.kind.name(),
+            family: chase.kind.family(),
+            start: chase.start,
+            inputs: chase.inputs,
+            published,
+            source,
+            ours_s: chase.times(scalar),
+            limit_s: chase.predicted(),
+        }
+    });
+    all.collect()
+}
+
+/// The thesis' chases, with whatever gains and starts explain its figures.
+const THESIS: Chase = Chase {
+    plant: Plant::P2,
+    outputs: Outputs::Full,
+    kind: Kind::Ratio(1e-2),
+    start: FAR,
+    inputs: Inputs::Constant,
+};
+const THESIS_LUENBERGER: Chase = Chase { kind: Kind::Luenberger(SLOW), start: NEAR, ..THESIS };
+const THESIS_SINE: Chase =
+    Chase { kind: Kind::Luenberger(FAST), inputs: Inputs::Sine, ..THESIS_LUENBERGER };
+
+impl Chase {
+    /// What the thesis says of it, and where.
+    fn published(&self) -> Option<([&'static str; 4], &'static str)> {
+        [
+            (THESIS, UAV_KALMAN_CAUGHT),
+            (THESIS_LUENBERGER, UAV_LUENBERGER_CAUGHT),
+            (THESIS_SINE, UAV_SINE_CAUGHT),
+        ]
+        .into_iter()
+        .find_map(|(chase, published)| (chase == *self).then_some(published))
+    }
+}
+
+fn chases() -> Vec<Chase> {
+    let mut all = Vec::new();
+    for start in [FAR, NEAR] {
+        for inputs in [Inputs::Constant, Inputs::Sine] {
+            let ratios = [1e-4, 1e-2, 1.0, 1e2].map(Kind::Ratio);
+            let poles = [SLOW, MIDDLE, FAST].map(Kind::Luenberger);
+            let known = [Kind::Matched(Noise::SENSORS), Kind::TimeVarying(Noise::SENSORS)];
+            for kind in ratios.into_iter().chain(known).chain(poles) {
+                all.push(Chase { kind, start, inputs, ..THESIS });
+            }
+        }
+    }
+    // Fewer outputs, other aircraft.
+    for plant in [Plant::P2, Plant::P1, Plant::P3] {
+        for outputs in Outputs::ALL {
+            if (plant, outputs) == (Plant::P2, Outputs::Full) {
+                continue;
+            }
+            let noise = Noise::SENSORS;
+            for kind in [
+                Kind::Ratio(1e-2),
+                Kind::Matched(noise),
+                Kind::TimeVarying(noise),
+                Kind::Luenberger(SLOW),
+                Kind::Luenberger(FAST),
+            ] {
+                all.push(Chase { plant, outputs, kind, ..THESIS_LUENBERGER });
+            }
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn caught_is_after_the_last_time_outside() {
+        let error = |alpha: f64, airspeed: f64| SVector::from([alpha, 0.0, airspeed, 1.0]);
+        let errors = [error(1.0, 0.0), error(0.001, 0.2), error(-1.0, 0.0), error(0.0, 0.05)];
+        let caught = caught(&errors);
+        assert_eq!(caught, [Some(3.0 * INTERVAL_S), Some(0.0), Some(2.0 * INTERVAL_S), None]);
+    }
+
+    /// With a pole for each state, every error falls as e^(p·t).
+    #[test]
+    fn times_follow_from_the_poles() {
+        let chase = Chase { plant: Plant::P3, ..THESIS_LUENBERGER };
+        let times = chase.times(ScalarKind::F64).unwrap();
+        for state in 0..4 {
+            let ideal = (chase.off()[state].abs() / BANDS[state]).ln() / -SLOW[state];
+            let samples = (ideal / INTERVAL_S).ceil();
+            assert!((times[state].unwrap() - samples * INTERVAL_S).abs() < 0.0101, "{state}");
+        }
+    }
+}

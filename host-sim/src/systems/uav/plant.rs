@@ -1,0 +1,91 @@
+//! The aircraft, and what of them is measured.
+
+use kestirim_observer_design::{Discrete, zero_order_hold};
+use kestirim_uav_longitudinal::{self as uav, StateSpace};
+use serde::Serialize;
+
+/// States, as they are shown.
+pub const STATES: [&str; 4] = ["α", "q", "V", "θ"];
+
+/// An aircraft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Plant {
+    /// The Aerosonde, from its published coefficients.
+    P1,
+    /// What the thesis says of its aircraft.
+    P2,
+    /// The Navion.
+    P3,
+}
+
+impl Plant {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::P1, Self::P2, Self::P3];
+
+    /// In continuous time.
+    pub fn model(self) -> StateSpace {
+        match self {
+            Self::P1 => uav::aerosonde().expect("the Aerosonde flies"),
+            Self::P2 => uav::thesis_like(),
+            Self::P3 => uav::navion(),
+        }
+    }
+
+    /// With inputs that are held for `interval` seconds.
+    pub fn discrete(self, interval: f64) -> Discrete<4, 2> {
+        let StateSpace { a, b } = self.model();
+        zero_order_hold(&a, &b, interval).expect("finite matrices")
+    }
+
+    /// For a table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::P1 => "P1 Aerosonde",
+            Self::P2 => "P2 thesis-like",
+            Self::P3 => "P3 Navion",
+        }
+    }
+}
+
+/// What is measured: the last so many states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Outputs {
+    /// All states: the thesis.
+    Full,
+    /// q, V, θ: gyroscope, pitot tube, attitude reference.
+    RateAirspeedPitch,
+    /// V, θ.
+    AirspeedPitch,
+}
+
+impl Outputs {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Full, Self::RateAirspeedPitch, Self::AirspeedPitch];
+
+    /// For a table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Full => "all",
+            Self::RateAirspeedPitch => "q V θ",
+            Self::AirspeedPitch => "V θ",
+        }
+    }
+}
+
+/// Calls a function that is generic over the number of outputs with the C of these outputs.
+macro_rules! with_outputs {
+    ($outputs:expr, $function:expr $(, $argument:expr)*) => {
+        match $outputs {
+            $crate::systems::uav::plant::Outputs::Full => {
+                $function(&kestirim_uav_longitudinal::full_state() $(, $argument)*)
+            }
+            $crate::systems::uav::plant::Outputs::RateAirspeedPitch => {
+                $function(&kestirim_uav_longitudinal::rate_airspeed_and_pitch() $(, $argument)*)
+            }
+            $crate::systems::uav::plant::Outputs::AirspeedPitch => {
+                $function(&kestirim_uav_longitudinal::airspeed_and_pitch() $(, $argument)*)
+            }
+        }
+    };
+}
+pub(super) use with_outputs;
