@@ -106,7 +106,7 @@ pub fn slowest_poles() -> Vec<SlowestPoles> {
         rates.sort_by(|a, b| b.total_cmp(a));
         SlowestPoles { ratio, poles: [rates[0], rates[1]] }
     };
-    [1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6].into_iter().map(row).collect()
+    [1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e8].into_iter().map(row).collect()
 }
 
 /// e⁺ = (A − L·C)·e: what the pilot does is not in it.
