@@ -215,23 +215,9 @@ impl Responses {
 mod tests {
     use super::*;
 
-    /// Reference values of P2, computed elsewhere.
     #[test]
-    fn frequency_responses_are_those_of_the_reference_cases() {
-        let StateSpace { a, b } = Plant::P2.model();
-        let system = design::StateSpace::new(a, b, full_state());
-        for (omega, [largest, smallest]) in [
-            (0.001, [1_221.521_742_234_031_3, 4.573_417_111_689_971]),
-            (0.15, [10_877.721_341_526_778, 4.528_208_676_784_571]),
-            (3.0, [15.621_247_041_613_842, 4.416_984_762_333_443]),
-            (100.0, [0.983_646_158_805_734_5, 0.449_637_955_358_708_1]),
-        ] {
-            let found = bode(&system, omega).singular_values;
-            assert!((found[0] / largest - 1.0).abs() < 1e-12, "{omega}");
-            assert!((found[1] / smallest - 1.0).abs() < 1e-12, "{omega}");
-        }
+    fn the_thesis_like_plant_has_a_fast_mode_and_a_hardly_damped_one() {
         let responses = responses(Plant::P2);
-        assert!((responses.static_gain[0][2] - 1_221.447_773_188_854).abs() < 1e-8);
         assert!(responses.peak.gain > 14_000.0 && (responses.peak.omega - 0.156).abs() < 1e-3);
         let [[short, damped], [phugoid, lightly]] = responses.modes();
         assert!((short - 18.502).abs() < 1e-3 && damped > 0.999);

@@ -1,0 +1,53 @@
+//! The flights of `host-sim run uav` beside those of `../shared/data/uav/cases.json`.
+
+use host_sim::random::stream;
+use host_sim::systems::uav::design::{Kind, MIDDLE};
+use host_sim::systems::uav::estimator::Estimator;
+use host_sim::systems::uav::plant::Plant;
+use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START, fly};
+use kestirim_tests::recordings::folder_of;
+use nalgebra::{SMatrix, SVector};
+use serde_json::Value;
+
+#[test]
+fn flights_without_noise_are_those_of_the_reference() {
+    let Some(folder) = folder_of("uav") else { return };
+    let text = std::fs::read_to_string(folder.join("cases.json")).expect("a readable file");
+    let cases: Value = serde_json::from_str(&text).expect("JSON");
+    let (plant, c) = (Plant::P2.discrete(INTERVAL_S), SMatrix::identity());
+    let start = SVector::from(NEAR);
+    let mut compared = 0;
+    for (name, inputs) in [
+        ("P2 const C=[full] noise=0", Inputs::Constant),
+        ("P2 sine C=[full] noise=0", Inputs::Sine),
+    ] {
+        let list = cases["trajectories"].as_array().expect("a list of flights");
+        let samples = &list.iter().find(|case| case["id"] == name).expect(name)["samples"];
+        for (kind, column) in
+            [(Kind::Luenberger(MIDDLE), "luenberger"), (Kind::Matched(Noise::SENSORS), "kalman_ss")]
+        {
+            let off = SVector::from(START) - start;
+            let mut estimator =
+                Estimator::<f64, 4>::new(&kind, &plant, &c, &start, &off).expect("a gain");
+            let flight = fly(plant, START.into(), inputs, Noise::NONE, stream(0, 0));
+            for (sample, now) in flight.take(1001).enumerate() {
+                let there = &samples[sample.to_string()];
+                if there.is_object() {
+                    let state = |value: &Value| -> SVector<f64, 4> {
+                        let numbers: [f64; 4] =
+                            serde_json::from_value(value.clone()).expect("four numbers");
+                        numbers.into()
+                    };
+                    assert!((now.x - state(&there["x"])).amax() < 1e-11, "{name} {sample}");
+                    assert!(
+                        (estimator.estimate() - state(&there[column])).amax() < 1e-11,
+                        "{name} {sample}"
+                    );
+                    compared += 1;
+                }
+                assert!(estimator.step(&now.u, &now.y));
+            }
+        }
+    }
+    assert!(compared >= 12, "{compared} samples");
+}
