@@ -31,8 +31,8 @@ pub struct Riccati<const N: usize, const P: usize> {
 const MOST_DOUBLINGS: u32 = 40;
 /// A mode this close to the unit circle is taken to lie on it.
 const ON_THE_CIRCLE: f64 = 1e-10;
-/// What is left of the start when a solution is taken: its square counts.
-const SETTLED: f64 = 1e-16;
+/// The last step of a solution, beside the posterior: the square of it counts.
+const SETTLED: f64 = 1e-10;
 /// The covariance of a state of which little is known, beside that which one measurement leaves.
 const DOUBT: f64 = 16.0;
 /// The least eigenvalue of a measurement noise that can be inverted, beside its variances.
@@ -97,7 +97,7 @@ struct Equation<const N: usize> {
 impl<const N: usize> Equation<N> {
     /// The stabilising solution, and the doublings it took.
     fn solved(&self) -> Result<(Square<Extended, N>, u32), Error> {
-        if let Some((solution, doublings)) = self.doubled()
+        if let Some((solution, doublings)) = self.doubled(self, &Square::zeros())
             && self.settles(&solution)
         {
             return Ok((solution, doublings));
@@ -106,13 +106,17 @@ impl<const N: usize> Equation<N> {
         let size = norm(&self.g);
         let doubt =
             Square::<Extended, N>::identity().map(|value| value * Extended::from(DOUBT / size));
-        let moved = self.from(&doubt).and_then(|moved| moved.doubled());
-        let (solution, doublings) =
-            moved.map(|(rest, doublings)| (doubt + rest, doublings)).ok_or(Error::NotConverged)?;
+        let found = self.from(&doubt).and_then(|moved| moved.doubled(self, &doubt));
+        let (solution, doublings) = found.ok_or(Error::NotConverged)?;
         if self.settles(&solution) { Ok((solution, doublings)) } else { Err(Error::NotConverged) }
     }
 
-    fn doubled(&self) -> Option<(Square<Extended, N>, u32)> {
+    /// The solution of `whole`, where this is the equation of its distance to `start`.
+    fn doubled(
+        &self,
+        whole: &Self,
+        start: &Square<Extended, N>,
+    ) -> Option<(Square<Extended, N>, u32)> {
         let Self { mut f, mut g, mut h } = *self;
         for doubling in 1..=MOST_DOUBLINGS {
             let both = Square::identity() + g * h;
@@ -121,12 +125,17 @@ impl<const N: usize> Equation<N> {
             g = symmetrised(&(g + f * cross * f.transpose()));
             h += step;
             f *= forward;
-            // The next step would be quadratic in f.
-            if norm(&f) <= SETTLED {
-                return Some((h, doubling));
+            let prior = start + h;
+            if negligible(&step, &whole.posterior(&prior)?) {
+                return Some((prior, doubling));
             }
         }
         None
+    }
+
+    /// What a measurement makes of a prior covariance.
+    fn posterior(&self, prior: &Square<Extended, N>) -> Option<Square<Extended, N>> {
+        solve(&(Square::identity() + prior * self.g), prior)
     }
 
     /// The same equation for X − Y.
@@ -142,6 +151,18 @@ impl<const N: usize> Equation<N> {
         solve(&(Square::identity() + self.g * prior), &self.f)
             .is_some_and(|closed| stable(&closed).is_ok())
     }
+}
+
+/// Whether a step was so small beside the posterior that the next one, which is quadratic in it, does not count. The
+/// prior is no measure: beside a large noise in one direction, what the gain depends on may be tiny in another.
+fn negligible<const N: usize>(step: &Square<Extended, N>, posterior: &Square<Extended, N>) -> bool {
+    let variance = |state: usize| posterior[(state, state)].to_f64().abs();
+    (0..N).all(|row| {
+        (0..N).all(|column| {
+            let scale = libm::sqrt(variance(row) * variance(column));
+            step[(row, column)].to_f64().abs() <= SETTLED * scale
+        })
+    })
 }
 
 /// Every mode that does not decay must be seen.

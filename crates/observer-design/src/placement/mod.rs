@@ -116,12 +116,15 @@ struct Problem<'a, const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> Problem<'_, N, P> {
-    /// Rounds a gain of the balanced pair and makes the best of the rounding.
+    /// Rounds a gain of the balanced pair and makes the best of the rounding. Where more poles coincide than there
+    /// are outputs they have no derivative, and the nearest gain is as good as any.
     fn rounded(&self, gain: &Square<Extended, N>) -> Result<Checked<N, P>, Error> {
-        let first = self.check(&round(&self.pair.gain(gain, self.merging)))?;
-        let polished = polish::polish(self, &first).and_then(|gain| self.check(&gain).ok());
-        // Less than a half better is not worth a gain that is not the nearest.
-        Ok(polished.filter(|polished| polished.error < 0.5 * first.error).unwrap_or(first))
+        let nearest = self.check(&round(&self.pair.gain(gain, self.merging)))?;
+        if multiplicity(self.poles) > self.pair.rank {
+            return Ok(nearest);
+        }
+        let polished = polish::polish(self, &nearest).and_then(|gain| self.check(&gain).ok());
+        Ok(polished.filter(|polished| polished.error < nearest.error).unwrap_or(nearest))
     }
 
     /// Where the poles are.
