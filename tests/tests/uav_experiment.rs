@@ -5,7 +5,9 @@ use host_sim::systems::uav::design::{Kind, MIDDLE};
 use host_sim::systems::uav::estimator::Estimator;
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START, fly};
+use kestirim_observer_design::riccati;
 use kestirim_tests::recordings::folder_of;
+use kestirim_uav_longitudinal::{airspeed_and_pitch, full_state, rate_airspeed_and_pitch};
 use nalgebra::{SMatrix, SVector};
 use serde_json::Value;
 
@@ -50,4 +52,28 @@ fn flights_without_noise_are_those_of_the_reference() {
         }
     }
     assert!(compared >= 12, "{compared} samples");
+}
+
+/// The most doublings over all aircraft at 1 kHz, noise on the inputs 1e-4 to 1e4 times that on the outputs.
+fn most_doublings<const P: usize>(c: &SMatrix<f64, P, 4>) -> u32 {
+    let ratios = (-4..=4).map(|power| 10.0_f64.powi(power));
+    let cells = ratios.flat_map(|ratio| {
+        [Plant::P1, Plant::P2, Plant::P3].map(|plant| (plant.discrete(1e-3), ratio))
+    });
+    let doublings = cells.map(|(plant, ratio)| {
+        let q = plant.b * plant.b.transpose() * ratio;
+        riccati(&plant.a, c, &q, &SMatrix::identity()).expect("every state is seen").doublings
+    });
+    doublings.max().expect("some cells")
+}
+
+#[test]
+fn at_1_khz_some_twenty_doublings_settle_a_filter() {
+    let most = [
+        most_doublings(&full_state()),
+        most_doublings(&rate_airspeed_and_pitch()),
+        most_doublings(&airspeed_and_pitch()),
+    ];
+    println!("doublings at the most, all states, [q V θ], [V θ] measured: {most:?}");
+    assert!(most.into_iter().all(|doublings| doublings <= 25));
 }
