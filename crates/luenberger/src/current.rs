@@ -1,20 +1,18 @@
-use crate::carried::{Carried, mac};
+use crate::carried::Carried;
 use crate::dense::{less_identity, negative};
-use crate::integers::{and_magnitudes, exponents, integers, larger, scaled, shifts};
+use crate::increment::{Increment, IntegerIncrement};
+use crate::integers::{and_magnitudes, exponents, larger};
 use crate::rows::{IntegerRows, Rows};
 use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`CurrentObserver`] observer, independent of its scalar.
+/// The coefficients of a [`CurrentObserver`], independent of its scalar.
 ///
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentGains<const N: usize, const M: usize, const P: usize> {
-    exponents: [i32; N],
-    state: [[i64; N]; N],
-    input: [[i64; N]; M],
-    gain: [[i64; N]; P],
+    step: IntegerIncrement<N, M, P>,
     unseen: IntegerRows<P, N>,
 }
 
@@ -30,10 +28,7 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
             exponents(and_magnitudes([0.0; N], k)),
         );
         Self {
-            exponents,
-            state: integers(&state, &exponents),
-            input: integers(b, &exponents),
-            gain: integers(k, &exponents),
+            step: IntegerIncrement::with(exponents, &state, b, k),
             unseen: IntegerRows::new(&negative(c)),
         }
     }
@@ -58,11 +53,8 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
 )]
 pub struct CurrentObserver<T: Scalar, const N: usize, const M: usize, const P: usize> {
     estimate: Carried<T, N>,
-    /// A − I, B and K; row i is scaled by 2^shift i.
-    state: SMatrix<T, N, N>,
-    input: SMatrix<T, N, M>,
-    gain: SMatrix<T, N, P>,
-    shifts: SVector<u32, N>,
+    /// A − I, B and K.
+    step: Increment<T, N, M, P>,
     /// −C.
     unseen: Rows<T, P, N>,
 }
@@ -74,13 +66,9 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
     #[inline]
     pub fn new(gains: &CurrentGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
-        let shifts = shifts::<T, N>(&gains.exponents)?;
         Ok(Self {
             estimate: Carried::new(start)?,
-            state: scaled(&gains.state, &gains.exponents, &shifts),
-            input: scaled(&gains.input, &gains.exponents, &shifts),
-            gain: scaled(&gains.gain, &gains.exponents, &shifts),
-            shifts,
+            step: Increment::new(&gains.step)?,
             unseen: Rows::new(&gains.unseen)?,
         })
     }
@@ -143,10 +131,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         if !T::all_finite(&input.data.0[0]) {
             return Err(Error::NotFinite);
         }
-        let mut sums = self.estimate.sums();
-        mac(&mut sums, &self.state, &self.estimate.value);
-        mac(&mut sums, &self.input, input);
-        self.estimate.advanced(&sums, &self.shifts)
+        self.estimate.advanced(&self.step.driven(&self.estimate, input), &self.step.shifts)
     }
 
     #[inline(always)]
@@ -161,7 +146,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
             return Err(Error::NotFinite);
         }
         let mut sums = prior.sums();
-        mac(&mut sums, &self.gain, &innovation);
-        Ok((prior.advanced(&sums, &self.shifts)?, innovation))
+        self.step.and_output(&mut sums, &innovation);
+        Ok((prior.advanced(&sums, &self.step.shifts)?, innovation))
     }
 }

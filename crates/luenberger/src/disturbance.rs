@@ -1,23 +1,20 @@
 use crate::carried::{Carried, mac};
 use crate::dense::{less_identity, less_product, negative};
-use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
+use crate::increment::{Increment, IntegerIncrement};
+use crate::integers::{and_magnitudes, exponents, integers, scaled};
 use crate::rows::{IntegerRows, Rows};
 use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`DisturbanceObserver`] observer, independent of its scalar.
+/// The coefficients of a [`DisturbanceObserver`], independent of its scalar.
 ///
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisturbanceGains<const N: usize, const M: usize, const P: usize, const D: usize> {
-    exponents: [i32; N],
-    state: [[i64; N]; N],
+    step: IntegerIncrement<N, M, P>,
     entry: [[i64; N]; D],
-    input: [[i64; N]; M],
-    output: [[i64; N]; P],
-    learning_exponents: [i32; D],
-    learning: [[i64; D]; P],
+    learning: IntegerRows<D, P>,
     unseen_state: IntegerRows<P, N>,
     unseen_learnt: IntegerRows<P, D>,
 }
@@ -41,15 +38,10 @@ impl<const N: usize, const M: usize, const P: usize, const D: usize> Disturbance
         let state = less_product(&less_identity(&plant.a.data.0), output, c);
         let of_states = and_magnitudes(and_magnitudes([0.0; N], &state), &entry);
         let exponents_of_states = exponents(and_magnitudes(and_magnitudes(of_states, b), output));
-        let learning_exponents = exponents(and_magnitudes([0.0; D], learning));
         Self {
-            exponents: exponents_of_states,
-            state: integers(&state, &exponents_of_states),
+            step: IntegerIncrement::with(exponents_of_states, &state, b, output),
             entry: integers(&entry, &exponents_of_states),
-            input: integers(b, &exponents_of_states),
-            output: integers(output, &exponents_of_states),
-            learning_exponents,
-            learning: integers(learning, &learning_exponents),
+            learning: IntegerRows::new(learning),
             unseen_state: IntegerRows::new(&negative(c)),
             unseen_learnt: IntegerRows::new(&negative(s)),
         }
@@ -85,15 +77,12 @@ pub struct DisturbanceObserver<
 > {
     estimate: Carried<T, N>,
     learnt: Carried<T, D>,
-    /// A − I − `L_x` C, E − `L_x` S, B and `L_x`; row i is scaled by 2^shift i.
-    state: SMatrix<T, N, N>,
+    /// A − I − `L_x` C, B and `L_x`.
+    step: Increment<T, N, M, P>,
+    /// E − `L_x` S, scaled as the other blocks.
     entry: SMatrix<T, N, D>,
-    input: SMatrix<T, N, M>,
-    output: SMatrix<T, N, P>,
-    shifts: SVector<u32, N>,
-    /// `L_d`, scaled likewise.
-    learning: SMatrix<T, D, P>,
-    learning_shifts: SVector<u32, D>,
+    /// `L_d`.
+    learning: Rows<T, D, P>,
     /// −C and −S.
     unseen_state: Rows<T, P, N>,
     unseen_learnt: Rows<T, P, D>,
@@ -112,19 +101,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         start: &SVector<T, N>,
         disturbance: &SVector<T, D>,
     ) -> Result<Self, Error> {
-        let (exponents, learning_exponents) = (&gains.exponents, &gains.learning_exponents);
-        let shifts_of_states = shifts::<T, N>(exponents)?;
-        let learning_shifts = shifts::<T, D>(learning_exponents)?;
+        let step = Increment::new(&gains.step)?;
         Ok(Self {
             estimate: Carried::new(start)?,
             learnt: Carried::new(disturbance)?,
-            state: scaled(&gains.state, exponents, &shifts_of_states),
-            entry: scaled(&gains.entry, exponents, &shifts_of_states),
-            input: scaled(&gains.input, exponents, &shifts_of_states),
-            output: scaled(&gains.output, exponents, &shifts_of_states),
-            shifts: shifts_of_states,
-            learning: scaled(&gains.learning, learning_exponents, &learning_shifts),
-            learning_shifts,
+            entry: scaled(&gains.entry, &gains.step.exponents, &step.shifts),
+            step,
+            learning: Rows::new(&gains.learning)?,
             unseen_state: Rows::new(&gains.unseen_state)?,
             unseen_learnt: Rows::new(&gains.unseen_learnt)?,
         })
@@ -179,15 +162,11 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         if !(T::all_finite(&input.data.0[0]) && arguments.iter().all(|&all| T::all_finite(all))) {
             return Err(Error::NotFinite);
         }
-        let mut sums = self.estimate.sums();
-        mac(&mut sums, &self.state, &self.estimate.value);
+        let mut sums = self.step.driven(&self.estimate, input);
         mac(&mut sums, &self.entry, &self.learnt.value);
-        mac(&mut sums, &self.input, input);
-        mac(&mut sums, &self.output, measured);
-        let estimate = self.estimate.advanced(&sums, &self.shifts)?;
-        let mut sums = self.learnt.sums();
-        mac(&mut sums, &self.learning, &innovation);
-        let learnt = self.learnt.advanced(&sums, &self.learning_shifts)?;
+        self.step.and_output(&mut sums, measured);
+        let estimate = self.estimate.advanced(&sums, &self.step.shifts)?;
+        let learnt = self.learning.advanced(&self.learnt, &innovation)?;
         (self.estimate, self.learnt) = (estimate, learnt);
         Ok(innovation)
     }

@@ -1,6 +1,6 @@
-use crate::carried::{Carried, mac};
+use crate::carried::Carried;
 use crate::dense::{less_identity, less_product, negative};
-use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
+use crate::increment::{Increment, IntegerIncrement};
 use crate::rows::{IntegerRows, Rows};
 use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
@@ -11,10 +11,7 @@ use nalgebra::{SMatrix, SVector};
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictorGains<const N: usize, const M: usize, const P: usize> {
-    exponents: [i32; N],
-    state: [[i64; N]; N],
-    input: [[i64; N]; M],
-    output: [[i64; N]; P],
+    step: IntegerIncrement<N, M, P>,
     unseen: IntegerRows<P, N>,
 }
 
@@ -24,15 +21,7 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
     pub const fn new(plant: &Plant<N, M, P>, l: &SMatrix<f64, N, P>) -> Self {
         let (b, c, l) = (&plant.b.data.0, &plant.c.data.0, &l.data.0);
         let state = less_product(&less_identity(&plant.a.data.0), l, c);
-        let sums = and_magnitudes(and_magnitudes(and_magnitudes([0.0; N], &state), b), l);
-        let exponents = exponents(sums);
-        Self {
-            exponents,
-            state: integers(&state, &exponents),
-            input: integers(b, &exponents),
-            output: integers(l, &exponents),
-            unseen: IntegerRows::new(&negative(c)),
-        }
+        Self { step: IntegerIncrement::new(&state, b, l), unseen: IntegerRows::new(&negative(c)) }
     }
 }
 
@@ -57,11 +46,8 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
 )]
 pub struct Predictor<T: Scalar, const N: usize, const M: usize, const P: usize> {
     estimate: Carried<T, N>,
-    /// A − I − L C, B and L; row i is scaled by 2^shift i.
-    state: SMatrix<T, N, N>,
-    input: SMatrix<T, N, M>,
-    output: SMatrix<T, N, P>,
-    shifts: SVector<u32, N>,
+    /// A − I − L C, B and L.
+    step: Increment<T, N, M, P>,
     /// −C.
     unseen: Rows<T, P, N>,
 }
@@ -73,13 +59,9 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
     #[inline]
     pub fn new(gains: &PredictorGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
-        let shifts = shifts::<T, N>(&gains.exponents)?;
         Ok(Self {
             estimate: Carried::new(start)?,
-            state: scaled(&gains.state, &gains.exponents, &shifts),
-            input: scaled(&gains.input, &gains.exponents, &shifts),
-            output: scaled(&gains.output, &gains.exponents, &shifts),
-            shifts,
+            step: Increment::new(&gains.step)?,
             unseen: Rows::new(&gains.unseen)?,
         })
     }
@@ -113,14 +95,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn step(&mut self, input: &SVector<T, M>, measured: &SVector<T, P>) -> Result<(), Error> {
-        if !(T::all_finite(&input.data.0[0]) && T::all_finite(&measured.data.0[0])) {
-            return Err(Error::NotFinite);
-        }
-        let mut sums = self.estimate.sums();
-        mac(&mut sums, &self.state, &self.estimate.value);
-        mac(&mut sums, &self.input, input);
-        mac(&mut sums, &self.output, measured);
-        self.estimate = self.estimate.advanced(&sums, &self.shifts)?;
+        self.estimate = self.step.advanced(&self.estimate, input, measured)?;
         Ok(())
     }
 

@@ -1,12 +1,12 @@
 use crate::Error;
-use crate::carried::{Carried, mac};
+use crate::carried::Carried;
 use crate::dense::{Dense, all, less_identity, less_product, negative, part};
-use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
+use crate::increment::{Increment, IntegerIncrement};
 use crate::rows::{IntegerRows, Rows};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`ReducedObserver`] observer of N states, of which P are measured and R are not, with M inputs;
+/// The coefficients of a [`ReducedObserver`] of N states, of which P are measured and R are not, with M inputs;
 /// independent of its scalar.
 ///
 /// In a `const` it costs a target no double-precision arithmetic.
@@ -14,10 +14,7 @@ use nalgebra::{SMatrix, SVector};
 pub struct ReducedGains<const N: usize, const M: usize, const P: usize, const R: usize> {
     measured: [usize; P],
     unmeasured: [usize; R],
-    exponents: [i32; R],
-    state: [[i64; R]; R],
-    output: [[i64; R]; P],
-    input: [[i64; R]; M],
+    step: IntegerIncrement<R, M, P>,
     shown: IntegerRows<R, P>,
     hidden: IntegerRows<R, P>,
 }
@@ -51,16 +48,10 @@ impl<const N: usize, const M: usize, const P: usize, const R: usize> ReducedGain
             &less_identity(&part(a, measured, measured)),
         );
         let output = less_product(&direct, &negative(&state), l);
-        let sums =
-            and_magnitudes(and_magnitudes(and_magnitudes([0.0; R], &state), &output), &input);
-        let exponents = exponents(sums);
         Ok(Self {
             measured: *measured,
             unmeasured,
-            exponents,
-            state: integers(&state, &exponents),
-            output: integers(&output, &exponents),
-            input: integers(&input, &exponents),
+            step: IntegerIncrement::new(&state, &input, &output),
             shown: IntegerRows::new(l),
             hidden: IntegerRows::new(&negative(l)),
         })
@@ -118,11 +109,8 @@ pub struct ReducedObserver<
     measured: SVector<usize, P>,
     unmeasured: SVector<usize, R>,
     w: Carried<T, R>,
-    /// F − I, G and H; row i is scaled by 2^shift i.
-    state: SMatrix<T, R, R>,
-    output: SMatrix<T, R, P>,
-    input: SMatrix<T, R, M>,
-    shifts: SVector<u32, R>,
+    /// F − I, H and G.
+    step: Increment<T, R, M, P>,
     /// L and −L.
     shown: Rows<T, R, P>,
     hidden: Rows<T, R, P>,
@@ -141,16 +129,12 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
         unmeasured: &SVector<T, R>,
         measured: &SVector<T, P>,
     ) -> Result<Self, Error> {
-        let shifts = shifts::<T, R>(&gains.exponents)?;
         let hidden = Rows::new(&gains.hidden)?;
         Ok(Self {
             measured: SVector::from(gains.measured),
             unmeasured: SVector::from(gains.unmeasured),
             w: start(&hidden, unmeasured, measured)?,
-            state: scaled(&gains.state, &gains.exponents, &shifts),
-            output: scaled(&gains.output, &gains.exponents, &shifts),
-            input: scaled(&gains.input, &gains.exponents, &shifts),
-            shifts,
+            step: Increment::new(&gains.step)?,
             shown: Rows::new(&gains.shown)?,
             hidden,
         })
@@ -197,14 +181,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn step(&mut self, input: &SVector<T, M>, measured: &SVector<T, P>) -> Result<(), Error> {
-        if !(T::all_finite(&input.data.0[0]) && T::all_finite(&measured.data.0[0])) {
-            return Err(Error::NotFinite);
-        }
-        let mut sums = self.w.sums();
-        mac(&mut sums, &self.state, &self.w.value);
-        mac(&mut sums, &self.output, measured);
-        mac(&mut sums, &self.input, input);
-        self.w = self.w.advanced(&sums, &self.shifts)?;
+        self.w = self.step.advanced(&self.w, input, measured)?;
         Ok(())
     }
 }

@@ -1,5 +1,5 @@
 use crate::Error;
-use crate::carried::mac;
+use crate::carried::{Carried, mac};
 use crate::dense::Dense;
 use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
 use kestirim_scalar::Scalar;
@@ -39,6 +39,18 @@ impl<T: Scalar, const R: usize, const C: usize> Rows<T, R, C> {
     pub(crate) fn new(design: &IntegerRows<R, C>) -> Result<Self, Error> {
         let shifts = shifts::<T, R>(&design.exponents)?;
         Ok(Self { matrix: scaled(&design.integers, &design.exponents, &shifts), shifts })
+    }
+
+    /// A state moved on by matrix · vector, with what the last step left.
+    #[inline(always)]
+    pub(crate) fn advanced(
+        &self,
+        state: &Carried<T, R>,
+        vector: &SVector<T, C>,
+    ) -> Result<Carried<T, R>, Error> {
+        let mut sums = state.sums();
+        mac(&mut sums, &self.matrix, vector);
+        state.advanced(&sums, &self.shifts)
     }
 
     /// start + matrix · vector.
