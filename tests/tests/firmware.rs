@@ -71,7 +71,7 @@ fn counts_repeat(target: &'static Target) -> Result<()> {
 
 fn a_step_too_long_to_count_fails(target: &'static Target) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
-    let failure = images.run("overrun", &[]).expect_err("ten million instructions");
+    let failure = images.run("overrun", &[]).expect_err("700 million instructions");
     assert!(
         failure.to_string().contains("more instructions than the counter can hold"),
         "{failure}"

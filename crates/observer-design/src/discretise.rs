@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::extended::Extended;
 use crate::number::{Square, extend, finite, norm, round, symmetrised};
-use crate::solve::solve;
+use crate::solve::Eliminated;
 use nalgebra::SMatrix;
 
 /// x⁺ = A x + B u.
@@ -43,9 +43,9 @@ pub fn tustin<const N: usize, const M: usize>(
     let interval = checked(a, interval)?;
     let half = extend(a).map(|value| value * interval * Extended::from(0.5));
     let identity = Square::<Extended, N>::identity();
-    let transition = solve(&(identity - half), &(identity + half)).ok_or(Error::Singular)?;
+    let backward = Eliminated::new(&(identity - half)).ok_or(Error::Singular)?;
     let input = extend(b).map(|value| value * interval);
-    answer(&transition, &solve(&(identity - half), &input).ok_or(Error::Singular)?)
+    answer(&backward.solve(&(identity + half)), &backward.solve(&input))
 }
 
 /// The covariance which white noise of spectral density Qc leaves after `interval` seconds:

@@ -1,5 +1,7 @@
 //! Eigenvalues by the shifted QR algorithm.
 
+use core::ops::Range;
+
 use crate::Error;
 use crate::extended::Extended;
 use crate::number::{Number, Real, Square, complex, extend, finite, norm, round_complex};
@@ -33,12 +35,15 @@ pub(crate) fn eigenvalues_extended<const N: usize>(
             continue;
         }
         let conjugate = values[index].conjugate();
-        let distance = |&other: &usize| (values[other] - conjugate).magnitude();
-        let free = (index..N).filter(|&other| !done[other]);
-        let partner = free.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(index);
-        let mean = (values[partner] + conjugate).scaled(Extended::from(0.5));
-        (values[partner], values[index]) = (mean, mean.conjugate());
-        (done[index], done[partner]) = (true, true);
+        let distance = |other: &Complex<Extended>| (*other - conjugate).magnitude();
+        let others = values.iter_mut().zip(&mut done).skip(index).filter(|(_, done)| !**done);
+        if let Some((partner, done)) =
+            others.min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)))
+        {
+            let mean = (*partner + conjugate).scaled(Extended::from(0.5));
+            (*partner, *done) = (mean, true);
+            values[index] = mean.conjugate();
+        }
     }
     Ok(values)
 }
@@ -49,32 +54,43 @@ fn spectrum<R: Real, const N: usize>(
     let mut h = *matrix;
     reduce(&mut h);
     let tiny = norm(&h) * R::EPSILON * R::EPSILON;
-    let mut end = N;
-    let mut steps = 0;
-    while end > 1 {
-        let start = decoupled(&mut h, end, tiny);
-        if start + 1 == end {
-            end -= 1;
-            steps = 0;
-            continue;
+    for end in (2..=N).rev() {
+        let mut steps = 0;
+        loop {
+            let start = decoupled(&mut h, end, tiny);
+            if start + 1 == end {
+                break;
+            }
+            if steps == MOST_STEPS || !element(&h, end - 1, end - 1).magnitude().is_finite() {
+                return Err(Error::NotConverged);
+            }
+            steps += 1;
+            // An exceptional shift now and then breaks a cycle.
+            let shift = if steps % 15 == 0 {
+                let beside = element(&h, end - 1, end - 2).magnitude();
+                element(&h, end - 1, end - 1) + Complex::from(R::from(beside))
+            } else {
+                wilkinson(&h, end)
+            };
+            step(&mut h, start, end, shift);
         }
-        if steps == MOST_STEPS || !h[(end - 1, end - 1)].magnitude().is_finite() {
-            return Err(Error::NotConverged);
-        }
-        steps += 1;
-        // An exceptional shift now and then breaks a cycle.
-        let shift = if steps % 15 == 0 {
-            h[(end - 1, end - 1)] + Complex::from(R::from(h[(end - 1, end - 2)].magnitude()))
-        } else {
-            wilkinson(&h, end)
-        };
-        step(&mut h, start, end, shift);
     }
     let mut values = [Complex::from(R::from(0.0)); N];
     for (index, value) in values.iter_mut().enumerate() {
-        *value = h[(index, index)];
+        *value = element(&h, index, index);
     }
     Ok(values)
+}
+
+/// What stands in a place; outside the matrix nothing.
+fn element<T: Number, const N: usize>(h: &Square<T, N>, row: usize, column: usize) -> T {
+    h.get((row, column)).copied().unwrap_or(T::zero())
+}
+
+fn clear<T: Number, const N: usize>(h: &mut Square<T, N>, row: usize, column: usize) {
+    if let Some(place) = h.get_mut((row, column)) {
+        *place = T::zero();
+    }
 }
 
 /// A plane rotation: unitary, and it turns (a, b) into (r, 0).
@@ -100,10 +116,13 @@ impl<R: Real> Rotation<R> {
         [first, second]: [usize; 2],
         from: usize,
     ) {
-        for column in from..N {
-            let (a, b) = (h[(first, column)], h[(second, column)]);
-            h[(first, column)] = self.cosine.conjugate() * a + self.sine.conjugate() * b;
-            h[(second, column)] = self.cosine * b - self.sine * a;
+        for column in h.data.0.iter_mut().skip(from) {
+            if let Ok([a, b]) = column.get_disjoint_mut([first, second]) {
+                (*a, *b) = (
+                    self.cosine.conjugate() * *a + self.sine.conjugate() * *b,
+                    self.cosine * *b - self.sine * *a,
+                );
+            }
         }
     }
 
@@ -114,10 +133,12 @@ impl<R: Real> Rotation<R> {
         [first, second]: [usize; 2],
         to: usize,
     ) {
-        for row in 0..to {
-            let (a, b) = (h[(row, first)], h[(row, second)]);
-            h[(row, first)] = a * self.cosine + b * self.sine;
-            h[(row, second)] = b * self.cosine.conjugate() - a * self.sine.conjugate();
+        let Ok([first, second]) = h.data.0.get_disjoint_mut([first, second]) else { return };
+        for (a, b) in first.iter_mut().zip(second).take(to) {
+            (*a, *b) = (
+                *a * self.cosine + *b * self.sine,
+                *b * self.cosine.conjugate() - *a * self.sine.conjugate(),
+            );
         }
     }
 }
@@ -126,10 +147,10 @@ impl<R: Real> Rotation<R> {
 fn reduce<R: Real, const N: usize>(h: &mut Square<Complex<R>, N>) {
     for column in 0..N.saturating_sub(2) {
         for row in (column + 2..N).rev() {
-            let rotation = Rotation::new(h[(row - 1, column)], h[(row, column)]);
+            let rotation = Rotation::new(element(h, row - 1, column), element(h, row, column));
             rotation.turn_rows(h, [row - 1, row], column);
             rotation.turn_columns(h, [row - 1, row], N);
-            h[(row, column)] = Complex::from(R::from(0.0));
+            clear(h, row, column);
         }
     }
 }
@@ -141,9 +162,10 @@ fn decoupled<R: Real, const N: usize>(
     tiny: f64,
 ) -> usize {
     for row in (1..end).rev() {
-        let beside = h[(row - 1, row - 1)].magnitude() + h[(row, row)].magnitude();
-        if h[(row, row - 1)].magnitude() <= R::EPSILON * beside + tiny {
-            h[(row, row - 1)] = Complex::from(R::from(0.0));
+        let size = |row, column| element(h, row, column).magnitude();
+        let beside = size(row - 1, row - 1) + size(row, row);
+        if size(row, row - 1) <= R::EPSILON * beside + tiny {
+            clear(h, row, row - 1);
             return row;
         }
     }
@@ -153,15 +175,15 @@ fn decoupled<R: Real, const N: usize>(
 /// The eigenvalue of the last 2 × 2 block that lies nearer its last element. A double is good enough: the shift
 /// only hastens the convergence.
 fn wilkinson<R: Real, const N: usize>(h: &Square<Complex<R>, N>, end: usize) -> Complex<R> {
-    let element = |row, column| round_complex(h[(end - row, end - column)]);
-    let half_difference = (element(2, 2) - element(1, 1)) * 0.5;
-    let root = square_root(half_difference * half_difference + element(2, 1) * element(1, 2));
+    let last = |row, column| round_complex(element(h, end - row, end - column));
+    let half_difference = (last(2, 2) - last(1, 1)) * 0.5;
+    let root = square_root(half_difference * half_difference + last(2, 1) * last(1, 2));
     let same_side = (half_difference.conjugate() * root).re >= 0.0;
     let sum = if same_side { half_difference + root } else { half_difference - root };
     if sum.magnitude() == 0.0 {
-        return h[(end - 1, end - 1)];
+        return element(h, end - 1, end - 1);
     }
-    let shift = element(1, 1) - element(2, 1) * element(1, 2) / sum;
+    let shift = last(1, 1) - last(2, 1) * last(1, 2) / sum;
     Complex { re: R::from(shift.re), im: R::from(shift.im) }
 }
 
@@ -179,12 +201,10 @@ fn step<R: Real, const N: usize>(
     end: usize,
     shift: Complex<R>,
 ) {
-    for index in start..end {
-        h[(index, index)] -= shift;
-    }
+    move_diagonal(h, start..end, -shift);
     let mut waiting: Option<(Rotation<R>, usize)> = None;
     for row in start..end - 1 {
-        let rotation = Rotation::new(h[(row, row)], h[(row + 1, row)]);
+        let rotation = Rotation::new(element(h, row, row), element(h, row + 1, row));
         rotation.turn_rows(h, [row, row + 1], row);
         if let Some((previous, at)) = waiting.replace((rotation, row)) {
             previous.turn_columns(h, [at, at + 1], at + 2);
@@ -193,8 +213,14 @@ fn step<R: Real, const N: usize>(
     if let Some((last, at)) = waiting {
         last.turn_columns(h, [at, at + 1], end);
     }
-    for index in start..end {
-        h[(index, index)] += shift;
+    move_diagonal(h, start..end, shift);
+}
+
+fn move_diagonal<T: Number, const N: usize>(h: &mut Square<T, N>, places: Range<usize>, by: T) {
+    for place in places {
+        if let Some(element) = h.get_mut((place, place)) {
+            *element += by;
+        }
     }
 }
 

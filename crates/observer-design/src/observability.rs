@@ -7,7 +7,7 @@ use crate::extended::Extended;
 use crate::number::{Real, Square, adjoint, complex, norm, round_complex, shifted};
 use crate::orthonormal::{inner, length, normalised};
 use crate::pair::Pair;
-use crate::solve::solve;
+use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
 
 /// How well the outputs see the least visible mode: the smallest singular value that [A − λ; C] has at an
@@ -124,12 +124,13 @@ fn visibility<R: Real, const N: usize>(
     for _ in 0..FOLLOWED {
         let distance = shifted(dynamics, at);
         // The little on the diagonal keeps an exactly singular matrix from stopping the inverse iteration.
-        let gram = shifted(
+        let gram = Eliminated::new(&shifted(
             &(adjoint(&distance) * distance + outputs_squared),
             Complex::from(R::from(-1e-30)),
-        );
+        ));
         for _ in 0..2 {
-            vector = normalised(&solve(&gram, &vector).unwrap_or(vector), 0.0)?;
+            let next = gram.as_ref().map_or(vector, |gram| gram.solve(&vector));
+            vector = normalised(&next, 0.0)?;
         }
         let seen = length(&(distance * vector)).rounded();
         let sight = libm::hypot(seen, length(&(outputs * vector)).rounded());
@@ -146,6 +147,6 @@ fn visibility<R: Real, const N: usize>(
 }
 
 fn dominant<R: Real, const N: usize>(vector: &SVector<Complex<R>, N>) -> usize {
-    let size = |index: &usize| vector[*index].norm_sqr().rounded();
-    (0..N).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0)
+    let sizes = vector.iter().map(|value| value.norm_sqr().rounded()).enumerate();
+    sizes.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(state, _)| state)
 }

@@ -12,13 +12,13 @@ pub(crate) fn complete<T: Number, const N: usize>(
     let mut basis = Square::<T, N>::zeros();
     for index in 0..N {
         let vector = if index < count {
-            let column = columns.column(index).into_owned();
+            let column = SVector::from(columns.data.0[index]);
             normalised(&column, 0.0)
                 .and_then(|column| normalised(&residual(&column, &basis, index), 1e-24))
         } else {
             farthest(&basis, index)
         };
-        basis.set_column(index, &vector?);
+        [basis.data.0[index]] = vector?.data.0;
     }
     Some(basis)
 }
@@ -28,11 +28,14 @@ fn farthest<T: Number, const N: usize>(
     basis: &Square<T, N>,
     count: usize,
 ) -> Option<SVector<T, N>> {
-    let covered =
-        |axis: usize| (0..count).map(|index| basis[(axis, index)].squared().rounded()).sum::<f64>();
-    let axis = (0..N).min_by(|&a, &b| covered(a).total_cmp(&covered(b)))?;
-    let mut unit = SVector::zeros();
-    unit[axis] = T::one();
+    let mut covered = [0.0; N];
+    for vector in basis.data.0.iter().take(count) {
+        for (covered, part) in covered.iter_mut().zip(vector) {
+            *covered += part.squared().rounded();
+        }
+    }
+    let (axis, _) = covered.iter().enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let unit = SVector::from_fn(|index, _| if index == axis { T::one() } else { T::zero() });
     normalised(&residual(&unit, basis, count), 0.0)
 }
 
@@ -45,8 +48,8 @@ fn residual<T: Number, const N: usize>(
 ) -> SVector<T, N> {
     let mut rest = *vector;
     for _ in 0..2 {
-        for index in 0..count {
-            let base = basis.column(index).into_owned();
+        for &base in basis.data.0.iter().take(count) {
+            let base = SVector::from(base);
             let part = inner(&base, &rest);
             rest -= base * part;
         }

@@ -44,33 +44,40 @@ impl<const N: usize> Pair<N> {
         for _ in 0..50 {
             let mut settled = true;
             for state in 0..N {
-                let off_diagonal = |index: usize| if index == state { 0.0 } else { 1.0 };
-                let mut column: f64 =
-                    (0..self.rank).map(|row| self.outputs[(row, state)].to_f64().abs()).sum();
-                let mut row = 0.0;
-                for index in 0..N {
-                    column += off_diagonal(index) * self.dynamics[(index, state)].to_f64().abs();
-                    row += off_diagonal(index) * self.dynamics[(state, index)].to_f64().abs();
+                if let Some(factor) = self.evening(state) {
+                    settled = false;
+                    self.rescale(state, factor);
                 }
-                // What nothing drives may be scaled at will: to where its effect is of the size of its own motion.
-                if row == 0.0 {
-                    row = self.dynamics[(state, state)].to_f64().abs();
-                }
-                if column == 0.0 || row == 0.0 {
-                    continue;
-                }
-                let exponent = libm::round(libm::log2(row / column) / 2.0);
-                let factor = libm::exp2(exponent);
-                if exponent == 0.0 || !(factor.is_normal() && (1.0 / factor).is_normal()) {
-                    continue;
-                }
-                settled = false;
-                self.rescale(state, factor);
             }
             if settled {
                 return;
             }
         }
+    }
+
+    /// The power of two by which a state has to be rescaled, if any.
+    fn evening(&self, state: usize) -> Option<f64> {
+        let size = |value: &Extended| value.to_f64().abs();
+        let (driven, seen) = (self.dynamics.data.0.get(state)?, self.outputs.data.0.get(state)?);
+        let driving = self.dynamics.data.0.iter().filter_map(|column| column.get(state));
+        let mut column: f64 = seen.iter().map(size).sum();
+        let mut row = 0.0;
+        for (index, (driven, driving)) in driven.iter().zip(driving).enumerate() {
+            if index != state {
+                column += size(driven);
+                row += size(driving);
+            }
+        }
+        // What nothing drives may be scaled at will: to where its effect is of the size of its own motion.
+        if row == 0.0 {
+            row = driven.get(state).map_or(0.0, size);
+        }
+        if column == 0.0 || row == 0.0 {
+            return None;
+        }
+        let exponent = libm::round(libm::log2(row / column) / 2.0);
+        let factor = libm::exp2(exponent);
+        (exponent != 0.0 && factor.is_normal() && (1.0 / factor).is_normal()).then_some(factor)
     }
 
     fn rescale(&mut self, state: usize, factor: f64) {
@@ -154,7 +161,7 @@ fn merge<const N: usize, const P: usize>(
     let mut weights = [Extended::from(0.0); P];
     let mut rest = extend(c);
     for row in 0..P {
-        let size = c.row(row).iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let size = c.data.0.iter().fold(0.0, |largest: f64, column| largest.max(column[row].abs()));
         if size > 0.0 {
             weights[row] = Extended::from(libm::exp2(-libm::floor(libm::log2(size))));
         }
@@ -166,21 +173,21 @@ fn merge<const N: usize, const P: usize>(
     let mut basis = SMatrix::<Extended, P, N>::zeros();
     let mut largest = 0.0;
     let mut rank = 0;
-    while rank < N.min(P) {
-        let size = |column: usize| length(&rest.column(column).into_owned()).to_f64();
-        let Some(pivot) = (0..N).max_by(|&a, &b| size(a).total_cmp(&size(b))) else { break };
-        largest = f64::max(largest, size(pivot));
-        if size(pivot) <= NEGLIGIBLE * largest {
+    for direction in basis.data.0.iter_mut().take(N) {
+        let size = |column: &SVector<Extended, P>| length(column).to_f64();
+        let columns = rest.data.0.iter().map(|&column| SVector::from(column));
+        let Some(pivot) = columns.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
+        largest = f64::max(largest, size(&pivot));
+        if size(&pivot) <= NEGLIGIBLE * largest {
             break;
         }
-        let reciprocal = Extended::from(1.0) / length(&rest.column(pivot).into_owned());
-        let direction = rest.column(pivot).map(|value| value * reciprocal);
-        basis.set_column(rank, &direction);
+        let reciprocal = Extended::from(1.0) / length(&pivot);
+        let unit = pivot.map(|value| value * reciprocal);
+        [*direction] = unit.data.0;
         rank += 1;
-        for column in 0..N {
-            let vector = rest.column(column).into_owned();
-            let left = vector - direction * inner(&direction, &vector);
-            rest.set_column(column, &left);
+        for column in &mut rest.data.0 {
+            let vector = SVector::from(*column);
+            [*column] = (vector - unit * inner(&unit, &vector)).data.0;
         }
     }
     let outputs = basis.transpose() * weighted;

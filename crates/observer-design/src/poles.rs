@@ -29,19 +29,22 @@ pub(crate) fn arrange<const N: usize>(
             put(*pole, index);
         }
     }
-    for (index, pole) in poles.iter().enumerate() {
+    for index in 0..N {
+        let pole = poles[index];
         if pole.im == 0.0 || taken[index] {
             continue;
         }
-        let tolerance = SAME * size(*pole);
-        let is_partner = |other: usize| {
-            let difference = poles[other] - Complex { re: pole.re, im: -pole.im };
-            !taken[other] && poles[other].im * pole.im < 0.0 && size(difference) <= tolerance
+        let conjugate = Complex { re: pole.re, im: -pole.im };
+        let is_partner = |other: &Complex<f64>| {
+            other.im * pole.im < 0.0 && size(other - conjugate) <= SAME * size(pole)
         };
-        let partner = (index + 1..N).find(|&other| is_partner(other)).ok_or(Error::NotConjugate)?;
-        (taken[index], taken[partner]) = (true, true);
-        put(*pole, index);
-        put(Complex { re: pole.re, im: -pole.im }, partner);
+        let mut others = poles.iter().zip(&mut taken).enumerate().skip(index + 1);
+        let (partner, (_, taken)) = others
+            .find(|(_, (other, taken))| !**taken && is_partner(other))
+            .ok_or(Error::NotConjugate)?;
+        *taken = true;
+        put(pole, index);
+        put(conjugate, partner);
     }
     Ok((arranged, origin))
 }
@@ -57,25 +60,30 @@ pub(crate) fn multiplicity<const N: usize>(poles: &[Complex<f64>; N]) -> usize {
     poles.iter().map(count).max().unwrap_or(0)
 }
 
-/// Which of the placed poles stands for which of the wanted ones: the nearest for the nearest.
-pub(crate) fn pair_up<const N: usize>(distance: impl Fn(usize, usize) -> f64) -> [usize; N] {
-    let (mut partner, mut done, mut used) = ([0; N], [false; N], [false; N]);
+/// Which of the placed poles stands for which of the wanted ones, the nearest for the nearest: `distances` has a
+/// row for every wanted one.
+pub(crate) fn pair_up<const N: usize>(distances: &[[f64; N]; N]) -> [usize; N] {
+    let mut partners = [None; N];
     for _ in 0..N {
         let mut nearest: Option<(f64, usize, usize)> = None;
-        for wanted in (0..N).filter(|&index| !done[index]) {
-            for placed in (0..N).filter(|&index| !used[index]) {
-                let here = distance(wanted, placed);
-                if nearest.is_none_or(|(least, ..)| here < least) {
+        for wanted in 0..N {
+            if partners[wanted].is_some() {
+                continue;
+            }
+            for (placed, &here) in distances[wanted].iter().enumerate() {
+                let is_nearer = nearest.is_none_or(|(least, ..)| here < least);
+                if is_nearer && !partners.contains(&Some(placed)) {
                     nearest = Some((here, wanted, placed));
                 }
             }
         }
-        if let Some((_, wanted, placed)) = nearest {
-            (done[wanted], used[placed]) = (true, true);
-            partner[wanted] = placed;
+        if let Some((_, wanted, placed)) = nearest
+            && let Some(partner) = partners.get_mut(wanted)
+        {
+            *partner = Some(placed);
         }
     }
-    partner
+    partners.map(|partner| partner.unwrap_or(0))
 }
 
 /// What the error of a pole is measured by: its own size, or that of the system if it should be zero.

@@ -8,7 +8,7 @@ use crate::lyapunov::stable;
 use crate::number::{Square, extend, finite, norm, round, symmetrised};
 use crate::observability::hidden;
 use crate::pair::Pair;
-use crate::solve::solve;
+use crate::solve::{Eliminated, solve};
 use nalgebra::SMatrix;
 
 /// What a filter of x⁺ = A x + w, y = C x + v settles at.
@@ -119,8 +119,8 @@ impl<const N: usize> Equation<N> {
     ) -> Option<(Square<Extended, N>, u32)> {
         let Self { mut f, mut g, mut h } = *self;
         for doubling in 1..=MOST_DOUBLINGS {
-            let both = Square::identity() + g * h;
-            let (forward, cross) = (solve(&both, &f)?, solve(&both, &g)?);
+            let both = Eliminated::new(&(Square::identity() + g * h))?;
+            let (forward, cross) = (both.solve(&f), both.solve(&g));
             let step = symmetrised(&(f.transpose() * h * forward));
             g = symmetrised(&(g + f * cross * f.transpose()));
             h += step;
@@ -140,8 +140,8 @@ impl<const N: usize> Equation<N> {
 
     /// The same equation for X − Y.
     fn from(&self, y: &Square<Extended, N>) -> Option<Self> {
-        let both = Square::identity() + self.g * y;
-        let (f, g) = (solve(&both, &self.f)?, solve(&both, &self.g)?);
+        let both = Eliminated::new(&(Square::identity() + self.g * y))?;
+        let (f, g) = (both.solve(&self.f), both.solve(&self.g));
         let h = self.f.transpose() * y * f + self.h - y;
         Some(Self { f, g: symmetrised(&g), h: symmetrised(&h) })
     }

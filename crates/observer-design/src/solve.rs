@@ -1,45 +1,80 @@
 //! Linear equations.
 
+use core::mem;
+
 use crate::number::{Number, Square};
 use nalgebra::SMatrix;
 
-/// X of A X = B, by elimination with row exchanges; nothing where A is singular to the last bit.
+/// A matrix after elimination with row exchanges, ready for any number of right sides.
+pub(crate) struct Eliminated<T: Number, const N: usize> {
+    /// Divisors on the diagonal; beside them, which multiple of the pivot's row each row lost. By columns.
+    factors: [[T; N]; N],
+    /// Which row came to the place of each in its turn.
+    pivots: [usize; N],
+}
+
+impl<T: Number, const N: usize> Eliminated<T, N> {
+    /// Nothing where the matrix is singular to the last bit.
+    #[inline(never)]
+    pub(crate) fn new(matrix: &Square<T, N>) -> Option<Self> {
+        let (mut a, mut pivots) = (matrix.data.0, [0; N]);
+        for place in 0..N {
+            let (pivot, magnitude) = largest(&a[place], place)?;
+            if magnitude == 0.0 || !magnitude.is_finite() {
+                return None;
+            }
+            pivots[place] = pivot;
+            for column in &mut a {
+                swap(column, place, pivot);
+            }
+            let divisor = a[place][place];
+            for row in 0..N {
+                if row == place || a[place][row].is_zero() {
+                    continue;
+                }
+                let factor = a[place][row] / divisor;
+                a[place][row] = factor;
+                for column in a.iter_mut().skip(place + 1) {
+                    let taken = factor * column[place];
+                    column[row] -= taken;
+                }
+            }
+        }
+        Some(Self { factors: a, pivots })
+    }
+
+    /// X of A X = B.
+    #[inline(never)]
+    pub(crate) fn solve<const M: usize>(&self, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        let mut x = *b;
+        for x in &mut x.data.0 {
+            for place in 0..N {
+                swap(x, place, self.pivots[place]);
+            }
+            for place in 0..N {
+                for row in 0..N {
+                    let factor = self.factors[place][row];
+                    if row == place || factor.is_zero() {
+                        continue;
+                    }
+                    let taken = factor * x[place];
+                    x[row] -= taken;
+                }
+            }
+            for place in 0..N {
+                x[place] /= self.factors[place][place];
+            }
+        }
+        x
+    }
+}
+
+/// X of A X = B; nothing where A is singular to the last bit.
 pub(crate) fn solve<T: Number, const N: usize, const M: usize>(
     a: &Square<T, N>,
     b: &SMatrix<T, N, M>,
 ) -> Option<SMatrix<T, N, M>> {
-    let (mut a, mut b) = (*a, *b);
-    for column in 0..N {
-        let pivot = largest(&a, column);
-        let divisor = a[(pivot, column)];
-        let magnitude = divisor.magnitude();
-        if magnitude == 0.0 || !magnitude.is_finite() {
-            return None;
-        }
-        a.swap_rows(column, pivot);
-        b.swap_rows(column, pivot);
-        for row in 0..N {
-            if row == column || a[(row, column)].is_zero() {
-                continue;
-            }
-            let factor = a[(row, column)] / divisor;
-            for index in column..N {
-                let taken = factor * a[(column, index)];
-                a[(row, index)] -= taken;
-            }
-            for index in 0..M {
-                let taken = factor * b[(column, index)];
-                b[(row, index)] -= taken;
-            }
-        }
-    }
-    for row in 0..N {
-        let divisor = a[(row, row)];
-        for index in 0..M {
-            b[(row, index)] /= divisor;
-        }
-    }
-    Some(b)
+    Some(Eliminated::new(a)?.solve(b))
 }
 
 /// A⁻¹.
@@ -47,13 +82,14 @@ pub(crate) fn inverse<T: Number, const N: usize>(a: &Square<T, N>) -> Option<Squ
     solve(a, &Square::identity())
 }
 
-/// The row, from the diagonal down, with the largest element of a column.
-fn largest<T: Number, const N: usize>(a: &Square<T, N>, column: usize) -> usize {
-    let mut best = column;
-    for row in column..N {
-        if a[(row, column)].magnitude() > a[(best, column)].magnitude() {
-            best = row;
-        }
+/// Where, from a row down, the largest element of a column is, and how large.
+fn largest<T: Number>(column: &[T], from: usize) -> Option<(usize, f64)> {
+    let sizes = column.iter().map(|value| value.magnitude()).enumerate().skip(from);
+    sizes.reduce(|best, other| if other.1 > best.1 { other } else { best })
+}
+
+fn swap<T>(column: &mut [T], first: usize, second: usize) {
+    if let Ok([first, second]) = column.get_disjoint_mut([first, second]) {
+        mem::swap(first, second);
     }
-    best
 }

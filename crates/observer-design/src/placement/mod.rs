@@ -90,7 +90,9 @@ pub fn place<const N: usize, const P: usize>(
     }
     let mut in_order = [PlacedPole { re: 0.0, im: 0.0 }; N];
     for (pole, &place) in checked.placed.iter().zip(&origin) {
-        in_order[place] = PlacedPole { re: pole.re, im: pole.im };
+        if let Some(place) = in_order.get_mut(place) {
+            *place = PlacedPole { re: pole.re, im: pole.im };
+        }
     }
     Ok(Placement { gain: checked.gain, poles: in_order, error: checked.error, visibility })
 }
@@ -133,16 +135,22 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
             return Err(Error::NotFinite);
         }
         let values = eigenvalues_extended(&self.closed(gain))?;
-        let offset = |wanted: usize, got: usize| {
-            round_complex(values[got] - extend_complex(self.poles[wanted]))
-        };
-        let partner = pair_up::<N>(|wanted, got| size(offset(wanted, got)));
+        let offsets_from =
+            |pole| values.map(|value| round_complex(value - extend_complex::<Extended>(pole)));
+        let offsets = self.poles.map(offsets_from);
+        let partners = pair_up(&offsets.map(|row| row.map(size)));
         let mut checked =
             Checked { gain: *gain, placed: *self.poles, offsets: *self.poles, error: 0.0 };
-        for (wanted, &got) in partner.iter().enumerate() {
-            checked.placed[wanted] = round_complex(values[got]);
-            checked.offsets[wanted] = offset(wanted, got);
-            checked.error = checked.error.max(size(offset(wanted, got)) / self.reference(wanted));
+        for wanted in 0..N {
+            let partner = partners[wanted];
+            if let (Some(&value), Some(&offset)) =
+                (values.get(partner), offsets[wanted].get(partner))
+            {
+                checked.placed[wanted] = round_complex(value);
+                checked.offsets[wanted] = offset;
+                checked.error =
+                    checked.error.max(size(offset) / self.reference(self.poles[wanted]));
+            }
         }
         Ok(checked)
     }
@@ -152,8 +160,8 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
         self.pair.balanced(&(extend(self.a) - extend(gain) * extend(self.c)))
     }
 
-    fn reference(&self, pole: usize) -> f64 {
-        reference(self.poles[pole], norm(&self.pair.dynamics).max(f64::MIN_POSITIVE))
+    fn reference(&self, pole: Complex<f64>) -> f64 {
+        reference(pole, norm(&self.pair.dynamics).max(f64::MIN_POSITIVE))
     }
 
     /// Poles wanted more often than there are outputs: a first gain makes all modes visible in one combination of

@@ -8,7 +8,7 @@ use crate::extended::Extended;
 use crate::number::{Square, complex, extend, extend_complex, round_complex, shifted};
 use crate::orthonormal::normalised;
 use crate::sequence::Sequence;
-use crate::solve::solve;
+use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
 
 /// Nothing to gain below this.
@@ -33,7 +33,7 @@ pub(super) fn polish<const N: usize, const P: usize>(
     }
     let slopes = slopes(problem, checked)?;
     let start = SVector::<Complex<f64>, N>::from_fn(|pole, _| {
-        checked.offsets[pole] / problem.reference(pole)
+        checked.offsets[pole] / problem.reference(problem.poles[pole])
     });
     let mut random = Sequence::new(0);
     let mut best = (worst(&start), SMatrix::<f64, N, P>::zeros());
@@ -113,7 +113,7 @@ fn slopes<const N: usize, const P: usize>(
             for column in 0..P {
                 let unit = last_place(checked.gain[(row, column)]);
                 slopes[(row, column)][pole] =
-                    -moved[row] * seen[column] * (unit / problem.reference(pole));
+                    -moved[row] * seen[column] * (unit / problem.reference(problem.poles[pole]));
             }
         }
     }
@@ -129,8 +129,9 @@ fn eigenvector<const N: usize>(
 ) -> Option<SVector<Complex<Extended>, N>> {
     let mut vector =
         SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)));
+    let distance = Eliminated::new(distance)?;
     for _ in 0..3 {
-        vector = normalised(&solve(distance, &vector)?, 0.0)?;
+        vector = normalised(&distance.solve(&vector), 0.0)?;
     }
     Some(vector)
 }

@@ -42,10 +42,11 @@ pub(crate) fn place<const N: usize>(
     }
     let mut wanted = Square::<Wide, N>::zeros();
     let mut exact = Square::<Wide, N>::zeros();
-    for (index, space) in spaces.iter().enumerate() {
+    for index in 0..N {
+        let (space, pole) = (&spaces[index], extend_complex(poles[index]));
         let vector = vectors.column(index).map(extend_complex::<Extended>);
         let vector = normalised(&(space * (adjoint(space) * vector)), 0.0)?;
-        let image = adjoint(&range) * (shifted(&transposed, extend_complex(poles[index])) * vector);
+        let image = adjoint(&range) * (shifted(&transposed, pole) * vector);
         exact.set_column(index, &vector);
         wanted.set_column(index, &image);
     }
@@ -65,13 +66,14 @@ fn eigenvectors<const N: usize>(
     rank: usize,
 ) -> Option<Square<Wide, N>> {
     let mut conditions = Square::<Wide, N>::zeros();
-    for index in rank..N {
-        conditions.set_column(index - rank, &(adjoint(distance) * range.column(index)));
+    let outside = range.column_iter().skip(rank);
+    for (mut condition, direction) in conditions.column_iter_mut().zip(outside) {
+        condition.copy_from(&(adjoint(distance) * direction));
     }
     let basis = complete(&conditions, N - rank)?;
     let mut space = Square::<Wide, N>::zeros();
-    for index in 0..rank {
-        space.set_column(index, &basis.column(N - rank + index));
+    for (mut vector, free) in space.column_iter_mut().zip(basis.column_iter().skip(N - rank)) {
+        vector.copy_from(&free);
     }
     Some(space)
 }
@@ -86,15 +88,19 @@ fn insensitive<const N: usize>(
     let mut best: Option<(f64, Square<Narrow, N>)> = None;
     for start in 0..STARTS {
         let Some(mut vectors) = anywhere(&spaces, pair.rank, poles, start) else { continue };
+        let mut inverted = inverse(&vectors);
         for _ in 0..SWEEPS {
-            let Some(sensitivity) = sensitivity(&vectors) else { break };
+            let Some(current) = inverted else { break };
+            // By how much a change of A or L can move a pole.
+            let sensitivity = norm(&current.transpose());
+            if !sensitivity.is_finite() {
+                break;
+            }
             let improved = best.as_ref().is_none_or(|(least, _)| sensitivity < *least);
             if improved {
                 best = Some((sensitivity, vectors));
             }
-            if sweep(&mut vectors, &spaces, poles).is_none() {
-                break;
-            }
+            inverted = sweep(&mut vectors, current, &spaces, poles);
         }
     }
     best.map(|(_, vectors)| vectors)
@@ -112,9 +118,8 @@ fn anywhere<const N: usize>(
     for index in 0..N {
         let real = poles[index].im == 0.0;
         let mut mixture = SVector::<Narrow, N>::zeros();
-        for row in 0..rank {
-            mixture[row] =
-                Complex { re: random.next(), im: if real { 0.0 } else { random.next() } };
+        for weight in mixture.iter_mut().take(rank) {
+            *weight = Complex { re: random.next(), im: if real { 0.0 } else { random.next() } };
         }
         let vector = normalised(&(spaces[index] * mixture), 0.0)?;
         set(&mut vectors, index, &vector, poles);
@@ -122,18 +127,24 @@ fn anywhere<const N: usize>(
     Some(vectors)
 }
 
-/// Turns every vector, within its space, to where it is farthest from the plane of all others.
+/// Turns every vector, within its space, to where it is farthest from the plane of all others. Takes and answers
+/// with the inverse of the vectors.
 fn sweep<const N: usize>(
     vectors: &mut Square<Narrow, N>,
+    mut inverted: Square<Narrow, N>,
     spaces: &[Square<Narrow, N>; N],
     poles: &[Narrow; N],
-) -> Option<()> {
+) -> Option<Square<Narrow, N>> {
     for index in 0..N {
-        let normal = inverse(vectors)?.row(index).map(Number::conjugate).transpose();
+        if is_second(index, poles) {
+            continue;
+        }
+        let normal = inverted.row(index).map(Number::conjugate).transpose();
         let projected = spaces[index] * (adjoint(&spaces[index]) * normal);
         set(vectors, index, &normalised(&projected, 0.0)?, poles);
+        inverted = inverse(vectors)?;
     }
-    Some(())
+    Some(inverted)
 }
 
 /// Where the pole is the second of a pair nothing, as the first has set both vectors.
@@ -143,19 +154,22 @@ fn set<const N: usize>(
     vector: &SVector<Narrow, N>,
     poles: &[Narrow; N],
 ) {
-    let real = poles[index].im == 0.0;
-    // Complex poles come last and in pairs: the second has an odd number of them before it.
-    let before = poles.iter().take(index).filter(|pole| pole.im != 0.0).count();
-    if real || before % 2 == 0 {
-        vectors.set_column(index, vector);
+    if is_second(index, poles) {
+        return;
     }
-    if !real && before % 2 == 0 && index + 1 < N {
-        vectors.set_column(index + 1, &vector.map(Number::conjugate));
+    let mut columns = vectors.data.0.iter_mut().skip(index);
+    if let Some(first) = columns.next() {
+        [*first] = vector.data.0;
+    }
+    if is_second(index + 1, poles)
+        && let Some(second) = columns.next()
+    {
+        [*second] = vector.map(Number::conjugate).data.0;
     }
 }
 
-/// ‖X⁻¹‖ for columns of length 1: by how much a change of A or L can move a pole.
-fn sensitivity<const N: usize>(vectors: &Square<Narrow, N>) -> Option<f64> {
-    let size = norm(&inverse(vectors)?.transpose());
-    size.is_finite().then_some(size)
+/// Whether a pole is the second of a conjugate pair: at an odd place among the complex ones, which come last.
+fn is_second<const N: usize>(index: usize, poles: &[Narrow; N]) -> bool {
+    poles.get(index).is_some_and(|pole| pole.im != 0.0)
+        && poles.iter().take(index).filter(|pole| pole.im != 0.0).count() % 2 == 1
 }

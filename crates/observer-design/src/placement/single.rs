@@ -22,23 +22,25 @@ pub(crate) fn place<const N: usize>(
     let mut basis = Square::<Extended, N>::zeros();
     let mut hessenberg = Square::<Extended, N>::zeros();
     let mut product = length(&first);
-    basis.set_column(0, &normalised(&first, 0.0)?);
+    let mut direction = normalised(&first, 0.0)?;
     for column in 0..N {
-        let mut vector = transposed * basis.column(column);
+        [basis.data.0[column]] = direction.data.0;
+        let mut vector = transposed * direction;
         // Twice, as once leaves rounding behind.
         for _ in 0..2 {
-            for row in 0..=column {
-                let base = basis.column(row).into_owned();
+            let parts = &mut hessenberg.data.0[column];
+            for (&base, sum) in basis.data.0.iter().zip(parts).take(column + 1) {
+                let base = SVector::from(base);
                 let part = inner(&base, &vector);
                 vector -= base * part;
-                hessenberg[(row, column)] += part;
+                *sum += part;
             }
         }
         if column + 1 < N {
             let next = length(&vector);
             product *= next;
             hessenberg[(column + 1, column)] = next;
-            basis.set_column(column + 1, &normalised(&vector, 0.0)?);
+            direction = normalised(&vector, 0.0)?;
         }
     }
     let mut gain = Square::<Extended, N>::zeros();
@@ -91,11 +93,9 @@ pub(crate) fn through_a_mixture<const N: usize>(
     let mut first = Square::<Extended, N>::zeros();
     let mut mixture = SVector::<Extended, N>::zeros();
     let size = if attempt == 0 { 0.0 } else { norm(&pair.dynamics) / pair.outputs_norm() };
-    for column in 0..pair.rank {
-        mixture[column] = Extended::from(random.next());
-        for row in 0..N {
-            first[(row, column)] = Extended::from(size * random.next());
-        }
+    for (weight, mut column) in mixture.iter_mut().zip(first.column_iter_mut()).take(pair.rank) {
+        *weight = Extended::from(random.next());
+        column.apply(|value| *value = Extended::from(size * random.next()));
     }
     let dynamics = pair.dynamics - first * pair.outputs;
     let mut output = Square::<Extended, N>::zeros();

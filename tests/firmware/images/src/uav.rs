@@ -5,7 +5,7 @@ use kestirim_luenberger::{Plant, PredictorGains};
 use nalgebra::{Matrix3x4, Matrix4, Matrix4x2, Matrix4x3};
 
 /// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch (rad). Plant P2, continuous.
-const A: Matrix4<f64> = Matrix4::new(
+pub const A: Matrix4<f64> = Matrix4::new(
     -1.79,
     1.0,
     -0.0076,
@@ -24,12 +24,12 @@ const A: Matrix4<f64> = Matrix4::new(
     0.0,
 );
 /// Inputs: elevator (rad), throttle.
-const B: Matrix4x2<f64> = Matrix4x2::new(0.3, -0.158, -100.0, -3.0, 0.3, 45.0, 0.0, 0.0);
+pub const B: Matrix4x2<f64> = Matrix4x2::new(0.3, -0.158, -100.0, -3.0, 0.3, 45.0, 0.0, 0.0);
 /// Outputs: pitch rate, airspeed, pitch.
-const C: Matrix3x4<f64> =
+pub const C: Matrix3x4<f64> =
     Matrix3x4::new(0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
 /// Poles of the observer, 1/s.
-const POLES: [f64; 4] = [-3.0, -3.5, -4.0, -4.5];
+pub const POLES: [f64; 4] = [-3.0, -3.5, -4.0, -4.5];
 /// Where the observer starts.
 pub const START: [f32; 4] = [0.1, 0.1, 35.0, 0.4];
 
@@ -89,7 +89,8 @@ pub const fn gains(interval: f64) -> PredictorGains<4, 2, 3> {
     PredictorGains::new(&plant, &gain(&plant, interval))
 }
 
-const fn exp(x: f64) -> f64 {
+/// eˣ of a small x, by its series.
+pub const fn exp(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
     let mut order = 1;
     while order < 20 {

@@ -8,6 +8,10 @@ use crate::line::line_of_group;
 use crate::stack::Painted;
 use crate::statistics::Statistics;
 
+/// How deep into the stack a step of an estimator reaches at most, in bytes. All of it is painted for
+/// every step, so more takes longer.
+const REACH: usize = 8 * 1024;
+
 /// What kind of step it was: each kind has its own statistics.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Class {
@@ -40,6 +44,7 @@ struct Cost {
 /// Measures steps; an empty step costs nothing.
 pub struct Meter {
     counter: Counter,
+    reach: usize,
     empty: Cost,
     classes: [Statistics; Class::ALL.len()],
     stack: u32,
@@ -54,16 +59,21 @@ impl Default for Meter {
 impl Meter {
     /// Measures the empty step, to subtract it from all that follow.
     pub fn new() -> Self {
+        Self::reaching(REACH)
+    }
+
+    /// The same, for steps that reach so many bytes into the stack.
+    pub fn reaching(reach: usize) -> Self {
         let mut counter = Counter::new();
-        let (_, empty) = cost_of(&mut counter, &mut || Class::Predict);
-        Self { counter, empty, classes: [Statistics::EMPTY; Class::ALL.len()], stack: 0 }
+        let (_, empty) = cost_of(&mut counter, reach, &mut || Class::Predict);
+        Self { counter, reach, empty, classes: [Statistics::EMPTY; Class::ALL.len()], stack: 0 }
     }
 
     /// Runs and measures one step.
     ///
     /// Fails the image if the step was too long for the counter or too deep for the paint.
     pub fn measure(&mut self, mut step: impl FnMut() -> Class) {
-        let (class, cost) = cost_of(&mut self.counter, &mut step);
+        let (class, cost) = cost_of(&mut self.counter, self.reach, &mut step);
         if let Some(statistics) = self.classes.get_mut(class as usize) {
             statistics.add(cost.instructions.saturating_sub(self.empty.instructions));
         }
@@ -98,9 +108,9 @@ impl<F: FnMut() -> Class> Step for F {
 /// The one place where steps are called, whichever step it is: behind a reference that the optimiser
 /// cannot see through, so that every call costs exactly the same around the step itself.
 #[inline(never)]
-fn cost_of(counter: &mut Counter, step: &mut dyn Step) -> (Class, Cost) {
+fn cost_of(counter: &mut Counter, reach: usize, step: &mut dyn Step) -> (Class, Cost) {
     let step = black_box(step);
-    let paint = Painted::below();
+    let paint = Painted::below(reach);
     counter.start();
     let class = step.run();
     let Some(instructions) = counter.elapsed() else {

@@ -5,10 +5,6 @@
 use core::arch::asm;
 use core::ptr;
 
-/// How far below the stack pointer is painted, in bytes, where there is that much free memory: the
-/// deepest call that can be measured. Painting is done for every step, so more takes longer.
-const REACH: usize = 8 * 1024;
-
 const PAINT: u32 = 0xC0DE_7E57;
 const WORD: usize = size_of::<u32>();
 
@@ -19,12 +15,12 @@ pub(crate) struct Painted {
 }
 
 impl Painted {
-    /// Paints the free stack below the caller's frame. Inlined, so that the stack pointer is the
-    /// caller's.
+    /// Paints the free stack below the caller's frame, `reach` bytes of it where there is that much.
+    /// Inlined, so that the stack pointer is the caller's.
     #[inline(always)]
-    pub(crate) fn below() -> Self {
+    pub(crate) fn below(reach: usize) -> Self {
         let top = stack_pointer();
-        let bottom = end_of_statics().max(top.saturating_sub(REACH));
+        let bottom = end_of_statics().max(top.saturating_sub(reach));
         for address in (bottom..top).step_by(WORD) {
             let word = ptr::with_exposed_provenance_mut::<u32>(address);
             #[allow(unsafe_code)] // Free memory: between the static variables and the stack.

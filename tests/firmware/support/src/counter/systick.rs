@@ -1,21 +1,12 @@
-//! Cortex-M: the SysTick, which counts 24 bits down. (The cycle counter of a Cortex-M4 would be
-//! nicer; QEMU does not have it.)
+//! Any Cortex-M: the SysTick, which counts 24 bits down.
 
 use cortex_m::peripheral::{SYST, syst::SystClkSource};
 
 const FULL: u32 = 0x00FF_FFFF;
 
 /// Instructions = ticks · `FACTOR` / 2^`SHIFT`: 62.5 ns a tick, 256 ns an instruction.
-#[cfg(board = "microbit")]
 const FACTOR: u32 = 125;
-#[cfg(board = "microbit")]
 const SHIFT: u32 = 9;
-
-/// Instructions = ticks · `FACTOR` / 2^`SHIFT`: 40 ns a tick, 256 ns an instruction.
-#[cfg(board = "mps2-an386")]
-const FACTOR: u32 = 5;
-#[cfg(board = "mps2-an386")]
-const SHIFT: u32 = 5;
 
 /// The running SysTick.
 pub(crate) struct Counter {
@@ -43,8 +34,7 @@ impl Counter {
         self.start = SYST::get_current();
     }
 
-    /// Instructions since [`Counter::start`]; `None` if they were too many to count (above 4.0
-    /// million on the micro:bit, 2.6 million on the MPS2).
+    /// Instructions since [`Counter::start`]; `None` above 4.0 million.
     #[inline(always)]
     pub(crate) fn elapsed(&mut self) -> Option<u32> {
         let end = SYST::get_current();
