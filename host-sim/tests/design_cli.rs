@@ -125,7 +125,6 @@ fn a_file_that_holds_no_cases_is_refused_with_a_sentence() {
         ("[]", "line 1: expected a JSON object of cases: invalid type: sequence, expected a map"),
         ("{\"dare\": [\n{\"id\": 1,}]}", "line 2: expected a JSON object of cases: trailing comma"),
         ("{\"dare\": {}}", "dare: expected a list of cases"),
-        ("{\"care\": []}", "expected one of pole_placement, must_reject, dare,"),
     ] {
         let file = desk.file("cases.json", contents);
         let sentence = refusal(&["design", "--input", &file, "--json"]);
@@ -138,6 +137,18 @@ fn a_file_that_holds_no_cases_is_refused_with_a_sentence() {
         fs::read_to_string(desk.path("cases.json")).expect("it is still there"),
         cases().to_string()
     );
+}
+
+#[test]
+fn a_file_without_a_section_has_no_answers() {
+    let output = host_sim(&[
+        "design",
+        "--input",
+        &Desk::new().file("cases.json", "{\"care\": []}"),
+        "--json",
+    ]);
+    assert!(text(&output.stderr).contains("expected one of pole_placement, must_reject, dare,"));
+    assert_eq!(json(&output), value!({}));
 }
 
 #[test]

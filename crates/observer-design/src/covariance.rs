@@ -28,10 +28,11 @@ pub(crate) fn checked<const N: usize>(
     for row in 0..N {
         for column in 0..N {
             let (here, there) = (covariance[(row, column)], covariance[(column, row)]);
-            if (here - there).abs() > NEGLIGIBLE * here.abs().max(there.abs()) {
+            let scale = scales[row] * scales[column];
+            let rounding = if scale > 0.0 { scale } else { here.abs().max(there.abs()) };
+            if (here - there).abs() > NEGLIGIBLE * rounding {
                 return Err(Error::NotSymmetric);
             }
-            let scale = scales[row] * scales[column];
             correlation[(row, column)] = if scale > 0.0 { here / scale } else { 0.0 };
             if covariance[(row, row)] < 0.0 || (scale == 0.0 && here != 0.0) {
                 return Err(Error::NotPositive);

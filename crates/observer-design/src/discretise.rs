@@ -1,6 +1,7 @@
 //! From continuous to discrete time.
 
 use crate::Error;
+use crate::covariance;
 use crate::extended::Extended;
 use crate::number::{Square, extend, finite, norm, round, symmetrised};
 use crate::solve::Eliminated;
@@ -52,12 +53,13 @@ pub fn tustin<const N: usize, const M: usize>(
 /// `∫ e^(A s) Qc e^(Aᵀ s) ds` (Van Loan 1978).
 ///
 /// # Errors
-/// [`Error::Interval`] or [`Error::NotFinite`].
+/// [`Error::Interval`], [`Error::NotFinite`]; [`Error::NotSymmetric`] or [`Error::NotPositive`] of the density.
 pub fn discrete_noise<const N: usize>(
     a: &SMatrix<f64, N, N>,
     density: &SMatrix<f64, N, N>,
     interval: f64,
 ) -> Result<SMatrix<f64, N, N>, Error> {
+    covariance::checked(density)?;
     let noise = round(&symmetrised(&Flow::new(a, density, interval)?.noise));
     if finite(&noise) { Ok(noise) } else { Err(Error::NotFinite) }
 }

@@ -4,8 +4,12 @@ use core::ops::Range;
 
 use crate::Error;
 use crate::extended::Extended;
-use crate::number::{Number, Real, Square, complex, extend, finite, norm, round_complex};
-use nalgebra::{Complex, SMatrix};
+use crate::number::{
+    Number, Real, Square, complex, extend, finite, norm, power_of_two, round_complex, shifted,
+};
+use crate::orthonormal::normalised;
+use crate::solve::Eliminated;
+use nalgebra::{Complex, SMatrix, SVector};
 
 /// Steps a single eigenvalue may take.
 const MOST_STEPS: u32 = 200;
@@ -48,10 +52,28 @@ pub(crate) fn eigenvalues_extended<const N: usize>(
     Ok(values)
 }
 
+/// An eigenvector of length 1, by inverse iteration a little beside its eigenvalue.
+pub(crate) fn eigenvector<const N: usize>(
+    matrix: &Square<Complex<Extended>, N>,
+    eigenvalue: Complex<Extended>,
+) -> Option<SVector<Complex<Extended>, N>> {
+    // Exactly at the eigenvalue there would be nothing to divide by.
+    let beside = eigenvalue + Complex::from(Extended::from(1e-24));
+    let distance = Eliminated::new(&shifted(matrix, beside))?;
+    let mut vector =
+        SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)));
+    for _ in 0..3 {
+        vector = normalised(&distance.solve(&vector), 0.0)?;
+    }
+    Some(vector)
+}
+
 fn spectrum<R: Real, const N: usize>(
     matrix: &Square<Complex<R>, N>,
 ) -> Result<[Complex<R>; N], Error> {
-    let mut h = *matrix;
+    // Scaled by a power of two, so that no square overflows or vanishes.
+    let scale = power_of_two(norm(matrix));
+    let mut h = matrix.map(|value| value.scaled(R::from(1.0 / scale)));
     reduce(&mut h);
     let tiny = norm(&h) * R::EPSILON * R::EPSILON;
     for end in (2..=N).rev() {
@@ -77,7 +99,7 @@ fn spectrum<R: Real, const N: usize>(
     }
     let mut values = [Complex::from(R::from(0.0)); N];
     for (index, value) in values.iter_mut().enumerate() {
-        *value = element(&h, index, index);
+        *value = element(&h, index, index).scaled(R::from(scale));
     }
     Ok(values)
 }

@@ -60,13 +60,13 @@ impl fmt::Display for Mode {
     }
 }
 
-/// Rounded to six digits of `size`; what rounding has made of zero is zero again.
+/// Rounded to eight digits of `size`; what rounding has made of zero is zero again.
 fn legible(value: f64, size: f64) -> f64 {
-    if size < 1e-12 {
+    if size < 1e-15 {
         return 0.0;
     }
     // Ten to a positive power is exact, its reciprocal is not.
-    let digits = 5.0 - libm::floor(libm::log10(size));
+    let digits = 7.0 - libm::floor(libm::log10(size));
     let power = libm::exp10(digits.abs());
     let rounded = if digits < 0.0 {
         libm::round(value / power) * power
@@ -116,6 +116,6 @@ impl Mode {
     /// The same mode, found twice, or the other of a conjugate pair.
     pub(crate) fn is_twin_of(&self, other: &Self) -> bool {
         let distance = libm::hypot(self.re - other.re, self.im.abs() - other.im.abs());
-        distance <= 1e-6 * libm::hypot(self.re, self.im).max(1e-6)
+        self.state == other.state && distance <= 1e-6 * libm::hypot(self.re, self.im).max(1e-6)
     }
 }

@@ -84,7 +84,7 @@ impl Extended {
         root + (self - root * root) / (root + root)
     }
 
-    fn renormalised((high, low): (f64, f64)) -> Self {
+    fn from_parts((high, low): (f64, f64)) -> Self {
         Self { high, low }
     }
 
@@ -121,7 +121,7 @@ impl Add for Extended {
         let (high, high_error) = two_sum(self.high, other.high);
         let (low, low_error) = two_sum(self.low, other.low);
         let (high, rest) = fast_two_sum(high, high_error + low);
-        Self::renormalised(fast_two_sum(high, low_error + rest))
+        Self::from_parts(fast_two_sum(high, low_error + rest))
     }
 }
 
@@ -141,7 +141,7 @@ impl Mul for Extended {
             return Self::from(high);
         }
         let cross = self.high * other.low + self.low * other.high;
-        Self::renormalised(fast_two_sum(high, error + cross))
+        Self::from_parts(fast_two_sum(high, error + cross))
     }
 }
 
@@ -155,7 +155,7 @@ impl Div for Extended {
         let second = rest.high / other.high;
         let rest = rest - other * Self::from(second);
         let third = rest.high / other.high;
-        Self::renormalised(fast_two_sum(first, second)) + Self::from(third)
+        Self::from_parts(fast_two_sum(first, second)) + Self::from(third)
     }
 }
 

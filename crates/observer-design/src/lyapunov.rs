@@ -2,10 +2,11 @@
 
 use crate::Error;
 use crate::covariance::checked;
-use crate::eigenvalues::eigenvalues_extended;
+use crate::eigenvalues::{eigenvalues_extended, eigenvector};
 use crate::error::Mode;
 use crate::extended::Extended;
-use crate::number::{Square, extend, finite, norm, round, round_complex, symmetrised};
+use crate::number::{Square, complex, extend, finite, norm, round, round_complex, symmetrised};
+use crate::observability::dominant;
 use nalgebra::{Complex, SMatrix};
 
 /// Doublings after which the slowest mode a double can hold has settled.
@@ -78,7 +79,8 @@ pub(crate) fn stable<const N: usize>(f: &Square<Extended, N>) -> Result<(), Erro
     match values.iter().max_by(|a, b| radius(a).total_cmp(&radius(b))) {
         // A radius that is not a number does not pass.
         Some(largest) if radius(largest).total_cmp(&1.0).is_ge() => {
-            Err(Error::Unstable(Mode::new(round_complex(*largest), 0)))
+            let state = eigenvector(&complex(f), *largest).map_or(0, |vector| dominant(&vector));
+            Err(Error::Unstable(Mode::new(round_complex(*largest), state)))
         }
         _ => Ok(()),
     }

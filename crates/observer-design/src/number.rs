@@ -166,3 +166,12 @@ pub(crate) fn symmetrised<const N: usize>(matrix: &Square<Extended, N>) -> Squar
     let half = Extended::from(0.5);
     (matrix + matrix.transpose()).map(|value| value * half)
 }
+
+/// The power of two below a size; 1 where there is none.
+pub(crate) fn power_of_two(size: f64) -> f64 {
+    if size > 0.0 && size.is_finite() {
+        libm::exp2(libm::floor(libm::log2(size)).clamp(-1000.0, 1000.0))
+    } else {
+        1.0
+    }
+}

@@ -84,12 +84,15 @@ fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Er
     }
     mean /= Extended::from(N as f64);
     let centred = shifted(&pair.dynamics, mean);
-    let size = |norm: f64| if norm > 0.0 { norm } else { 1.0 };
-    let unit = Extended::from(1.0 / size(norm(&centred)));
+    // A multiple of the identity is nothing once it is centred, but rounded like any other matrix.
+    let size = |norm: f64, otherwise: f64| if norm > 0.0 { norm } else { otherwise };
+    let whole = norm(&pair.dynamics);
+    let spread = size(norm(&centred), size(whole, 1.0));
+    let unit = Extended::from(1.0 / spread);
     let dynamics = complex(&centred.map(|value| value * unit));
-    let output_unit = Extended::from(1.0 / size(pair.outputs_norm()));
+    let output_unit = Extended::from(1.0 / size(pair.outputs_norm(), 1.0));
     let outputs = complex(&pair.outputs.map(|value| value * output_unit));
-    let rounding = 4.0 * f64::EPSILON * (1.0 + norm(&pair.dynamics) / size(norm(&centred)));
+    let rounding = 4.0 * f64::EPSILON * (1.0 + whole / spread);
 
     let mut sights = [(f64::INFINITY, None); N];
     for (seen, eigenvalue) in sights.iter_mut().zip(eigenvalues_extended(&pair.dynamics)?) {
@@ -146,7 +149,8 @@ fn visibility<R: Real, const N: usize>(
     best
 }
 
-fn dominant<R: Real, const N: usize>(vector: &SVector<Complex<R>, N>) -> usize {
+/// The state in which a mode is seen most.
+pub(crate) fn dominant<R: Real, const N: usize>(vector: &SVector<Complex<R>, N>) -> usize {
     let sizes = vector.iter().map(|value| value.norm_sqr().rounded()).enumerate();
     sizes.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(state, _)| state)
 }

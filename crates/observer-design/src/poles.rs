@@ -86,7 +86,7 @@ pub(crate) fn pair_up<const N: usize>(distances: &[[f64; N]; N]) -> [usize; N] {
     partners.map(|partner| partner.unwrap_or(0))
 }
 
-/// What the error of a pole is measured by: its own size, or that of the system if it should be zero.
-pub(crate) fn reference(pole: Complex<f64>, system: f64) -> f64 {
-    if size(pole) > ZERO * system { size(pole) } else { system }
+/// Whether a pole is as good as zero, beside the size of the system.
+pub(crate) fn is_nearly_zero(pole: Complex<f64>, system: f64) -> bool {
+    size(pole) <= ZERO * system
 }

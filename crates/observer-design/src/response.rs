@@ -3,7 +3,9 @@
 use crate::Error;
 use crate::discretise::zero_order_hold;
 use crate::extended::Extended;
-use crate::number::{complex, extend, extend_complex, finite, round_complex, shifted};
+use crate::number::{
+    complex, extend, extend_complex, finite, power_of_two, round_complex, shifted,
+};
 use crate::solve::solve;
 use nalgebra::{Complex, SMatrix, SVector};
 
@@ -39,7 +41,9 @@ impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
         let resolvent = -shifted(&complex(&extend(&self.a)), extend_complex::<Extended>(s));
         let states = solve(&resolvent, &complex(&extend(&self.b))).ok_or(Error::Singular)?;
         let response = complex(&extend(&self.c)) * states + complex(&extend(&self.d));
-        Ok(response.map(round_complex))
+        let response = response.map(round_complex);
+        let finite = response.iter().all(|gain| gain.re.is_finite() && gain.im.is_finite());
+        if finite { Ok(response) } else { Err(Error::NotFinite) }
     }
 
     /// G(jω): modulus and argument are what a Bode diagram shows, its [`singular_values`] the least and largest
@@ -126,7 +130,10 @@ const SWEEPS: u32 = 30;
 pub fn singular_values<const P: usize, const M: usize>(
     matrix: &SMatrix<Complex<f64>, P, M>,
 ) -> [f64; M] {
-    let mut columns = *matrix;
+    // Scaled by a power of two, so that no square overflows or vanishes.
+    let largest = matrix.iter().map(|value| value.re.abs().max(value.im.abs())).fold(0.0, f64::max);
+    let scale = power_of_two(largest);
+    let mut columns = matrix.map(|value| value / scale);
     for _ in 0..SWEEPS {
         let mut rotated = false;
         for first in 0..M {
@@ -140,7 +147,7 @@ pub fn singular_values<const P: usize, const M: usize>(
     }
     let mut values = [0.0; M];
     for (index, value) in values.iter_mut().enumerate() {
-        *value = libm::sqrt(columns.column(index).iter().map(Complex::norm_sqr).sum());
+        *value = scale * libm::sqrt(columns.column(index).iter().map(Complex::norm_sqr).sum());
     }
     values.sort_unstable_by(|a, b| b.total_cmp(a));
     values

@@ -28,7 +28,7 @@ pub struct Riccati<const N: usize, const P: usize> {
     pub doublings: u32,
 }
 
-const MOST_DOUBLINGS: u32 = 40;
+const MOST_DOUBLINGS: u32 = 64;
 /// A mode this close to the unit circle is taken to lie on it.
 const ON_THE_CIRCLE: f64 = 1e-10;
 /// The last step of a solution, beside the posterior: the square of it counts.
@@ -106,7 +106,7 @@ impl<const N: usize> Equation<N> {
         let size = norm(&self.g);
         let doubt =
             Square::<Extended, N>::identity().map(|value| value * Extended::from(DOUBT / size));
-        let found = self.from(&doubt).and_then(|moved| moved.doubled(self, &doubt));
+        let found = self.beside(&doubt).and_then(|moved| moved.doubled(self, &doubt));
         let (solution, doublings) = found.ok_or(Error::NotConverged)?;
         if self.settles(&solution) { Ok((solution, doublings)) } else { Err(Error::NotConverged) }
     }
@@ -139,7 +139,7 @@ impl<const N: usize> Equation<N> {
     }
 
     /// The same equation for X − Y.
-    fn from(&self, y: &Square<Extended, N>) -> Option<Self> {
+    fn beside(&self, y: &Square<Extended, N>) -> Option<Self> {
         let both = Eliminated::new(&(Square::identity() + self.g * y))?;
         let (f, g) = (both.solve(&self.f), both.solve(&self.g));
         let h = self.f.transpose() * y * f + self.h - y;

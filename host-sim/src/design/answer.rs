@@ -28,9 +28,17 @@ impl Answered {
         Self { id, answer }
     }
 
-    /// The name of the case, for people.
+    /// The name of the case, for people: whatever it holds, it stays on its line.
     pub fn name(&self) -> String {
-        self.id.as_str().map_or_else(|| self.id.to_string(), str::to_owned)
+        let name = self.id.as_str().map_or_else(|| self.id.to_string(), str::to_owned);
+        let legible = |character: char| !character.escape_debug().to_string().starts_with("\\u");
+        name.chars()
+            .map(
+                |character| {
+                    if legible(character) && !character.is_control() { character } else { '?' }
+                },
+            )
+            .collect()
     }
 }
 

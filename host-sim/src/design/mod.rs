@@ -39,6 +39,11 @@ impl Design {
     pub fn run(&self) -> Result<(), Error> {
         output::refuse_overwriting("--rust", self.rust.as_deref(), [&self.input])?;
         let report = answers(&self.input)?;
+        if report.sections.is_empty() {
+            let names = answer::SECTIONS.map(|(name, _)| name).join(", ");
+            let warning = format!("expected one of {names}, found none");
+            output::warn_of(&self.input, &[warning]);
+        }
         if let Some(path) = &self.rust {
             output::write_file(path, |file| rust::write(file, &report))?;
         }
@@ -62,10 +67,6 @@ pub fn answers(path: &Path) -> Result<Report, Error> {
             .as_array()
             .ok_or_else(|| file.error(format!("{name}: expected a list of cases")))?;
         sections.push((name, list.iter().map(|value| Answered::new(value, answer)).collect()));
-    }
-    if sections.is_empty() {
-        let names: Vec<_> = answer::SECTIONS.iter().map(|(name, _)| *name).collect();
-        return Err(file.error(format!("expected one of {}, found none", names.join(", "))));
     }
     Ok(Report { sections })
 }

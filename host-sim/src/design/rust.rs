@@ -14,7 +14,7 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
     let mut used = BTreeSet::new();
     for (section, answers) in &report.sections {
         for answered in answers {
-            let id = answered.name().replace(char::is_control, " ");
+            let id = answered.name();
             let mut constant = |suffix: &str, what: &str, matrix: &DMatrix<f64>| {
                 let name =
                     unique(&format!("{}_{suffix}", constant_case(&answered.name())), &mut used);

@@ -10,7 +10,7 @@ use crate::extended::Extended;
 use crate::number::{Square, extend, extend_complex, finite, norm, round, round_complex};
 use crate::observability::least_visible;
 use crate::pair::{Merging, Pair};
-use crate::poles::{arrange, multiplicity, pair_up, reference, size};
+use crate::poles::{arrange, is_nearly_zero, multiplicity, pair_up, size};
 use nalgebra::{Complex, SMatrix};
 
 /// A gain and what it does.
@@ -85,8 +85,8 @@ pub fn place<const N: usize, const P: usize>(
     } else {
         problem.through_one_output()?
     };
-    if checked.error.total_cmp(&HOPELESS).is_gt() {
-        return Err(Error::IllConditioned(checked.error));
+    if checked.loss.total_cmp(&HOPELESS).is_gt() {
+        return Err(Error::IllConditioned(checked.loss));
     }
     let mut in_order = [PlacedPole { re: 0.0, im: 0.0 }; N];
     for (pole, &place) in checked.placed.iter().zip(&origin) {
@@ -107,6 +107,8 @@ struct Checked<const N: usize, const P: usize> {
     offsets: [Complex<f64>; N],
     /// By how much the worst is off beside its size.
     error: f64,
+    /// The same, but of poles that are as good as zero beside the size of the system.
+    loss: f64,
 }
 
 struct Problem<'a, const N: usize, const P: usize> {
@@ -139,8 +141,13 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
             |pole| values.map(|value| round_complex(value - extend_complex::<Extended>(pole)));
         let offsets = self.poles.map(offsets_from);
         let partners = pair_up(&offsets.map(|row| row.map(size)));
-        let mut checked =
-            Checked { gain: *gain, placed: *self.poles, offsets: *self.poles, error: 0.0 };
+        let mut checked = Checked {
+            gain: *gain,
+            placed: *self.poles,
+            offsets: *self.poles,
+            error: 0.0,
+            loss: 0.0,
+        };
         for wanted in 0..N {
             let partner = partners[wanted];
             if let (Some(&value), Some(&offset)) =
@@ -148,8 +155,11 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
             {
                 checked.placed[wanted] = round_complex(value);
                 checked.offsets[wanted] = offset;
-                checked.error =
-                    checked.error.max(size(offset) / self.reference(self.poles[wanted]));
+                let pole = self.poles[wanted];
+                let error = size(offset) / self.reference(pole);
+                let nearly_zero = is_nearly_zero(pole, self.system());
+                let loss = if nearly_zero { size(offset) / self.system() } else { error };
+                (checked.error, checked.loss) = (checked.error.max(error), checked.loss.max(loss));
             }
         }
         Ok(checked)
@@ -160,8 +170,13 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
         self.pair.balanced(&(extend(self.a) - extend(gain) * extend(self.c)))
     }
 
+    /// What the error of a pole is measured by: its own size, or that of the system if it should be zero.
     fn reference(&self, pole: Complex<f64>) -> f64 {
-        reference(pole, norm(&self.pair.dynamics).max(f64::MIN_POSITIVE))
+        if size(pole) > 0.0 { size(pole) } else { self.system() }
+    }
+
+    fn system(&self) -> f64 {
+        norm(&self.pair.dynamics).max(f64::MIN_POSITIVE)
     }
 
     /// Poles wanted more often than there are outputs: a first gain makes all modes visible in one combination of

@@ -4,11 +4,10 @@
 //! as many: among the doubles around the exact gain some place the poles far better than the nearest ones.
 
 use super::{Checked, Problem};
+use crate::eigenvalues::eigenvector;
 use crate::extended::Extended;
-use crate::number::{Square, complex, extend, extend_complex, round_complex, shifted};
-use crate::orthonormal::normalised;
+use crate::number::{complex, extend, extend_complex, round_complex};
 use crate::sequence::Sequence;
-use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
 
 /// Nothing to gain below this.
@@ -96,12 +95,9 @@ fn slopes<const N: usize, const P: usize>(
     let outputs = complex(&extend(problem.c));
     let mut slopes = Slopes::<N, P>::from_fn(|_, _| SVector::zeros());
     for pole in 0..N {
-        // A little beside the eigenvalue, so that the equations can be solved.
-        let beside =
-            extend_complex::<Extended>(checked.placed[pole]) + Complex::from(Extended::from(1e-24));
-        let distance = shifted(&closed, beside);
-        let right = eigenvector(&distance)?;
-        let left = eigenvector(&distance.transpose())?;
+        let eigenvalue = extend_complex(checked.placed[pole]);
+        let right = eigenvector(&closed, eigenvalue)?;
+        let left = eigenvector(&closed.transpose(), eigenvalue)?;
         let product = left
             .iter()
             .zip(right.iter())
@@ -121,17 +117,4 @@ fn slopes<const N: usize, const P: usize>(
         .iter()
         .all(|slope| slope.iter().all(|value| value.re.is_finite() && value.im.is_finite()));
     finite.then_some(slopes)
-}
-
-/// The vector that a nearly singular matrix all but extinguishes, by inverse iteration.
-fn eigenvector<const N: usize>(
-    distance: &Square<Complex<Extended>, N>,
-) -> Option<SVector<Complex<Extended>, N>> {
-    let mut vector =
-        SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)));
-    let distance = Eliminated::new(distance)?;
-    for _ in 0..3 {
-        vector = normalised(&distance.solve(&vector), 0.0)?;
-    }
-    Some(vector)
 }

@@ -26,6 +26,8 @@ pub struct Cell {
     pub outputs: Outputs,
     /// The noise.
     pub noise: Noise,
+    /// What the pilot does.
+    pub inputs: Inputs,
     /// Which part of the flight counts.
     pub window: Window,
     /// The estimators.
@@ -51,6 +53,8 @@ pub struct Row {
     pub outputs: Outputs,
     /// The noise.
     pub noise: Noise,
+    /// What the pilot does.
+    pub inputs: Inputs,
     /// Which part of the flight counts.
     pub window: Window,
     /// Which estimator.
@@ -82,17 +86,24 @@ pub fn cells() -> Vec<Cell> {
     let mut cells = Vec::new();
     for outputs in Outputs::ALL {
         for (window, kinds) in [(Window::Settled, &both[..1]), (Window::Whole, &both)] {
-            let (plant, kinds) = (Plant::P2, with(kinds));
-            cells.push(Cell { plant, outputs, noise: sensors, window, kinds });
+            let (plant, noise, kinds) = (Plant::P2, sensors, with(kinds));
+            cells.push(Cell { plant, outputs, noise, inputs: Inputs::Constant, window, kinds });
         }
     }
-    // As the thesis has it: noise of one size, and what the filter takes it for.
-    let (plant, outputs, noise) = (Plant::P2, Outputs::Full, Noise::EQUAL);
-    let kinds = with(&[1e-2, 1.0, 1e2].map(Kind::Ratio));
-    cells.push(Cell { plant, outputs, noise, window: Window::Settled, kinds });
+    // As the thesis has it: noise of one size, and what the filter takes it for; ten seconds from another start.
+    for (window, inputs) in [
+        (Window::Settled, Inputs::Constant),
+        (Window::Whole, Inputs::Constant),
+        (Window::Whole, Inputs::Sine),
+    ] {
+        let (plant, outputs, noise) = (Plant::P2, Outputs::Full, Noise::EQUAL);
+        let kinds = with(&[1e-2, 1.0, 1e2].map(Kind::Ratio));
+        cells.push(Cell { plant, outputs, noise, inputs, window, kinds });
+    }
     for plant in [Plant::P1, Plant::P3] {
-        let (outputs, kinds) = (Outputs::RateAirspeedPitch, with(&both[..1]));
-        cells.push(Cell { plant, outputs, noise: sensors, window: Window::Settled, kinds });
+        let (outputs, noise, kinds) = (Outputs::RateAirspeedPitch, sensors, with(&both[..1]));
+        let (inputs, window) = (Inputs::Constant, Window::Settled);
+        cells.push(Cell { plant, outputs, noise, inputs, window, kinds });
     }
     cells
 }
@@ -119,6 +130,7 @@ impl Cell {
                 plant: self.plant,
                 outputs: self.outputs,
                 noise: self.noise,
+                inputs: self.inputs,
                 window: self.window,
                 estimator: kind.name(),
                 family: kind.family(),
@@ -130,7 +142,8 @@ impl Cell {
         self.kinds.iter().enumerate().map(row).collect()
     }
 
-    fn predicted(&self, kind: &Kind) -> [f64; 4] {
+    /// RMSE of α, q, V, θ as predicted: from the Lyapunov equation when settled, else from its recursion.
+    pub fn predicted(&self, kind: &Kind) -> [f64; 4] {
         with_outputs!(self.outputs, predicted, self, kind)
     }
 
@@ -168,7 +181,7 @@ fn flights<T: Scalar<Accumulator: Sync> + Sync, const P: usize>(
     let fly = |index| {
         let mut flying: Vec<_> =
             estimators.iter().map(|it| (it.clone(), Outcome::default())).collect();
-        let samples = fly(plant, truth, Inputs::Constant, cell.noise, stream(seed, index));
+        let samples = fly(plant, truth, cell.inputs, cell.noise, stream(seed, index));
         for (number, sample) in samples.take(cell.settling() + SAMPLES).enumerate() {
             let measured = c * sample.y;
             for (estimator, outcome) in &mut flying {

@@ -156,8 +156,7 @@ mod tests {
     use super::*;
     use crate::random::stream;
     use crate::systems::uav::plant::Plant;
-    use crate::systems::uav::scenario::{INTERVAL_S, Inputs, NEAR, START, fly};
-    use kestirim_uav_longitudinal::full_state;
+    use crate::systems::uav::scenario::{INTERVAL_S, Inputs, START, fly};
 
     #[test]
     fn a_time_varying_filter_settles_at_the_steady_one() {

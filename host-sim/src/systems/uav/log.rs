@@ -82,6 +82,10 @@ pub fn read(path: &Path, names: &[&str]) -> Result<Flight, Error> {
             Ok(())
         },
     )?;
+    if samples.iter().flat_map(|sample| &sample.measured).all(Option::is_none) {
+        let problem = "expected measurements, found none in any line".to_owned();
+        return Err(Error::File { path: path.to_path_buf(), problem });
+    }
     let (interval_s, gaps) = regular(path, &samples)?;
     Ok(Flight { outputs, samples, interval_s, gaps })
 }
@@ -140,13 +144,21 @@ pub fn read_truth(path: &Path) -> Result<Truth, Error> {
             let mut states = [None; 4];
             for &(state, column) in columns {
                 if !row.text(column).is_empty() {
-                    states[state] = Some(row.number(STATE_COLUMNS[state], column)?);
+                    let value = row.number(STATE_COLUMNS[state], column)?;
+                    if value.abs() > LARGEST {
+                        let name = STATE_COLUMNS[state];
+                        return Err(row.line.error(format!("expected {name} below a million")));
+                    }
+                    states[state] = Some(value);
                 }
             }
-            truth.push((row.time_us(*t)?, states));
+            let t_us = row.time_us(*t)?;
+            if truth.last().is_some_and(|(last, _)| *last >= t_us) {
+                return Err(row.line.error("expected a later time than on the line before"));
+            }
+            truth.push((t_us, states));
             Ok(())
         },
     )?;
-    truth.sort_by_key(|(t, _)| *t);
     Ok(truth)
 }

@@ -13,6 +13,10 @@ use crate::text::{TextFile, printable};
 
 /// Names of the states, which are the columns of a log where a model has no C.
 pub const STATE_COLUMNS: [&str; 4] = ["alpha", "q", "V", "theta"];
+/// Steps of a discrete model that an interval of a log may take.
+const MOST_STEPS: f64 = 1e5;
+/// Columns of a log that no output can have.
+const TAKEN: [&str; 3] = ["t", "delta_e", "delta_t"];
 /// More outputs than states say nothing new.
 const MOST_OUTPUTS: usize = 4;
 
@@ -108,6 +112,15 @@ impl Model {
                 file.error(format!("expected one to {MOST_OUTPUTS} outputs, found {count}"))
             );
         }
+        for (place, (name, _)) in outputs.iter().enumerate() {
+            let twice = outputs.iter().take(place).any(|(other, _)| other == name);
+            if twice || TAKEN.contains(&name.as_str()) {
+                let name = printable(name);
+                return Err(
+                    file.error(format!("expected names of outputs that are free, found {name}"))
+                );
+            }
+        }
         let a = SMatrix::<f64, 4, 4>::from(contents.a).transpose();
         let b = SMatrix::<f64, 2, 4>::from(contents.b).transpose();
         let dynamics = match contents.h {
@@ -139,7 +152,9 @@ impl Model {
             }
             Dynamics::Discrete { step, interval: own } => {
                 let count = (interval / own).round();
-                if count < 1.0 || (interval - count * own).abs() > 0.1 * own {
+                if !(1.0..=MOST_STEPS).contains(&count)
+                    || (interval - count * own).abs() > 0.1 * own
+                {
                     return Err(format!(
                         "the model is for intervals of {own} s, the log has one of {interval} s"
                     ));

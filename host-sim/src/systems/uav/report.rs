@@ -208,7 +208,7 @@ fn errors(rows: &[accuracy::Row]) -> Table {
             row.plant.name().to_owned(),
             row.outputs.name().to_owned(),
             row.noise.name.to_owned(),
-            flight.to_owned(),
+            format!("{flight}, {}", row.inputs.name()),
             row.estimator.clone(),
             four(row.rmse),
             four(row.predicted),

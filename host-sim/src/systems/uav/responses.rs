@@ -125,9 +125,7 @@ pub fn responses(plant: Plant) -> Responses {
             .step_by(every)
             .map(|sample| sample as f64 * STEP_INTERVAL_S)
             .collect(),
-        bode: (-60..=40)
-            .map(|place| bode(&system, 10.0_f64.powf(f64::from(place) / 20.0)))
-            .collect(),
+        bode: points,
         constant_inputs: constant_inputs(plant),
     }
 }
@@ -202,12 +200,16 @@ fn constant_inputs(plant: Plant) -> Vec<[f64; 5]> {
 }
 
 impl Responses {
-    /// Short period and phugoid: natural frequency (rad/s) and damping ratio of the fastest and slowest pole.
+    /// Short period and phugoid: natural frequency √(p₁ p₂) (rad/s) and damping ratio −(p₁ + p₂)/2 √(p₁ p₂) of the two
+    /// fastest and the two slowest poles, be they real or a pair.
     pub fn modes(&self) -> [[f64; 2]; 2] {
-        let mode = |[re, im]: [f64; 2]| [re.hypot(im), -re / re.hypot(im)];
-        let by_size = |a: &&[f64; 2], b: &&[f64; 2]| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1]));
-        let (slow, fast) = (self.poles.iter().min_by(by_size), self.poles.iter().max_by(by_size));
-        [fast, slow].map(|pole| pole.map_or([0.0; 2], |pole| mode(*pole)))
+        let mut poles = self.poles;
+        poles.sort_by(|a, b| b[0].hypot(b[1]).total_cmp(&a[0].hypot(a[1])));
+        let [first, second, third, fourth] = poles;
+        [[first, second], [third, fourth]].map(|[a, b]| {
+            let omega = (a[0].hypot(a[1]) * b[0].hypot(b[1])).sqrt();
+            [omega, -(a[0] + b[0]) / (2.0 * omega)]
+        })
     }
 }
 
@@ -220,7 +222,8 @@ mod tests {
         let responses = responses(Plant::P2);
         assert!(responses.peak.gain > 14_000.0 && (responses.peak.omega - 0.156).abs() < 1e-3);
         let [[short, damped], [phugoid, lightly]] = responses.modes();
-        assert!((short - 18.502).abs() < 1e-3 && damped > 0.999);
+        // Poles at −18.5 and −3.3: not a swing at all.
+        assert!((short - 7.8).abs() < 0.1 && (damped - 1.39).abs() < 0.02, "{short} {damped}");
         assert!((phugoid - 0.1565).abs() < 1e-3 && (lightly - 0.0424).abs() < 1e-3);
     }
 }
