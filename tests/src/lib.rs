@@ -1,5 +1,7 @@
 //! What the tests across crates share.
 
+#[path = "../firmware/images/src/design.rs"]
+pub mod design;
 pub mod firmware;
 pub mod recordings;
 pub mod robot;

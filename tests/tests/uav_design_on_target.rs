@@ -4,16 +4,13 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result};
+use kestirim_tests::design;
 use kestirim_tests::firmware::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
-use kestirim_tests::uav;
 use nalgebra::SMatrix;
-
-#[path = "../firmware/images/src/design.rs"]
-mod design;
 
 /// What a design may cost at most: its name, millions of instructions, bytes of stack.
 const BUDGETS: [(&str, u64, i64); 3] =
-    [("zero_order_hold", 10, 6 << 10), ("place", 120, 20 << 10), ("riccati", 110, 20 << 10)];
+    [("zero_order_hold", 6, 6 << 10), ("place", 110, 22 << 10), ("riccati", 95, 22 << 10)];
 
 fn agree<const R: usize, const C: usize>(
     output: &Output,
@@ -25,8 +22,8 @@ fn agree<const R: usize, const C: usize>(
     Ok(())
 }
 
-fn designs(target: &'static Target) -> Result<()> {
-    let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
+fn designs(target: &'static Target, profile: Profile) -> Result<()> {
+    let Some(images) = Images::of(target, profile)? else { return Ok(()) };
     let output = images.run("observer-design", &[])?;
 
     let plant = design::held()?;
@@ -40,7 +37,7 @@ fn designs(target: &'static Target) -> Result<()> {
     let elf = images.elf("observer-design")?;
     assert_eq!(elf.panic_symbols(), Vec::<String>::new(), "the design cannot panic");
     let flash = elf.flash_bytes - images.elf("empty")?.flash_bytes;
-    println!("{}: all three designs take {flash} bytes of flash", target.triple);
+    println!("{} at {}: all three take {flash} bytes of flash", target.triple, profile.opt());
     for (name, millions, most_stack) in BUDGETS {
         let cost = output.cost(name, "start")?.context("it was designed")?;
         let [stack] = output.numbers(&format!("{name}.stack"))?;
@@ -56,10 +53,12 @@ fn designs(target: &'static Target) -> Result<()> {
 
 #[test]
 fn cortex_m4f() -> Result<()> {
-    designs(&CORTEX_M4F)
+    designs(&CORTEX_M4F, Profile::Speed)?;
+    designs(&CORTEX_M4F, Profile::Size)
 }
 
 #[test]
 fn rv32imc() -> Result<()> {
-    designs(&RV32IMC)
+    designs(&RV32IMC, Profile::Speed)?;
+    designs(&RV32IMC, Profile::Size)
 }

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::covariance;
 use crate::extended::Extended;
-use crate::number::{Square, extend, finite, norm, round, symmetrised};
+use crate::number::{Square, Times, extend, finite, norm, round, symmetrised};
 use crate::solve::Eliminated;
 use nalgebra::SMatrix;
 
@@ -29,7 +29,7 @@ pub fn zero_order_hold<const N: usize, const M: usize>(
     interval: f64,
 ) -> Result<Discrete<N, M>, Error> {
     let flow = Flow::new(a, &Square::zeros(), interval)?;
-    answer(&flow.transition, &(flow.integral * extend(b)))
+    answer(&flow.transition, &flow.integral.times(&extend(b)))
 }
 
 /// The same by the trapezoidal rule: (I − A h/2)⁻¹ (I + A h/2) and (I − A h/2)⁻¹ B h.
@@ -122,20 +122,21 @@ impl<const N: usize> Flow<N> {
         let mut noise = noise_term;
         for k in 2..TERMS {
             let factor = interval / Extended::from(f64::from(k));
-            term = (a * term).map(|value| value * factor);
-            let half = a * noise_term;
+            term = a.times(&term).map(|value| value * factor);
+            let half = a.times(&noise_term);
             noise_term = (half + half.transpose()).map(|value| value * factor);
             integral += term;
             noise += noise_term;
         }
-        Self { transition: Square::identity() + a * integral, integral, noise }
+        Self { transition: Square::identity() + a.times(&integral), integral, noise }
     }
 
     fn doubled(&self) -> Self {
         Self {
-            transition: self.transition * self.transition,
-            integral: self.integral + self.transition * self.integral,
-            noise: self.noise + self.transition * self.noise * self.transition.transpose(),
+            transition: self.transition.times(&self.transition),
+            integral: self.integral + self.transition.times(&self.integral),
+            noise: self.noise
+                + self.transition.times(&self.noise).times(&self.transition.transpose()),
         }
     }
 }

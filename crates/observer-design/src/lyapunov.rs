@@ -5,7 +5,9 @@ use crate::covariance::checked;
 use crate::eigenvalues::{eigenvalues_extended, eigenvector};
 use crate::error::Mode;
 use crate::extended::Extended;
-use crate::number::{Square, complex, extend, finite, norm, round, round_complex, symmetrised};
+use crate::number::{
+    Square, Times, complex, extend, finite, norm, round, round_complex, symmetrised,
+};
 use crate::observability::dominant;
 use nalgebra::{Complex, SMatrix};
 
@@ -49,8 +51,9 @@ pub fn error_covariance<const N: usize, const M: usize, const P: usize>(
         return Err(Error::NotFinite);
     }
     let (gain, input) = (extend(gain), extend(input));
-    let disturbance = input * process * input.transpose() + gain * measurement * gain.transpose();
-    settled(&(extend(a) - gain * extend(c)), &symmetrised(&disturbance))
+    let disturbance = input.times(&process).times(&input.transpose())
+        + gain.times(&measurement).times(&gain.transpose());
+    settled(&(extend(a) - gain.times(&extend(c))), &symmetrised(&disturbance))
 }
 
 fn settled<const N: usize>(
@@ -60,9 +63,9 @@ fn settled<const N: usize>(
     stable(f)?;
     let (mut transition, mut sum) = (*f, *q);
     for _ in 0..MOST_DOUBLINGS {
-        let step = transition * sum * transition.transpose();
+        let step = transition.times(&sum).times(&transition.transpose());
         sum = symmetrised(&(sum + step));
-        transition *= transition;
+        transition = transition.times(&transition);
         if norm(&transition) <= SETTLED {
             let answer = round(&sum);
             return if finite(&answer) { Ok(answer) } else { Err(Error::NotFinite) };

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::eigenvalues::eigenvalues_extended;
 use crate::error::Mode;
 use crate::extended::Extended;
-use crate::number::{Real, Square, adjoint, complex, norm, round_complex, shifted};
+use crate::number::{Real, Square, Times, adjoint, complex, norm, round_complex, shifted};
 use crate::orthonormal::{inner, length, normalised};
 use crate::pair::Pair;
 use crate::solve::Eliminated;
@@ -118,7 +118,7 @@ fn visibility<R: Real, const N: usize>(
     outputs: &Square<Complex<R>, N>,
     eigenvalue: Complex<R>,
 ) -> Option<(f64, Complex<R>, SVector<Complex<R>, N>)> {
-    let outputs_squared = adjoint(outputs) * outputs;
+    let outputs_squared = adjoint(outputs).times(outputs);
     let mut at = eigenvalue;
     let mut vector = SVector::<Complex<R>, N>::from_fn(|index, _| {
         Complex::from(R::from(1.0 + index as f64 / 7.0))
@@ -128,15 +128,15 @@ fn visibility<R: Real, const N: usize>(
         let distance = shifted(dynamics, at);
         // The little on the diagonal keeps an exactly singular matrix from stopping the inverse iteration.
         let gram = Eliminated::new(&shifted(
-            &(adjoint(&distance) * distance + outputs_squared),
+            &(adjoint(&distance).times(&distance) + outputs_squared),
             Complex::from(R::from(-1e-30)),
         ));
         for _ in 0..2 {
             let next = gram.as_ref().map_or(vector, |gram| gram.solve(&vector));
             vector = normalised(&next, 0.0)?;
         }
-        let seen = length(&(distance * vector)).rounded();
-        let sight = libm::hypot(seen, length(&(outputs * vector)).rounded());
+        let seen = length(&distance.times(&vector)).rounded();
+        let sight = libm::hypot(seen, length(&outputs.times(&vector)).rounded());
         let before = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
         if sight < before {
             best = Some((sight, at, vector));
@@ -144,7 +144,7 @@ fn visibility<R: Real, const N: usize>(
         if sight > 0.9 * before {
             break;
         }
-        at = inner(&vector, &(dynamics * vector));
+        at = inner(&vector, &dynamics.times(&vector));
     }
     best
 }

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::extended::Extended;
-use crate::number::{Number, Square, extend, finite, norm};
+use crate::number::{Number, Square, Times, extend, finite, norm};
 use crate::orthonormal::{inner, length};
 use nalgebra::{Complex, SMatrix, SVector};
 
@@ -96,7 +96,7 @@ impl<const N: usize> Pair<N> {
         gain: &Square<Extended, N>,
         Merging(merging): &Merging<N, P>,
     ) -> SMatrix<Extended, N, P> {
-        self.gain_out(&(gain * merging.transpose()))
+        self.gain_out(&gain.times(&merging.transpose()))
     }
 
     /// D⁻¹ M D of a matrix of the original states.
@@ -190,7 +190,7 @@ fn merge<const N: usize, const P: usize>(
             [*column] = (vector - unit * inner(&unit, &vector)).data.0;
         }
     }
-    let outputs = basis.transpose() * weighted;
+    let outputs = basis.transpose().times(&weighted);
     for row in 0..P {
         for column in 0..N {
             basis[(row, column)] *= weights[row];

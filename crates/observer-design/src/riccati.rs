@@ -5,7 +5,7 @@ use crate::covariance::checked;
 use crate::error::Mode;
 use crate::extended::Extended;
 use crate::lyapunov::stable;
-use crate::number::{Square, extend, finite, norm, round, symmetrised};
+use crate::number::{Square, Times, extend, finite, norm, round, symmetrised};
 use crate::observability::hidden;
 use crate::pair::Pair;
 use crate::solve::{Eliminated, solve};
@@ -65,7 +65,7 @@ pub fn riccati<const N: usize, const P: usize>(
 
     let (dynamics, outputs) = (pair.dynamics, pair.scaled(&extend(c)));
     let information =
-        outputs.transpose() * solve(&measurement, &outputs).ok_or(Error::NotPositive)?;
+        outputs.transpose().times(&solve(&measurement, &outputs).ok_or(Error::NotPositive)?);
     let equation = Equation {
         f: dynamics.transpose(),
         g: symmetrised(&information),
@@ -73,13 +73,16 @@ pub fn riccati<const N: usize, const P: usize>(
     };
     let (prior, doublings) = equation.solved()?;
 
-    let innovation = symmetrised(&(outputs * prior * outputs.transpose())) + measurement;
-    let gain = solve(&innovation, &(outputs * prior)).ok_or(Error::NotConverged)?.transpose();
+    let innovation =
+        symmetrised(&(outputs.times(&prior).times(&outputs.transpose()))) + measurement;
+    let gain = solve(&innovation, &outputs.times(&prior)).ok_or(Error::NotConverged)?.transpose();
     let answer = Riccati {
         prior: round(&pair.covariance_out(&prior)),
-        posterior: round(&pair.covariance_out(&symmetrised(&(prior - gain * outputs * prior)))),
+        posterior: round(
+            &pair.covariance_out(&symmetrised(&(prior - gain.times(&outputs).times(&prior)))),
+        ),
         filter_gain: round(&pair.gain_out(&gain)),
-        predictor_gain: round(&pair.gain_out(&(dynamics * gain))),
+        predictor_gain: round(&pair.gain_out(&dynamics.times(&gain))),
         doublings,
     };
     let all_finite =
@@ -119,14 +122,15 @@ impl<const N: usize> Equation<N> {
     ) -> Option<(Square<Extended, N>, u32)> {
         let Self { mut f, mut g, mut h } = *self;
         for doubling in 1..=MOST_DOUBLINGS {
-            let both = Eliminated::new(&(Square::identity() + g * h))?;
+            let both = Eliminated::new(&(Square::identity() + g.times(&h)))?;
             let (forward, cross) = (both.solve(&f), both.solve(&g));
-            let step = symmetrised(&(f.transpose() * h * forward));
-            g = symmetrised(&(g + f * cross * f.transpose()));
+            let step = symmetrised(&f.transpose().times(&h).times(&forward));
+            g = symmetrised(&(g + f.times(&cross).times(&f.transpose())));
             h += step;
-            f *= forward;
+            f = f.times(&forward);
             let prior = start + h;
-            if negligible(&step, &whole.posterior(&prior)?) {
+            // A posterior is no larger than its prior: most steps need no second look.
+            if negligible(&step, &prior) && negligible(&step, &whole.posterior(&prior)?) {
                 return Some((prior, doubling));
             }
         }
@@ -135,20 +139,20 @@ impl<const N: usize> Equation<N> {
 
     /// What a measurement makes of a prior covariance.
     fn posterior(&self, prior: &Square<Extended, N>) -> Option<Square<Extended, N>> {
-        solve(&(Square::identity() + prior * self.g), prior)
+        solve(&(Square::identity() + prior.times(&self.g)), prior)
     }
 
     /// The same equation for X − Y.
     fn beside(&self, y: &Square<Extended, N>) -> Option<Self> {
-        let both = Eliminated::new(&(Square::identity() + self.g * y))?;
+        let both = Eliminated::new(&(Square::identity() + self.g.times(y)))?;
         let (f, g) = (both.solve(&self.f), both.solve(&self.g));
-        let h = self.f.transpose() * y * f + self.h - y;
+        let h = self.f.transpose().times(y).times(&f) + self.h - y;
         Some(Self { f, g: symmetrised(&g), h: symmetrised(&h) })
     }
 
     /// Whether the filter with this prior covariance forgets its past.
     fn settles(&self, prior: &Square<Extended, N>) -> bool {
-        solve(&(Square::identity() + self.g * prior), &self.f)
+        solve(&(Square::identity() + self.g.times(prior)), &self.f)
             .is_some_and(|closed| stable(&closed).is_ok())
     }
 }

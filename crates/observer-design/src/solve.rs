@@ -15,7 +15,6 @@ pub(crate) struct Eliminated<T: Number, const N: usize> {
 
 impl<T: Number, const N: usize> Eliminated<T, N> {
     /// Nothing where the matrix is singular to the last bit.
-    #[inline(never)]
     pub(crate) fn new(matrix: &Square<T, N>) -> Option<Self> {
         let (mut a, mut pivots) = (matrix.data.0, [0; N]);
         for place in 0..N {
@@ -44,7 +43,6 @@ impl<T: Number, const N: usize> Eliminated<T, N> {
     }
 
     /// X of A X = B.
-    #[inline(never)]
     pub(crate) fn solve<const M: usize>(&self, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let mut x = *b;
         for x in &mut x.data.0 {

@@ -7,7 +7,7 @@ mod single;
 use crate::Error;
 use crate::eigenvalues::eigenvalues_extended;
 use crate::extended::Extended;
-use crate::number::{Square, extend, extend_complex, finite, norm, round, round_complex};
+use crate::number::{Square, Times, extend, extend_complex, finite, norm, round, round_complex};
 use crate::observability::least_visible;
 use crate::pair::{Merging, Pair};
 use crate::poles::{arrange, is_nearly_zero, multiplicity, pair_up, size};
@@ -167,7 +167,7 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
 
     /// A − L C on the balanced scale.
     fn closed(&self, gain: &SMatrix<f64, N, P>) -> Square<Extended, N> {
-        self.pair.balanced(&(extend(self.a) - extend(gain) * extend(self.c)))
+        self.pair.balanced(&(extend(self.a) - extend(gain).times(&extend(self.c))))
     }
 
     /// What the error of a pole is measured by: its own size, or that of the system if it should be zero.

@@ -6,7 +6,7 @@
 use super::{Checked, Problem};
 use crate::eigenvalues::eigenvector;
 use crate::extended::Extended;
-use crate::number::{complex, extend, extend_complex, round_complex};
+use crate::number::{Times, complex, extend, extend_complex, round_complex};
 use crate::sequence::Sequence;
 use nalgebra::{Complex, SMatrix, SVector};
 
@@ -102,7 +102,7 @@ fn slopes<const N: usize, const P: usize>(
             .iter()
             .zip(right.iter())
             .fold(Complex::from(Extended::from(0.0)), |sum, (&y, &x)| sum + y * x);
-        let seen = (outputs * problem.pair.unbalanced(&right)).map(round_complex);
+        let seen = outputs.times(&problem.pair.unbalanced(&right)).map(round_complex);
         let moved =
             problem.pair.unbalanced_row(&left.map(|value| value / product)).map(round_complex);
         for row in 0..N {

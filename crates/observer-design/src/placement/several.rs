@@ -2,7 +2,7 @@
 
 use crate::extended::Extended;
 use crate::number::{
-    Number, Square, adjoint, complex, extend_complex, norm, round_complex, shifted,
+    Number, Square, Times, adjoint, complex, extend_complex, norm, round_complex, shifted,
 };
 use crate::orthonormal::{complete, normalised};
 use crate::pair::Pair;
@@ -36,7 +36,7 @@ pub(crate) fn place<const N: usize>(
     let vectors = insensitive(&spaces, pair, poles)?;
 
     // B = U R with the first columns of U: g = R⁻¹ Uᴴ (F − λ) x.
-    let mut triangle = adjoint(&range) * inputs;
+    let mut triangle = adjoint(&range).times(&inputs);
     for index in pair.rank..N {
         triangle[(index, index)] = Wide::from(Extended::from(1.0));
     }
@@ -45,8 +45,8 @@ pub(crate) fn place<const N: usize>(
     for index in 0..N {
         let (space, pole) = (&spaces[index], extend_complex(poles[index]));
         let vector = vectors.column(index).map(extend_complex::<Extended>);
-        let vector = normalised(&(space * (adjoint(space) * vector)), 0.0)?;
-        let image = adjoint(&range) * (shifted(&transposed, pole) * vector);
+        let vector = normalised(&(space.times(&adjoint(space).times(&vector))), 0.0)?;
+        let image = adjoint(&range).times(&shifted(&transposed, pole).times(&vector));
         exact.set_column(index, &vector);
         wanted.set_column(index, &image);
     }
@@ -66,14 +66,14 @@ fn eigenvectors<const N: usize>(
     rank: usize,
 ) -> Option<Square<Wide, N>> {
     let mut conditions = Square::<Wide, N>::zeros();
-    let outside = range.column_iter().skip(rank);
-    for (mut condition, direction) in conditions.column_iter_mut().zip(outside) {
-        condition.copy_from(&(adjoint(distance) * direction));
+    let outside = range.data.0.iter().skip(rank);
+    for (condition, &direction) in conditions.data.0.iter_mut().zip(outside) {
+        [*condition] = adjoint(distance).times(&SVector::from(direction)).data.0;
     }
     let basis = complete(&conditions, N - rank)?;
     let mut space = Square::<Wide, N>::zeros();
-    for (mut vector, free) in space.column_iter_mut().zip(basis.column_iter().skip(N - rank)) {
-        vector.copy_from(&free);
+    for (vector, free) in space.data.0.iter_mut().zip(basis.data.0.iter().skip(N - rank)) {
+        *vector = *free;
     }
     Some(space)
 }
@@ -121,7 +121,7 @@ fn anywhere<const N: usize>(
         for weight in mixture.iter_mut().take(rank) {
             *weight = Complex { re: random.next(), im: if real { 0.0 } else { random.next() } };
         }
-        let vector = normalised(&(spaces[index] * mixture), 0.0)?;
+        let vector = normalised(&(spaces[index].times(&mixture)), 0.0)?;
         set(&mut vectors, index, &vector, poles);
     }
     Some(vectors)
@@ -140,7 +140,7 @@ fn sweep<const N: usize>(
             continue;
         }
         let normal = inverted.row(index).map(Number::conjugate).transpose();
-        let projected = spaces[index] * (adjoint(&spaces[index]) * normal);
+        let projected = spaces[index].times(&adjoint(&spaces[index]).times(&normal));
         set(vectors, index, &normalised(&projected, 0.0)?, poles);
         inverted = inverse(vectors)?;
     }

@@ -1,7 +1,7 @@
 //! One output: the gain is unique.
 
 use crate::extended::Extended;
-use crate::number::{Square, norm};
+use crate::number::{Square, Times, norm};
 use crate::orthonormal::{inner, length, normalised};
 use crate::pair::Pair;
 use crate::sequence::Sequence;
@@ -25,7 +25,7 @@ pub(crate) fn place<const N: usize>(
     let mut direction = normalised(&first, 0.0)?;
     for column in 0..N {
         [basis.data.0[column]] = direction.data.0;
-        let mut vector = transposed * direction;
+        let mut vector = transposed.times(&direction);
         // Twice, as once leaves rounding behind.
         for _ in 0..2 {
             let parts = &mut hessenberg.data.0[column];
@@ -45,7 +45,7 @@ pub(crate) fn place<const N: usize>(
     }
     let mut gain = Square::<Extended, N>::zeros();
     let reciprocal = Extended::from(1.0) / product;
-    let row = basis * last_row(&hessenberg, poles);
+    let row = basis.times(&last_row(&hessenberg, poles));
     gain.set_column(0, &row.map(|value| value * reciprocal));
     Some(gain)
 }
@@ -58,7 +58,7 @@ fn last_row<const N: usize>(
     let transposed = hessenberg.transpose();
     let times = |vector: &SVector<Extended, N>, re: f64| {
         let re = Extended::from(re);
-        transposed * vector - vector.map(|value| value * re)
+        transposed.times(vector) - vector.map(|value| value * re)
     };
     let mut row = SVector::<Extended, N>::zeros();
     if let Some(last) = row.iter_mut().last() {
@@ -97,9 +97,9 @@ pub(crate) fn through_a_mixture<const N: usize>(
         *weight = Extended::from(random.next());
         column.apply(|value| *value = Extended::from(size * random.next()));
     }
-    let dynamics = pair.dynamics - first * pair.outputs;
+    let dynamics = pair.dynamics - first.times(&pair.outputs);
     let mut output = Square::<Extended, N>::zeros();
-    output.set_row(0, &(mixture.transpose() * pair.outputs));
+    output.set_row(0, &(mixture.transpose().times(&pair.outputs)));
     let gain = place(&dynamics, &output, poles)?;
     Some(first + gain.column(0) * mixture.transpose())
 }

@@ -17,16 +17,25 @@ const INPUT_NOISE: Vector2<f64> = Vector2::new(0.0087, 0.02);
 const OUTPUT_NOISE: Vector3<f64> = Vector3::new(0.0087, 0.5, 0.0087);
 
 /// The plant a step.
+///
+/// # Errors
+/// Never.
 pub fn held() -> Result<Discrete<4, 2>, Error> {
     zero_order_hold(&black_box(A), &B, INTERVAL)
 }
 
 /// The gain that places the observer's poles.
+///
+/// # Errors
+/// Never, of the plant a step.
 pub fn placed(plant: &Discrete<4, 2>) -> Result<Placement<4, 3>, Error> {
     place(&plant.a, &C, &POLES.map(|pole| Complex { re: exp(pole * INTERVAL), im: 0.0 }))
 }
 
 /// The gain at which a Kalman filter settles.
+///
+/// # Errors
+/// Never, of the plant a step.
 pub fn settled(plant: &Discrete<4, 2>) -> Result<Riccati<4, 3>, Error> {
     let inputs = Matrix2::from_diagonal(&INPUT_NOISE.component_mul(&INPUT_NOISE));
     let outputs = Matrix3::from_diagonal(&OUTPUT_NOISE.component_mul(&OUTPUT_NOISE));
