@@ -197,9 +197,6 @@ pub(crate) fn symmetrised<const N: usize>(matrix: &Square<Extended, N>) -> Squar
 
 /// The power of two below a size; 1 where there is none.
 pub(crate) fn power_of_two(size: f64) -> f64 {
-    if size > 0.0 && size.is_finite() {
-        libm::exp2(libm::floor(libm::log2(size)).clamp(-1000.0, 1000.0))
-    } else {
-        1.0
-    }
+    const EXPONENT: u64 = 0x7FF << 52;
+    if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }
 }

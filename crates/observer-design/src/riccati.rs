@@ -160,12 +160,13 @@ impl<const N: usize> Equation<N> {
 /// Whether a step was so small beside the posterior that the next one, which is quadratic in it, does not count. The
 /// prior is no measure: beside a large noise in one direction, what the gain depends on may be tiny in another.
 fn negligible<const N: usize>(step: &Square<Extended, N>, posterior: &Square<Extended, N>) -> bool {
-    let variance = |state: usize| posterior[(state, state)].to_f64().abs();
-    (0..N).all(|row| {
-        (0..N).all(|column| {
-            let scale = libm::sqrt(variance(row) * variance(column));
-            step[(row, column)].to_f64().abs() <= SETTLED * scale
-        })
+    let mut deviations = [0.0; N];
+    for (state, (deviation, column)) in deviations.iter_mut().zip(&posterior.data.0).enumerate() {
+        *deviation = column.get(state).map_or(0.0, |variance| libm::sqrt(variance.to_f64().abs()));
+    }
+    step.data.0.iter().zip(deviations).all(|(column, across)| {
+        let largest = |down: f64| SETTLED * across * down;
+        column.iter().zip(deviations).all(|(step, down)| step.to_f64().abs() <= largest(down))
     })
 }
 
