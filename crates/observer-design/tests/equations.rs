@@ -186,3 +186,31 @@ fn singular_values_are_gains_in_the_best_and_the_worst_direction() {
     );
     assert_eq!(singular_values(&matrix![one, one])[1], 0.0);
 }
+
+#[test]
+fn rounding_does_not_make_a_covariance_skew() {
+    let settled = |q: Matrix2<f64>| {
+        riccati(&(Matrix2::identity() * 0.5), &matrix![1.0, 0.0], &q, &Matrix1::new(1.0))
+    };
+    assert!(settled(matrix![1.0, 1e-18; -1e-18, 1.0]).is_ok());
+    assert_eq!(settled(matrix![1.0, 1e-3; -1e-3, 1.0]), Err(Error::NotSymmetric));
+    let noise = discrete_noise(&Matrix2::identity(), &matrix![1.0, 5.0; 0.0, -3.0], 0.1);
+    assert_eq!(noise, Err(Error::NotSymmetric));
+}
+
+#[test]
+fn a_mode_that_grows_is_told_from_one_beside_it_that_decays() {
+    let a = matrix![1.0 - 3e-7, 0.0; 0.0, 1.0 + 3e-7];
+    let refused = riccati(&a, &matrix![0.0, 0.0], &Matrix2::identity(), &Matrix1::new(1.0));
+    assert!(matches!(refused, Err(Error::Undetectable(Mode { state: 1, .. }))), "{refused:?}");
+    let refused = lyapunov(&matrix![0.5, 0.0; 0.0, 1.2], &Matrix2::identity());
+    assert!(matches!(refused, Err(Error::Unstable(Mode { state: 1, .. }))), "{refused:?}");
+}
+
+#[test]
+fn a_response_that_overflows_is_refused() {
+    let huge = StateSpace::new(Matrix1::new(1e-300), Matrix1::new(1e300), Matrix1::new(1e300));
+    assert_eq!(huge.frequency_response(0.0), Err(Error::NotFinite));
+    let [value] = singular_values(&matrix![Complex::from(3e200); Complex::from(4e200)]);
+    assert!((value / 5e200 - 1.0).abs() < 1e-15);
+}

@@ -199,3 +199,23 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_pole_near_zero_is_told_by_its_own_size() {
+    let a = matrix![-1000.0, 1.0, 3.0; 300.0, -2000.0, 7.0; 0.1, 0.2, -3000.0];
+    let placed = place(&a, &matrix![1.0, 0.0, 0.0], &real([-1e-7, -1500.0, -2500.0])).unwrap();
+    let own = (placed.poles[0].re + 1e-7).abs() / 1e-7;
+    assert!(placed.error >= 0.99 * own, "{} beside {own}", placed.error);
+}
+
+#[test]
+fn the_size_of_a_system_does_not_matter() {
+    let cycle = matrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; 1.0, 0.0, 0.0];
+    for size in [1e-165, 1e-150, 1.0, 1e150] {
+        for pole in eigenvalues(&(cycle * size)).unwrap() {
+            assert!((pole.re.hypot(pole.im) / size - 1.0).abs() < 1e-15, "{pole} at {size}");
+        }
+    }
+    let whole = place(&nalgebra::Matrix1::new(1e16), &nalgebra::Matrix1::new(1.0), &real([1e15]));
+    assert_eq!(whole.unwrap().error, 0.0);
+}
