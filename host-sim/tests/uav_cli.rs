@@ -25,7 +25,7 @@ fn row<'a>(report: &'a Value, table: &str, fields: &[(&str, Value)]) -> &'a Valu
 fn the_thesis_is_reproduced() {
     let report = json(&host_sim(&["run", "uav", "--json", "--scalar", "f64"]));
     assert_eq!((&report["system"], &report["scalar"]), (&"uav".into(), &"f64".into()));
-    // Times to catch, as measured elsewhere.
+    // Times to catch, as the card has them.
     for (published, ours, limit) in [
         ("Figs 6.1–6.4", [5.0, 5.2, 5.4, 8.6], 0.05),
         ("Figs 6.13–6.17", [1.5, 2.0, 0.49, 0.94], 0.005),
@@ -55,19 +55,12 @@ fn the_thesis_is_reproduced() {
             .as_bool()
             .expect("a verdict")
     };
-    assert!(holds("settled"));
+    assert!(holds("settled, the filter for the noise there is"));
+    assert!(!holds("settled, the gain that explains the thesis' figures"));
     assert!(!holds("10 s from a wrong start, steady-state gain"));
     assert!(holds("10 s from a wrong start, time-varying gain"));
     assert!(holds("the gain that explains the thesis' figures"));
     assert!(!holds("time-varying gain"));
-    // Step responses as in the reference cases.
-    let p2 = row(&report, "plants", &[("plant", "P2".into())]);
-    let settling: Vec<Vec<f64>> =
-        p2["settling_s"].as_array().expect("inputs").iter().map(numbers).collect();
-    let expected = [[525.25, 525.55, 584.5, 816.15], [876.1, 595.05, 1255.65, 585.5]];
-    for (found, expected) in settling.iter().flatten().zip(expected.iter().flatten()) {
-        assert!((found - expected).abs() < 1e-6, "{found} {expected}");
-    }
 }
 
 #[test]

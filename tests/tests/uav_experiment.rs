@@ -4,6 +4,7 @@ use host_sim::random::stream;
 use host_sim::systems::uav::design::{Kind, MIDDLE};
 use host_sim::systems::uav::estimator::Estimator;
 use host_sim::systems::uav::plant::Plant;
+use host_sim::systems::uav::responses::responses;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START, fly};
 use kestirim_observer_design::riccati;
 use kestirim_tests::recordings::folder_of;
@@ -52,6 +53,21 @@ fn flights_without_noise_are_those_of_the_reference() {
         }
     }
     assert!(compared >= 12, "{compared} samples");
+}
+
+#[test]
+fn steps_settle_when_the_reference_does() {
+    let Some(folder) = folder_of("uav") else { return };
+    let text = std::fs::read_to_string(folder.join("cases.json")).expect("a readable file");
+    let cases: Value = serde_json::from_str(&text).expect("JSON");
+    let expected = &cases["frequency_and_step"][0]["settling_2pct_s"];
+    for (found, input) in responses(Plant::P2).settling_s.into_iter().zip(["u0", "u1"]) {
+        let expected: [f64; 4] =
+            serde_json::from_value(expected[input].clone()).expect("four times");
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-6, "{found} instead of {expected} s");
+        }
+    }
 }
 
 /// The most doublings over all aircraft at 1 kHz, noise on the inputs 1e-4 to 1e4 times that on the outputs.

@@ -36,7 +36,7 @@ fn the_matrix_e_takes_derivatives_by_the_rate() {
     );
 }
 
-/// (3.1.25): the row of ṗ_E is no row of a rotation.
+/// (3.1.25): the row of the way east is no row of a rotation.
 #[test]
 fn a_row_of_a_rotation_has_length_one() {
     let [(sin_phi, cos_phi), (sin_theta, cos_theta), (sin_psi, cos_psi)] =
@@ -52,7 +52,7 @@ fn a_row_of_a_rotation_has_length_one() {
         -sin_phi * cos_psi + cos_phi * sin_theta * sin_psi,
     );
     assert!((right.norm() - 1.0).abs() < 1e-15);
-    println!("the row of ṗ_E has length {:.3} as printed", printed.norm());
+    println!("(3.1.25) the row of the way east has length {:.3} as printed", printed.norm());
     assert!((printed.norm() - 1.0).abs() > 0.01);
 }
 
