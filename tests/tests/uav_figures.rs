@@ -78,8 +78,9 @@ where
     }
 }
 
+/// The palette without its yellow, which is faint on white.
 fn colour(number: usize) -> RGBAColor {
-    Palette99::pick(number).to_rgba()
+    Palette99::pick(if number < 2 { number } else { number + 1 }).to_rgba()
 }
 
 fn file(name: &str) -> Result<PathBuf, std::io::Error> {
@@ -151,8 +152,8 @@ fn singular_values() -> Done {
     Axes {
         x: "ω, rad/s",
         y: "largest and smallest singular value",
-        xs: (1e-3..1e2).log_scale(),
-        ys: (1e-2..1e5).log_scale(),
+        xs: (9e-4..1.1e2).log_scale(),
+        ys: (1e-2..3e4).log_scale(),
     }
     .draw(&body, &lines, &[])?;
     root.present()?;
@@ -191,8 +192,7 @@ fn catching() -> Done {
             };
             Line { colour: number, width: 2, points: (0..run.len()).map(error).collect() }
         };
-        // Just inside: what is outside is not drawn.
-        let band = vec![(0.0, BANDS[state]), (9.99, BANDS[state])];
+        let band = vec![(0.0, BANDS[state]), (10.0, BANDS[state])];
         let lines: Vec<_> = errors
             .iter()
             .enumerate()
@@ -202,7 +202,7 @@ fn catching() -> Done {
         let y = format!("|error of {}|, {}", STATES[state], UNITS[state]);
         let scale = BANDS[state] / BANDS[0];
         let ys = (1e-5 * scale..1.0 * scale).log_scale();
-        Axes { x: "t, s", y: &y, xs: 0.0..10.0, ys }.draw(area, &lines, &[])?;
+        Axes { x: "t, s", y: &y, xs: -0.1..10.1, ys }.draw(area, &lines, &[])?;
     }
     root.present()?;
     Ok(())
@@ -224,8 +224,8 @@ fn noise() -> Done {
     for (state, time) in kalman_times.into_iter().enumerate() {
         marks.push((state, (time.ok_or("the filter catches the plant")?, 1.0)));
     }
-    for eighths in -24..=24 {
-        let faster = 2_f64.powf(f64::from(eighths) / 8.0);
+    for quarters in -12..=11 {
+        let faster = 2_f64.powf(f64::from(quarters) / 4.0);
         let kind = Kind::Luenberger(MIDDLE.map(|pole| pole * faster));
         let (rmse, times) = (settled.predicted(&kind), times(kind)?);
         for (state, line) in lines.iter_mut().enumerate() {
@@ -236,7 +236,7 @@ fn noise() -> Done {
     let root = SVGBackend::new(&path, (640, 400)).into_drawing_area();
     let body = legend(&root, &STATES, 4)?;
     Axes {
-        x: "time to catch without noise, s",
+        x: "time to catch without noise, s (circles: steady-state Kalman filter)",
         y: "settled RMSE / Kalman's",
         xs: (0.08..10.0).log_scale(),
         ys: (0.8..12.0).log_scale(),
