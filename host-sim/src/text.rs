@@ -6,6 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
+
 use crate::Error;
 
 /// A text file in memory.
@@ -41,9 +43,18 @@ impl TextFile {
         Ok(Self { path: path.to_path_buf(), text })
     }
 
-    /// The whole text.
-    pub fn text(&self) -> &str {
-        &self.text
+    /// What the file holds as JSON.
+    ///
+    /// # Errors
+    /// [`Error::Line`]: what was `expected`, and what the parser found instead.
+    pub fn json<T: DeserializeOwned>(&self, expected: &str) -> Result<T, Error> {
+        serde_json::from_str(&self.text).map_err(|error| {
+            let complaint = error.to_string();
+            // The parser ends with the place, with which the sentence begins.
+            let reason = complaint.split(" at line ").next().unwrap_or_default();
+            let problem = format!("expected {expected}: {reason}");
+            Error::Line { path: self.path.clone(), line: error.line(), problem }
+        })
     }
 
     /// The lines that are not blank, trimmed.
@@ -57,11 +68,6 @@ impl TextFile {
     /// Whether the last line is complete: a logger that is interrupted leaves none.
     pub fn ends_with_line_break(&self) -> bool {
         self.text.ends_with('\n')
-    }
-
-    /// A complaint about a line, counted from 1.
-    pub fn error_at(&self, line: usize, problem: impl Into<String>) -> Error {
-        Error::Line { path: self.path.clone(), line, problem: problem.into() }
     }
 
     /// A complaint about the file as a whole.

@@ -1,5 +1,7 @@
 //! Each observer against its own definition.
 
+mod plant;
+
 use kestirim_kalman::{Covariance, steady_state};
 use kestirim_luenberger::{
     CurrentGains, CurrentObserver, DisturbanceGains, DisturbanceObserver, Plant, Predictor,
@@ -7,19 +9,11 @@ use kestirim_luenberger::{
 };
 use kestirim_scalar::{Q16_16, Scalar};
 use nalgebra::{
-    Matrix1, Matrix1x2, Matrix2, Matrix2x1, Matrix2x3, Matrix3, Matrix3x2, SMatrix, SVector,
-    Vector1, Vector2, Vector3,
+    Matrix1, Matrix1x2, Matrix2, Matrix2x1, SMatrix, SVector, Vector1, Vector2, Vector3,
 };
 use proptest::prelude::*;
 
-const PLANT: Plant<3, 1, 2> = Plant {
-    a: Matrix3::new(0.98, 0.1, 0.0, -0.05, 0.9, 0.02, 0.1, 0.0, 0.999),
-    b: Vector3::new(0.1, 0.05, 0.0),
-    c: Matrix2x3::new(1.0, 0.0, 0.2, 0.0, 0.0, 1.0),
-};
-const GAIN: Matrix3x2<f64> = Matrix3x2::new(0.3, 0.0, 0.1, 0.05, 0.0, 0.2);
-const GAINS: PredictorGains<3, 1, 2> = PredictorGains::new(&PLANT, &GAIN);
-const START: Vector3<f64> = Vector3::new(1.0, -2.0, 3.0);
+use plant::{GAIN, GAINS, PLANT, START};
 
 /// Inputs and outputs without a pattern.
 fn signals(k: u32) -> (Vector1<f64>, Vector2<f64>) {

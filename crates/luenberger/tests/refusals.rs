@@ -1,24 +1,16 @@
 //! What observers refuse: nothing that is not finite comes in or out, and nothing has changed then.
 
+mod plant;
+
 use kestirim_luenberger::{
     CurrentGains, CurrentObserver, DisturbanceGains, DisturbanceObserver, Error, Plant, Predictor,
     PredictorGains, ReducedGains, ReducedObserver, Saturation,
 };
 use kestirim_scalar::{Q8_24, Q16_16, Scalar};
-use nalgebra::{
-    Matrix1, Matrix1x2, Matrix2, Matrix2x3, Matrix3, Matrix3x2, SMatrix, SVector, Vector1, Vector2,
-    Vector3,
-};
+use nalgebra::{Matrix1, Matrix1x2, Matrix2, Matrix3x2, SMatrix, SVector, Vector1, Vector2};
 use proptest::prelude::*;
 
-const PLANT: Plant<3, 1, 2> = Plant {
-    a: Matrix3::new(0.98, 0.1, 0.0, -0.05, 0.9, 0.02, 0.1, 0.0, 0.999),
-    b: Vector3::new(0.1, 0.05, 0.0),
-    c: Matrix2x3::new(1.0, 0.0, 0.2, 0.0, 0.0, 1.0),
-};
-const GAIN: Matrix3x2<f64> = Matrix3x2::new(0.3, 0.0, 0.1, 0.05, 0.0, 0.2);
-const GAINS: PredictorGains<3, 1, 2> = PredictorGains::new(&PLANT, &GAIN);
-const START: Vector3<f64> = Vector3::new(1.0, -2.0, 3.0);
+use plant::{GAIN, GAINS, PLANT, START};
 
 const CART: Plant<2, 1, 1> = Plant {
     a: Matrix2::new(1.0, 0.01, 0.0, 1.0),

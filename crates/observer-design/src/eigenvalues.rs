@@ -3,13 +3,15 @@
 use core::ops::Range;
 
 use crate::Error;
-use crate::extended::Extended;
+use crate::extended::{EPSILON, Extended};
 use crate::number::{
     Number, Real, Square, complex, extend, finite, norm, power_of_two, round_complex, shifted,
 };
-use crate::orthonormal::normalised;
+use crate::orthonormal::{normalised, oblique};
 use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
+
+type Wide = Complex<Extended>;
 
 /// Steps a single eigenvalue may take.
 const MOST_STEPS: u32 = 200;
@@ -31,7 +33,7 @@ pub fn eigenvalues<const N: usize>(
 /// The eigenvalues of a real matrix of 106 bits: real ones, and pairs that are conjugate to the last bit.
 pub(crate) fn eigenvalues_extended<const N: usize>(
     matrix: &Square<Extended, N>,
-) -> Result<[Complex<Extended>; N], Error> {
+) -> Result<[Wide; N], Error> {
     let mut values = spectrum(&complex(matrix))?;
     let mut done = [false; N];
     for index in 0..N {
@@ -39,7 +41,7 @@ pub(crate) fn eigenvalues_extended<const N: usize>(
             continue;
         }
         let conjugate = values[index].conjugate();
-        let distance = |other: &Complex<Extended>| (*other - conjugate).magnitude();
+        let distance = |other: &Wide| (*other - conjugate).magnitude();
         let others = values.iter_mut().zip(&mut done).skip(index).filter(|(_, done)| !**done);
         if let Some((partner, done)) =
             others.min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)))
@@ -54,28 +56,25 @@ pub(crate) fn eigenvalues_extended<const N: usize>(
 
 /// An eigenvector of length 1, by inverse iteration a little beside its eigenvalue.
 pub(crate) fn eigenvector<const N: usize>(
-    matrix: &Square<Complex<Extended>, N>,
-    eigenvalue: Complex<Extended>,
-) -> Option<SVector<Complex<Extended>, N>> {
+    matrix: &Square<Wide, N>,
+    eigenvalue: Wide,
+) -> Option<SVector<Wide, N>> {
     // Exactly at the eigenvalue there would be nothing to divide by.
     let beside = eigenvalue + Complex::from(Extended::from(1e-24));
     let distance = Eliminated::new(&shifted(matrix, beside))?;
-    let mut vector =
-        SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)));
+    let mut vector = oblique();
     for _ in 0..3 {
         vector = normalised(&distance.solve(&vector), 0.0)?;
     }
     Some(vector)
 }
 
-fn spectrum<R: Real, const N: usize>(
-    matrix: &Square<Complex<R>, N>,
-) -> Result<[Complex<R>; N], Error> {
+fn spectrum<const N: usize>(matrix: &Square<Wide, N>) -> Result<[Wide; N], Error> {
     // Scaled by a power of two, so that no square overflows or vanishes.
     let scale = power_of_two(norm(matrix));
-    let mut h = matrix.map(|value| value.scaled(R::from(1.0 / scale)));
+    let mut h = matrix.map(|value| value.scaled(Extended::from(1.0 / scale)));
     reduce(&mut h);
-    let tiny = norm(&h) * R::EPSILON * R::EPSILON;
+    let tiny = norm(&h) * EPSILON * EPSILON;
     for end in (2..=N).rev() {
         let mut steps = 0;
         loop {
@@ -90,16 +89,16 @@ fn spectrum<R: Real, const N: usize>(
             // An exceptional shift now and then breaks a cycle.
             let shift = if steps % 15 == 0 {
                 let beside = element(&h, end - 1, end - 2).magnitude();
-                element(&h, end - 1, end - 1) + Complex::from(R::from(beside))
+                element(&h, end - 1, end - 1) + Complex::from(Extended::from(beside))
             } else {
                 wilkinson(&h, end)
             };
             step(&mut h, start, end, shift);
         }
     }
-    let mut values = [Complex::from(R::from(0.0)); N];
+    let mut values = [Complex::from(Extended::from(0.0)); N];
     for (index, value) in values.iter_mut().enumerate() {
-        *value = element(&h, index, index).scaled(R::from(scale));
+        *value = element(&h, index, index).scaled(Extended::from(scale));
     }
     Ok(values)
 }
@@ -116,25 +115,28 @@ fn clear<T: Number, const N: usize>(h: &mut Square<T, N>, row: usize, column: us
 }
 
 /// A plane rotation: unitary, and it turns (a, b) into (r, 0).
-struct Rotation<R: Real> {
-    cosine: Complex<R>,
-    sine: Complex<R>,
+struct Rotation {
+    cosine: Wide,
+    sine: Wide,
 }
 
-impl<R: Real> Rotation<R> {
-    fn new(a: Complex<R>, b: Complex<R>) -> Self {
+impl Rotation {
+    fn new(a: Wide, b: Wide) -> Self {
         let length = (a.squared() + b.squared()).square_root();
         if length.rounded() == 0.0 {
-            return Self { cosine: Complex::from(R::from(1.0)), sine: Complex::from(R::from(0.0)) };
+            return Self {
+                cosine: Complex::from(Extended::from(1.0)),
+                sine: Complex::from(Extended::from(0.0)),
+            };
         }
-        let reciprocal = R::from(1.0) / length;
+        let reciprocal = Extended::from(1.0) / length;
         Self { cosine: a.scaled(reciprocal), sine: b.scaled(reciprocal) }
     }
 
     /// Rows `first` and `second`, from a column on.
     fn turn_rows<const N: usize>(
         &self,
-        h: &mut Square<Complex<R>, N>,
+        h: &mut Square<Wide, N>,
         [first, second]: [usize; 2],
         from: usize,
     ) {
@@ -151,7 +153,7 @@ impl<R: Real> Rotation<R> {
     /// Columns `first` and `second`, down to a row: the inverse rotation, so that both make a similarity.
     fn turn_columns<const N: usize>(
         &self,
-        h: &mut Square<Complex<R>, N>,
+        h: &mut Square<Wide, N>,
         [first, second]: [usize; 2],
         to: usize,
     ) {
@@ -166,7 +168,7 @@ impl<R: Real> Rotation<R> {
 }
 
 /// Similar, and zero below the first subdiagonal.
-fn reduce<R: Real, const N: usize>(h: &mut Square<Complex<R>, N>) {
+fn reduce<const N: usize>(h: &mut Square<Wide, N>) {
     for column in 0..N.saturating_sub(2) {
         for row in (column + 2..N).rev() {
             let rotation = Rotation::new(element(h, row - 1, column), element(h, row, column));
@@ -178,15 +180,11 @@ fn reduce<R: Real, const N: usize>(h: &mut Square<Complex<R>, N>) {
 }
 
 /// Where the last block begins that no negligible subdiagonal element divides.
-fn decoupled<R: Real, const N: usize>(
-    h: &mut Square<Complex<R>, N>,
-    end: usize,
-    tiny: f64,
-) -> usize {
+fn decoupled<const N: usize>(h: &mut Square<Wide, N>, end: usize, tiny: f64) -> usize {
     for row in (1..end).rev() {
         let size = |row, column| element(h, row, column).magnitude();
         let beside = size(row - 1, row - 1) + size(row, row);
-        if size(row, row - 1) <= R::EPSILON * beside + tiny {
+        if size(row, row - 1) <= EPSILON * beside + tiny {
             clear(h, row, row - 1);
             return row;
         }
@@ -196,7 +194,7 @@ fn decoupled<R: Real, const N: usize>(
 
 /// The eigenvalue of the last 2 × 2 block that lies nearer its last element. A double is good enough: the shift
 /// only hastens the convergence.
-fn wilkinson<R: Real, const N: usize>(h: &Square<Complex<R>, N>, end: usize) -> Complex<R> {
+fn wilkinson<const N: usize>(h: &Square<Wide, N>, end: usize) -> Wide {
     let last = |row, column| round_complex(element(h, end - row, end - column));
     let half_difference = (last(2, 2) - last(1, 1)) * 0.5;
     let root = square_root(half_difference * half_difference + last(2, 1) * last(1, 2));
@@ -206,7 +204,7 @@ fn wilkinson<R: Real, const N: usize>(h: &Square<Complex<R>, N>, end: usize) -> 
         return element(h, end - 1, end - 1);
     }
     let shift = last(1, 1) - last(2, 1) * last(1, 2) / sum;
-    Complex { re: R::from(shift.re), im: R::from(shift.im) }
+    Complex { re: Extended::from(shift.re), im: Extended::from(shift.im) }
 }
 
 fn square_root(value: Complex<f64>) -> Complex<f64> {
@@ -217,14 +215,9 @@ fn square_root(value: Complex<f64>) -> Complex<f64> {
 }
 
 /// One QR step with a shift, on the block from `start` to `end`.
-fn step<R: Real, const N: usize>(
-    h: &mut Square<Complex<R>, N>,
-    start: usize,
-    end: usize,
-    shift: Complex<R>,
-) {
+fn step<const N: usize>(h: &mut Square<Wide, N>, start: usize, end: usize, shift: Wide) {
     move_diagonal(h, start..end, -shift);
-    let mut waiting: Option<(Rotation<R>, usize)> = None;
+    let mut waiting: Option<(Rotation, usize)> = None;
     for row in start..end - 1 {
         let rotation = Rotation::new(element(h, row, row), element(h, row + 1, row));
         rotation.turn_rows(h, [row, row + 1], row);

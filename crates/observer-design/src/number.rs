@@ -2,7 +2,7 @@
 
 use core::ops::Neg;
 
-use crate::extended::{EPSILON, Extended};
+use crate::extended::Extended;
 use nalgebra::{Complex, SMatrix};
 use num_traits::NumAssign;
 
@@ -23,9 +23,6 @@ pub(crate) trait Number: nalgebra::Scalar + Copy + NumAssign + Neg<Output = Self
 
 /// A real [`Number`].
 pub(crate) trait Real: Number<Real = Self> + PartialOrd + From<f64> {
-    /// The distance from 1 to the next number.
-    const EPSILON: f64;
-
     fn square_root(self) -> Self;
     fn rounded(self) -> f64;
 }
@@ -47,8 +44,6 @@ impl Number for f64 {
 }
 
 impl Real for f64 {
-    const EPSILON: f64 = f64::EPSILON;
-
     fn square_root(self) -> Self {
         libm::sqrt(self.max(0.0))
     }
@@ -74,8 +69,6 @@ impl Number for Extended {
 }
 
 impl Real for Extended {
-    const EPSILON: f64 = EPSILON;
-
     fn square_root(self) -> Self {
         self.sqrt()
     }
@@ -118,20 +111,20 @@ pub(crate) fn round<const R: usize, const C: usize>(
 }
 
 /// A real matrix among the complex ones.
-pub(crate) fn complex<T: Real, const R: usize, const C: usize>(
-    matrix: &SMatrix<T, R, C>,
-) -> SMatrix<Complex<T>, R, C> {
-    matrix.map(|value| Complex { re: value, im: T::zero() })
+pub(crate) fn complex<const R: usize, const C: usize>(
+    matrix: &SMatrix<Extended, R, C>,
+) -> SMatrix<Complex<Extended>, R, C> {
+    matrix.map(Complex::from)
 }
 
 /// A complex double with more digits.
-pub(crate) fn extend_complex<T: Real>(value: Complex<f64>) -> Complex<T> {
-    Complex { re: T::from(value.re), im: T::from(value.im) }
+pub(crate) fn extend_complex(value: Complex<f64>) -> Complex<Extended> {
+    Complex { re: Extended::from(value.re), im: Extended::from(value.im) }
 }
 
 /// The nearest complex double.
-pub(crate) fn round_complex<T: Real>(value: Complex<T>) -> Complex<f64> {
-    Complex { re: value.re.rounded(), im: value.im.rounded() }
+pub(crate) fn round_complex(value: Complex<Extended>) -> Complex<f64> {
+    Complex { re: value.re.to_f64(), im: value.im.to_f64() }
 }
 
 /// Products of matrices. Those of `nalgebra` also multiply by factors of one and add multiples of zero, which is

@@ -5,7 +5,7 @@ use crate::eigenvalues::eigenvalues_extended;
 use crate::error::Mode;
 use crate::extended::Extended;
 use crate::number::{Real, Square, Times, adjoint, complex, norm, round_complex, shifted};
-use crate::orthonormal::{inner, length, normalised};
+use crate::orthonormal::{inner, length, normalised, oblique};
 use crate::pair::Pair;
 use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
@@ -113,23 +113,21 @@ const FOLLOWED: u32 = 80;
 ///
 /// An eigenvalue that is several at once is only known roughly: λ follows the singular vector to the place where
 /// the singular value is smallest.
-fn visibility<R: Real, const N: usize>(
-    dynamics: &Square<Complex<R>, N>,
-    outputs: &Square<Complex<R>, N>,
-    eigenvalue: Complex<R>,
-) -> Option<(f64, Complex<R>, SVector<Complex<R>, N>)> {
+fn visibility<const N: usize>(
+    dynamics: &Square<Complex<Extended>, N>,
+    outputs: &Square<Complex<Extended>, N>,
+    eigenvalue: Complex<Extended>,
+) -> Option<(f64, Complex<Extended>, SVector<Complex<Extended>, N>)> {
     let outputs_squared = adjoint(outputs).times(outputs);
     let mut at = eigenvalue;
-    let mut vector = SVector::<Complex<R>, N>::from_fn(|index, _| {
-        Complex::from(R::from(1.0 + index as f64 / 7.0))
-    });
-    let mut best: Option<(f64, Complex<R>, SVector<Complex<R>, N>)> = None;
+    let mut vector = oblique();
+    let mut best: Option<(f64, Complex<Extended>, SVector<Complex<Extended>, N>)> = None;
     for _ in 0..FOLLOWED {
         let distance = shifted(dynamics, at);
         // The little on the diagonal keeps an exactly singular matrix from stopping the inverse iteration.
         let gram = Eliminated::new(&shifted(
             &(adjoint(&distance).times(&distance) + outputs_squared),
-            Complex::from(R::from(-1e-30)),
+            Complex::from(Extended::from(-1e-30)),
         ));
         for _ in 0..2 {
             let next = gram.as_ref().map_or(vector, |gram| gram.solve(&vector));
@@ -150,7 +148,7 @@ fn visibility<R: Real, const N: usize>(
 }
 
 /// The state in which a mode is seen most.
-pub(crate) fn dominant<R: Real, const N: usize>(vector: &SVector<Complex<R>, N>) -> usize {
+pub(crate) fn dominant<const N: usize>(vector: &SVector<Complex<Extended>, N>) -> usize {
     let sizes = vector.iter().map(|value| value.norm_sqr().rounded()).enumerate();
     sizes.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(state, _)| state)
 }

@@ -1,7 +1,8 @@
 //! Orthonormal bases.
 
+use crate::extended::Extended;
 use crate::number::{Number, Real, Square};
-use nalgebra::SVector;
+use nalgebra::{Complex, SVector};
 
 /// A basis of the whole space whose first `count` vectors span, one after the other, the first `count` columns;
 /// nothing where these are linearly dependent. The other vectors span what is orthogonal to them.
@@ -76,4 +77,9 @@ pub(crate) fn normalised<T: Number, const N: usize>(
     let long_enough = length.rounded() > least && length.rounded().is_finite();
     let reciprocal = T::Real::from(1.0) / length;
     long_enough.then(|| vector.map(|value| value.scaled(reciprocal)))
+}
+
+/// A vector along no axis, from which an inverse iteration can start.
+pub(crate) fn oblique<const N: usize>() -> SVector<Complex<Extended>, N> {
+    SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)))
 }

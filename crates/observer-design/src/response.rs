@@ -2,7 +2,6 @@
 
 use crate::Error;
 use crate::discretise::zero_order_hold;
-use crate::extended::Extended;
 use crate::number::{
     complex, extend, extend_complex, finite, power_of_two, round_complex, shifted,
 };
@@ -38,7 +37,7 @@ impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
         if !s.re.is_finite() || !s.im.is_finite() || !self.is_finite() {
             return Err(Error::NotFinite);
         }
-        let resolvent = -shifted(&complex(&extend(&self.a)), extend_complex::<Extended>(s));
+        let resolvent = -shifted(&complex(&extend(&self.a)), extend_complex(s));
         let states = solve(&resolvent, &complex(&extend(&self.b))).ok_or(Error::Singular)?;
         let response = complex(&extend(&self.c)) * states + complex(&extend(&self.d));
         let response = response.map(round_complex);

@@ -52,14 +52,7 @@ impl<'a> Case<'a> {
         rows: usize,
         columns: usize,
     ) -> Result<DMatrix<f64>, Problem> {
-        let matrix = self.matrix(name)?;
-        if matrix.shape() == (rows, columns) {
-            return Ok(matrix);
-        }
-        let (found_rows, found_columns) = matrix.shape();
-        Err(format!(
-            "{name}: expected {rows} × {columns} numbers, found {found_rows} × {found_columns}"
-        ))
+        of_size(name, self.matrix(name)?, rows, columns)
     }
 
     /// A, which is square, with no more states than the program was built for.
@@ -84,11 +77,12 @@ impl<'a> Case<'a> {
         states: usize,
         most: usize,
     ) -> Result<DMatrix<f64>, Problem> {
-        let outputs = self.matrix(name)?.nrows();
+        let matrix = self.matrix(name)?;
+        let outputs = matrix.nrows();
         if outputs > most {
             return Err(format!("{name}: expected at most {most} outputs, found {outputs}"));
         }
-        self.matrix_of(name, outputs, states)
+        of_size(name, matrix, outputs, states)
     }
 
     /// A matrix of as many rows as there are states, with no more inputs than the program was built for.
@@ -98,11 +92,12 @@ impl<'a> Case<'a> {
         states: usize,
         most: usize,
     ) -> Result<DMatrix<f64>, Problem> {
-        let inputs = self.matrix(name)?.ncols();
+        let matrix = self.matrix(name)?;
+        let inputs = matrix.ncols();
         if inputs > most {
             return Err(format!("{name}: expected at most {most} inputs, found {inputs}"));
         }
-        self.matrix_of(name, states, inputs)
+        of_size(name, matrix, states, inputs)
     }
 
     /// As many poles as there are states: pairs of real and imaginary part, or real numbers.
@@ -144,4 +139,19 @@ impl<'a> Case<'a> {
 
 fn number(value: &Value) -> Option<f64> {
     if value.is_null() { Some(f64::NAN) } else { value.as_f64() }
+}
+
+fn of_size(
+    name: &str,
+    matrix: DMatrix<f64>,
+    rows: usize,
+    columns: usize,
+) -> Result<DMatrix<f64>, Problem> {
+    let (found_rows, found_columns) = matrix.shape();
+    if (found_rows, found_columns) == (rows, columns) {
+        return Ok(matrix);
+    }
+    Err(format!(
+        "{name}: expected {rows} × {columns} numbers, found {found_rows} × {found_columns}"
+    ))
 }

@@ -57,9 +57,7 @@ impl Design {
 /// [`Error::Read`], [`Error::Line`] or [`Error::File`] if the file is none of cases.
 pub fn answers(path: &Path) -> Result<Report, Error> {
     let file = TextFile::read(path)?;
-    let cases: Map<String, Value> = serde_json::from_str(file.text()).map_err(|error| {
-        file.error_at(error.line(), format!("expected a JSON object of cases: {}", reason(&error)))
-    })?;
+    let cases: Map<String, Value> = file.json("a JSON object of cases")?;
     let mut sections = Vec::new();
     for (name, answer) in answer::SECTIONS {
         let Some(section) = cases.get(name) else { continue };
@@ -69,10 +67,4 @@ pub fn answers(path: &Path) -> Result<Report, Error> {
         sections.push((name, list.iter().map(|value| Answered::new(value, answer)).collect()));
     }
     Ok(Report { sections })
-}
-
-/// What the parser says, without the place, which the sentence begins with.
-fn reason(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    text.split(" at line ").next().unwrap_or_default().to_owned()
 }

@@ -137,8 +137,7 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
             return Err(Error::NotFinite);
         }
         let values = eigenvalues_extended(&self.closed(gain))?;
-        let offsets_from =
-            |pole| values.map(|value| round_complex(value - extend_complex::<Extended>(pole)));
+        let offsets_from = |pole| values.map(|value| round_complex(value - extend_complex(pole)));
         let offsets = self.poles.map(offsets_from);
         let partners = pair_up(&offsets.map(|row| row.map(size)));
         let mut checked = Checked {

@@ -44,7 +44,7 @@ pub(crate) fn place<const N: usize>(
     let mut exact = Square::<Wide, N>::zeros();
     for index in 0..N {
         let (space, pole) = (&spaces[index], extend_complex(poles[index]));
-        let vector = vectors.column(index).map(extend_complex::<Extended>);
+        let vector = vectors.column(index).map(extend_complex);
         let vector = normalised(&(space.times(&adjoint(space).times(&vector))), 0.0)?;
         let image = adjoint(&range).times(&shifted(&transposed, pole).times(&vector));
         exact.set_column(index, &vector);

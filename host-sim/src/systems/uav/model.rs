@@ -81,16 +81,8 @@ impl Model {
 
     fn from_file(path: &Path) -> Result<Self, Error> {
         let file = TextFile::read(path)?;
-        let contents: Contents = serde_json::from_str(file.text()).map_err(|error| {
-            let problem = error.to_string();
-            let problem = problem.split(" at line ").next().unwrap_or_default();
-            file.error_at(
-                error.line(),
-                format!(
-                    "expected a JSON object with A, B and perhaps C, outputs, trim and h: {problem}"
-                ),
-            )
-        })?;
+        let contents: Contents =
+            file.json("a JSON object with A, B and perhaps C, outputs, trim and h")?;
         let outputs = match (contents.c, contents.outputs) {
             (None, None) => states(),
             (Some(rows), Some(names)) if rows.len() == names.len() => {
