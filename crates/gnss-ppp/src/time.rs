@@ -30,6 +30,11 @@ impl GpsTime {
         Self { day: day.saturating_add(days as i32), second }
     }
 
+    /// The instant `second` seconds into day `day`, for constants; `second` is taken as it is.
+    pub const fn new_in_day(day: i32, second: f64) -> Self {
+        Self { day, second }
+    }
+
     /// The modified Julian date of the day.
     pub const fn day(self) -> i32 {
         self.day

@@ -79,6 +79,29 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(())
     }
 
+    /// Forgets one state: sets its mean and variance, and all that ties it to the others to zero.
+    ///
+    /// # Errors
+    /// [`Error::IndexOutOfRange`], [`Error::NotPositive`] for a negative variance, or
+    /// [`Error::NotFinite`]; the estimate is untouched.
+    pub fn reset_at(&mut self, index: usize, mean: T, variance: T) -> Result<(), Error> {
+        if index >= N {
+            return Err(Error::IndexOutOfRange);
+        }
+        if variance < T::ZERO {
+            return Err(Error::NotPositive);
+        }
+        if !(mean.is_finite() && variance.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        self.mean.data.0[0][index] = mean;
+        for other in 0..N {
+            *self.covariance.entry(index, other) = T::ZERO;
+        }
+        *self.covariance.entry(index, index) = variance;
+        Ok(())
+    }
+
     /// Takes in the measurement z of a model, linear or linearised, with noise variance R.
     ///
     /// # Errors

@@ -1,0 +1,68 @@
+/// One part of the observation model beyond geometry and clocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Correction {
+    /// The satellite's clock on its eccentric orbit: up to 14 m.
+    Relativity,
+    /// The signal's delay in the Earth's gravity: 2 cm, nearly the same for all satellites.
+    Shapiro,
+    /// The Earth's rotation while the signal travels: up to 40 m.
+    Sagnac,
+    /// The hydrostatic troposphere: 2.3 m at the zenith.
+    Troposphere,
+    /// The tide of the solid Earth: up to 40 cm.
+    SolidTide,
+    /// The load of the oceans' tides: up to 10 cm near the coast.
+    OceanLoading,
+    /// The turning of the antennas against each other: up to a cycle.
+    WindUp,
+    /// Phase centre of the satellite's antenna: 1 to 3 m.
+    SatelliteAntenna,
+    /// Phase centre of the receiver's antenna: 5 to 15 cm.
+    ReceiverAntenna,
+}
+
+impl Correction {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Relativity,
+        Self::Shapiro,
+        Self::Sagnac,
+        Self::Troposphere,
+        Self::SolidTide,
+        Self::OceanLoading,
+        Self::WindUp,
+        Self::SatelliteAntenna,
+        Self::ReceiverAntenna,
+    ];
+}
+
+/// Which corrections are applied: all, unless one is left out to see what it is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Corrections {
+    left_out: u16,
+}
+
+impl Corrections {
+    /// Everything that is known.
+    pub const ALL: Self = Self { left_out: 0 };
+
+    /// These, without one.
+    pub const fn without(self, correction: Correction) -> Self {
+        Self { left_out: self.left_out | 1 << correction as u16 }
+    }
+
+    /// Whether a correction is applied.
+    pub const fn has(self, correction: Correction) -> bool {
+        self.left_out & (1 << correction as u16) == 0
+    }
+}
+
+impl Default for Corrections {
+    fn default() -> Self {
+        Self::ALL
+    }
+}

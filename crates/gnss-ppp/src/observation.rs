@@ -1,0 +1,119 @@
+//! What a receiver should observe of a satellite, free of the ionosphere.
+
+use crate::constants::SPEED_OF_LIGHT;
+use crate::signal::{NARROW_LANE, ionosphere_free};
+use crate::{
+    BodyAxes, Correction, Direction, Pattern, Site, eccentricity_clock, sagnac, shapiro_delay,
+    wind_up,
+};
+use nalgebra::Vector3;
+
+/// A satellite at the time of transmission.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SatelliteState {
+    /// Centre of mass, ECEF at the time of transmission, m.
+    pub position: Vector3<f64>,
+    /// Velocity, m/s, inertial or relative to the Earth.
+    pub velocity: Vector3<f64>,
+    /// How far its clock is ahead of GPS time, s, without the effect of its eccentric orbit.
+    pub clock: f64,
+    /// Time from the clock's sample before to that after, s (zero: not interpolated).
+    pub clock_interval: f64,
+    /// Time to the nearer of both, s.
+    pub clock_distance: f64,
+}
+
+/// What a receiver should observe of a satellite.
+///
+/// P = range + c·dt + m·Z and L = P + `wind_up` + ambiguity with the receiver's clock c·dt, the wet zenith delay
+/// Z and its mapping m (the card's P_IF and L_IF), all in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// Distance between the phase centres with all that delays the signal but the receiver's clock,
+    /// the wet troposphere and the ambiguity; less the satellite's clock; m.
+    pub range: f64,
+    /// What the wind-up adds to the ionosphere-free phase, m.
+    pub wind_up: f64,
+    /// The same in cycles, to be handed back in the next epoch.
+    pub wind_up_cycles: f64,
+    /// ECEF unit vector from the receiver to the satellite: minus ∂range/∂position.
+    pub sight: Vector3<f64>,
+    /// The same in the receiver's sky.
+    pub direction: Direction,
+    /// ∂P/∂Z, Niell's mapping of the wet delay.
+    pub wet_mapping: f64,
+}
+
+impl Site<'_> {
+    /// What should be observed of a satellite from here; none where that is not finite, as for a
+    /// receiver at the satellite's place.
+    pub fn expect(
+        &self,
+        state: &SatelliteState,
+        antenna: Option<&[Pattern<'_>; 2]>,
+        previous_wind_up: Option<f64>,
+    ) -> Option<Expected> {
+        let has = |correction| self.receiver.corrections.has(correction);
+        let axes = BodyAxes::nominal(&state.position, &self.bodies.sun);
+        let mut centre = state.position;
+        let satellite_antenna = antenna.filter(|_| has(Correction::SatelliteAntenna));
+        if let (Some([first, second]), Some(axes)) = (satellite_antenna, &axes) {
+            let both = |index: usize| {
+                let at = |offset: &[f64; 3]| offset.get(index).copied().unwrap_or(0.0);
+                ionosphere_free([at(&first.offset), at(&second.offset)])
+            };
+            centre += axes.to_ecef(&[both(0), both(1), both(2)]);
+        }
+        let line = centre - self.antenna;
+        let distance = line.norm();
+        let sight = line / distance;
+        let direction = Direction::of(&sight, &self.place);
+        let mapping = self.troposphere.mapping(direction.elevation);
+        let mut clock = state.clock;
+        if has(Correction::Relativity) {
+            clock += eccentricity_clock(&state.position, &state.velocity);
+        }
+        let mut range = distance - SPEED_OF_LIGHT * clock;
+        if has(Correction::Troposphere) {
+            range += mapping.hydrostatic * self.troposphere.zenith_hydrostatic();
+        }
+        if has(Correction::Sagnac) {
+            range += sagnac(&centre, &self.antenna);
+        }
+        if has(Correction::Shapiro) {
+            range += shapiro_delay(&state.position, &self.antenna);
+        }
+        if let Some([first, second]) = satellite_antenna {
+            let nadir = nadir_angle(&state.position, &sight);
+            range += ionosphere_free([first.variation(nadir, None), second.variation(nadir, None)]);
+        }
+        if let Some([first, second]) = &self.receiver.antenna
+            && has(Correction::ReceiverAntenna)
+        {
+            range += ionosphere_free([first.delay(&direction), second.delay(&direction)]);
+        }
+        let wind_up_cycles = match &axes {
+            Some(axes) if has(Correction::WindUp) => {
+                wind_up(axes, &self.enu_from_ecef, &sight, previous_wind_up)
+            }
+            _ => previous_wind_up.unwrap_or(0.0),
+        };
+        let expected = Expected {
+            range,
+            wind_up: NARROW_LANE * wind_up_cycles,
+            wind_up_cycles,
+            sight,
+            direction,
+            wet_mapping: mapping.wet,
+        };
+        (range + expected.wind_up + expected.wet_mapping).is_finite().then_some(expected)
+    }
+}
+
+/// The angle at the satellite between the Earth's centre and the receiver, rad.
+fn nadir_angle(satellite: &Vector3<f64>, sight: &Vector3<f64>) -> f64 {
+    let cosine = sight.dot(satellite) / satellite.norm();
+    libm::acos(cosine.clamp(-1.0, 1.0))
+}

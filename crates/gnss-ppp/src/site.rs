@@ -1,0 +1,85 @@
+use crate::{
+    Bodies, Correction, Corrections, Geodetic, GpsTime, OceanLoading, Pattern, Troposphere,
+    solid_tide,
+};
+use nalgebra::{Matrix3, Vector3};
+
+/// What is known of a receiver besides its position.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Receiver<'a> {
+    /// Its antenna on L1 and L2, where known.
+    pub antenna: Option<[Pattern<'a>; 2]>,
+    /// From the marker to the antenna's reference point: east, north, up, m.
+    pub eccentricity: [f64; 3],
+    /// How the tides of the oceans move it, where known.
+    pub ocean_loading: Option<&'a OceanLoading>,
+    /// UT1 (or UTC) ahead of GPS time, s: the leap seconds since 1980, negated.
+    pub ut1_minus_gps: f64,
+    /// What of all that, and of the rest of the model, is applied.
+    pub corrections: Corrections,
+}
+
+/// A receiver's surroundings at one epoch: all that its satellites have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Site<'a> {
+    pub(crate) receiver: Receiver<'a>,
+    pub(crate) bodies: Bodies,
+    pub(crate) enu_from_ecef: Matrix3<f64>,
+    pub(crate) place: Geodetic,
+    /// Of the antenna's reference point, with the tides, ECEF, m.
+    pub(crate) antenna: Vector3<f64>,
+    pub(crate) troposphere: Troposphere,
+}
+
+impl<'a> Site<'a> {
+    /// The surroundings of a marker at `position` (ECEF, m, free of tides).
+    pub fn new(receiver: &Receiver<'a>, position: &Vector3<f64>, time: GpsTime) -> Self {
+        let bodies = Bodies::at(time, receiver.ut1_minus_gps);
+        Self::with_bodies(receiver, position, time, bodies)
+    }
+
+    /// The same where Sun and Moon are known already.
+    pub fn with_bodies(
+        receiver: &Receiver<'a>,
+        position: &Vector3<f64>,
+        time: GpsTime,
+        bodies: Bodies,
+    ) -> Self {
+        let place = Geodetic::from_ecef(position);
+        let enu_from_ecef = place.enu_from_ecef();
+        let mut local = Vector3::from(receiver.eccentricity);
+        let corrections = receiver.corrections;
+        if let Some(ocean) = receiver.ocean_loading
+            && corrections.has(Correction::OceanLoading)
+        {
+            local += ocean.displacement(time, receiver.ut1_minus_gps);
+        }
+        let mut antenna = position + enu_from_ecef.transpose() * local;
+        if corrections.has(Correction::SolidTide) {
+            antenna += solid_tide(position, &bodies, time, receiver.ut1_minus_gps);
+        }
+        Self {
+            receiver: *receiver,
+            bodies,
+            enu_from_ecef,
+            place,
+            antenna,
+            troposphere: Troposphere::over(&place, time),
+        }
+    }
+
+    /// The place on the ellipsoid.
+    pub const fn place(&self) -> &Geodetic {
+        &self.place
+    }
+
+    /// The rotation from ECEF to east, north, up.
+    pub const fn enu_from_ecef(&self) -> &Matrix3<f64> {
+        &self.enu_from_ecef
+    }
+
+    /// Sun and Moon.
+    pub const fn bodies(&self) -> Bodies {
+        self.bodies
+    }
+}

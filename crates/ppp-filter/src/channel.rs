@@ -1,0 +1,13 @@
+use kestirim_gnss_ppp::Arc;
+
+/// What is remembered of a satellite as long as its ambiguity is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Channel {
+    /// Which GPS satellite (PRN).
+    pub(crate) satellite: u8,
+    pub(crate) arc: Arc,
+    /// Phase wind-up of its last epoch, cycles.
+    pub(crate) wind_up: f64,
+}

@@ -1,0 +1,34 @@
+use core::fmt;
+
+/// Why an epoch has no solution. The filter is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// Fewer than four satellites have complete observations, orbits and clocks above the
+    /// elevation mask.
+    TooFewSatellites,
+    /// The satellites stand so that the codes fix no position.
+    PoorGeometry,
+    /// The epoch is not later than the one before.
+    TimeNotAdvancing,
+    /// So many measurements contradict the others that no position is left.
+    Contradictory,
+    /// A number is not finite.
+    NotFinite,
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::TooFewSatellites => "fewer than four usable satellites",
+            Self::PoorGeometry => "the satellites' geometry fixes no position",
+            Self::TimeNotAdvancing => "the epoch is not later than the one before",
+            Self::Contradictory => "the measurements contradict each other",
+            Self::NotFinite => "a number is not finite",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

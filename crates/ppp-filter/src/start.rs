@@ -1,0 +1,104 @@
+//! The first position, from the codes alone.
+
+use crate::{Error, Sighting};
+use kestirim_gnss_ppp::{EARTH_ROTATION, SPEED_OF_LIGHT, ionosphere_free, satellite_clock_relativity};
+use kestirim_kalman::{Covariance, Gaussian, SparseRow};
+use nalgebra::{SVector, Vector3};
+
+/// Position and receiver clock from one epoch's codes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CodePosition {
+    /// ECEF, m.
+    pub(crate) position: Vector3<f64>,
+    /// How far the receiver's clock is ahead of GPS time, m.
+    pub(crate) clock: f64,
+}
+
+const ITERATIONS: usize = 12;
+/// Variance of what is not known at all, m²: the Earth's radius is 6e6 m.
+const UNKNOWN: f64 = 1e15;
+/// A variance, in those of one code, beyond which the satellites fix nothing.
+const POOR: f64 = 1e6;
+/// A code whose residual is beyond this is dropped from the start, m: an unmodelled troposphere is
+/// not, an outlier that would move the linearisation is.
+const LARGEST_RESIDUAL: f64 = 15.0;
+
+/// Least squares on the ionosphere-free codes, begun at the Earth's centre; the worst code is
+/// dropped while its residual is not believable and five others remain.
+pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, Error> {
+    let mut dropped = 0_u32;
+    loop {
+        let used = |index: usize| index >= 32 || dropped & (1 << index) == 0;
+        let solution = least_squares(sightings, used)?;
+        let worst = sightings
+            .iter()
+            .enumerate()
+            .filter(|&(index, _)| used(index))
+            .filter_map(|(index, sighting)| {
+                let (misfit, _) = compare(sighting, &solution)?;
+                Some((index, misfit.abs()))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let remaining = sightings.len().saturating_sub(dropped.count_ones() as usize);
+        match worst {
+            Some((index, misfit)) if misfit > LARGEST_RESIDUAL && remaining > 5 && index < 32 => {
+                dropped |= 1 << index;
+            }
+            _ => return Ok(solution),
+        }
+    }
+}
+
+fn least_squares(
+    sightings: &[Sighting<'_>],
+    used: impl Fn(usize) -> bool,
+) -> Result<CodePosition, Error> {
+    let mut solution = CodePosition { position: Vector3::zeros(), clock: 0.0 };
+    for _ in 0..ITERATIONS {
+        let mut step = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[UNKNOWN; 4]));
+        let mut count = 0;
+        for (index, sighting) in sightings.iter().enumerate() {
+            if !used(index) {
+                continue;
+            }
+            let Some((misfit, sight)) = compare(sighting, &solution) else { continue };
+            let row = SparseRow::new([(0, -sight.x), (1, -sight.y), (2, -sight.z), (3, 1.0)]);
+            let innovation = misfit - row.dot(&step.mean).unwrap_or(0.0);
+            step.update(&row, innovation, 1.0).map_err(|_| Error::PoorGeometry)?;
+            count += 1;
+        }
+        if count < 4 {
+            return Err(Error::TooFewSatellites);
+        }
+        solution.position += step.mean.xyz();
+        solution.clock += step.mean.w;
+        if step.mean.norm() < 1e-2 {
+            let spread = step.covariance.variances().max();
+            return if spread < POOR { Ok(solution) } else { Err(Error::PoorGeometry) };
+        }
+    }
+    Err(Error::PoorGeometry)
+}
+
+/// Observed less computed, m, and the unit vector from the receiver to the satellite.
+fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vector3<f64>)> {
+    /// Zenith delay of the troposphere that is not known yet, m.
+    const ZENITH_DELAY: f64 = 2.4;
+    let state = &sighting.state;
+    let line = state.position - solution.position;
+    let distance = line.norm();
+    let sight = line / distance;
+    let sagnac = EARTH_ROTATION / SPEED_OF_LIGHT
+        * (state.position.x * solution.position.y - state.position.y * solution.position.x);
+    let clock = state.clock + satellite_clock_relativity(&state.position, &state.velocity);
+    // On the way from the Earth's centre, there is no up yet.
+    let radius = solution.position.norm();
+    let troposphere = if (6.3e6..6.5e6).contains(&radius) {
+        ZENITH_DELAY / (sight.dot(&solution.position) / radius).max(0.1)
+    } else {
+        0.0
+    };
+    let computed = distance + sagnac + solution.clock - SPEED_OF_LIGHT * clock + troposphere;
+    let misfit = ionosphere_free(sighting.code) - computed;
+    misfit.is_finite().then_some((misfit, sight))
+}
