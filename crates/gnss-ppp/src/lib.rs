@@ -1,6 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod astronomy;
+mod bodies;
+mod solid_tide;
 mod antenna;
 mod attitude;
 pub mod constants;
@@ -10,6 +13,13 @@ mod relativity;
 mod time;
 mod troposphere;
 mod wind_up;
+mod clock;
+mod correction;
+mod observation;
+mod orbit;
+mod signal;
+mod site;
+mod slip;
 
 pub use antenna::Pattern;
 pub use attitude::BodyAxes;
@@ -19,3 +29,12 @@ pub use relativity::{carried_along, eccentricity_clock, sagnac, shapiro_delay};
 pub use time::GpsTime;
 pub use troposphere::{Mapping, Troposphere, zenith_hydrostatic, zenith_wet};
 pub use wind_up::wind_up;
+pub use clock::{Clock, ClockSample, ClockState};
+pub use correction::{Correction, Corrections};
+pub use observation::{Expected, SatelliteState};
+pub use orbit::{Orbit, OrbitSample, OrbitState};
+pub use signal::{FREQUENCY, NARROW_LANE, NOISE_AMPLIFICATION, WAVELENGTH, WIDE_LANE, geometry_free, ionosphere_free, ionosphere_free_phase, melbourne_wuebbena};
+pub use site::{Receiver, Site};
+pub use slip::{Arc, Slip, SlipLimits};
+pub use bodies::Bodies;
+pub use solid_tide::solid_tide;

@@ -57,16 +57,7 @@ impl Site<'_> {
     ) -> Option<Expected> {
         let has = |correction| self.receiver.corrections.has(correction);
         let axes = BodyAxes::nominal(&state.position, &self.bodies.sun);
-        let mut centre = state.position;
-        let satellite_antenna = antenna.filter(|_| has(Correction::SatelliteAntenna));
-        if let (Some([first, second]), Some(axes)) = (satellite_antenna, &axes) {
-            let both = |index: usize| {
-                let at = |offset: &[f64; 3]| offset.get(index).copied().unwrap_or(0.0);
-                ionosphere_free([at(&first.offset), at(&second.offset)])
-            };
-            centre += axes.to_ecef(&[both(0), both(1), both(2)]);
-        }
-        let line = centre - self.antenna;
+        let line = state.position - self.antenna;
         let distance = line.norm();
         let sight = line / distance;
         let direction = Direction::of(&sight, &self.place);
@@ -80,19 +71,21 @@ impl Site<'_> {
             range += mapping.hydrostatic * self.troposphere.zenith_hydrostatic();
         }
         if has(Correction::Sagnac) {
-            range += sagnac(&centre, &self.antenna);
+            range += sagnac(&state.position, &self.antenna);
         }
         if has(Correction::Shapiro) {
             range += shapiro_delay(&state.position, &self.antenna);
         }
-        if let Some([first, second]) = satellite_antenna {
-            let nadir = nadir_angle(&state.position, &sight);
-            range += ionosphere_free([first.variation(nadir, None), second.variation(nadir, None)]);
+        if let (Some([first, second]), Some(axes)) = (antenna, &axes)
+            && has(Correction::SatelliteAntenna)
+        {
+            let both = [first.satellite_range(axes, &sight), second.satellite_range(axes, &sight)];
+            range += ionosphere_free(both);
         }
         if let Some([first, second]) = &self.receiver.antenna
             && has(Correction::ReceiverAntenna)
         {
-            range += ionosphere_free([first.delay(&direction), second.delay(&direction)]);
+            range += ionosphere_free([first.receiver_range(direction), second.receiver_range(direction)]);
         }
         let wind_up_cycles = match &axes {
             Some(axes) if has(Correction::WindUp) => {
@@ -110,10 +103,4 @@ impl Site<'_> {
         };
         (range + expected.wind_up + expected.wet_mapping).is_finite().then_some(expected)
     }
-}
-
-/// The angle at the satellite between the Earth's centre and the receiver, rad.
-fn nadir_angle(satellite: &Vector3<f64>, sight: &Vector3<f64>) -> f64 {
-    let cosine = sight.dot(satellite) / satellite.norm();
-    libm::acos(cosine.clamp(-1.0, 1.0))
 }

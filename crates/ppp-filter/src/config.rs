@@ -58,3 +58,18 @@ pub struct Config {
     /// From when on a jump of the combinations is a slip.
     pub slips: SlipLimits,
 }
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            motion: Motion::Static,
+            elevation_mask: 8_f64.to_radians(),
+            phase: Deviation { constant: 0.009, elevation: 0.009 },
+            code: Deviation { constant: 0.9, elevation: 0.9 },
+            clock_walk: 0.0,
+            wet_delay: 0.3,
+            wet_delay_walk: 1e-8,
+            slips: SlipLimits::default(),
+        }
+    }
+}

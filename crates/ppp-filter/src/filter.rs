@@ -78,7 +78,7 @@ impl<const N: usize> PppFilter<N> {
 impl<const N: usize> Running<N> {
     fn start(time: GpsTime, sightings: &[Sighting<'_>], config: &Config) -> Result<Self, Error> {
         let start = code_position(sightings)?;
-        let mut mean = SVector::zeros();
+        let mut mean = SVector::<f64, N>::zeros();
         mean.fixed_rows_mut::<3>(0).copy_from(&start.position);
         mean[CLOCK] = start.clock;
         mean[WET] = 0.1;

@@ -1,7 +1,8 @@
 //! The first position, from the codes alone.
 
 use crate::{Error, Sighting};
-use kestirim_gnss_ppp::{EARTH_ROTATION, SPEED_OF_LIGHT, ionosphere_free, satellite_clock_relativity};
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+use kestirim_gnss_ppp::{eccentricity_clock, ionosphere_free, sagnac};
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use nalgebra::{SVector, Vector3};
 
@@ -17,6 +18,9 @@ pub(crate) struct CodePosition {
 const ITERATIONS: usize = 12;
 /// Variance of what is not known at all, m²: the Earth's radius is 6e6 m.
 const UNKNOWN: f64 = 1e15;
+/// Once a step is shorter than this, m, the next one will be, too: a prior of this deviation loses
+/// less to rounding.
+const NEAR: f64 = 1e5;
 /// A variance, in those of one code, beyond which the satellites fix nothing.
 const POOR: f64 = 1e6;
 /// A code whose residual is beyond this is dropped from the start, m: an unmodelled troposphere is
@@ -54,8 +58,9 @@ fn least_squares(
     used: impl Fn(usize) -> bool,
 ) -> Result<CodePosition, Error> {
     let mut solution = CodePosition { position: Vector3::zeros(), clock: 0.0 };
+    let mut prior = UNKNOWN;
     for _ in 0..ITERATIONS {
-        let mut step = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[UNKNOWN; 4]));
+        let mut step = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[prior; 4]));
         let mut count = 0;
         for (index, sighting) in sightings.iter().enumerate() {
             if !used(index) {
@@ -72,6 +77,7 @@ fn least_squares(
         }
         solution.position += step.mean.xyz();
         solution.clock += step.mean.w;
+        prior = if step.mean.norm() < NEAR { NEAR * NEAR } else { UNKNOWN };
         if step.mean.norm() < 1e-2 {
             let spread = step.covariance.variances().max();
             return if spread < POOR { Ok(solution) } else { Err(Error::PoorGeometry) };
@@ -88,9 +94,7 @@ fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vec
     let line = state.position - solution.position;
     let distance = line.norm();
     let sight = line / distance;
-    let sagnac = EARTH_ROTATION / SPEED_OF_LIGHT
-        * (state.position.x * solution.position.y - state.position.y * solution.position.x);
-    let clock = state.clock + satellite_clock_relativity(&state.position, &state.velocity);
+    let clock = state.clock + eccentricity_clock(&state.position, &state.velocity);
     // On the way from the Earth's centre, there is no up yet.
     let radius = solution.position.norm();
     let troposphere = if (6.3e6..6.5e6).contains(&radius) {
@@ -98,7 +102,7 @@ fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vec
     } else {
         0.0
     };
-    let computed = distance + sagnac + solution.clock - SPEED_OF_LIGHT * clock + troposphere;
+    let computed = distance + sagnac(&state.position, &solution.position) + solution.clock - SPEED_OF_LIGHT * clock + troposphere;
     let misfit = ionosphere_free(sighting.code) - computed;
     misfit.is_finite().then_some((misfit, sight))
 }
