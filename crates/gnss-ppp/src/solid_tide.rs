@@ -1,0 +1,181 @@
+use nalgebra::Vector3;
+
+use crate::astronomy::Arguments;
+use crate::constants::{EARTH_RADIUS, MOON_TO_EARTH_MASS, SUN_TO_EARTH_MASS};
+use crate::{Bodies, GpsTime};
+
+/// What the diurnal tides move beyond the nominal Love numbers, mm (IERS Conventions 2010, table 7.3a):
+/// multiples of τ, s, h, p, N′ and p₁, then radial in and out of phase, transverse in and out of phase.
+const DIURNAL: [([i8; 6], [f64; 4]); 11] = [
+    ([1, -2, 0, 1, 0, 0], [-0.08, 0.00, -0.01, 0.01]),
+    ([1, -1, 0, 0, -1, 0], [-0.10, 0.00, 0.00, 0.00]),
+    ([1, -1, 0, 0, 0, 0], [-0.51, 0.00, -0.02, 0.03]),
+    ([1, 0, 0, 1, 0, 0], [0.06, 0.00, 0.00, 0.00]),
+    ([1, 1, -3, 0, 0, 1], [-0.06, 0.00, 0.00, 0.00]),
+    ([1, 1, -2, 0, 0, 0], [-1.23, -0.07, 0.06, 0.01]),
+    ([1, 1, 0, 0, -1, 0], [-0.22, 0.01, 0.01, 0.00]),
+    ([1, 1, 0, 0, 0, 0], [12.00, -0.80, -0.67, -0.03]),
+    ([1, 1, 0, 0, 1, 0], [1.73, -0.12, -0.10, 0.00]),
+    ([1, 1, 1, 0, 0, -1], [-0.50, -0.01, 0.03, 0.00]),
+    ([1, 1, 2, 0, 0, 0], [-0.11, 0.01, 0.01, 0.00]),
+];
+/// The same of the long-period tides (table 7.3b).
+const LONG_PERIOD: [([i8; 6], [f64; 4]); 5] = [
+    ([0, 0, 0, 0, 1, 0], [0.47, 0.16, 0.23, 0.07]),
+    ([0, 0, 2, 0, 0, 0], [-0.20, -0.11, -0.12, -0.05]),
+    ([0, 1, 0, -1, 0, 0], [-0.11, -0.09, -0.08, -0.04]),
+    ([0, 2, 0, 0, 0, 0], [-0.13, -0.15, -0.11, -0.07]),
+    ([0, 2, 0, 0, 1, 0], [-0.05, -0.06, -0.05, -0.03]),
+];
+
+/// How the tides of the solid Earth displace a station at `position` (ECEF m), in ECEF m: up to 0.4 m.
+///
+/// The model of the IERS Conventions 2010, section 7.1.1: tides of degree 2 and 3 from the Sun and the Moon
+/// with the Love and Shida numbers' dependence on latitude and their imaginary parts (step 1), and the
+/// corrections to the diurnal and long-period waves (step 2). As there, the displacement contains the
+/// permanent tide: what it is taken from are coordinates of the conventional tide-free kind, those of the
+/// ITRF and the IGS.
+///
+/// `bodies` belong to the same instant. Zero at the Earth's centre.
+pub fn solid_tide(
+    position: &Vector3<f64>,
+    bodies: &Bodies,
+    time: GpsTime,
+    ut1_minus_gps: f64,
+) -> Vector3<f64> {
+    let Some(station) = Station::at(position) else { return Vector3::zeros() };
+    let from_sun = station.step_1(&bodies.sun, SUN_TO_EARTH_MASS);
+    let from_moon = station.step_1(&bodies.moon, MOON_TO_EARTH_MASS);
+    from_sun + from_moon + station.step_2(&Arguments::at(time, ut1_minus_gps))
+}
+
+/// The directions of a place on a sphere, and its geocentric latitude.
+struct Station {
+    up: Vector3<f64>,
+    north: Vector3<f64>,
+    east: Vector3<f64>,
+    /// From the axis into the station's meridian.
+    outward: Vector3<f64>,
+    sine: f64,
+    cosine: f64,
+    longitude: f64,
+}
+
+impl Station {
+    fn at(position: &Vector3<f64>) -> Option<Self> {
+        let up = position.try_normalize(f64::MIN_POSITIVE)?;
+        let longitude = libm::atan2(up.y, up.x);
+        let (sine, cosine) = libm::sincos(longitude);
+        let outward = Vector3::new(cosine, sine, 0.0);
+        let east = Vector3::new(-sine, cosine, 0.0);
+        let north = up.cross(&east);
+        let (sine, cosine) = (up.z, libm::hypot(up.x, up.y));
+        Some(Self { up, north, east, outward, sine, cosine, longitude })
+    }
+
+    fn displacement(&self, up: f64, north: f64, east: f64) -> Vector3<f64> {
+        self.up * up + self.north * north + self.east * east
+    }
+
+    /// The time domain: what one body does.
+    fn step_1(&self, body: &Vector3<f64>, mass: f64) -> Vector3<f64> {
+        let Some(direction) = body.try_normalize(f64::MIN_POSITIVE) else {
+            return Vector3::zeros();
+        };
+        let Self { sine, cosine, .. } = *self;
+        let ratio = EARTH_RADIUS / body.norm();
+        let degree_2 = mass * EARTH_RADIUS * ratio * ratio * ratio;
+        let degree_3 = degree_2 * ratio;
+
+        // Degree 2 (7.5) and degree 3 (7.6); the part along the body has the coefficient `towards`.
+        let zonal = 1.5 * sine * sine - 0.5;
+        let (h2, l2) = (0.6078 - 0.0006 * zonal, 0.0847 + 0.0002 * zonal);
+        let (h3, l3) = (0.292, 0.015);
+        let x = direction.dot(&self.up);
+        let towards = degree_2 * 3.0 * l2 * x + degree_3 * l3 * (7.5 * x * x - 1.5);
+        let up = degree_2 * h2 * (1.5 * x * x - 0.5) + degree_3 * h3 * x * (2.5 * x * x - 1.5);
+        let nominal = direction * towards + self.up * (up - towards * x);
+
+        // The body's direction along the station's meridian, to its east and along the Earth's axis.
+        let p = direction.dot(&self.outward);
+        let q = direction.dot(&self.east);
+        let s = direction.z;
+        let (along, across) = (p * p - q * q, p * q);
+        let double = cosine * cosine - sine * sine;
+
+        // Imaginary parts of the diurnal (7.10) and the semidiurnal (7.11) Love numbers.
+        let (h, l) = (-0.0025, -0.0007);
+        let mut up = 3.0 * h * sine * cosine * s * q;
+        let mut north = 3.0 * l * double * s * q;
+        let mut east = -3.0 * l * sine * s * p;
+        let (h, l) = (-0.0022, -0.0007);
+        up += 1.5 * h * cosine * cosine * across;
+        north -= 3.0 * l * sine * cosine * across;
+        east -= 1.5 * l * cosine * along;
+
+        // The toroidal parts l⁽¹⁾, diurnal (7.8) and semidiurnal (7.9).
+        let l = 0.0012;
+        north -= 3.0 * l * sine * sine * s * p;
+        east -= 3.0 * l * sine * double * s * q;
+        let l = 0.0024;
+        north -= 1.5 * l * sine * cosine * along;
+        east += 3.0 * l * sine * sine * cosine * across;
+        nominal + self.displacement(up, north, east) * degree_2
+    }
+
+    /// The frequency domain (7.12 and 7.13).
+    fn step_2(&self, arguments: &Arguments) -> Vector3<f64> {
+        let Self { sine, cosine, .. } = *self;
+        let mut total = [0.0; 3];
+        for (multiples, [radial, radial_out, transverse, transverse_out]) in DIURNAL {
+            let (s, c) = libm::sincos(angle(multiples, arguments) + self.longitude);
+            let [up, north, east] = &mut total;
+            *up += 2.0 * sine * cosine * (radial * s + radial_out * c);
+            *north += (cosine * cosine - sine * sine) * (transverse * s + transverse_out * c);
+            *east += sine * (transverse * c - transverse_out * s);
+        }
+        for (multiples, [radial, radial_out, transverse, transverse_out]) in LONG_PERIOD {
+            let (s, c) = libm::sincos(angle(multiples, arguments));
+            let [up, north, _] = &mut total;
+            *up += (1.5 * sine * sine - 0.5) * (radial * c + radial_out * s);
+            *north += 2.0 * sine * cosine * (transverse * c + transverse_out * s);
+        }
+        let [up, north, east] = total.map(|millimetres| millimetres * 1e-3);
+        self.displacement(up, north, east)
+    }
+}
+
+/// Doodson's argument with these multiples; N′ is minus the longitude of the Moon's node.
+fn angle([tau, s, h, p, n, p1]: [i8; 6], arguments: &Arguments) -> f64 {
+    f64::from(tau) * arguments.lunar_time()
+        + f64::from(s) * arguments.moon_longitude()
+        + f64::from(h) * arguments.sun_longitude()
+        + f64::from(p) * arguments.perigee()
+        - f64::from(n) * arguments.node
+        + f64::from(p1) * arguments.sun_perigee()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::solid_tide;
+    use crate::{Bodies, GpsTime};
+
+    /// The test case of the IERS' DEHANTTIDEINEL, 13 April 2009 at 0 h UTC.
+    #[test]
+    fn the_test_case_of_the_conventions() {
+        let bodies = Bodies {
+            sun: Vector3::new(137_859_926_952.015, 54_228_127_881.435_0, 23_509_422_341.696_0),
+            moon: Vector3::new(-179_996_231.920_342, -312_468_450.131_567, -169_288_918.592_160),
+        };
+        let position = Vector3::new(4_075_578.385, 931_852.890, 4_801_570.154);
+        let tide = solid_tide(&position, &bodies, GpsTime::new(54_934, 15.0), -15.0);
+        let expected = Vector3::new(
+            0.077_004_203_571_081_26,
+            0.063_040_563_218_249_68,
+            0.055_165_681_525_972_47,
+        );
+        assert!((tide - expected).norm() < 1e-4, "{:?}", tide - expected);
+    }
+}
