@@ -1,6 +1,7 @@
 //! The systems, one folder each.
 
 pub mod drone;
+pub mod gnss;
 pub mod pedestrian;
 pub mod robot;
 pub mod uav;

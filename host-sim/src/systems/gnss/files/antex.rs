@@ -1,0 +1,246 @@
+//! Antenna phase centres: ANTEX 1.3 and 1.4.
+
+use std::path::Path;
+
+use kestirim_gnss_ppp::{GpsTime, Pattern};
+use memchr::memmem::Finder;
+
+use super::fields::gps_satellite;
+use super::lines::{Line, Lines, Text};
+use crate::Error;
+
+/// Beyond any calibration's grid.
+const MOST_ANGLES: f64 = 400.0;
+
+/// The phase centre of an antenna on one frequency.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PhaseCentre {
+    offset: [f64; 3],
+    first: f64,
+    step: f64,
+    mean: Vec<f64>,
+    azimuth_step: f64,
+    by_azimuth: Vec<f64>,
+}
+
+impl PhaseCentre {
+    /// As the observation model takes it.
+    pub fn pattern(&self) -> Pattern<'_> {
+        Pattern {
+            offset: self.offset,
+            first: self.first,
+            step: self.step,
+            mean: &self.mean,
+            azimuth_step: self.azimuth_step,
+            by_azimuth: &self.by_azimuth,
+        }
+    }
+}
+
+/// An antenna.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Antenna {
+    /// Type, and radome of a receiver's, as in the file.
+    pub name: String,
+    /// The phase centres on L1 and L2.
+    pub frequencies: [Option<PhaseCentre>; 2],
+    valid_from: Option<GpsTime>,
+    valid_until: Option<GpsTime>,
+}
+
+impl Antenna {
+    fn is_valid(&self, time: GpsTime) -> bool {
+        self.valid_from.is_none_or(|from| from <= time)
+            && self.valid_until.is_none_or(|until| time <= until)
+    }
+}
+
+/// Antennas of GPS satellites and of one receiver.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Antennas {
+    satellites: Vec<(u8, Antenna)>,
+    /// The receiver's, or the one that comes nearest to it.
+    pub receiver: Option<Antenna>,
+    /// What a user should know of the file.
+    pub warnings: Vec<String>,
+}
+
+impl Antennas {
+    /// Reads a file for a receiver whose antenna's type and radome stand as in a RINEX header.
+    ///
+    /// # Errors
+    /// The file, the line, and what was expected there.
+    pub fn read(path: &Path, receiver: &str) -> Result<Self, Error> {
+        Self::parse(&Text::read(path)?, receiver)
+    }
+
+    /// Reads a file in memory, as [`Self::read`].
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(text: &Text, receiver: &str) -> Result<Self, Error> {
+        let mut lines = text.lines();
+        let first = lines.next().filter(|line| line.label() == b"ANTEX VERSION / SYST");
+        first.ok_or_else(|| text.wrong_kind("antenna patterns (ANTEX)"))?;
+        let wanted = Name::new(receiver.as_bytes());
+        let without_radome = Name { radome: *b"NONE", ..wanted };
+        let mut antennas = Self::default();
+        let mut nearest = None;
+        let starts = Finder::new("START OF ANTENNA");
+        loop {
+            lines.skip_past(&starts);
+            let Some(line) = lines.next() else { break };
+            if line.label() != b"TYPE / SERIAL NO" {
+                return Err(line.expected("TYPE / SERIAL NO"));
+            }
+            let serial = line.columns(20, 40);
+            if serial.first() == Some(&b'G') && serial.len() == 3 {
+                if let Some(prn) = gps_satellite(serial) {
+                    antennas.satellites.push((prn, antenna(&line, &mut lines)?));
+                }
+                continue;
+            }
+            if !serial.is_empty() {
+                continue;
+            }
+            let name = Name::new(line.bytes);
+            if name == wanted && antennas.receiver.is_none() {
+                antennas.receiver = Some(antenna(&line, &mut lines)?);
+            } else if name == without_radome && nearest.is_none() {
+                nearest = Some(antenna(&line, &mut lines)?);
+            }
+        }
+        let receiver = receiver.trim_ascii();
+        if antennas.receiver.is_none() {
+            let taken = if nearest.is_some() { "taken without its radome" } else { "left out" };
+            let problem =
+                format!("does not know the receiver's antenna {receiver:?}: it is {taken}");
+            antennas.warnings.push(text.warning(problem));
+            antennas.receiver = nearest;
+        }
+        Ok(antennas)
+    }
+
+    /// The antenna of a satellite at a time.
+    pub fn satellite(&self, prn: u8, time: GpsTime) -> Option<&Antenna> {
+        let fits = |(number, antenna): &&(u8, Antenna)| *number == prn && antenna.is_valid(time);
+        self.satellites.iter().rev().find(fits).map(|(_, antenna)| antenna)
+    }
+}
+
+/// A type in 16 columns and a radome in 4.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Name {
+    kind: [u8; 16],
+    radome: [u8; 4],
+}
+
+impl Name {
+    fn new(columns: &[u8]) -> Self {
+        let mut name = [b' '; 20];
+        for (to, from) in name.iter_mut().zip(columns) {
+            *to = from.to_ascii_uppercase();
+        }
+        let mut this = Self { kind: [0; 16], radome: *b"NONE" };
+        this.kind.copy_from_slice(&name[..16]);
+        if name[16..] != *b"    " {
+            this.radome.copy_from_slice(&name[16..]);
+        }
+        this
+    }
+}
+
+/// Reads the lines of an antenna behind the one that tells its type.
+fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
+    let mut antenna = Antenna { name: start.text(0, 20), ..Antenna::default() };
+    let mut grid = Grid::default();
+    loop {
+        let line = lines.expect("the end of an antenna")?;
+        match line.label() {
+            b"END OF ANTENNA" => return Ok(antenna),
+            b"DAZI" => grid.azimuth_step = line.finite("the step of the azimuths", 2, 8)?,
+            b"ZEN1 / ZEN2 / DZEN" => {
+                grid.first = line.finite("the first angle", 2, 8)?;
+                grid.last = line.finite("the last angle", 8, 14)?;
+                grid.step = line.finite("the step of the angles", 14, 20)?;
+            }
+            b"VALID FROM" => antenna.valid_from = Some(line.time(VALIDITY)?),
+            b"VALID UNTIL" => antenna.valid_until = Some(line.time(VALIDITY)?),
+            b"START OF FREQUENCY" => match line.columns(3, 6) {
+                b"G01" => antenna.frequencies[0] = Some(grid.frequency(&line, lines)?),
+                b"G02" => antenna.frequencies[1] = Some(grid.frequency(&line, lines)?),
+                _ => lines.skip_past(&Finder::new("END OF FREQUENCY")),
+            },
+            b"START OF FREQ RMS" => lines.skip_past(&Finder::new("END OF FREQ RMS")),
+            _ => {}
+        }
+    }
+}
+
+const VALIDITY: [usize; 7] = [0, 6, 12, 18, 24, 30, 43];
+
+/// The angles to which the numbers of a pattern belong, degrees.
+#[derive(Debug, Default)]
+struct Grid {
+    first: f64,
+    last: f64,
+    step: f64,
+    azimuth_step: f64,
+}
+
+impl Grid {
+    fn frequency(&self, start: &Line<'_>, lines: &mut Lines<'_>) -> Result<PhaseCentre, Error> {
+        let angles = steps(self.first, self.last, self.step)
+            .ok_or_else(|| start.error("expected the angles of the pattern before it"))?;
+        let azimuths = match self.azimuth_step {
+            0.0 => 0,
+            step => {
+                steps(0.0, 360.0, step).ok_or_else(|| start.error("expected a step of azimuths"))?
+            }
+        };
+        let mut centre = PhaseCentre {
+            first: self.first,
+            step: self.step,
+            azimuth_step: self.azimuth_step,
+            ..PhaseCentre::default()
+        };
+        let mut offset_known = false;
+        loop {
+            let line = lines.expect("the end of a frequency")?;
+            if line.label() == b"END OF FREQUENCY" {
+                break;
+            } else if line.label() == b"NORTH / EAST / UP" {
+                offset_known = true;
+                for (i, offset) in centre.offset.iter_mut().enumerate() {
+                    *offset = 1e-3 * line.finite("an offset in mm", 10 * i, 10 * i + 10)?;
+                }
+            } else if line.columns(0, 8) == b"NOAZI" {
+                row(&line, angles, &mut centre.mean)?;
+            } else if centre.by_azimuth.len() < azimuths * angles {
+                row(&line, angles, &mut centre.by_azimuth)?;
+            } else {
+                return Err(line.expected("the end of a frequency"));
+            }
+        }
+        let whole = centre.mean.len() == angles && centre.by_azimuth.len() == azimuths * angles;
+        if whole && offset_known {
+            Ok(centre)
+        } else {
+            Err(start.error("expected an offset and as many rows as the grid has, found others"))
+        }
+    }
+}
+
+/// How many points a grid has.
+fn steps(first: f64, last: f64, step: f64) -> Option<usize> {
+    let steps = (last - first) / step;
+    let fits = (0.0..MOST_ANGLES).contains(&steps) && (steps - steps.round()).abs() < 1e-6;
+    fits.then(|| steps.round() as usize + 1)
+}
+
+fn row(line: &Line<'_>, angles: usize, values: &mut Vec<f64>) -> Result<(), Error> {
+    for i in 1..=angles {
+        values.push(1e-3 * line.finite("a phase centre variation in mm", 8 * i, 8 * i + 8)?);
+    }
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! Ocean loading of stations: BLQ.
+
+use std::path::Path;
+
+use kestirim_gnss_ppp::{Geodetic, OceanLoading};
+
+use super::fields::{blank_separated, decimal};
+use super::lines::{Line, Text};
+use crate::Error;
+
+/// Stations no farther apart than this are one place, degrees.
+const SAME_PLACE: f64 = 0.1;
+/// The waves of a line.
+const WAVES: usize = 11;
+
+/// The ocean loading of a station.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StationLoading {
+    /// None if the file does not know the station.
+    pub loading: Option<OceanLoading>,
+    /// What a user should know of the file.
+    pub warnings: Vec<String>,
+}
+
+impl StationLoading {
+    /// Looks a station up by the first four letters of its marker's name, or else by its place (ECEF, m).
+    ///
+    /// # Errors
+    /// The file, the line, and what was expected there.
+    pub fn read(path: &Path, marker: &str, position: Option<[f64; 3]>) -> Result<Self, Error> {
+        Self::parse(&Text::read(path)?, marker, position)
+    }
+
+    /// Looks a station up in a file in memory, as [`Self::read`].
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(text: &Text, marker: &str, position: Option<[f64; 3]>) -> Result<Self, Error> {
+        let stations = stations(text)?;
+        let place = position.map(|position| {
+            let place = Geodetic::from_ecef(&position.into());
+            [place.longitude.to_degrees(), place.latitude.to_degrees()]
+        });
+        let near = |station: &Station| Some(distance(place?, station.place?) < SAME_PLACE);
+        let wanted = four_letters(marker.as_bytes());
+        let named = |station: &&Station| station.name == wanted && wanted[0] != b' ';
+        let mut this = Self::default();
+        // A name at another place is that of another station.
+        let by_name = stations.iter().filter(named).find(|station| near(station) != Some(false));
+        let by_place = || stations.iter().find(|station| near(station) == Some(true));
+        let marker = marker.trim_ascii();
+        if let Some(station) = by_name {
+            this.loading = Some(station.loading);
+        } else if let Some(station) = by_place() {
+            let name = String::from_utf8_lossy(&station.name);
+            let problem = format!("does not know station {marker:?}: {name} is at its place");
+            this.warnings.push(text.warning(problem));
+            this.loading = Some(station.loading);
+        } else {
+            let problem =
+                format!("does not know station {marker:?}: its ocean loading is left out");
+            this.warnings.push(text.warning(problem));
+        }
+        Ok(this)
+    }
+}
+
+struct Station {
+    name: [u8; 4],
+    /// Longitude and latitude, degrees.
+    place: Option<[f64; 2]>,
+    loading: OceanLoading,
+}
+
+fn stations(text: &Text) -> Result<Vec<Station>, Error> {
+    let mut stations = Vec::new();
+    let mut lines = text.lines().filter(|line| !line.bytes.trim_ascii().is_empty()).peekable();
+    while let Some(line) = lines.next() {
+        if is_comment(&line) {
+            continue;
+        }
+        let named = blank_separated(line.bytes).next().is_some_and(|name| decimal(name).is_none());
+        if !named || !line.bytes.is_ascii() {
+            return Err(text.wrong_kind("ocean loading (BLQ)"));
+        }
+        let mut place = None;
+        while let Some(comment) = lines.next_if(is_comment) {
+            place = place.or(comment_place(&comment));
+        }
+        let mut rows = [[0.0; WAVES]; 6];
+        for values in &mut rows {
+            let next = lines.by_ref().find(|line| !is_comment(line));
+            let next =
+                next.ok_or_else(|| line.error("expected six lines of ocean loading behind it"))?;
+            *values = row(&next)?;
+        }
+        let [up, west, south, rest @ ..] = rows;
+        let loading = OceanLoading { amplitude: [up, west, south], lag: rest };
+        stations.push(Station { name: four_letters(line.bytes), place, loading });
+    }
+    if stations.is_empty() {
+        return Err(text.wrong_kind("ocean loading (BLQ)"));
+    }
+    Ok(stations)
+}
+
+fn is_comment(line: &Line<'_>) -> bool {
+    line.bytes.trim_ascii_start().starts_with(b"$$")
+}
+
+fn comment_place(line: &Line<'_>) -> Option<[f64; 2]> {
+    const WORD: &[u8] = b"lon/lat:";
+    let start = memchr::memmem::find(line.bytes, WORD)? + WORD.len();
+    let mut values = blank_separated(&line.bytes[start..]).map_while(decimal);
+    Some([values.next()?, values.next()?])
+}
+
+fn row(line: &Line<'_>) -> Result<[f64; WAVES], Error> {
+    let complaint = || line.expected("eleven numbers of ocean loading");
+    let mut row = [0.0; WAVES];
+    let mut fields = blank_separated(line.bytes);
+    for value in &mut row {
+        *value = fields.next().and_then(decimal).ok_or_else(complaint)?;
+    }
+    if fields.next().is_some() { Err(complaint()) } else { Ok(row) }
+}
+
+fn four_letters(name: &[u8]) -> [u8; 4] {
+    let mut letters = [b' '; 4];
+    for (to, from) in letters.iter_mut().zip(name.trim_ascii()) {
+        *to = from.to_ascii_uppercase();
+    }
+    letters
+}
+
+/// Degrees, on a sphere without its poles.
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let east = (a[0] - b[0] + 540.0).rem_euclid(360.0) - 180.0;
+    (east * a[1].to_radians().cos()).hypot(a[1] - b[1])
+}

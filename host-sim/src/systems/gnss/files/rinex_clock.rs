@@ -1,0 +1,148 @@
+//! Satellite clocks: RINEX clock files 2.00, 3.00 and 3.04.
+
+use std::path::Path;
+
+use kestirim_gnss_ppp::GpsTime;
+
+use super::fields::{blank_separated, decimal, gps_satellite, integer};
+use super::lines::{Line, Lines, Text};
+use super::satellites::PerSatellite;
+use super::time::from_calendar;
+use crate::Error;
+
+/// A bias as large as this stands for one that is not known, s.
+const NO_BIAS: f64 = 0.9;
+
+/// What a satellite's clock was ahead of GPS time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClockSample {
+    /// When.
+    pub time: GpsTime,
+    /// By how much, s, without the relativity of its orbit's eccentricity.
+    pub bias: f64,
+}
+
+/// Clocks of GPS satellites.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Clocks {
+    samples: PerSatellite<ClockSample>,
+    /// What a user should know of the files.
+    pub warnings: Vec<String>,
+}
+
+impl Clocks {
+    /// Reads files in any order. Where two tell of the same instant, the one that begins later is believed.
+    ///
+    /// # Errors
+    /// The file, the line, and what was expected there.
+    pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, Error> {
+        let texts: Result<Vec<_>, _> = paths.iter().map(|path| Text::read(path.as_ref())).collect();
+        Self::parse(&texts?)
+    }
+
+    /// Reads files in memory, as [`Self::read`].
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(texts: &[Text]) -> Result<Self, Error> {
+        let mut clocks = Self::default();
+        let files: Result<Vec<_>, _> =
+            texts.iter().map(|text| parse_file(text, &mut clocks.warnings)).collect();
+        clocks.samples = PerSatellite::merge(files?, |sample| sample.time, |_, _| ());
+        Ok(clocks)
+    }
+
+    /// The samples of a satellite in the order of time; none of one that the files do not know.
+    pub fn satellite(&self, prn: u8) -> &[ClockSample] {
+        self.samples.of(prn)
+    }
+
+    /// The samples of a satellite before and after a time, or twice the one at that time.
+    pub fn around(&self, prn: u8, time: GpsTime) -> Option<[&ClockSample; 2]> {
+        let samples = self.satellite(prn);
+        let after = samples.partition_point(|sample| sample.time < time);
+        let later = samples.get(after)?;
+        let earlier = if later.time == time { after } else { after.checked_sub(1)? };
+        Some([&samples[earlier], later])
+    }
+
+    /// The satellites there are.
+    pub fn satellites(&self) -> impl Iterator<Item = u8> {
+        self.samples.numbers()
+    }
+}
+
+fn parse_file(text: &Text, warnings: &mut Vec<String>) -> Result<PerSatellite<ClockSample>, Error> {
+    let mut lines = text.lines();
+    header(text, &mut lines)?;
+    let mut samples = PerSatellite::default();
+    while let Some(line) = lines.next() {
+        if lines.is_at_end() && !text.ends_with_line_break() {
+            warnings.push(line.warning("the file ends within this line, which is left out"));
+            break;
+        }
+        match line.bytes {
+            [b'A', b'S', b' ', b'G' | b' ', ..] => {
+                let (prn, sample) =
+                    record(line.bytes).ok_or_else(|| line.expected("a satellite's clock"))?;
+                if sample.bias.abs() < NO_BIAS {
+                    samples.push(prn, sample);
+                }
+            }
+            // Of other satellites, of receivers, and lines that go on.
+            [b'A', b'S' | b'R', b' ', ..] | [b'C' | b'D', b'R', b' ', ..] => {}
+            [b'M', b'S', b' ', ..] | [b' ', ..] | [] => {}
+            _ => return Err(line.expected("a record of a clock file")),
+        }
+    }
+    if samples.is_empty() {
+        return Err(text.error("expected clocks of GPS satellites, found none"));
+    }
+    Ok(samples)
+}
+
+fn header(text: &Text, lines: &mut Lines<'_>) -> Result<(), Error> {
+    let first = lines.next().filter(|line| {
+        // Version 3.04 has wider lines.
+        let label = line.bytes.get(60..).unwrap_or_default();
+        label.trim_ascii().starts_with(b"RINEX VERSION / TYPE")
+            && (line.column(20) == b'C' || line.column(21) == b'C')
+    });
+    first.ok_or_else(|| text.wrong_kind("satellite clocks (RINEX)"))?;
+    for line in lines {
+        let label = line.bytes.get(60..).unwrap_or_default().trim_ascii();
+        match label {
+            b"END OF HEADER" => return Ok(()),
+            b"TIME SYSTEM ID" => time_system(&line)?,
+            _ => {}
+        }
+    }
+    Err(text.error("expected the end of the header, found the end of the file"))
+}
+
+/// Times of Galileo and of QZSS are those of GPS to some nanoseconds.
+fn time_system(line: &Line<'_>) -> Result<(), Error> {
+    match line.columns(0, 20) {
+        b"" | b"GPS" | b"GAL" | b"QZS" => Ok(()),
+        other => {
+            let found = String::from_utf8_lossy(other);
+            Err(line.error(format!("expected times of GPS, found the time system {found:?}")))
+        }
+    }
+}
+
+/// Columns differ between versions, the order of the fields does not.
+fn record(bytes: &[u8]) -> Option<(u8, ClockSample)> {
+    let mut fields = blank_separated(bytes).skip(1);
+    let prn = match fields.next()? {
+        b"G" => gps_satellite(fields.next()?)?,
+        name => gps_satellite(name)?,
+    };
+    let mut calendar = [0; 5];
+    for field in &mut calendar {
+        *field = integer(fields.next()?)?;
+    }
+    let time = from_calendar(calendar, decimal(fields.next()?)?)?;
+    let bias = decimal(fields.nth(1)?)?;
+    Some((prn, ClockSample { time, bias }))
+}

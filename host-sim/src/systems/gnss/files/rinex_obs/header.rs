@@ -1,0 +1,163 @@
+//! What an observation file tells before its observations.
+
+use super::super::fields::{blank_separated, decimal};
+use super::super::lines::{Line, Lines, Text};
+use super::signals::Signal;
+use crate::Error;
+
+/// A column of observations of GPS satellites that is of use.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Observable {
+    pub(super) signal: Signal,
+    /// By which the values are multiplied.
+    pub(super) scale: f64,
+}
+
+/// The header, as far as it is of use.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Header {
+    /// The version without its decimals.
+    pub(super) version: i32,
+    pub(super) marker: String,
+    pub(super) receiver: String,
+    pub(super) antenna: String,
+    pub(super) approximate_position: Option<[f64; 3]>,
+    pub(super) antenna_delta_hen: [f64; 3],
+    /// By column.
+    pub(super) observables: Vec<Option<Observable>>,
+    /// The list so far, and how many it should become.
+    codes: Vec<Vec<u8>>,
+    announced: usize,
+    /// The satellite system of a list that goes on.
+    system: u8,
+    scales: Vec<(Vec<u8>, f64)>,
+}
+
+impl Header {
+    pub(super) fn parse<'a>(text: &'a Text, lines: &mut Lines<'a>) -> Result<Self, Error> {
+        let first = lines
+            .next()
+            .filter(|line| line.label() == b"RINEX VERSION / TYPE" && line.column(20) == b'O');
+        let first = first.ok_or_else(|| text.wrong_kind("observations (RINEX)"))?;
+        let version = first.finite("a version of RINEX", 0, 9)?;
+        if !(2.0..5.0).contains(&version) {
+            return Err(first.error(format!("expected RINEX 2, 3 or 4, found version {version}")));
+        }
+        let mut header = Self { version: version as i32, ..Self::default() };
+        for line in lines.by_ref() {
+            if line.label() == b"END OF HEADER" {
+                let header = header.complete();
+                if header.observables.iter().flatten().next().is_none() {
+                    let problem =
+                        "expected observations of GPS on L1 or L2 in the header, found none";
+                    return Err(text.error(problem));
+                }
+                return Ok(header);
+            }
+            header.line(&line)?;
+        }
+        Err(text.error("expected the end of the header, found the end of the file"))
+    }
+
+    fn line(&mut self, line: &Line<'_>) -> Result<(), Error> {
+        match line.label() {
+            b"MARKER NAME" => self.marker = line.text(0, 60),
+            b"REC # / TYPE / VERS" => self.receiver = line.text(20, 40),
+            b"ANT # / TYPE" => self.antenna = line.text(20, 40),
+            b"APPROX POSITION XYZ" => {
+                let position = three(line)?;
+                // Zeros stand for a place that is not known.
+                self.approximate_position =
+                    Some(position).filter(|position| position.iter().any(|&x| x != 0.0));
+            }
+            b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = three(line)?,
+            b"TIME OF FIRST OBS" => time_system(line)?,
+            _ => self.observables(line)?,
+        }
+        Ok(())
+    }
+
+    /// Reads a line of a list of observables, and no other.
+    pub(super) fn observables(&mut self, line: &Line<'_>) -> Result<(), Error> {
+        match line.label() {
+            b"# / TYPES OF OBSERV" if self.version < 3 => {
+                if !line.columns(0, 6).is_empty() {
+                    self.start(b'G', line.count("how many observables there are", 0, 6)?);
+                }
+                self.extend(line, 6);
+            }
+            b"SYS / # / OBS TYPES" if self.version >= 3 => {
+                if line.column(0) != b' ' {
+                    let count = line.count("how many observables there are", 3, 6)?;
+                    self.start(line.column(0), count);
+                }
+                self.extend(line, 6);
+            }
+            b"SYS / SCALE FACTOR" if self.version >= 3 && line.column(0) == b'G' => {
+                let scale = line.finite("a scale factor", 2, 6)?;
+                if scale <= 0.0 {
+                    return Err(line.expected("a scale factor"));
+                }
+                let codes: Vec<_> =
+                    blank_separated(line.columns(10, 60)).map(<[u8]>::to_vec).collect();
+                if codes.is_empty() {
+                    self.scales = vec![(Vec::new(), scale)];
+                }
+                self.scales.extend(codes.into_iter().map(|code| (code, scale)));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn start(&mut self, system: u8, announced: usize) {
+        self.system = system;
+        if system == b'G' {
+            self.announced = announced;
+            self.codes.clear();
+        }
+    }
+
+    fn extend(&mut self, line: &Line<'_>, from: usize) {
+        if self.system == b'G' {
+            let codes = blank_separated(line.columns(from, 60)).map(<[u8]>::to_vec);
+            self.codes.extend(codes);
+            self.codes.truncate(self.announced);
+        }
+    }
+
+    /// Makes of the lists what the observations need.
+    pub(super) fn complete(mut self) -> Self {
+        let scale = |code: &Vec<u8>| {
+            let fits = |(of, _): &&(Vec<u8>, f64)| of.is_empty() || of == code;
+            self.scales.iter().rev().find(fits).map_or(1.0, |&(_, scale)| scale)
+        };
+        let observable =
+            |code: &Vec<u8>| Some(Observable { signal: Signal::new(code)?, scale: scale(code) });
+        self.observables = self.codes.iter().map(observable).collect();
+        // A list shorter than announced still has its columns.
+        let announced = self.announced.min(999);
+        if self.observables.len() < announced {
+            self.observables.resize(announced, None);
+        }
+        self
+    }
+}
+
+fn three(line: &Line<'_>) -> Result<[f64; 3], Error> {
+    let mut fields = blank_separated(line.columns(0, 42)).map(decimal);
+    let complaint = || line.expected("three numbers");
+    let mut next = || fields.next().flatten().ok_or_else(complaint);
+    Ok([next()?, next()?, next()?])
+}
+
+/// Times of Galileo, QZSS and NavIC are those of GPS to some nanoseconds.
+fn time_system(line: &Line<'_>) -> Result<(), Error> {
+    match line.columns(48, 51) {
+        b"" | b"GPS" | b"GAL" | b"QZS" | b"IRN" => Ok(()),
+        other => {
+            let found = String::from_utf8_lossy(other);
+            Err(line.error(format!("expected times of GPS, found the time system {found:?}")))
+        }
+    }
+}

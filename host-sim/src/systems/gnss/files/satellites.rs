@@ -1,0 +1,70 @@
+//! Samples of each GPS satellite.
+
+use kestirim_gnss_ppp::GpsTime;
+
+/// Times nearer than this are the same instant written twice, s.
+const SAME: f64 = 1e-3;
+
+/// Samples by the number of the satellite.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PerSatellite<S>(Vec<Vec<S>>);
+
+impl<S> Default for PerSatellite<S> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<S> PerSatellite<S> {
+    pub(super) fn push(&mut self, prn: u8, sample: S) {
+        let place = usize::from(prn);
+        if self.0.len() <= place {
+            self.0.resize_with(place + 1, Vec::new);
+        }
+        self.0[place].push(sample);
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.iter().all(Vec::is_empty)
+    }
+
+    pub(super) fn of(&self, prn: u8) -> &[S] {
+        self.0.get(usize::from(prn)).map_or(&[], Vec::as_slice)
+    }
+
+    pub(super) fn numbers(&self) -> impl Iterator<Item = u8> {
+        (0..=u8::MAX).zip(&self.0).filter(|(_, samples)| !samples.is_empty()).map(|(prn, _)| prn)
+    }
+
+    /// Puts the samples of files together in the order of time. Of two of the same instant that of the file
+    /// that begins later stays, `complete`d by the other.
+    pub(super) fn merge(
+        mut files: Vec<Self>,
+        time: impl Fn(&S) -> GpsTime,
+        mut complete: impl FnMut(&S, &mut S),
+    ) -> Self {
+        let seconds = |sample: &S| time(sample).since(GpsTime::new(51_544, 0.0));
+        let begin =
+            |file: &Self| file.0.iter().flatten().map(seconds).fold(f64::INFINITY, f64::min);
+        files.sort_by(|a, b| begin(a).total_cmp(&begin(b)));
+        let mut merged = Self::default();
+        for (prn, samples) in files.into_iter().flat_map(|file| (0..=u8::MAX).zip(file.0)) {
+            for sample in samples {
+                merged.push(prn, sample);
+            }
+        }
+        for samples in &mut merged.0 {
+            // Stable: of equal times the one read later stays behind.
+            samples.sort_by(|a, b| seconds(a).total_cmp(&seconds(b)));
+            samples.dedup_by(|later, earlier| {
+                let same = seconds(later) - seconds(earlier) < SAME;
+                if same {
+                    complete(earlier, later);
+                    std::mem::swap(earlier, later);
+                }
+                same
+            });
+        }
+        merged
+    }
+}

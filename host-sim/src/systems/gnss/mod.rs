@@ -1,0 +1,4 @@
+//! GNSS receivers at a fixed or moving place: files of observations and of the services that describe the
+//! satellites.
+
+pub mod files;
