@@ -10,4 +10,5 @@ pub(crate) struct Channel {
     pub(crate) arc: Arc,
     /// Phase wind-up of its last epoch, cycles.
     pub(crate) wind_up: f64,
+    pub(crate) bad: u8,
 }

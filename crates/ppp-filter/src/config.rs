@@ -57,6 +57,7 @@ pub struct Config {
     pub wet_delay_walk: f64,
     /// From when on a jump of the combinations is a slip.
     pub slips: SlipLimits,
+    pub k0: f64, pub k1: f64, pub patience: u8,
 }
 
 impl Default for Config {
@@ -69,7 +70,7 @@ impl Default for Config {
             clock_walk: 0.0,
             wet_delay: 0.3,
             wet_delay_walk: 1e-8,
-            slips: SlipLimits::default(),
+            slips: SlipLimits::default(), k0: 0.0, k1: 6.0, patience: 3,
         }
     }
 }

@@ -19,6 +19,7 @@ pub const fn states(satellites: usize) -> usize {
     COMMON + satellites
 }
 
+/// f
 #[derive(Clone, Copy, Debug)]
 pub struct PppFilter<const N: usize> {
     config: Config,
@@ -47,7 +48,7 @@ pub struct Solution {
     pub time: GpsTime,
     pub position: Vector3<f64>,
     pub covariance_enu: Matrix3<f64>,
-    pub used: usize,
+    pub used: usize, pub rejected: usize,
     pub slips: usize,
 }
 
@@ -130,20 +131,50 @@ impl<const N: usize> Running<N> {
                 self.estimate.reset_at(line.index, ambiguity, 1e4).map_err(|_| Error::NotFinite)?;
             }
         }
-        let predicted = self.estimate.mean;
+        let prior = self.estimate;
+        let mut rows: Vec<([(usize, f64); 6], f64, f64, f64, bool), 64> = Vec::new();
         for line in &lines {
-            let sight = line.expected.sight;
-            let common = [(0, -sight.x), (1, -sight.y), (2, -sight.z), (CLOCK, 1.0), (WET, line.expected.wet_mapping)];
-            let [x, y, z, c, w] = common;
-            let wet = line.expected.wet_mapping;
-            for (row, value, variance) in [
-                (SparseRow::new([x, y, z, c, w, (line.index, 0.0)]), line.code, line.code_variance),
-                (SparseRow::new([x, y, z, c, w, (line.index, 1.0)]), line.phase, line.phase_variance),
-            ] {
-                let ambiguity = row.entries()[5].1 * self.estimate.mean[line.index];
-                let shift = self.estimate.mean.fixed_rows::<3>(0) - predicted.fixed_rows::<3>(0);
-                let computed = self.estimate.mean[CLOCK] + wet * self.estimate.mean[WET] + ambiguity - sight.dot(&shift);
-                self.estimate.update(&row, value - computed, variance).map_err(|_| Error::NotFinite)?;
+            let s = line.expected.sight;
+            let w = line.expected.wet_mapping;
+            let row = |a: f64| [(0, -s.x), (1, -s.y), (2, -s.z), (CLOCK, 1.0), (WET, w), (line.index, a)];
+            let _ = rows.push((row(0.0), line.code, line.code_variance, 1.0, false));
+            let _ = rows.push((row(1.0), line.phase, line.phase_variance, 1.0, false));
+        }
+        let innovation = |row: &[(usize, f64); 6], value: f64, mean: &SVector<f64, N>| {
+            let shift = mean.fixed_rows::<3>(0) - prior.mean.fixed_rows::<3>(0);
+            let mut computed = mean[CLOCK] + row[4].1 * mean[WET] + row[5].1 * mean[row[5].0];
+            for k in 0..3 { computed += row[k].1 * shift[k]; }
+            value - computed
+        };
+        let k0 = config.k0; let k1 = config.k1;
+        for _ in 0..20 {
+            self.estimate = prior;
+            for (row, value, variance, weight, _) in &rows {
+                if *weight < 1e-6 { continue; }
+                let nu = innovation(row, *value, &self.estimate.mean);
+                self.estimate.update(&SparseRow::new(*row), nu, variance / weight).map_err(|_| Error::NotFinite)?;
+            }
+            if k0 <= 0.0 { break; }
+            let mut worst = (0.0, usize::MAX);
+            for (n, (row, value, variance, weight, done)) in rows.iter().enumerate() {
+                if *done { continue; }
+                let v = innovation(row, *value, &self.estimate.mean);
+                let mut hph = 0.0;
+                for a in row { for b in row { hph += a.1 * b.1 * self.estimate.covariance.get(a.0, b.0).unwrap_or(0.0); } }
+                let q = variance / weight - hph;
+                if q < 0.01 * variance { continue; }
+                let t = (v * v / q).sqrt();
+                if t > worst.0 { worst = (t, n); }
+            }
+            if worst.0 <= k0 { break; }
+            let t = worst.0;
+            let g = if t > k1 { 0.0 } else { k0 / t * ((k1 - t) / (k1 - k0)).powi(2) };
+            rows[worst.1].3 = g; rows[worst.1].4 = true;
+        }
+        let mut rejected = 0;
+        for (n, line) in lines.iter().enumerate() {
+            if let Some(channel) = self.channels[line.index].as_mut() {
+                if rows[2 * n + 1].3 < 0.1 { channel.bad += 1; rejected += 1; } else { channel.bad = 0; }
             }
         }
         let p = self.estimate.covariance.to_matrix().fixed_view::<3, 3>(0, 0).into_owned();
@@ -152,7 +183,7 @@ impl<const N: usize> Running<N> {
             time: self.time,
             position: self.estimate.mean.fixed_rows::<3>(0).into_owned(),
             covariance_enu: rotation * p * rotation.transpose(),
-            used: lines.len(),
+            used: lines.len(), rejected,
             slips: lines.iter().filter(|line| line.slip.is_some()).count(),
         })
     }
@@ -178,6 +209,7 @@ impl<const N: usize> Running<N> {
                     let channel = self.channels[index].as_mut().ok_or(Error::NotFinite)?;
                     channel.wind_up = expected.wind_up_cycles;
                     let slip = channel.arc.observe(self.time, sighting.phase, sighting.code, sighting.lock_lost, &config.slips);
+                    let slip = if channel.bad >= config.patience { channel.bad = 0; slip.or(Some(Slip::LossOfLock)) } else { slip };
                     (index, slip)
                 }
                 None => {
@@ -185,7 +217,7 @@ impl<const N: usize> Running<N> {
                     self.channels[index] = Some(Channel {
                         satellite: sighting.satellite,
                         arc: Arc::begin(self.time, sighting.phase, sighting.code),
-                        wind_up: expected.wind_up_cycles,
+                        wind_up: expected.wind_up_cycles, bad: 0,
                     });
                     (index, Some(Slip::Gap))
                 }
