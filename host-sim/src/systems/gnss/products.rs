@@ -1,0 +1,122 @@
+//! Precise products as the filter wants them: a satellite's orbit, clock and antenna at an instant.
+
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Pattern, SatelliteState};
+use kestirim_ppp_filter::Sighting;
+use nalgebra::Vector3;
+
+use super::files::antex::{Antenna, Antennas};
+use super::files::rinex_clock::Clocks;
+use super::files::rinex_obs::Observed;
+use super::files::sp3::Orbits;
+
+/// Clocks are bridged over the interval of the coarsest products, s.
+const LONGEST_CLOCK_GAP: f64 = 900.0;
+const SATELLITES: u8 = 32;
+
+/// Why a satellite that was observed does not serve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unusable {
+    /// A code or a phase is missing.
+    Incomplete,
+    /// There is no orbit at the time.
+    NoOrbit,
+    /// There is no clock at the time.
+    NoClock,
+}
+
+/// One satellite's products.
+#[derive(Debug, Default)]
+struct Satellite {
+    orbit: Vec<OrbitSample>,
+    clock: Vec<ClockSample>,
+    antenna: Option<Antenna>,
+}
+
+/// The products of a day.
+#[derive(Debug)]
+pub struct Products {
+    reference: GpsTime,
+    satellites: Vec<Satellite>,
+}
+
+impl Products {
+    /// Products for observations that begin at `start`: clocks from `clocks` if there are any, from
+    /// the orbit files otherwise.
+    pub fn new(start: GpsTime, orbits: &Orbits, clocks: Option<&Clocks>, antennas: &Antennas) -> Self {
+        let reference = GpsTime::new(start.day(), 0.0);
+        let satellites = (0..=SATELLITES).map(|prn| {
+            // A sample of a manoeuvre or of a jumping clock belongs to neither side.
+            let samples = orbits.satellite(prn);
+            let steady = samples.iter().filter(|sample| !sample.manoeuvre);
+            let orbit = steady.map(|sample| {
+                OrbitSample::from_ecef(reference, sample.time, &Vector3::from(sample.position))
+            });
+            let clock = match clocks {
+                Some(clocks) => clocks
+                    .satellite(prn)
+                    .iter()
+                    .map(|sample| ClockSample {
+                        second: sample.time.since(reference),
+                        bias: sample.bias,
+                    })
+                    .collect(),
+                None => samples
+                    .iter()
+                    .filter(|sample| !sample.clock_event)
+                    .filter_map(|sample| {
+                        let second = sample.time.since(reference);
+                        Some(ClockSample { second, bias: sample.clock? })
+                    })
+                    .collect(),
+            };
+            let antenna = antennas.satellite(prn, start).cloned();
+            Satellite { orbit: orbit.collect(), clock, antenna }
+        });
+        Self { reference, satellites: satellites.collect() }
+    }
+
+    /// An observed satellite with its state when it sent what was received at `time`.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn sighting(&self, time: GpsTime, observed: &Observed) -> Result<Sighting<'_>, Unusable> {
+        let ([Some(first), Some(second)], [Some(l1), Some(l2)]) = (observed.code, observed.phase)
+        else {
+            return Err(Unusable::Incomplete);
+        };
+        let satellite = self.satellites.get(usize::from(observed.prn)).ok_or(Unusable::NoOrbit)?;
+        let clock = Clock {
+            reference: self.reference,
+            samples: &satellite.clock,
+            longest_gap: LONGEST_CLOCK_GAP,
+        };
+        // By the satellite's own clock; it is off by less than a millisecond, in which it loses nothing.
+        let sent = time.plus(-first / SPEED_OF_LIGHT);
+        let clock = clock.at(sent).ok_or(Unusable::NoClock)?;
+        let orbit = Orbit { reference: self.reference, samples: &satellite.orbit };
+        let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
+        Ok(Sighting {
+            satellite: observed.prn,
+            code: [first, second],
+            phase: [l1, l2],
+            lock_lost: observed.loss_of_lock.contains(&true),
+            state: SatelliteState {
+                position: orbit.position,
+                velocity: orbit.velocity,
+                clock: clock.bias,
+                clock_interval: clock.interval,
+                clock_distance: clock.distance,
+            },
+            antenna: satellite.antenna.as_ref().and_then(patterns),
+        })
+    }
+}
+
+/// An antenna's phase centres on L1 and L2, if both are known.
+pub fn patterns(antenna: &Antenna) -> Option<[Pattern<'_>; 2]> {
+    match &antenna.frequencies {
+        [Some(first), Some(second)] => Some([first.pattern(), second.pattern()]),
+        _ => None,
+    }
+}
