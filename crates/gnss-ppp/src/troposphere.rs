@@ -83,7 +83,7 @@ impl Troposphere {
     /// The mapping to an elevation (rad). Below one degree it stays as at one degree.
     pub fn mapping(&self, elevation: f64) -> Mapping {
         // The sine of one degree.
-        const LOWEST: f64 = 0.017_452_406_437_283_512;
+        const LOWEST: f64 = 0.017_452_406_437_283_51;
         let sine = libm::sin(elevation);
         let sine = if sine < LOWEST { LOWEST } else { sine };
         let height = (1.0 / sine - fraction(&HEIGHT, sine)) * self.height;
