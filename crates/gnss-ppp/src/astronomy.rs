@@ -7,8 +7,9 @@ use crate::constants::TERRESTRIAL_MINUS_GPS;
 
 /// Greenwich mean sidereal time, rad from 0 to 2π (IAU 2006; Capitaine et al. 2005).
 ///
-/// `ut1_minus_gps` (s) is UT1 − UTC minus the leap seconds between UTC and GPS time: −17.9 or so since 2017.
-/// Good to the 15 µrad of a second where UT1 − UTC is not known and taken for zero.
+/// `ut1_minus_gps` (s) is UT1 − UTC minus the seconds by which GPS time is ahead of UTC: −18 and a fraction
+/// since 2017. Who does not know UT1 − UTC may leave it out: 0.9 s turn the Earth by 66 µrad, and the tides by
+/// some 50 µm.
 pub fn greenwich_sidereal_time(time: GpsTime, ut1_minus_gps: f64) -> f64 {
     let days = time.days_since_j2000(ut1_minus_gps);
     let centuries = time.days_since_j2000(TERRESTRIAL_MINUS_GPS) / 36_525.0;
@@ -90,4 +91,22 @@ impl Arguments {
 /// Radians of an angle in arcseconds.
 fn arcseconds(angle: f64) -> f64 {
     (angle / 3_600.0).to_radians()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::greenwich_sidereal_time;
+    use crate::GpsTime;
+
+    /// Computed with ERFA 2.0.1 (`gmst06`).
+    #[test]
+    fn sidereal_time_as_erfa_has_it() {
+        for (time, ut1_minus_gps, expected) in [
+            (GpsTime::new(59_025, 43_200.0), -18.24, 1.640_825_255_582_921_2),
+            (GpsTime::new(54_613, 0.0), -14.39, 4.273_603_426_979_619),
+        ] {
+            let sidereal = greenwich_sidereal_time(time, ut1_minus_gps);
+            assert!((sidereal - expected).abs() < 1e-10, "{sidereal} {expected}");
+        }
+    }
 }

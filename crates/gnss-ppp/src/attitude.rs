@@ -3,6 +3,7 @@ use nalgebra::Vector3;
 /// The axes of a satellite's body as unit vectors in ECEF, named as the IGS names them (and ANTEX
 /// files refer to them) whatever the manufacturer does.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyAxes {
     /// Completes the right-handed triad: towards the side on which the Sun is.

@@ -6,6 +6,7 @@ use crate::constants::ASTRONOMICAL_UNIT;
 
 /// Where the Sun and the Moon are as seen from the Earth's centre, ECEF m.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bodies {
     /// The Sun.
@@ -59,8 +60,8 @@ const LATITUDE: [([i8; 4], f64); 12] = [
 ];
 
 impl Bodies {
-    /// The bodies at an instant: the Sun to 0.01°, the Moon to 0.02° and 60 km between 1990 and 2050, a
-    /// hundredth of what a millimetre of tide needs. `ut1_minus_gps` as for
+    /// The bodies at an instant. Against ERFA's ephemerides the Sun is within 0.01°, the Moon within 0.04° and
+    /// 80 km from 1990 to 2044: together at most 0.23 mm of tide. `ut1_minus_gps` (s) as for
     /// [`greenwich_sidereal_time`](crate::greenwich_sidereal_time).
     ///
     /// Geometric positions on the mean equator of date, turned by mean sidereal time: nutation (0.003°),
@@ -117,4 +118,41 @@ fn moon(arguments: &Arguments) -> (f64, f64, f64) {
         LATITUDE.iter().map(|(multiples, north)| north * libm::sin(angle(*multiples))).sum();
     let radians = |millionths: f64| (millionths * 1e-6).to_radians();
     (arguments.moon_longitude() + radians(longitude), radians(latitude), distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::Bodies;
+    use crate::GpsTime;
+
+    /// Computed with ERFA 2.0.1 (`epv00`, `moon98` and `c2t06a` without polar motion).
+    #[test]
+    fn sun_and_moon_as_erfa_has_them() {
+        for (time, ut1_minus_gps, sun, moon) in [
+            (
+                GpsTime::new(59_025, 43_200.0),
+                -18.24,
+                [139_590_068_208.0, 1_888_557_656.0, 60_306_915_785.0],
+                [196_200_975.0, 300_441_013.0, 107_607_177.0],
+            ),
+            (
+                GpsTime::new(54_613, 0.0),
+                -14.39,
+                [-141_194_240_764.0, 1_610_213_247.0, 55_122_981_542.0],
+                [64_452_657.0, 373_922_112.0, -93_385_042.0],
+            ),
+        ] {
+            let (sun, moon) = (Vector3::<f64>::from(sun), Vector3::<f64>::from(moon));
+            let bodies = Bodies::at(time, ut1_minus_gps);
+            let off = |found: Vector3<f64>, expected: Vector3<f64>| {
+                (found.angle(&expected).to_degrees(), found.norm() / expected.norm() - 1.0)
+            };
+            let (angle, distance) = off(bodies.sun, sun);
+            assert!(angle < 0.012 && distance.abs() < 1e-4, "{angle} {distance}");
+            let (angle, distance) = off(bodies.moon, moon);
+            assert!(angle < 0.04 && distance.abs() < 2e-4, "{angle} {distance}");
+        }
+    }
 }

@@ -26,7 +26,7 @@ pub fn shapiro_delay(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
 /// How much the Earth's rotation during the flight of the signal lengthens the range, m, to first order.
 ///
 /// Both positions are ECEF (m), the satellite's in the axes of the time of transmission, the receiver's
-/// in those of the reception. Add it to their distance; up to 40 m, exact to some 10 µm.
+/// in those of the reception. Add it to their distance; up to 40 m, wrong by at most 0.1 mm.
 pub fn sagnac(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
     EARTH_ROTATION / SPEED_OF_LIGHT * (satellite.x * receiver.y - satellite.y * receiver.x)
 }

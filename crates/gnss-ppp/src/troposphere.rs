@@ -1,4 +1,4 @@
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::f64::consts::TAU;
 
 use crate::{Geodetic, GpsTime};
 
@@ -82,9 +82,10 @@ impl Troposphere {
 
     /// The mapping to an elevation (rad). Below one degree it stays as at one degree.
     pub fn mapping(&self, elevation: f64) -> Mapping {
-        const LOWEST: f64 = PI / 180.0;
-        let elevation = if elevation < LOWEST { LOWEST } else { elevation };
-        let sine = libm::sin(elevation.min(FRAC_PI_2));
+        // The sine of one degree.
+        const LOWEST: f64 = 0.017_452_406_437_283_51;
+        let sine = libm::sin(elevation);
+        let sine = if sine < LOWEST { LOWEST } else { sine };
         let height = (1.0 / sine - fraction(&HEIGHT, sine)) * self.height;
         Mapping {
             hydrostatic: fraction(&self.hydrostatic, sine) + height,
@@ -141,4 +142,68 @@ fn at_latitude(table: &[Coefficients; 5], latitude: f64) -> Coefficients {
 fn fraction(coefficients: &Coefficients, sine: f64) -> f64 {
     let [a, b, c] = *coefficients;
     (1.0 + a / (1.0 + b / (1.0 + c))) / (sine + a / (sine + b / (sine + c)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Troposphere, zenith_hydrostatic, zenith_wet};
+    use crate::{Geodetic, GpsTime};
+
+    fn place(latitude: f64, height: f64) -> Geodetic {
+        Geodetic { latitude: latitude.to_radians(), longitude: 0.0, height }
+    }
+
+    /// Le Mans on 1 January 1994, published by Mercier and Perosanz (as Orekit's tests cite them).
+    #[test]
+    fn published_mapping() {
+        let troposphere = Troposphere::over(&place(48.0, 68.0), GpsTime::new(49_353, 0.0));
+        let mapping = troposphere.mapping(5_f64.to_radians());
+        assert!((mapping.hydrostatic - 10.16).abs() < 0.005, "{mapping:?}");
+        assert!((mapping.wet - 10.75).abs() < 0.005, "{mapping:?}");
+    }
+
+    /// Computed with numpy from the formulas and tables.
+    #[test]
+    fn north_and_south_in_summer_and_winter() {
+        for (latitude, day, degrees, hydrostatic, wet) in [
+            (-80.0, 0, 3.0, 14.733_197_846_885, 16.323_500_496_256),
+            (-20.0, 200, 10.0, 5.552_746_161_746, 5.657_981_012_323),
+            (3.0, 100, 30.0, 1.992_656_178_480, 1.996_549_324_858),
+            (37.0, 330, 5.0, 10.152_812_475_248, 10.759_806_850_782),
+        ] {
+            let troposphere =
+                Troposphere::over(&place(latitude, 1_234.0), GpsTime::new(58_849 + day, 43_200.0));
+            let mapping = troposphere.mapping(f64::to_radians(degrees));
+            assert!((mapping.hydrostatic - hydrostatic).abs() < 1e-9, "{mapping:?}");
+            assert!((mapping.wet - wet).abs() < 1e-9, "{mapping:?}");
+        }
+    }
+
+    #[test]
+    fn the_zenith_maps_to_itself_and_the_horizon_is_finite() {
+        let troposphere = Troposphere::over(&place(30.0, 4_000.0), GpsTime::new(59_025, 0.0));
+        let up = troposphere.mapping(core::f64::consts::FRAC_PI_2);
+        assert!((up.hydrostatic - 1.0).abs() < 1e-12 && (up.wet - 1.0).abs() < 1e-12);
+        let low = troposphere.mapping(-1.0);
+        assert_eq!(low, troposphere.mapping(0.0));
+        assert!((20.0..60.0).contains(&low.hydrostatic), "{low:?}");
+        assert!(troposphere.mapping(f64::NAN).wet.is_nan());
+        let delay = troposphere.hydrostatic(0.5);
+        assert_eq!(
+            delay,
+            zenith_hydrostatic(&place(30.0, 4_000.0)) * troposphere.mapping(0.5).hydrostatic
+        );
+    }
+
+    /// 1013.25 hPa at 45° and sea level: 2.3069 m. The rest computed with numpy.
+    #[test]
+    fn zenith_delays() {
+        assert!((zenith_hydrostatic(&place(45.0, 0.0)) - 2.306_967_6).abs() < 1e-6);
+        assert!((zenith_hydrostatic(&place(48.0, 1_234.0)) - 1.988_939_353).abs() < 1e-8);
+        assert!((zenith_wet(&place(48.0, 1_234.0), 0.5) - 0.051_803_378).abs() < 1e-8);
+        for height in [-1e9, 1e9] {
+            let delay = zenith_hydrostatic(&place(48.0, height));
+            assert!((0.4..2.7).contains(&delay), "{delay}");
+        }
+    }
 }
