@@ -30,7 +30,7 @@ pub struct Deviation {
 impl Deviation {
     /// σ² at an elevation of which the sine is given, m².
     pub(crate) fn variance(&self, sine: f64) -> f64 {
-        let slanted = self.elevation / sine;
+        let slanted = self.elevation * libm::sqrt(1.0 - sine * sine);
         self.constant * self.constant + slanted * slanted
     }
 }
