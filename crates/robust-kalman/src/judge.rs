@@ -14,11 +14,13 @@ pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar> Robust<T> {
-    /// ṽ and the statistic of every measurement that was not treated yet. Returns σ̂0.
+    /// ṽ and the statistic of every measurement that was not treated yet, with σ̂0 if it is known already.
+    /// Returns σ̂0.
     pub(crate) fn judge<const N: usize>(
         &self,
         epoch: &Epoch<'_, '_, T, N>,
         passed: &Passed<T>,
+        known: Option<T>,
         decisions: &mut [Decision<T>],
     ) -> T {
         for (measurement, decision) in epoch.measurements.iter().zip(&mut *decisions) {
@@ -26,7 +28,7 @@ impl<T: Scalar> Robust<T> {
                 self.standardise(epoch, measurement, decision);
             }
         }
-        let scale = self.scale.estimate(passed.nis, passed.used, decisions);
+        let scale = known.unwrap_or_else(|| self.scale.of_residuals(passed, decisions));
         let divisor = scale.divisor();
         for decision in &mut *decisions {
             if decision.counts() {

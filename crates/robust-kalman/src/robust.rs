@@ -50,7 +50,7 @@ impl<T: Scalar> Robust<T> {
                 k1: T::from_f64(6.0),
                 descent: Descent::Squared,
             },
-            scale: Scale::Median { floor: T::ONE },
+            scale: Scale::Innovations { floor: T::ONE },
             reweighting: Reweighting::OneShot,
             least_redundancy: T::from_f64(0.001),
             adaptive: None,

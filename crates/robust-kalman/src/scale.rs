@@ -1,5 +1,7 @@
-use crate::Decision;
+use crate::judge::Epoch;
+use crate::pass::Passed;
 use crate::student::whole;
+use crate::{Decision, Reason};
 use kestirim_scalar::Scalar;
 
 /// σ̂0, how much larger errors are than their variances say; residuals are judged in units of it.
@@ -12,35 +14,65 @@ pub enum Scale<T> {
     /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements a single
     /// one of any size has |ṽ| ≤ √n or so.
     Epoch,
-    /// 1.4826 · median |v/√Qᵥ|, but no less than the floor: half of the measurements may be wild.
-    Median {
-        /// The smallest σ̂0, usually 1: few residuals that happen to be small do not make the others
+    /// 1.4826 · median |ε/√(h P⁻ hᵀ + R)|, but no less than the floor: half of the measurements may be
+    /// wild. Where all are off at once it grows, and nothing is rejected; of a state that is hardly
+    /// predicted, such as a receiver's clock, it says little beside the floor.
+    Innovations {
+        /// The smallest σ̂0, usually 1: few innovations that happen to be small do not make the others
         /// outliers.
+        floor: T,
+    },
+    /// The same of the residuals, |v/√Qᵥ|, after every pass: it sees noise that is larger than it should
+    /// be whatever the prediction. But with few measurements to a state, one outlier spreads over the
+    /// residuals of all.
+    Residuals {
+        /// The smallest σ̂0, usually 1.
         floor: T,
     },
 }
 
 impl<T: Scalar> Scale<T> {
-    /// σ̂0 from the NIS of `used` measurements, or from decisions that hold v/√Qᵥ.
-    pub(crate) fn estimate(&self, nis: T, used: usize, decisions: &[Decision<T>]) -> T {
+    /// What the innovations say before anything is judged: σ̂0 for the whole epoch, if it comes from them.
+    pub(crate) fn of_innovations<const N: usize>(
+        &self,
+        epoch: &Epoch<'_, '_, T, N>,
+        decisions: &mut [Decision<T>],
+    ) -> Option<T> {
+        let Self::Innovations { floor } = *self else { return None };
+        for (measurement, decision) in epoch.measurements.iter().zip(&mut *decisions) {
+            let variance = measurement.spread(epoch.prior) + measurement.variance;
+            decision.standardised = measurement.innovation / variance.sqrt();
+            decision.reason = Reason::Agrees;
+        }
+        Some(from_median(decisions, floor))
+    }
+
+    /// σ̂0 after a pass, from decisions that hold v/√Qᵥ.
+    pub(crate) fn of_residuals(&self, passed: &Passed<T>, decisions: &[Decision<T>]) -> T {
         let estimate = match *self {
-            Self::Epoch if used > 0 => (nis / whole(used)).sqrt(),
-            Self::Unit | Self::Epoch => T::ONE,
-            Self::Median { floor } => match median(decisions) {
-                Some(median) => (T::from_f64(1.4826) * median).max(floor),
-                None => floor,
-            },
+            Self::Epoch if passed.used > 0 => (passed.nis / whole(passed.used)).sqrt(),
+            Self::Residuals { floor } => from_median(decisions, floor),
+            _ => T::ONE,
         };
         // Nothing is a multiple of zero.
         if estimate > T::ZERO { estimate } else { T::ONE }
     }
 
     pub(crate) fn is_valid(&self) -> bool {
-        !matches!(self, Self::Median { floor } if !(*floor > T::ZERO && floor.is_finite()))
+        match *self {
+            Self::Innovations { floor } | Self::Residuals { floor } => {
+                floor > T::ZERO && floor.is_finite()
+            }
+            Self::Unit | Self::Epoch => true,
+        }
     }
 }
 
-/// Of |v/√Qᵥ| of the measurements that count. By counting, so that nothing needs to be stored.
+fn from_median<T: Scalar>(decisions: &[Decision<T>], floor: T) -> T {
+    median(decisions).map_or(floor, |median| (T::from_f64(1.4826) * median).max(floor))
+}
+
+/// Of |ṽ| of the measurements that count. By counting, so that nothing needs to be stored.
 fn median<T: Scalar>(decisions: &[Decision<T>]) -> Option<T> {
     let count = decisions.iter().filter(|decision| decision.counts()).count();
     let upper = ranked(decisions, count / 2)?;

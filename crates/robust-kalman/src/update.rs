@@ -123,7 +123,7 @@ struct Run<'a, 'b, T: Scalar, const N: usize> {
     passes: usize,
 }
 
-impl<T: Scalar, const N: usize> Run<'_, '_, T, N> {
+impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
     fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
         self.passes += 1;
         if let Some(bias) = &mut self.bias {
@@ -134,7 +134,8 @@ impl<T: Scalar, const N: usize> Run<'_, '_, T, N> {
 
     /// Judges and weights until nothing is left to be treated. Returns σ̂0.
     fn reweight(&mut self, passed: Passed<T>, decisions: &mut [Decision<T>]) -> Result<T, Error> {
-        let mut scale = self.judge(&passed, decisions);
+        let known = self.robust.scale.of_innovations(&self.epoch(), decisions);
+        let mut scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
         match self.robust.reweighting {
             Reweighting::Never => {}
             Reweighting::OneShot => {
@@ -154,20 +155,15 @@ impl<T: Scalar, const N: usize> Run<'_, '_, T, N> {
                         break;
                     }
                     let passed = self.pass(decisions)?;
-                    scale = self.judge(&passed, decisions);
+                    scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
                 }
             }
         }
         Ok(scale)
     }
 
-    fn judge(&self, passed: &Passed<T>, decisions: &mut [Decision<T>]) -> T {
-        let epoch = Epoch {
-            prior: &self.prior,
-            posterior: &self.posterior,
-            measurements: self.measurements,
-        };
-        self.robust.judge(&epoch, passed, decisions)
+    fn epoch(&self) -> Epoch<'_, 'b, T, N> {
+        Epoch { prior: &self.prior, posterior: &self.posterior, measurements: self.measurements }
     }
 
     fn discrepancy(&self, adaptive: &Adaptive<T>, decisions: &[Decision<T>]) -> T {
