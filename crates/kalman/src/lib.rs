@@ -6,6 +6,7 @@ mod covariance;
 mod error;
 mod gate;
 mod gaussian;
+mod inflate;
 mod innovation;
 mod model;
 mod motion;

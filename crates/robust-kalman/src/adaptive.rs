@@ -1,0 +1,102 @@
+use crate::{Descent, Error, MOST_STATES};
+use kestirim_scalar::Scalar;
+
+/// Neighbouring states that an adaptive factor acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Block {
+    /// The index of the first.
+    pub first: usize,
+    /// How many there are, up to [`MOST_STATES`].
+    pub count: usize,
+}
+
+impl Block {
+    /// `count` states from index `first` on.
+    pub const fn new(first: usize, count: usize) -> Self {
+        Self { first, count }
+    }
+
+    pub(crate) fn check<const N: usize>(self) -> Result<(), Error> {
+        let end = self.first.checked_add(self.count);
+        let within = end.is_some_and(|end| end <= N) && (1..=MOST_STATES).contains(&self.count);
+        if within { Ok(()) } else { Err(Error::InvalidBlock) }
+    }
+}
+
+/// By what the prediction is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Discrepancy {
+    /// √(εᵀε / tr Qε) (22, whose root is printed around the trace alone). It drowns in whatever has
+    /// the largest prior, such as a receiver's clock.
+    Innovation,
+    /// √(dᵀ C⁻¹ d / count): d is how far the epoch alone, with all that is known of the *other* states,
+    /// puts the block from its prediction, C the covariance of that distance. 1 on average.
+    Block,
+    /// ‖d‖ / √tr P⁻ of the block (Yang, He and Xu 2001): the same distance in units of the prediction
+    /// alone. Where the epoch is less precise than the prediction it fires at noise.
+    Prediction,
+}
+
+/// When the adaptive factor is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Order {
+    /// After the measurements have their weights, as in the paper: no outlier is taken for motion, but
+    /// a motion that all measurements show may be taken for outliers.
+    AfterWeights,
+    /// Before: the other way round.
+    BeforeWeights,
+}
+
+/// An adaptive factor a ≤ 1 on a block of P⁻: that of the block over a, its covariances with other
+/// states over √a. Elsewhere P⁻ is kept: on all of it, a would throw away what is not in doubt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Adaptive<T> {
+    /// The states in doubt.
+    pub block: Block,
+    /// By what they are judged.
+    pub discrepancy: Discrepancy,
+    /// Up to c0 the prediction is believed; usually 1.5 to 3.
+    pub c0: T,
+    /// Beyond c1 a is at its floor; usually 3 to 8.
+    pub c1: T,
+    /// How a falls between them.
+    pub descent: Descent,
+    /// The smallest a (the paper prints 0, by which (13) cannot divide).
+    pub floor: T,
+    /// Before or after the weights.
+    pub order: Order,
+}
+
+impl<T: Scalar> Adaptive<T> {
+    /// What has worked: the block's own discrepancy between 1.5 and 4, no less than 0.05.
+    pub fn new(block: Block) -> Self {
+        Self {
+            block,
+            discrepancy: Discrepancy::Block,
+            c0: T::from_f64(1.5),
+            c1: T::from_f64(4.0),
+            descent: Descent::Squared,
+            floor: T::from_f64(0.05),
+            order: Order::AfterWeights,
+        }
+    }
+
+    /// a in floor..=1 of a discrepancy ≥ 0.
+    #[inline]
+    pub fn factor(&self, discrepancy: T) -> T {
+        self.descent.factor(discrepancy, self.c0, self.c1).max(self.floor)
+    }
+
+    pub(crate) fn is_valid(&self) -> bool {
+        let ordered = T::ZERO < self.c0 && self.c0 <= self.c1 && self.c1.is_finite();
+        ordered && T::ZERO < self.floor && self.floor <= T::ONE
+    }
+}

@@ -1,0 +1,95 @@
+use kestirim_scalar::Scalar;
+
+/// Why a measurement has the weight it has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Reason {
+    /// It agrees with the others and the prediction: full weight.
+    Agrees,
+    /// Nothing else tells what it should have been, such as the first phase of a satellite: full
+    /// weight, unjudged.
+    NoRedundancy,
+    /// A t-test needs three: full weight, unjudged.
+    TooFew,
+    /// Between the two thresholds, or beyond Huber's: less weight.
+    DownWeighted,
+    /// Beyond the outer threshold: no weight.
+    Rejected,
+}
+
+/// What became of one measurement, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Decision<T> {
+    /// γ in 0..=1, by which R was divided; 0 left the measurement out.
+    pub weight: T,
+    /// Why.
+    pub reason: Reason,
+    /// v = z − h(x⁺) after the whole update, in the measurement's unit.
+    pub residual: T,
+    /// ṽ = v / (σ̂0 √Qᵥ) when it was judged; 0 if it was not.
+    pub standardised: T,
+    /// What the thresholds were applied to: |ṽ|, or the t-test's T.
+    pub statistic: T,
+    /// The inner and the outer threshold of that (the outer is the number type's largest where there is
+    /// none).
+    pub thresholds: (T, T),
+    /// Qᵥ / R when it was judged: the share of an error in this measurement that shows in its own
+    /// residual.
+    pub redundancy: T,
+}
+
+impl<T: Scalar> Decision<T> {
+    /// What stands in an array before the first update.
+    pub const NONE: Self = Self {
+        weight: T::ONE,
+        reason: Reason::NoRedundancy,
+        residual: T::ZERO,
+        standardised: T::ZERO,
+        statistic: T::ZERO,
+        thresholds: (T::ZERO, T::ZERO),
+        redundancy: T::ZERO,
+    };
+
+    /// Whether it had less than full weight.
+    #[inline]
+    pub fn was_treated(&self) -> bool {
+        matches!(self.reason, Reason::DownWeighted | Reason::Rejected)
+    }
+
+    /// Whether its residual was comparable with anything, and it was not found wanting.
+    #[inline(always)]
+    pub(crate) fn counts(&self) -> bool {
+        matches!(self.reason, Reason::Agrees | Reason::TooFew)
+    }
+}
+
+impl<T: Scalar> Default for Decision<T> {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+/// What became of an epoch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Summary<T> {
+    /// εᵀ Qε⁻¹ ε of all measurements before anything was weighted: as many as there are, on average.
+    pub nis: T,
+    /// σ̂0 as last estimated.
+    pub scale: T,
+    /// How many measurements were down-weighted.
+    pub down_weighted: usize,
+    /// How many were rejected.
+    pub rejected: usize,
+    /// How often the epoch was gone through: 1 when nothing was found.
+    pub passes: usize,
+    /// The statistic of the adaptive factor; 0 without one.
+    pub discrepancy: T,
+    /// a, the adaptive factor; 1 without one.
+    pub adaptive_factor: T,
+}

@@ -1,0 +1,48 @@
+use core::fmt;
+
+/// Why an update was refused. The estimate is as it was before the call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Error {
+    /// The estimate refused a measurement.
+    Estimate(kestirim_kalman::Error),
+    /// There are fewer places for decisions than measurements.
+    TooFewDecisions,
+    /// The block names states that the estimate does not have, none, or more than
+    /// [`MOST_STATES`](crate::MOST_STATES).
+    InvalidBlock,
+    /// Thresholds are not positive or out of order, or a floor is not in (0, 1].
+    InvalidConfiguration,
+}
+
+impl From<kestirim_kalman::Error> for Error {
+    fn from(error: kestirim_kalman::Error) -> Self {
+        Self::Estimate(error)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Estimate(error) => error.fmt(formatter),
+            Self::TooFewDecisions => {
+                formatter.write_str("a measurement has no place for its decision")
+            }
+            Self::InvalidBlock => formatter.write_str("the block is not one of the state"),
+            Self::InvalidConfiguration => {
+                formatter.write_str("a threshold or a floor makes no sense")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Estimate(error) => Some(error),
+            _ => None,
+        }
+    }
+}

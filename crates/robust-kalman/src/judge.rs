@@ -1,0 +1,121 @@
+//! What the residuals of a pass say about each measurement.
+
+use crate::pass::Passed;
+use crate::student::whole;
+use crate::{Decision, Measurement, Reason, Robust, Weight};
+use kestirim_kalman::Gaussian;
+use kestirim_scalar::Scalar;
+
+/// An epoch between two passes.
+pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
+    pub(crate) prior: &'a Gaussian<T, N>,
+    pub(crate) posterior: &'a Gaussian<T, N>,
+    pub(crate) measurements: &'a [Measurement<'b, T>],
+}
+
+impl<T: Scalar> Robust<T> {
+    /// ṽ and the statistic of every measurement that was not treated yet, with σ̂0 if it is known already.
+    /// Returns σ̂0.
+    pub(crate) fn judge<const N: usize>(
+        &self,
+        epoch: &Epoch<'_, '_, T, N>,
+        passed: &Passed<T>,
+        known: Option<T>,
+        decisions: &mut [Decision<T>],
+    ) -> T {
+        for (measurement, decision) in epoch.measurements.iter().zip(&mut *decisions) {
+            if !decision.was_treated() {
+                self.standardise(epoch, measurement, decision);
+            }
+        }
+        let scale = known.unwrap_or_else(|| self.scale.of_residuals(passed, decisions));
+        let divisor = scale.divisor();
+        for decision in &mut *decisions {
+            if decision.counts() {
+                decision.standardised = decision.standardised.divided_by(divisor);
+                decision.statistic = decision.standardised.abs();
+            }
+        }
+        let count = decisions.iter().filter(|decision| decision.counts()).count();
+        let thresholds = self.weight.thresholds(count);
+        if matches!(self.weight, Weight::TTest { .. }) {
+            compare_with_others(decisions, count);
+        }
+        for decision in decisions {
+            if decision.counts() {
+                (decision.reason, decision.thresholds) = match thresholds {
+                    Some(thresholds) => (Reason::Agrees, thresholds),
+                    None => (Reason::TooFew, (T::ZERO, T::ZERO)),
+                };
+            }
+        }
+        scale
+    }
+
+    /// v/√Qᵥ with Qᵥ = R − h P⁺ hᵀ, if enough of R is left.
+    fn standardise<const N: usize>(
+        &self,
+        epoch: &Epoch<'_, '_, T, N>,
+        measurement: &Measurement<'_, T>,
+        decision: &mut Decision<T>,
+    ) {
+        let variance = measurement.variance;
+        let left = variance - measurement.spread(epoch.posterior);
+        decision.residual = measurement.left(epoch.prior, epoch.posterior);
+        decision.redundancy = (left / variance).max(T::ZERO);
+        if left > self.least_redundancy * variance {
+            decision.standardised = decision.residual / left.sqrt();
+            decision.reason = Reason::Agrees;
+        } else {
+            (decision.standardised, decision.statistic) = (T::ZERO, T::ZERO);
+            decision.thresholds = (T::ZERO, T::ZERO);
+            decision.reason = Reason::NoRedundancy;
+        }
+    }
+
+    /// Gives a judged measurement its weight. Returns whether that changed.
+    pub(crate) fn treat(&self, decision: &mut Decision<T>) -> bool {
+        if decision.reason != Reason::Agrees {
+            return false;
+        }
+        let weight = self.weight.factor(decision.statistic, decision.thresholds);
+        if weight >= T::ONE {
+            return false;
+        }
+        decision.weight = weight;
+        let down_weighted = weight > T::ZERO;
+        decision.reason = if down_weighted { Reason::DownWeighted } else { Reason::Rejected };
+        true
+    }
+}
+
+/// T (20): the distance of each ṽ from the mean of the others in units of their standard deviation.
+fn compare_with_others<T: Scalar>(decisions: &mut [Decision<T>], count: usize) {
+    if count < 3 {
+        return;
+    }
+    let others = whole::<T>(count - 1).divisor();
+    let freedom = whole::<T>(count - 2).divisor();
+    for index in 0..decisions.len() {
+        let Some(judged) = decisions.get(index).filter(|decision| decision.counts()).copied()
+        else {
+            continue;
+        };
+        let values = || {
+            let rest =
+                decisions.iter().enumerate().filter(|(other, d)| *other != index && d.counts());
+            rest.map(|(_, decision)| decision.standardised)
+        };
+        let mean = values().fold(T::ZERO, |sum, value| sum + value.divided_by(others));
+        let square = values().fold(T::ZERO, |sum, value| {
+            sum + ((value - mean) * (value - mean)).divided_by(freedom)
+        });
+        let distance = (judged.standardised - mean).abs();
+        let deviation = square.sqrt();
+        // Where nothing differs, nothing stands out.
+        let statistic = if distance > T::ZERO { distance / deviation } else { T::ZERO };
+        if let Some(decision) = decisions.get_mut(index) {
+            decision.statistic = statistic;
+        }
+    }
+}

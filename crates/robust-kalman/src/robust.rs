@@ -1,0 +1,106 @@
+use crate::{Adaptive, Block, Descent, Discrepancy, Scale, Weight};
+use kestirim_scalar::Scalar;
+
+/// How often measurements are weighted anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Reweighting {
+    /// Never: residuals are reported, weights stay 1.
+    Never,
+    /// All at once, after the first pass.
+    OneShot,
+    /// The worst one alone, then everything is computed anew, until none exceeds the inner threshold. Each
+    /// measurement is treated once.
+    WorstFirst {
+        /// How many at most.
+        most: usize,
+    },
+}
+
+/// A robust, and maybe adaptive, Kalman update for any measurements: how it finds outliers and what it
+/// does about them. The five constructors are the paper's five filters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Robust<T> {
+    /// What a residual does to a weight.
+    pub weight: Weight<T>,
+    /// What residuals are compared with.
+    pub scale: Scale<T>,
+    /// How often.
+    pub reweighting: Reweighting,
+    /// Qᵥ/R up to which a measurement is not judged. Such a residual is hardly there, whatever the error.
+    pub least_redundancy: T,
+    /// The adaptive factor, if there is one.
+    pub adaptive: Option<Adaptive<T>>,
+}
+
+impl<T: Scalar> Robust<T> {
+    /// GKF, the plain Kalman filter. Residuals are reported all the same.
+    pub fn plain() -> Self {
+        Self { reweighting: Reweighting::Never, ..Self::igg3() }
+    }
+
+    /// RKF: IGG III on all measurements at once.
+    pub fn igg3() -> Self {
+        Self {
+            weight: Weight::Igg3 {
+                k0: T::from_f64(2.5),
+                k1: T::from_f64(6.0),
+                descent: Descent::Squared,
+            },
+            scale: Scale::Innovations { floor: T::ONE },
+            reweighting: Reweighting::OneShot,
+            least_redundancy: T::from_f64(0.001),
+            adaptive: None,
+        }
+    }
+
+    /// SKF: classification by a t-test at 0.1 and 0.01.
+    pub fn t_test() -> Self {
+        let weight = Weight::TTest {
+            alpha0: T::from_f64(0.1),
+            alpha1: T::from_f64(0.01),
+            descent: Descent::Printed,
+        };
+        Self { weight, ..Self::igg3() }
+    }
+
+    /// IKF: IGG III on the worst measurement, again and again.
+    pub fn iterative_igg3() -> Self {
+        Self { reweighting: Reweighting::WorstFirst { most: usize::MAX }, ..Self::igg3() }
+    }
+
+    /// UKF of the paper (uyarlı, adaptive): the same, then an adaptive factor on a block of the state.
+    pub fn adaptive(block: Block) -> Self {
+        Self { adaptive: Some(Adaptive::new(block)), ..Self::iterative_igg3() }
+    }
+
+    /// The same filter by the letter of the paper: σ̂0 of (17), the bracket of (15) and (21) without its
+    /// square, the discrepancy of (22).
+    #[must_use]
+    pub fn printed(self) -> Self {
+        let weight = match self.weight {
+            Weight::Igg3 { k0, k1, .. } => Weight::Igg3 { k0, k1, descent: Descent::Printed },
+            Weight::TTest { alpha0, alpha1, .. } => {
+                Weight::TTest { alpha0, alpha1, descent: Descent::Printed }
+            }
+            huber @ Weight::Huber { .. } => huber,
+        };
+        let adaptive = self.adaptive.map(|adaptive| Adaptive {
+            discrepancy: Discrepancy::Innovation,
+            descent: Descent::Printed,
+            ..adaptive
+        });
+        Self { weight, scale: Scale::Epoch, adaptive, ..self }
+    }
+
+    pub(crate) fn is_valid(&self) -> bool {
+        self.weight.is_valid()
+            && self.scale.is_valid()
+            && T::ZERO <= self.least_redundancy
+            && self.least_redundancy < T::ONE
+            && self.adaptive.is_none_or(|adaptive| adaptive.is_valid())
+    }
+}

@@ -1,0 +1,203 @@
+//! The update itself: passes and judgements in their order.
+
+use crate::bias::{Bias, Jump};
+use crate::judge::Epoch;
+use crate::pass::{Passed, pass};
+use crate::{Adaptive, Block, Decision, Discrepancy, Error, Measurement, Order, Reason};
+use crate::{Reweighting, Robust, Summary};
+use kestirim_kalman::Gaussian;
+use kestirim_scalar::Scalar;
+
+impl<T: Scalar> Robust<T> {
+    /// Takes the measurements of an epoch into a predicted estimate, with a decision about each.
+    ///
+    /// The innovations are those at the prediction. `decisions` needs a place for each measurement; what
+    /// is in it before does not matter, further places stay as they are.
+    ///
+    /// # Errors
+    /// [`Error`]; the estimate is untouched, the decisions mean nothing.
+    pub fn update<const N: usize>(
+        &self,
+        estimate: &mut Gaussian<T, N>,
+        measurements: &[Measurement<'_, T>],
+        decisions: &mut [Decision<T>],
+    ) -> Result<Summary<T>, Error> {
+        let decisions = decisions.get_mut(..measurements.len()).ok_or(Error::TooFewDecisions)?;
+        if !self.is_valid() {
+            return Err(Error::InvalidConfiguration);
+        }
+        if let Some(adaptive) = &self.adaptive {
+            adaptive.block.check::<N>()?;
+        }
+        decisions.fill(Decision::NONE);
+        let mut run = Run {
+            robust: self,
+            bias: self.adaptive.and_then(|adaptive| adaptive.bias(estimate)),
+            prior: *estimate,
+            posterior: *estimate,
+            measurements,
+            passes: 0,
+        };
+        let mut passed = run.pass(decisions)?;
+        let nis = passed.nis;
+        let (mut discrepancy, mut factor) = (T::ZERO, T::ONE);
+        if let Some(adaptive) =
+            self.adaptive.filter(|adaptive| adaptive.order == Order::BeforeWeights)
+        {
+            discrepancy = run.discrepancy(&adaptive, decisions);
+            factor = adaptive.factor(discrepancy);
+            run.bias = None;
+            if factor < T::ONE {
+                run.inflate(adaptive.block, factor)?;
+                passed = run.pass(decisions)?;
+            }
+        }
+        let scale = run.reweight(passed, decisions)?;
+        if let Some(adaptive) =
+            self.adaptive.filter(|adaptive| adaptive.order == Order::AfterWeights)
+        {
+            discrepancy = run.discrepancy(&adaptive, decisions);
+            factor = adaptive.factor(discrepancy);
+            run.bias = None;
+            if factor < T::ONE {
+                run.inflate(adaptive.block, factor)?;
+                run.pass(decisions)?;
+            }
+        }
+        for (measurement, decision) in measurements.iter().zip(&mut *decisions) {
+            decision.residual = measurement.left(&run.prior, &run.posterior);
+        }
+        *estimate = run.posterior;
+        let of = |reason| decisions.iter().filter(|decision| decision.reason == reason).count();
+        Ok(Summary {
+            nis,
+            scale,
+            down_weighted: of(Reason::DownWeighted),
+            rejected: of(Reason::Rejected),
+            passes: run.passes,
+            discrepancy,
+            adaptive_factor: factor,
+        })
+    }
+}
+
+/// How far the epoch's measurements, all with full weight, put a block of the state from its prediction.
+///
+/// For who wants to know of a motion before measurements are judged by the prediction; the estimate is
+/// not changed.
+///
+/// # Errors
+/// [`Error::InvalidBlock`] or [`Error::Estimate`].
+pub fn jump<T: Scalar, const N: usize>(
+    estimate: &Gaussian<T, N>,
+    measurements: &[Measurement<'_, T>],
+    block: Block,
+) -> Result<Jump<T>, Error> {
+    block.check::<N>()?;
+    let mut bias = Bias::new(estimate, block);
+    let mut posterior = *estimate;
+    for measurement in measurements {
+        let left = measurement.left(estimate, &posterior);
+        let weighed = posterior.weigh_entries(measurement.row, left, measurement.variance)?;
+        bias.take(measurement, &weighed);
+        posterior.correct(&weighed)?;
+    }
+    Ok(bias.jump())
+}
+
+impl<T: Scalar> Adaptive<T> {
+    fn bias<const N: usize>(&self, prior: &Gaussian<T, N>) -> Option<Bias<T, N>> {
+        let wanted = self.discrepancy != Discrepancy::Innovation;
+        wanted.then(|| Bias::new(prior, self.block))
+    }
+}
+
+/// An epoch on its way.
+struct Run<'a, 'b, T: Scalar, const N: usize> {
+    robust: &'a Robust<T>,
+    prior: Gaussian<T, N>,
+    posterior: Gaussian<T, N>,
+    measurements: &'a [Measurement<'b, T>],
+    /// While it is wanted.
+    bias: Option<Bias<T, N>>,
+    passes: usize,
+}
+
+impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
+    fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
+        self.passes += 1;
+        if let Some(bias) = &mut self.bias {
+            *bias = Bias::new(&self.prior, bias.block());
+        }
+        pass(&self.prior, &mut self.posterior, self.measurements, decisions, self.bias.as_mut())
+    }
+
+    /// Judges and weights until nothing is left to be treated. Returns σ̂0.
+    fn reweight(&mut self, passed: Passed<T>, decisions: &mut [Decision<T>]) -> Result<T, Error> {
+        let known = self.robust.scale.of_innovations(&self.epoch(), decisions);
+        let mut scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
+        match self.robust.reweighting {
+            Reweighting::Never => {}
+            Reweighting::OneShot => {
+                let mut changed = false;
+                for decision in &mut *decisions {
+                    changed |= self.robust.treat(decision);
+                }
+                if changed {
+                    self.pass(decisions)?;
+                }
+            }
+            Reweighting::WorstFirst { most } => {
+                // Each round treats one that was not treated before: no more rounds than measurements.
+                for _ in 0..most.min(decisions.len()) {
+                    let Some(worst) = worst(decisions) else { break };
+                    if !self.robust.treat(worst) {
+                        break;
+                    }
+                    let passed = self.pass(decisions)?;
+                    scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
+                }
+            }
+        }
+        Ok(scale)
+    }
+
+    fn epoch(&self) -> Epoch<'_, 'b, T, N> {
+        Epoch { prior: &self.prior, posterior: &self.posterior, measurements: self.measurements }
+    }
+
+    fn discrepancy(&self, adaptive: &Adaptive<T>, decisions: &[Decision<T>]) -> T {
+        match (adaptive.discrepancy, &self.bias) {
+            (Discrepancy::Block, Some(bias)) => bias.jump().discrepancy,
+            (Discrepancy::Prediction, Some(bias)) => bias.in_deviations(&bias.jump()),
+            _ => self.of_innovations(decisions),
+        }
+    }
+
+    /// √(εᵀε / tr Qε) of the measurements that have a say.
+    fn of_innovations(&self, decisions: &[Decision<T>]) -> T {
+        let (mut square, mut trace) = (T::ZERO, T::ZERO);
+        for (measurement, decision) in self.measurements.iter().zip(decisions) {
+            if decision.weight > T::ZERO {
+                square += measurement.innovation * measurement.innovation;
+                trace += measurement.spread(&self.prior) + measurement.variance / decision.weight;
+            }
+        }
+        if trace > T::ZERO { (square / trace).sqrt() } else { T::ZERO }
+    }
+
+    /// The block's covariance over a.
+    fn inflate(&mut self, block: Block, factor: T) -> Result<(), Error> {
+        let growth = factor.recip();
+        for state in block.first..block.first + block.count {
+            self.prior.covariance.inflate(state, growth)?;
+        }
+        Ok(())
+    }
+}
+
+/// The measurement that stands out most of those that were judged.
+fn worst<T: Scalar>(decisions: &mut [Decision<T>]) -> Option<&mut Decision<T>> {
+    let judged = decisions.iter_mut().filter(|decision| decision.reason == Reason::Agrees);
+    judged.reduce(|worst, other| if other.statistic > worst.statistic { other } else { worst })
+}
