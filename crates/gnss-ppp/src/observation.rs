@@ -85,7 +85,10 @@ impl Site<'_> {
         if let Some([first, second]) = &self.receiver.antenna
             && has(Correction::ReceiverAntenna)
         {
-            range += ionosphere_free([first.receiver_range(direction), second.receiver_range(direction)]);
+            range += ionosphere_free([
+                first.receiver_range(direction),
+                second.receiver_range(direction),
+            ]);
         }
         let wind_up_cycles = match &axes {
             Some(axes) if has(Correction::WindUp) => {

@@ -59,7 +59,8 @@ impl Orbit<'_> {
         if after == self.samples.len() && self.samples.get(first)?.second < second {
             return None;
         }
-        let start = after.saturating_sub(POINTS / 2 + 1).min(self.samples.len().checked_sub(POINTS)?);
+        let start =
+            after.saturating_sub(POINTS / 2 + 1).min(self.samples.len().checked_sub(POINTS)?);
         let window = self.samples.get(start..)?.first_chunk::<POINTS>()?;
         let step = window[1].second - window[0].second;
         let complete = window.windows(2).all(|pair| match pair {
@@ -106,11 +107,7 @@ fn through(samples: &[OrbitSample; POINTS], place: f64) -> (Vector3<f64>, Vector
 /// `vector` turned about the Earth's axis by `angle` rad, east positive.
 fn rotated(vector: &Vector3<f64>, angle: f64) -> Vector3<f64> {
     let (sine, cosine) = libm::sincos(angle);
-    Vector3::new(
-        cosine * vector.x - sine * vector.y,
-        sine * vector.x + cosine * vector.y,
-        vector.z,
-    )
+    Vector3::new(cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y, vector.z)
 }
 
 #[cfg(test)]

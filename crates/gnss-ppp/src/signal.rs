@@ -37,7 +37,8 @@ pub const fn geometry_free(phase: [f64; 2]) -> f64 {
 ///
 /// `phase` in cycles, `code` in m.
 pub const fn melbourne_wuebbena(phase: [f64; 2], code: [f64; 2]) -> f64 {
-    let weighted = (FREQUENCY[0] * code[0] + FREQUENCY[1] * code[1]) / (FREQUENCY[0] + FREQUENCY[1]);
+    let weighted =
+        (FREQUENCY[0] * code[0] + FREQUENCY[1] * code[1]) / (FREQUENCY[0] + FREQUENCY[1]);
     phase[0] - phase[1] - weighted / WIDE_LANE
 }
 

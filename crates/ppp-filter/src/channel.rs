@@ -7,8 +7,10 @@ use kestirim_gnss_ppp::Arc;
 pub(crate) struct Channel {
     /// Which GPS satellite (PRN).
     pub(crate) satellite: u8,
+    /// What its combinations were, for slips to be seen.
     pub(crate) arc: Arc,
     /// Phase wind-up of its last epoch, cycles.
     pub(crate) wind_up: f64,
-    pub(crate) bad: u8,
+    /// In how many epochs, up to the last one, its phase had no say.
+    pub(crate) unheard: u8,
 }

@@ -1,6 +1,7 @@
 //! How the filter sees its sensors.
 
-use kestirim_gnss_ppp::SlipLimits;
+use crate::Estimator;
+use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
 
 /// Whether the receiver moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,22 +17,22 @@ pub enum Motion {
     },
 }
 
-/// Standard deviation of an ionosphere-free observation: σ² = a² + b²/sin²E at the elevation E.
+/// Standard deviation of an ionosphere-free observation: σ² = a² + b²·cos²E at the elevation E (the
+/// paper's weighting). The combination is three times as noisy as one carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Deviation {
     /// a, m.
-    pub constant: f64,
+    pub zenith: f64,
     /// b, m.
-    pub elevation: f64,
+    pub slant: f64,
 }
 
 impl Deviation {
     /// σ² at an elevation of which the sine is given, m².
     pub(crate) fn variance(&self, sine: f64) -> f64 {
-        let slanted = self.elevation * libm::sqrt(1.0 - sine * sine);
-        self.constant * self.constant + slanted * slanted
+        self.zenith * self.zenith + self.slant * self.slant * (1.0 - sine * sine)
     }
 }
 
@@ -57,20 +58,34 @@ pub struct Config {
     pub wet_delay_walk: f64,
     /// From when on a jump of the combinations is a slip.
     pub slips: SlipLimits,
-    pub k0: f64, pub k1: f64, pub patience: u8,
+    /// What is done about observations that do not fit.
+    pub estimator: Estimator,
 }
 
-impl Default for Config {
-    fn default() -> Self {
+impl Config {
+    /// What the interpolation of a satellite's clock adds to the variance of an observation, m².
+    pub(crate) fn clock_variance(&self, state: &SatelliteState) -> f64 {
+        let SatelliteState { clock_interval: interval, clock_distance: distance, .. } = *state;
+        if interval > 0.0 {
+            self.clock_walk * distance * (interval - distance) / interval
+        } else {
+            0.0
+        }
+    }
+
+    /// The settings for geodetic receivers with final products of the IGS, which our results are made
+    /// with: the paper's (Table 1), but for the estimator, and slips that a code outlier cannot fake.
+    pub fn new(motion: Motion) -> Self {
         Self {
-            motion: Motion::Static,
+            motion,
             elevation_mask: 8_f64.to_radians(),
-            phase: Deviation { constant: 0.009, elevation: 0.009 },
-            code: Deviation { constant: 0.9, elevation: 0.9 },
-            clock_walk: 0.0,
+            phase: Deviation { zenith: 0.009, slant: 0.009 },
+            code: Deviation { zenith: 0.9, slant: 0.9 },
+            clock_walk: 1e-5,
             wet_delay: 0.3,
             wet_delay_walk: 1e-8,
-            slips: SlipLimits::default(), k0: 0.0, k1: 6.0, patience: 3,
+            slips: SlipLimits::default(),
+            estimator: Estimator::guarded(motion),
         }
     }
 }

@@ -15,6 +15,8 @@ pub enum Error {
     TimeNotAdvancing,
     /// So many measurements contradict the others that no position is left.
     Contradictory,
+    /// The estimator's settings are no settings: see [`Robust`](kestirim_robust_kalman::Robust).
+    InvalidConfiguration,
     /// A number is not finite.
     NotFinite,
 }
@@ -26,9 +28,26 @@ impl fmt::Display for Error {
             Self::PoorGeometry => "the satellites' geometry fixes no position",
             Self::TimeNotAdvancing => "the epoch is not later than the one before",
             Self::Contradictory => "the measurements contradict each other",
+            Self::InvalidConfiguration => "the estimator's settings are not valid",
             Self::NotFinite => "a number is not finite",
         })
     }
 }
 
 impl core::error::Error for Error {}
+
+/// Errors of the update: rows and blocks are right by construction, so only numbers can be wrong.
+impl From<kestirim_kalman::Error> for Error {
+    fn from(_: kestirim_kalman::Error) -> Self {
+        Self::NotFinite
+    }
+}
+
+impl From<kestirim_robust_kalman::Error> for Error {
+    fn from(error: kestirim_robust_kalman::Error) -> Self {
+        match error {
+            kestirim_robust_kalman::Error::InvalidConfiguration => Self::InvalidConfiguration,
+            _ => Self::NotFinite,
+        }
+    }
+}

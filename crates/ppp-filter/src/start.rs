@@ -102,7 +102,9 @@ fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vec
     } else {
         0.0
     };
-    let computed = distance + sagnac(&state.position, &solution.position) + solution.clock - SPEED_OF_LIGHT * clock + troposphere;
+    let computed = distance + sagnac(&state.position, &solution.position) + solution.clock
+        - SPEED_OF_LIGHT * clock
+        + troposphere;
     let misfit = ionosphere_free(sighting.code) - computed;
     misfit.is_finite().then_some((misfit, sight))
 }

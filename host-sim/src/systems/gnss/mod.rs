@@ -2,3 +2,4 @@
 //! satellites.
 
 pub mod files;
+pub mod products;

@@ -43,7 +43,12 @@ pub struct Products {
 impl Products {
     /// Products for observations that begin at `start`: clocks from `clocks` if there are any, from
     /// the orbit files otherwise.
-    pub fn new(start: GpsTime, orbits: &Orbits, clocks: Option<&Clocks>, antennas: &Antennas) -> Self {
+    pub fn new(
+        start: GpsTime,
+        orbits: &Orbits,
+        clocks: Option<&Clocks>,
+        antennas: &Antennas,
+    ) -> Self {
         let reference = GpsTime::new(start.day(), 0.0);
         let satellites = (0..=SATELLITES).map(|prn| {
             // A sample of a manoeuvre or of a jumping clock belongs to neither side.

@@ -1,0 +1,61 @@
+use crate::Motion;
+use kestirim_robust_kalman::{Adaptive, Block, Descent, Order, Reweighting, Robust, Scale, Weight};
+
+/// The three coordinates among the states.
+pub(crate) const POSITION: Block = Block::new(0, 3);
+
+/// What is done about observations that do not fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Estimator {
+    /// How an epoch's observations are weighted.
+    pub robust: Robust<f64>,
+    /// After how many epochs without a say of its phase a satellite's ambiguity is taken for
+    /// another one; none: never.
+    pub patience: Option<u8>,
+}
+
+impl Estimator {
+    /// GKF, the plain Kalman filter.
+    pub fn plain() -> Self {
+        Self { robust: Robust::plain(), patience: None }
+    }
+
+    /// RKF: IGG III on all observations at once.
+    pub fn igg3() -> Self {
+        Self { robust: Robust::igg3(), patience: None }
+    }
+
+    /// SKF: classification by a t-test.
+    pub fn t_test() -> Self {
+        Self { robust: Robust::t_test(), patience: None }
+    }
+
+    /// IKF: IGG III on the worst observation, again and again.
+    pub fn iterative_igg3() -> Self {
+        Self { robust: Robust::iterative_igg3(), patience: None }
+    }
+
+    /// The paper's UKF (uyarlı, adaptive): IKF and an adaptive factor on the position.
+    pub fn adaptive() -> Self {
+        Self { robust: Robust::adaptive(POSITION), patience: None }
+    }
+
+    /// The default, of our own design.
+    pub fn guarded(motion: Motion) -> Self {
+        let robust = Robust {
+            weight: Weight::Igg3 { k0: 2.5, k1: 6.0, descent: Descent::Squared },
+            scale: Scale::Unit,
+            reweighting: Reweighting::WorstFirst { most: usize::MAX },
+            least_redundancy: 0.01,
+            adaptive: match motion {
+                Motion::Static => None,
+                Motion::Kinematic { .. } => {
+                    Some(Adaptive { order: Order::BeforeWeights, ..Adaptive::new(POSITION) })
+                }
+            },
+        };
+        Self { robust, patience: Some(3) }
+    }
+}

@@ -1,0 +1,87 @@
+//! One satellite's two observations, linearised.
+
+use crate::states::{CLOCK, COMMON, WET};
+use crate::{Config, Sighting, Slipped};
+use kestirim_gnss_ppp::{Expected, Site, ionosphere_free, ionosphere_free_phase};
+use nalgebra::{SVector, Vector3};
+
+/// A row of H.
+pub(crate) type Row = [(usize, f64); COMMON + 1];
+
+/// One satellite's two observations, linearised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub(crate) satellite: u8,
+    /// Which state its ambiguity is.
+    pub(crate) state: usize,
+    pub(crate) slipped: Option<Slipped>,
+    pub(crate) expected: Expected,
+    /// Observed less expected with no clock, no wet delay and no ambiguity, m.
+    pub(crate) code: f64,
+    pub(crate) phase: f64,
+    pub(crate) code_variance: f64,
+    pub(crate) phase_variance: f64,
+}
+
+impl Line {
+    pub(crate) fn new(
+        sighting: &Sighting<'_>,
+        expected: Expected,
+        state: usize,
+        slipped: Option<Slipped>,
+        config: &Config,
+    ) -> Self {
+        let sine = libm::sin(expected.direction.elevation);
+        let clock = config.clock_variance(&sighting.state);
+        let mut line = Self {
+            satellite: sighting.satellite,
+            state,
+            slipped,
+            expected,
+            code: 0.0,
+            phase: 0.0,
+            code_variance: config.code.variance(sine) + clock,
+            phase_variance: config.phase.variance(sine) + clock,
+        };
+        line.compare(sighting);
+        line
+    }
+
+    /// Expects the same observations at another place.
+    pub(crate) fn relinearise(&mut self, sighting: &Sighting<'_>, site: &Site<'_>) {
+        let wind_up = Some(self.expected.wind_up_cycles);
+        if let Some(expected) = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up) {
+            self.expected = expected;
+            self.compare(sighting);
+        }
+    }
+
+    fn compare(&mut self, sighting: &Sighting<'_>) {
+        let Expected { range, wind_up, .. } = self.expected;
+        self.code = ionosphere_free(sighting.code) - range;
+        self.phase = ionosphere_free_phase(sighting.phase) - range - wind_up;
+    }
+
+    /// The rows of the code and of the phase.
+    pub(crate) fn rows(&self) -> [Row; 2] {
+        let [x, y, z] = self.expected.sight.data.0[0];
+        let row = |ambiguity: f64| {
+            let wet = (WET, self.expected.wet_mapping);
+            [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet, (self.state, ambiguity)]
+        };
+        [row(0.0), row(1.0)]
+    }
+
+    /// z − h(x⁻) of the code and of the phase, where the line is linearised at a position off by
+    /// `offset` = x⁻ − x.
+    pub(crate) fn innovations<const N: usize>(
+        &self,
+        mean: &SVector<f64, N>,
+        offset: &Vector3<f64>,
+    ) -> [f64; 2] {
+        let of = |state: usize| mean.data.0[0].get(state).copied().unwrap_or(0.0);
+        let common =
+            of(CLOCK) + self.expected.wet_mapping * of(WET) - self.expected.sight.dot(offset);
+        [self.code - common, self.phase - common - of(self.state)]
+    }
+}

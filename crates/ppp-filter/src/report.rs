@@ -1,0 +1,51 @@
+//! What a filter says of an epoch.
+
+use crate::running::{Decisions, Lines, Running};
+use crate::states::{CLOCK, WET};
+use crate::{Health, SatelliteReport, Solution};
+use kestirim_gnss_ppp::Site;
+use nalgebra::Matrix3;
+
+/// Standard deviation of a position whose ambiguities are known, m.
+const CONVERGED: f64 = 0.1;
+
+impl<const N: usize> Running<N> {
+    pub(crate) fn solution(
+        &self,
+        site: &Site<'_>,
+        lines: &Lines<'_, '_, N>,
+        decisions: &Decisions<N>,
+    ) -> Solution<N> {
+        let covariance = Matrix3::from_fn(|i, j| self.estimate.covariance.get(i, j).unwrap_or(0.0));
+        let rotation = site.enu_from_ecef();
+        let satellites = lines.iter().zip(decisions).map(|((_, line), &[code, phase])| {
+            let direction = line.expected.direction;
+            SatelliteReport {
+                satellite: line.satellite,
+                direction,
+                code,
+                phase,
+                slipped: line.slipped,
+            }
+        });
+        let state = |index: usize| self.estimate.mean.data.0[0].get(index).copied().unwrap_or(0.0);
+        let spread = libm::sqrt(covariance.trace());
+        let heard = decisions.iter().filter(|[_, phase]| phase.weight > 0.0).count();
+        Solution {
+            time: self.time,
+            position: self.position(),
+            covariance,
+            covariance_enu: rotation * covariance * rotation.transpose(),
+            clock: state(CLOCK),
+            wet_delay: state(WET),
+            health: if heard < 5 {
+                Health::Unchecked
+            } else if spread < CONVERGED {
+                Health::Converged
+            } else {
+                Health::Converging
+            },
+            satellites: satellites.collect(),
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! A filter that has a position.
+
+use crate::channel::Channel;
+use crate::line::{Line, Row};
+use crate::start::code_position;
+use crate::states::{CLOCK, COMMON, WET};
+use crate::{Config, Error, Motion, Sighting, Slipped, Solution};
+use heapless::Vec;
+use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
+use kestirim_kalman::{Covariance, Gaussian};
+use kestirim_robust_kalman::{Decision, Measurement};
+use nalgebra::{SVector, Vector3};
+
+/// Variance of a coordinate from codes, m².
+const START_VARIANCE: f64 = 1e4;
+/// Variance of the receiver's clock, of which each epoch knows nothing but its codes, m².
+const CLOCK_VARIANCE: f64 = 1e6;
+/// Variance of an ambiguity from one epoch's code, m².
+const AMBIGUITY_VARIANCE: f64 = 1e4;
+/// Wet zenith delay of a temperate climate, m.
+const WET_DELAY: f64 = 0.1;
+/// A receiver that was found farther than this from where the model was linearised is looked at
+/// again from there, m: at 20 000 km, 100 m are worth 0.2 mm.
+const LINEAR: f64 = 100.0;
+/// How often, before the observations are given up.
+const RELINEARISATIONS: usize = 5;
+/// Below this weight a phase has no say.
+const UNHEARD: f64 = 0.1;
+
+/// What is used of an epoch.
+pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a Sighting<'b>, Line), N>;
+/// Of each line's code and phase.
+pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Running<const N: usize> {
+    pub(crate) estimate: Gaussian<f64, N>,
+    pub(crate) time: GpsTime,
+    /// By the state that is their ambiguity.
+    channels: [Option<Channel>; N],
+}
+
+impl<const N: usize> Running<N> {
+    /// Begins with the codes of an epoch.
+    pub(crate) fn start(
+        time: GpsTime,
+        sightings: &[Sighting<'_>],
+        config: &Config,
+    ) -> Result<Self, Error> {
+        let start = code_position(sightings)?;
+        let mut mean = SVector::<f64, N>::zeros();
+        let mut variances = [0.0; N];
+        let [x, y, z] = start.position.data.0[0];
+        let known = [
+            (x, START_VARIANCE),
+            (y, START_VARIANCE),
+            (z, START_VARIANCE),
+            (start.clock, CLOCK_VARIANCE),
+            (WET_DELAY, config.wet_delay * config.wet_delay),
+        ];
+        let places = mean.data.0[0].iter_mut().zip(&mut variances);
+        for ((mean, variance), known) in places.zip(known) {
+            (*mean, *variance) = known;
+        }
+        let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
+        Ok(Self { estimate, time, channels: [None; N] })
+    }
+
+    /// Lets time pass.
+    pub(crate) fn advance(&mut self, time: GpsTime, config: &Config) -> Result<(), Error> {
+        let elapsed = time.since(self.time);
+        if !(elapsed > 0.0) {
+            return Err(Error::TimeNotAdvancing);
+        }
+        self.time = time;
+        if let Motion::Kinematic { process_noise } = config.motion {
+            for coordinate in 0..3 {
+                self.estimate.add_variance_at(coordinate, process_noise * elapsed)?;
+            }
+        }
+        self.estimate.add_variance_at(WET, config.wet_delay_walk * elapsed)?;
+        Ok(())
+    }
+
+    /// Takes in the observations of the present time.
+    pub(crate) fn observe(
+        &mut self,
+        receiver: &Receiver<'_>,
+        sightings: &[Sighting<'_>],
+        config: &Config,
+    ) -> Result<Solution<N>, Error> {
+        let mut site = Site::new(receiver, &self.position(), self.time);
+        let mut lines = self.lines(&site, sightings, config);
+        if lines.len() < 4 {
+            return Err(Error::TooFewSatellites);
+        }
+        let clock = median(&lines, |(_, line)| line.code);
+        self.estimate.reset_at(CLOCK, clock, CLOCK_VARIANCE)?;
+        for (_, line) in lines.iter().filter(|(_, line)| line.slipped.is_some()) {
+            let ambiguity = line.phase - line.code;
+            self.estimate.reset_at(line.state, ambiguity, AMBIGUITY_VARIANCE)?;
+        }
+        let decisions = self.settle(receiver, &mut site, &mut lines, config)?;
+        self.listen(&lines, &decisions);
+        Ok(self.solution(&site, &lines, &decisions))
+    }
+
+    /// Updates with the lines, and again from nearer the solution if that was far from where they
+    /// were linearised.
+    fn settle<'r>(
+        &mut self,
+        receiver: &Receiver<'r>,
+        site: &mut Site<'r>,
+        lines: &mut Lines<'_, '_, N>,
+        config: &Config,
+    ) -> Result<Decisions<N>, Error> {
+        let predicted = self.estimate;
+        let expected = self.position();
+        let mut linearised = expected;
+        for _ in 0..RELINEARISATIONS {
+            self.estimate = predicted;
+            let decisions = self.update(lines, &(expected - linearised), config)?;
+            let found = self.position();
+            if (found - linearised).norm() < LINEAR {
+                return Ok(decisions);
+            }
+            *site = Site::new(receiver, &found, self.time);
+            for (sighting, line) in &mut *lines {
+                line.relinearise(sighting, site);
+            }
+            linearised = found;
+        }
+        Err(Error::Contradictory)
+    }
+
+    /// One update with all lines; `offset` is from where they are linearised to the prediction.
+    fn update(
+        &mut self,
+        lines: &Lines<'_, '_, N>,
+        offset: &Vector3<f64>,
+        config: &Config,
+    ) -> Result<Decisions<N>, Error> {
+        let rows: Vec<[Row; 2], N> = lines.iter().map(|(_, line)| line.rows()).collect();
+        let measurements: Vec<[Measurement<'_, f64>; 2], N> = lines
+            .iter()
+            .zip(&rows)
+            .map(|((_, line), [code_row, phase_row])| {
+                let [code, phase] = line.innovations(&self.estimate.mean, offset);
+                [
+                    Measurement { row: code_row, innovation: code, variance: line.code_variance },
+                    Measurement {
+                        row: phase_row,
+                        innovation: phase,
+                        variance: line.phase_variance,
+                    },
+                ]
+            })
+            .collect();
+        let mut decisions: Decisions<N> = lines.iter().map(|_| [Decision::NONE; 2]).collect();
+        config.estimator.robust.update(
+            &mut self.estimate,
+            measurements.as_flattened(),
+            decisions.as_flattened_mut(),
+        )?;
+        Ok(decisions)
+    }
+
+    /// Remembers which phases had no say.
+    fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>) {
+        for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
+            if let Some(Some(channel)) = self.channels.get_mut(line.state) {
+                let heard = phase.weight > UNHEARD;
+                channel.unheard = if heard { 0 } else { channel.unheard.saturating_add(1) };
+            }
+        }
+    }
+
+    /// The satellites above the mask, each with a state for its ambiguity.
+    fn lines<'a, 'b>(
+        &mut self,
+        site: &Site<'_>,
+        sightings: &'a [Sighting<'b>],
+        config: &Config,
+    ) -> Lines<'a, 'b, N> {
+        let mut lines = Vec::new();
+        for sighting in sightings {
+            let known = self.find(sighting.satellite);
+            let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
+            let expected = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up);
+            let Some(expected) = expected else { continue };
+            if !(expected.direction.elevation >= config.elevation_mask) {
+                continue;
+            }
+            let Some((state, slipped)) = self.track(known, sighting, &expected, config) else {
+                continue;
+            };
+            let line = Line::new(sighting, expected, state, slipped, config);
+            if lines.push((sighting, line)).is_err() {
+                break;
+            }
+        }
+        lines
+    }
+
+    /// The state of a satellite's ambiguity, and whether it begins anew.
+    fn track(
+        &mut self,
+        known: Option<usize>,
+        sighting: &Sighting<'_>,
+        expected: &Expected,
+        config: &Config,
+    ) -> Option<(usize, Option<Slipped>)> {
+        let Sighting { phase, code, .. } = *sighting;
+        let state = known.or_else(|| self.free())?;
+        let time = self.time;
+        let channel = self.channels.get_mut(state)?;
+        match channel {
+            Some(channel) if known.is_some() => {
+                channel.wind_up = expected.wind_up_cycles;
+                let slip =
+                    channel.arc.observe(time, phase, code, sighting.lock_lost, &config.slips);
+                let patience = config.estimator.patience;
+                let contradicted = patience.is_some_and(|patience| channel.unheard >= patience);
+                let slipped =
+                    slip.map(Slipped::Seen).or(contradicted.then_some(Slipped::Contradicted));
+                if slipped.is_some() {
+                    channel.unheard = 0;
+                }
+                Some((state, slipped))
+            }
+            _ => {
+                *channel = Some(Channel {
+                    satellite: sighting.satellite,
+                    arc: Arc::begin(time, phase, code),
+                    wind_up: expected.wind_up_cycles,
+                    unheard: 0,
+                });
+                Some((state, Some(Slipped::New)))
+            }
+        }
+    }
+
+    fn find(&self, satellite: u8) -> Option<usize> {
+        let is = |channel: &Option<Channel>| channel.is_some_and(|c| c.satellite == satellite);
+        self.channels.iter().position(is)
+    }
+
+    fn channel(&self, state: usize) -> Option<&Channel> {
+        self.channels.get(state)?.as_ref()
+    }
+
+    /// A state that is no satellite's, or that of the satellite unseen for longest.
+    fn free(&self) -> Option<usize> {
+        let unseen = |state: &usize| match self.channel(*state) {
+            None => f64::INFINITY,
+            Some(channel) => self.time.since(channel.arc.last()),
+        };
+        let ambiguities = (COMMON..N).map(|state| (state, unseen(&state)));
+        let free = ambiguities.filter(|&(_, unseen)| unseen > 0.0);
+        free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
+    }
+
+    pub(crate) fn position(&self) -> Vector3<f64> {
+        let of = |state: usize| self.estimate.mean.data.0[0].get(state).copied().unwrap_or(0.0);
+        Vector3::new(of(0), of(1), of(2))
+    }
+}
+
+fn median<T, const N: usize>(items: &Vec<T, N>, value: impl Fn(&T) -> f64) -> f64 {
+    let mut sorted: Vec<f64, N> = items.iter().map(value).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}

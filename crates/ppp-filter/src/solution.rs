@@ -1,0 +1,80 @@
+use heapless::Vec;
+use kestirim_gnss_ppp::{Direction, GpsTime, Slip};
+use kestirim_robust_kalman::Decision;
+use nalgebra::{Matrix3, Vector3};
+
+/// Why a satellite's ambiguity was begun anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Slipped {
+    /// The satellite was not observed before.
+    New,
+    /// Its own observations show it.
+    Seen(Slip),
+    /// Its phase contradicted all others for several epochs.
+    Contradicted,
+}
+
+/// How far the solution is to be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Health {
+    /// The ambiguities are not known yet: decimetres to metres.
+    Converging,
+    /// Ambiguities are known: the standard deviation of the position is below 10 cm.
+    Converged,
+    /// Hardly more observations are left than unknowns: no fault could be seen.
+    Unchecked,
+}
+
+/// What became of one satellite's observations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SatelliteReport {
+    /// Which GPS satellite (PRN).
+    pub satellite: u8,
+    /// Where it stands.
+    pub direction: Direction,
+    /// Weight, residual and reason of the code.
+    pub code: Decision<f64>,
+    /// The same of the phase.
+    pub phase: Decision<f64>,
+    /// Whether and why its ambiguity was begun anew.
+    pub slipped: Option<Slipped>,
+}
+
+/// Where the receiver is, from one epoch.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Solution<const N: usize> {
+    /// When, by the receiver's clock.
+    pub time: GpsTime,
+    /// The marker, ECEF, m, free of tides.
+    pub position: Vector3<f64>,
+    /// Its covariance, ECEF, m².
+    pub covariance: Matrix3<f64>,
+    /// The same in east, north, up.
+    pub covariance_enu: Matrix3<f64>,
+    /// How far the receiver's clock is ahead of GPS time, m.
+    pub clock: f64,
+    /// Wet zenith delay, m.
+    pub wet_delay: f64,
+    /// How far to trust it.
+    pub health: Health,
+    /// What became of each satellite above the elevation mask.
+    pub satellites: Vec<SatelliteReport, N>,
+}
+
+impl<const N: usize> Solution<N> {
+    /// Standard deviations to the east, north and up, m.
+    pub fn deviations_enu(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| {
+            let row = self.covariance_enu.data.0.get(axis);
+            libm::sqrt(row.and_then(|row| row.get(axis)).copied().unwrap_or(0.0))
+        })
+    }
+}

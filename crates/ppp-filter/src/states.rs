@@ -1,0 +1,14 @@
+//! Which state stands where: three coordinates (ECEF, m), the receiver's clock (m), the wet zenith
+//! delay (m), and an ambiguity (m) for each satellite.
+
+/// The receiver's clock.
+pub(crate) const CLOCK: usize = 3;
+/// The wet zenith delay.
+pub(crate) const WET: usize = 4;
+/// How many states there are besides the ambiguities.
+pub(crate) const COMMON: usize = 5;
+
+/// How many states a [`PppFilter`](crate::PppFilter) for so many satellites at a time has.
+pub const fn states(satellites: usize) -> usize {
+    COMMON + satellites
+}
