@@ -38,18 +38,15 @@ impl fmt::Display for Comparison {
                 format!("{}{printed}", report.filter.name()),
                 format!("{} of {}", report.solved, report.epochs),
             ];
-            match &report.accuracy {
-                Some(accuracy) => {
-                    let [east, north, up] = accuracy.rms_enu_m.map_or([None; 3], |it| it.map(Some));
-                    let lengths = [Some(accuracy.final_3d_m), north, east, up, accuracy.rms_3d_m];
-                    row.extend(lengths.map(|length| length.map_or_else(nothing, millimetres)));
-                    let minutes = |minutes: f64| format!("{minutes:.1} min");
-                    row.push(accuracy.convergence_min.map_or_else(nothing, minutes));
-                }
-                None => {
-                    let [east, north, up] = report.sd_enu_m;
-                    row.extend([north, east, up].map(millimetres));
-                }
+            if let Some(accuracy) = &report.accuracy {
+                let [east, north, up] = accuracy.rms_enu_m.map_or([None; 3], |it| it.map(Some));
+                let lengths = [Some(accuracy.final_3d_m), north, east, up, accuracy.rms_3d_m];
+                row.extend(lengths.map(|length| length.map_or_else(nothing, millimetres)));
+                let minutes = |minutes: f64| format!("{minutes:.1} min");
+                row.push(accuracy.convergence_min.map_or_else(nothing, minutes));
+            } else {
+                let [east, north, up] = report.sd_enu_m;
+                row.extend([north, east, up].map(millimetres));
             }
             row.extend([report.rejected, report.deweighted, report.slips].map(|it| it.to_string()));
             table.add_row(row);

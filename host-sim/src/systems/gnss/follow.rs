@@ -144,7 +144,10 @@ pub fn follow(
         sightings.clear();
         for observed in &epoch.satellites {
             match recording.products().sighting(epoch.time, observed) {
-                Ok(sighting) => sightings.push(sighting),
+                Ok(mut sighting) => {
+                    sighting.lock_lost |= epoch.power_failure;
+                    sightings.push(sighting);
+                }
                 Err(reason) => followed.miss(observed.prn, reason, &mut unused),
             }
         }

@@ -67,7 +67,8 @@ impl Session<'_> {
             .iter()
             .filter_map(|(filter, followed)| self.report(*filter, followed, outages(followed)));
         let filters: Vec<_> = reports.collect();
-        let (_, last) = followed.last().expect("six filters");
+        // What of the recording serves is the same for all filters.
+        let [.., (_, last)] = &*followed else { return Err(self.unsolved(&Followed::default())) };
         if filters.is_empty() {
             return Err(self.unsolved(last));
         }
@@ -130,11 +131,12 @@ impl Session<'_> {
     fn gaps(&self) -> Option<String> {
         let steps: Vec<f64> =
             self.epochs.windows(2).map(|pair| pair[1].time.since(pair[0].time)).collect();
-        let usual = median(&steps);
+        let rounded = |seconds: f64| (1e3 * seconds).round() / 1e3;
+        let usual = rounded(median(&steps));
         let long = || steps.iter().enumerate().filter(|(_, step)| **step > 1.5 * usual);
         let (first, _) = long().next()?;
-        let longest = long().map(|(_, step)| *step).fold(0.0, f64::max);
-        let at = self.recording.seconds(&self.epochs[first]);
+        let longest = rounded(long().map(|(_, step)| *step).fold(0.0, f64::max));
+        let at = rounded(self.recording.seconds(&self.epochs[first]));
         let (count, plural) = (long().count(), if long().count() == 1 { "" } else { "s" });
         Some(format!(
             "{count} gap{plural} between epochs every {usual} s: the first after {at} s, the longest of \
