@@ -1,3 +1,4 @@
+use crate::watch::Watch;
 use kestirim_gnss_ppp::Arc;
 
 /// What is remembered of a satellite as long as its ambiguity is.
@@ -11,6 +12,6 @@ pub(crate) struct Channel {
     pub(crate) arc: Arc,
     /// Phase wind-up of its last epoch, cycles.
     pub(crate) wind_up: f64,
-    /// In how many epochs, up to the last one, its phase had no say.
-    pub(crate) unheard: u8,
+    /// How its phase behaves.
+    pub(crate) watch: Watch,
 }

@@ -51,9 +51,12 @@ impl Estimator {
             least_redundancy: 0.01,
             adaptive: match motion {
                 Motion::Static => None,
-                Motion::Kinematic { .. } => {
-                    Some(Adaptive { order: Order::BeforeWeights, ..Adaptive::new(POSITION) })
-                }
+                Motion::Kinematic { .. } => Some(Adaptive {
+                    order: Order::BeforeWeights,
+                    c0: 2.0,
+                    floor: 1e-6,
+                    ..Adaptive::new(POSITION)
+                }),
             },
         };
         Self { robust, patience: Some(3) }

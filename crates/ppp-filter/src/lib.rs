@@ -13,6 +13,7 @@ mod running;
 mod solution;
 mod start;
 mod states;
+mod watch;
 
 pub use config::{Config, Deviation, Motion};
 pub use epoch::Sighting;

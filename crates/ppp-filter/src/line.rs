@@ -21,6 +21,8 @@ pub(crate) struct Line {
     pub(crate) phase: f64,
     pub(crate) code_variance: f64,
     pub(crate) phase_variance: f64,
+    /// By what that is multiplied, for what the satellite has shown before.
+    pub(crate) phase_noise: f64,
 }
 
 impl Line {
@@ -42,6 +44,7 @@ impl Line {
             phase: 0.0,
             code_variance: config.code.variance(sine) + clock,
             phase_variance: config.phase.variance(sine) + clock,
+            phase_noise: 1.0,
         };
         line.compare(sighting);
         line

@@ -4,6 +4,7 @@ use crate::channel::Channel;
 use crate::line::{Line, Row};
 use crate::start::code_position;
 use crate::states::{CLOCK, COMMON, WET};
+use crate::watch::Watch;
 use crate::{Config, Error, Motion, Sighting, Slipped, Solution};
 use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
@@ -24,8 +25,6 @@ const WET_DELAY: f64 = 0.1;
 const LINEAR: f64 = 100.0;
 /// How often, before the observations are given up.
 const RELINEARISATIONS: usize = 5;
-/// Below this weight a phase has no say.
-const UNHEARD: f64 = 0.1;
 
 /// What is used of an epoch.
 pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a Sighting<'b>, Line), N>;
@@ -151,7 +150,7 @@ impl<const N: usize> Running<N> {
                     Measurement {
                         row: phase_row,
                         innovation: phase,
-                        variance: line.phase_variance,
+                        variance: line.phase_variance * line.phase_noise,
                     },
                 ]
             })
@@ -165,12 +164,11 @@ impl<const N: usize> Running<N> {
         Ok(decisions)
     }
 
-    /// Remembers which phases had no say.
+    /// Remembers how the phases behaved.
     fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>) {
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
-                let heard = phase.weight > UNHEARD;
-                channel.unheard = if heard { 0 } else { channel.unheard.saturating_add(1) };
+                channel.watch.listen(phase, line.phase_variance);
             }
         }
     }
@@ -194,7 +192,12 @@ impl<const N: usize> Running<N> {
             let Some((state, slipped)) = self.track(known, sighting, &expected, config) else {
                 continue;
             };
-            let line = Line::new(sighting, expected, state, slipped, config);
+            let mut line = Line::new(sighting, expected, state, slipped, config);
+            if config.estimator.patience.is_some()
+                && let Some(channel) = self.channel(state)
+            {
+                line.phase_noise = channel.watch.variance_factor();
+            }
             if lines.push((sighting, line)).is_err() {
                 break;
             }
@@ -219,12 +222,15 @@ impl<const N: usize> Running<N> {
                 channel.wind_up = expected.wind_up_cycles;
                 let slip =
                     channel.arc.observe(time, phase, code, sighting.lock_lost, &config.slips);
-                let patience = config.estimator.patience;
-                let contradicted = patience.is_some_and(|patience| channel.unheard >= patience);
+                let suspicious = channel.arc.is_suspicious();
+                let contradicted = config
+                    .estimator
+                    .patience
+                    .is_some_and(|patience| channel.watch.contradicts(patience, suspicious));
                 let slipped =
                     slip.map(Slipped::Seen).or(contradicted.then_some(Slipped::Contradicted));
                 if slipped.is_some() {
-                    channel.unheard = 0;
+                    channel.watch.begin();
                 }
                 Some((state, slipped))
             }
@@ -233,7 +239,7 @@ impl<const N: usize> Running<N> {
                     satellite: sighting.satellite,
                     arc: Arc::begin(time, phase, code),
                     wind_up: expected.wind_up_cycles,
-                    unheard: 0,
+                    watch: Watch::NEW,
                 });
                 Some((state, Some(Slipped::New)))
             }
