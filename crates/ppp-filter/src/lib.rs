@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
+extern crate std;
 
 mod channel;
 mod config;

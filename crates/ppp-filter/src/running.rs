@@ -26,6 +26,9 @@ const LINEAR: f64 = 100.0;
 /// How often, before the observations are given up.
 const RELINEARISATIONS: usize = 5;
 
+/// Of the squares of standard normal numbers.
+const MEDIAN_OF_SQUARES: f64 = 0.455;
+
 /// What is used of an epoch.
 pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a Sighting<'b>, Line), N>;
 /// Of each line's code and phase.
@@ -164,11 +167,13 @@ impl<const N: usize> Running<N> {
         Ok(decisions)
     }
 
-    /// Remembers how the phases behaved.
+    /// Remembers how the phases behaved. What all of them show at once is none's own noise.
     fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>) {
+        let common = median(decisions, |[_, phase]| phase.standardised * phase.standardised);
+        let common = (common / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
-                channel.watch.listen(phase, line.phase_variance);
+                channel.watch.listen(phase, line.phase_variance, common);
             }
         }
     }

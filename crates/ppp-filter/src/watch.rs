@@ -34,7 +34,7 @@ impl Watch {
 
     /// By what the variance of its phase is multiplied.
     pub(crate) fn variance_factor(&self) -> f64 {
-        self.noise.max(1.0)
+        self.noise.clamp(1.0, nt())
     }
 
     /// Whether the ambiguity must be another one: the phase jumped and stays where it is for
@@ -51,7 +51,7 @@ impl Watch {
     }
 
     /// Remembers what became of the phase of an epoch, whose variance by itself is `variance`.
-    pub(crate) fn listen(&mut self, phase: &Decision<f64>, variance: f64) {
+    pub(crate) fn listen(&mut self, phase: &Decision<f64>, variance: f64, common: f64) {
         if phase.weight > UNHEARD {
             (self.unheard, self.jumped, self.residual) = (0, false, phase.residual);
         } else {
@@ -62,8 +62,10 @@ impl Watch {
             self.unheard = self.unheard.saturating_add(1);
         }
         if !matches!(phase.reason, Reason::NoRedundancy | Reason::TooFew) {
-            let square = (phase.standardised * phase.standardised).min(LOUDEST);
+            let square = (phase.standardised * phase.standardised / common).min(LOUDEST);
             self.noise += (square * self.variance_factor() - self.noise) / MEMORY;
         }
     }
 }
+
+pub(crate) fn nt() -> f64 { use std::sync::OnceLock; static X: OnceLock<f64> = OnceLock::new(); *X.get_or_init(|| std::env::var("NT").ok().and_then(|v| v.parse().ok()).unwrap_or(9.0)) }
