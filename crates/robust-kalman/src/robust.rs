@@ -39,11 +39,11 @@ pub struct Robust<T> {
 impl<T: Scalar> Robust<T> {
     /// GKF, the plain Kalman filter. Residuals are reported all the same.
     pub fn plain() -> Self {
-        Self { scale: Scale::Unit, reweighting: Reweighting::Never, ..Self::igg3() }
+        Self { reweighting: Reweighting::Never, ..Self::igg3() }
     }
 
-    /// RKF: IGG III on all measurements at once, in units of the residuals' median: an outlier has moved
-    /// all residuals, and with a smaller unit good measurements would fall with it.
+    /// RKF: IGG III on all measurements at once. A large outlier has moved all residuals, so good
+    /// measurements lose weight with it.
     pub fn igg3() -> Self {
         Self {
             weight: Weight::Igg3 {
@@ -51,7 +51,7 @@ impl<T: Scalar> Robust<T> {
                 k1: T::from_f64(6.0),
                 descent: Descent::Squared,
             },
-            scale: Scale::Residuals { floor: T::ONE },
+            scale: Scale::Unit,
             reweighting: Reweighting::OneShot,
             least_redundancy: T::from_f64(0.001),
             adaptive: None,
@@ -68,14 +68,9 @@ impl<T: Scalar> Robust<T> {
         Self { weight, ..Self::igg3() }
     }
 
-    /// IKF: IGG III on the worst measurement, again and again, in units of the innovations' median, which
-    /// no outlier has moved.
+    /// IKF: IGG III on the worst measurement, again and again.
     pub fn iterative_igg3() -> Self {
-        Self {
-            scale: Scale::Innovations { floor: T::ONE },
-            reweighting: Reweighting::WorstFirst { most: usize::MAX },
-            ..Self::igg3()
-        }
+        Self { reweighting: Reweighting::WorstFirst { most: usize::MAX }, ..Self::igg3() }
     }
 
     /// UKF of the paper (uyarlı, adaptive): the same, then an adaptive factor on a block of the state.

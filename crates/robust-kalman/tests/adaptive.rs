@@ -2,7 +2,7 @@
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
-    Adaptive, Block, Decision, Discrepancy, Measurement, Order, Robust, Summary,
+    Adaptive, Block, Decision, Discrepancy, Measurement, Order, Robust, Scale, Summary,
 };
 use nalgebra::SVector;
 
@@ -38,7 +38,8 @@ fn update(robust: &Robust<f64>, moved: [f64; 2], wild: f64) -> (Gaussian<f64, 11
 
 fn adaptive(discrepancy: Discrepancy, order: Order) -> Robust<f64> {
     let adaptive = Adaptive { discrepancy, order, ..Adaptive::new(Block::new(0, 2)) };
-    Robust { adaptive: Some(adaptive), ..Robust::iterative_igg3() }
+    let scale = Scale::Innovations { floor: 1.0 };
+    Robust { adaptive: Some(adaptive), scale, ..Robust::iterative_igg3() }
 }
 
 #[test]

@@ -186,7 +186,9 @@ fn a_rejected_measurement_might_as_well_not_have_been_there() {
     let mut decisions = [Decision::NONE; 20];
     let mut expected = predicted::<f64>();
     Robust::plain().update(&mut expected, &without, &mut decisions).expect("an update");
-    for robust in [Robust::igg3(), Robust::iterative_igg3(), Robust::adaptive(Block::new(0, 2))] {
+    // In one shot only in units that an outlier inflates: else good measurements fall with it.
+    let one_shot = Robust { scale: Scale::Residuals { floor: 1.0 }, ..Robust::igg3() };
+    for robust in [one_shot, Robust::iterative_igg3(), Robust::adaptive(Block::new(0, 2))] {
         let mut estimate = predicted::<f64>();
         let summary = robust.update(&mut estimate, &epoch, &mut decisions).expect("an update");
         assert_eq!((decisions[7].reason, decisions[7].weight), (Reason::Rejected, 0.0));
