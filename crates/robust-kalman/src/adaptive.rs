@@ -51,6 +51,9 @@ pub enum Order {
     AfterWeights,
     /// Before: the other way round.
     BeforeWeights,
+    /// After, unless more than a third of the measurements would lose weight: then it was motion, and
+    /// they are judged anew when the block has been put in doubt.
+    ByMajority,
 }
 
 /// An adaptive factor a ≤ 1 on a block of P⁻: that of the block over a, its covariances with other

@@ -9,7 +9,7 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Scale<T> {
-    /// 1: the variances are believed.
+    /// 1: the variances are believed. Where they deserve it, nothing finds more outliers.
     Unit,
     /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements a single
     /// one of any size has |ṽ| ≤ √n or so.
@@ -72,12 +72,11 @@ fn from_median<T: Scalar>(decisions: &[Decision<T>], floor: T) -> T {
     median(decisions).map_or(floor, |median| (T::from_f64(1.4826) * median).max(floor))
 }
 
-/// Of |ṽ| of the measurements that count. By counting, so that nothing needs to be stored.
+/// Of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
+/// of four measurements two may be wild. By counting, so that nothing needs to be stored.
 fn median<T: Scalar>(decisions: &[Decision<T>]) -> Option<T> {
     let count = decisions.iter().filter(|decision| decision.counts()).count();
-    let upper = ranked(decisions, count / 2)?;
-    let lower = if count % 2 == 0 { ranked(decisions, count / 2 - 1)? } else { upper };
-    Some(lower + (upper - lower) * T::HALF)
+    ranked(decisions, count.checked_sub(1)? / 2)
 }
 
 /// The value that `rank` others are below of, or as large as.
