@@ -1,6 +1,6 @@
 //! Unpacking.
 
-use std::fs;
+use std::fs::File;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
@@ -9,15 +9,31 @@ use flate2::bufread::GzDecoder;
 use crate::Error;
 
 /// No file of any use unpacks to more, bytes.
-const LARGEST: usize = 1 << 30;
+pub(super) const LARGEST: usize = 1 << 30;
 
-/// Reads a file and unpacks it.
+/// Reads a file.
 ///
 /// # Errors
-/// [`Error::Read`] if it cannot be read, else [`Error::File`].
+/// [`Error::Read`] if it cannot be read, [`Error::File`] if it is too large.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    let bytes =
-        fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| {
+        bytes.reserve(file.metadata()?.len().min(LARGEST as u64) as usize);
+        file.take(LARGEST as u64 + 1).read_to_end(&mut bytes)
+    });
+    read.map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+    if bytes.len() > LARGEST {
+        let problem = "is larger than 1 GiB, which no file of use is".to_owned();
+        return Err(Error::File { path: path.to_path_buf(), problem });
+    }
+    Ok(bytes)
+}
+
+/// Unpacks what is packed.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be unpacked.
+pub(super) fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     let complaint = |problem: String| Error::File { path: path.to_path_buf(), problem };
     let refused = match &*bytes {
         [0x1f, 0x8b, ..] => return gunzip(&bytes).map_err(complaint),
@@ -44,9 +60,7 @@ fn gunzip(packed: &[u8]) -> Result<Vec<u8>, String> {
             _ => format!("is a damaged gzip file: {error}"),
         })?;
         if unpacked.len() > LARGEST {
-            return Err(
-                "unpacks to more than 1 GiB, which no file of observations needs".to_owned()
-            );
+            return Err("unpacks to more than 1 GiB, which no file of use does".to_owned());
         }
         // At the end of the member already.
         let _ = rest.fill_buf();

@@ -53,11 +53,16 @@ fn slowly(digits: &[u8]) -> Option<f64> {
 
 /// An integer; none if there is anything else.
 pub(super) fn integer(field: &[u8]) -> Option<i32> {
+    large_integer(field)?.try_into().ok()
+}
+
+/// An integer; none if there is anything else.
+pub(super) fn large_integer(field: &[u8]) -> Option<i64> {
     let (negative, digits) = signed(field);
-    let mut number = 0_i32;
+    let mut number = 0_i64;
     for &byte in digits {
         let digit = byte.checked_sub(b'0').filter(|&digit| digit < 10)?;
-        number = number.checked_mul(10)?.checked_add(i32::from(digit))?;
+        number = number.checked_mul(10)?.checked_add(i64::from(digit))?;
     }
     let number = if negative { -number } else { number };
     (!digits.is_empty()).then_some(number)

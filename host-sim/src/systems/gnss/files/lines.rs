@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use kestirim_gnss_ppp::GpsTime;
 
-use super::compressed;
 use super::fields::{decimal, integer};
 use super::time::from_calendar;
+use super::{compressed, crinex};
 use crate::Error;
 use crate::text::printable;
 
@@ -23,12 +23,21 @@ impl Text {
     /// # Errors
     /// [`Error::Read`] if it cannot be read, [`Error::File`] or [`Error::Line`] if it cannot be unpacked.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(Self { path: path.to_path_buf(), bytes: compressed::read(path)? })
+        Self::unpack(path, compressed::read(path)?)
     }
 
-    /// Takes the contents of the file `path`, unpacked.
-    pub fn from_bytes(path: &Path, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { path: path.to_path_buf(), bytes: bytes.into() }
+    /// Takes the contents of the file `path`, which may be compressed.
+    ///
+    /// # Errors
+    /// [`Error::File`] or [`Error::Line`] if they cannot be unpacked.
+    pub fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Self, Error> {
+        let bytes = compressed::unpack(path, bytes)?;
+        let text = Self { path: path.to_path_buf(), bytes };
+        if crinex::is_compressed(&text.bytes) {
+            let bytes = crinex::decompress(&text, compressed::LARGEST)?;
+            return Ok(Self { bytes, ..text });
+        }
+        Ok(text)
     }
 
     /// Its lines, blank ones too.

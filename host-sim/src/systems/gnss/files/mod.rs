@@ -5,6 +5,7 @@
 pub mod antex;
 pub mod blq;
 mod compressed;
+mod crinex;
 mod fields;
 pub mod lines;
 pub mod rinex_clock;
