@@ -3,24 +3,26 @@
 //! Lines are stored as what changed since the epoch before: texts character by character, numbers as
 //! differences of some order since an arc began.
 
-use super::fields::{integer, large_integer};
+mod arcs;
+
+use self::arcs::{Satellite, repair};
+use super::fields::integer;
 use super::lines::{Line, Lines, Text};
 use crate::Error;
 
-/// The highest order of differences in the format.
-const HIGHEST_ORDER: usize = 5;
 /// More satellites or observables than any file has.
 const MOST: usize = 999;
-/// Ten digits before the point and three behind it fill a field.
-const LARGEST_VALUE: u64 = 9_999_999_999_999;
+
+/// What stands in place of an epoch that was cut off.
+const CUT: &[u8] = b"> cut off";
 
 /// Whether a text is compressed so.
 pub(super) fn is_compressed(bytes: &[u8]) -> bool {
     bytes.get(60..).is_some_and(|label| label.starts_with(b"CRINEX VERS"))
 }
 
-/// The RINEX file as it was, without the receiver's clock offsets, which nothing here needs. A line cut off
-/// at the end of the file is left out.
+/// The RINEX file as it was, without the receiver's clock offsets, which nothing here needs. An epoch that was
+/// cut off at the end of the file is only marked.
 ///
 /// # Errors
 /// The line of the compressed file, and what was expected there.
@@ -49,15 +51,16 @@ pub(super) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> 
         }
     }
     while let Some(line) = lines.next() {
+        let before = decoder.out.len();
         let result = decoder.epoch(&line, &mut lines);
-        if lines.is_at_end() && !text.ends_with_line_break() {
+        let at_end = lines.is_at_end();
+        if at_end && (result.is_err() || !text.ends_with_line_break()) {
+            // In place of this epoch; whoever reads the observations will say so.
+            decoder.out.truncate(before);
+            decoder.out.extend_from_slice(CUT);
             break;
         }
-        match result {
-            // The rest of an epoch is missing: whoever reads the observations will see it.
-            Err(_) if lines.is_at_end() => break,
-            result => result?,
-        }
+        result?;
         if decoder.out.len() > largest {
             return Err(text.error("unpacks to more than any file of observations needs"));
         }
@@ -75,22 +78,6 @@ struct Decoder {
     epoch: Vec<u8>,
     satellites: Vec<Satellite>,
     out: Vec<u8>,
-}
-
-#[derive(Debug)]
-struct Satellite {
-    name: [u8; 3],
-    arcs: Vec<Option<Arc>>,
-    /// Two of each observation.
-    flags: Vec<u8>,
-}
-
-/// The differences of a number at the epoch before, from that of order 0, the number itself.
-#[derive(Debug, Clone, Copy)]
-struct Arc {
-    differences: [i64; HIGHEST_ORDER + 1],
-    order: usize,
-    final_order: usize,
 }
 
 impl Decoder {
@@ -154,8 +141,8 @@ impl Decoder {
             }
             return Ok(());
         }
-        lines.expect("the receiver's clock offset")?;
         self.put_epoch(list, count, line)?;
+        lines.expect("the receiver's clock offset")?;
         let mut before = std::mem::take(&mut self.satellites);
         for i in 0..count {
             let name = self.epoch[list + 3 * i..][..3].try_into().unwrap_or_default();
@@ -181,10 +168,11 @@ impl Decoder {
     fn put_epoch(&mut self, list: usize, count: usize, line: &Line<'_>) -> Result<(), Error> {
         // Blanks at its end may have been cut.
         let last = self.epoch.iter().rposition(|&byte| byte != b' ').unwrap_or_default();
-        if last >= list + 3 * count || last + 3 < list + 3 * count {
+        let end = list + 3 * count;
+        if last >= end || (count > 0 && last + 3 < end) {
             return Err(line.error(format!("expected a list of {count} satellites")));
         }
-        self.epoch.resize(list + 3 * count, b' ');
+        self.epoch.resize(end, b' ');
         let first = if self.version < 3 { self.epoch.len().min(list + 36) } else { list };
         self.out.extend_from_slice(&self.epoch[..first]);
         end_line(&mut self.out);
@@ -208,7 +196,8 @@ impl Decoder {
                 end_line(&mut self.out);
             }
             let field = match arc {
-                Some(arc) => field(arc.differences[0])
+                Some(arc) => arc
+                    .field()
                     .ok_or_else(|| line.error("expected observations of at most 14 characters"))?,
                 None => [b' '; 14],
             };
@@ -220,60 +209,6 @@ impl Decoder {
     }
 }
 
-impl Satellite {
-    /// Takes the line of the next epoch.
-    fn step(&mut self, line: &Line<'_>, compact_version: i32) -> Result<(), Error> {
-        let mut rest = line.bytes;
-        for arc in &mut self.arcs {
-            let length = memchr::memchr(b' ', rest).unwrap_or(rest.len());
-            let field = &rest[..length];
-            rest = rest.get(length + 1..).unwrap_or_default();
-            *arc = match field {
-                [] => None,
-                [order @ b'0'..=b'5', b'&', value @ ..] => {
-                    let value =
-                        large_integer(value).ok_or_else(|| line.expected("whole numbers"))?;
-                    let mut differences = [0; HIGHEST_ORDER + 1];
-                    differences[0] = value;
-                    Some(Arc { differences, order: 0, final_order: usize::from(order - b'0') })
-                }
-                difference => {
-                    let difference = large_integer(difference)
-                        .ok_or_else(|| line.expected("differences of whole numbers"))?;
-                    let arc = arc.as_ref().ok_or_else(|| {
-                        line.error("expected a whole observation, found the difference from one that is missing")
-                    })?;
-                    Some(arc.step(difference))
-                }
-            };
-        }
-        repair(&mut self.flags, rest);
-        self.flags.resize(2 * self.arcs.len(), b' ');
-        if compact_version == 1 {
-            // There the flags of no observation are blank without saying so.
-            for (arc, flags) in self.arcs.iter().zip(self.flags.chunks_mut(2)) {
-                if arc.is_none() {
-                    flags.fill(b' ');
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Arc {
-    /// The next number, by its difference.
-    fn step(mut self, difference: i64) -> Self {
-        self.order = (self.order + 1).min(self.final_order);
-        self.differences[self.order] = difference;
-        for order in (0..self.order).rev() {
-            self.differences[order] =
-                self.differences[order].wrapping_add(self.differences[order + 1]);
-        }
-        self
-    }
-}
-
 fn end_line(out: &mut Vec<u8>) {
     while out.last() == Some(&b' ') {
         out.pop();
@@ -281,37 +216,5 @@ fn end_line(out: &mut Vec<u8>) {
     out.push(b'\n');
 }
 
-/// Takes over what changed in a text: a blank changes nothing, `&` stands for a blank.
-fn repair(text: &mut Vec<u8>, changes: &[u8]) {
-    let shared = text.len().min(changes.len());
-    let blank = |&byte: &u8| if byte == b'&' { b' ' } else { byte };
-    for (byte, change) in text.iter_mut().zip(changes) {
-        if *change != b' ' {
-            *byte = blank(change);
-        }
-    }
-    text.extend(changes[shared..].iter().map(blank));
-}
-
-/// Thousandths as 14 characters; none if they do not fit.
-fn field(thousandths: i64) -> Option<[u8; 14]> {
-    let mut field = [b' '; 14];
-    let mut left = thousandths.unsigned_abs();
-    if left > if thousandths < 0 { LARGEST_VALUE / 10 } else { LARGEST_VALUE } {
-        return None;
-    }
-    let mut place = 14;
-    while left > 0 || place > 9 {
-        place -= 1;
-        if place == 10 {
-            field[place] = b'.';
-        } else {
-            field[place] = b'0' + (left % 10) as u8;
-            left /= 10;
-        }
-    }
-    if thousandths < 0 {
-        field[place - 1] = b'-';
-    }
-    Some(field)
-}
+#[cfg(test)]
+mod tests;

@@ -69,10 +69,9 @@ pub(super) fn large_integer(field: &[u8]) -> Option<i64> {
 }
 
 fn signed(field: &[u8]) -> (bool, &[u8]) {
-    match field {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
+    match field.strip_prefix(b"-") {
+        Some(digits) => (true, digits),
+        None => (false, field.strip_prefix(b"+").unwrap_or(field)),
     }
 }
 
@@ -83,10 +82,7 @@ pub(super) fn blank_separated(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// The number of a GPS satellite called `G05`, `G 5` or, where GPS goes without saying, ` 5`.
 pub(super) fn gps_satellite(name: &[u8]) -> Option<u8> {
-    let digits = match name {
-        [b'G' | b' ', digits @ ..] => digits,
-        digits => digits,
-    };
+    let digits = name.strip_prefix(b"G").unwrap_or(name);
     let number = integer(digits.trim_ascii())?;
     u8::try_from(number).ok().filter(|number| (1..=99).contains(number))
 }

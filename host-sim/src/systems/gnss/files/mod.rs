@@ -13,3 +13,8 @@ pub mod rinex_obs;
 mod satellites;
 pub mod sp3;
 pub mod time;
+
+#[cfg(test)]
+mod mutations;
+#[cfg(test)]
+mod samples;
