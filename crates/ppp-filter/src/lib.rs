@@ -2,6 +2,7 @@
 #![no_std]
 
 mod channel;
+mod collected;
 mod config;
 mod epoch;
 mod error;
