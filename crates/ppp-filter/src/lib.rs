@@ -3,6 +3,7 @@
 extern crate std;
 
 mod channel;
+mod collected;
 mod config;
 mod epoch;
 mod error;

@@ -1,5 +1,6 @@
 //! What a filter says of an epoch.
 
+use crate::collected::collected;
 use crate::running::{Decisions, Lines, Running};
 use crate::states::{CLOCK, WET};
 use crate::{Health, SatelliteReport, Solution};
@@ -45,7 +46,7 @@ impl<const N: usize> Running<N> {
             } else {
                 Health::Converging
             },
-            satellites: satellites.collect(),
+            satellites: collected(satellites),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A filter that has a position.
 
 use crate::channel::Channel;
+use crate::collected::collected;
 use crate::line::{Line, Row};
 use crate::start::code_position;
 use crate::states::{CLOCK, COMMON, WET};
@@ -142,23 +143,16 @@ impl<const N: usize> Running<N> {
         offset: &Vector3<f64>,
         config: &Config,
     ) -> Result<Decisions<N>, Error> {
-        let rows: Vec<[Row; 2], N> = lines.iter().map(|(_, line)| line.rows()).collect();
-        let measurements: Vec<[Measurement<'_, f64>; 2], N> = lines
-            .iter()
-            .zip(&rows)
-            .map(|((_, line), [code_row, phase_row])| {
-                let [code, phase] = line.innovations(&self.estimate.mean, offset);
-                [
-                    Measurement { row: code_row, innovation: code, variance: line.code_variance },
-                    Measurement {
-                        row: phase_row,
-                        innovation: phase,
-                        variance: line.phase_variance * line.phase_noise,
-                    },
-                ]
-            })
-            .collect();
-        let mut decisions: Decisions<N> = lines.iter().map(|_| [Decision::NONE; 2]).collect();
+        let rows: Vec<[Row; 2], N> = collected(lines.iter().map(|(_, line)| line.rows()));
+        let measurements = lines.iter().zip(&rows).map(|((_, line), [code_row, phase_row])| {
+            let [code, phase] = line.innovations(&self.estimate.mean, offset);
+            [
+                Measurement { row: code_row, innovation: code, variance: line.code_variance },
+                Measurement { row: phase_row, innovation: phase, variance: line.phase_variance * line.phase_noise },
+            ]
+        });
+        let measurements: Vec<_, N> = collected(measurements);
+        let mut decisions: Decisions<N> = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         config.estimator.robust.update(
             &mut self.estimate,
             measurements.as_flattened(),
@@ -278,7 +272,7 @@ impl<const N: usize> Running<N> {
 }
 
 fn median<T, const N: usize>(items: &Vec<T, N>, value: impl Fn(&T) -> f64) -> f64 {
-    let mut sorted: Vec<f64, N> = items.iter().map(value).collect();
+    let mut sorted: Vec<f64, N> = collected(items.iter().map(value));
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }

@@ -222,10 +222,7 @@ impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
 
     /// The block's covariance over a.
     fn inflate(&mut self, block: Block, factor: T) -> Result<(), Error> {
-        let growth = factor.recip();
-        for state in block.first..block.first + block.count {
-            self.prior.covariance.inflate(state, growth)?;
-        }
+        self.prior.covariance.inflate(block.first, block.count, factor.recip())?;
         Ok(())
     }
 }
