@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
-extern crate std;
 
 mod channel;
 mod collected;

@@ -21,8 +21,7 @@ pub(crate) struct Line {
     pub(crate) phase: f64,
     pub(crate) code_variance: f64,
     pub(crate) phase_variance: f64,
-    /// By what that is multiplied, for what the satellite has shown before.
-    pub(crate) phase_noise: f64,
+    pub(crate) clock_variance: f64,
 }
 
 impl Line {
@@ -43,8 +42,8 @@ impl Line {
             code: 0.0,
             phase: 0.0,
             code_variance: config.code.variance(sine) + clock,
-            phase_variance: config.phase.variance(sine) + clock,
-            phase_noise: 1.0,
+            phase_variance: config.phase.variance(sine),
+            clock_variance: clock,
         };
         line.compare(sighting);
         line

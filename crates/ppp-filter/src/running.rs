@@ -39,6 +39,8 @@ pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 pub(crate) struct Running<const N: usize> {
     pub(crate) estimate: Gaussian<f64, N>,
     pub(crate) time: GpsTime,
+    /// Since the epoch before, s.
+    pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
 }
@@ -66,7 +68,7 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        Ok(Self { estimate, time, channels: [None; N] })
+        Ok(Self { estimate, time, interval: None, channels: [None; N] })
     }
 
     /// Lets time pass.
@@ -75,7 +77,7 @@ impl<const N: usize> Running<N> {
         if !(elapsed > 0.0) {
             return Err(Error::TimeNotAdvancing);
         }
-        self.time = time;
+        (self.time, self.interval) = (time, Some(elapsed));
         if let Motion::Kinematic { process_noise } = config.motion {
             for coordinate in 0..3 {
                 self.estimate.add_variance_at(coordinate, process_noise * elapsed)?;
@@ -105,7 +107,7 @@ impl<const N: usize> Running<N> {
         }
         let decisions = self.settle(receiver, &mut site, &mut lines, config)?;
         self.listen(&lines, &decisions);
-        Ok(self.solution(&site, &lines, &decisions))
+        Ok(self.solution(&site, &lines, &decisions, config))
     }
 
     /// Updates with the lines, and again from nearer the solution if that was far from where they
@@ -148,7 +150,11 @@ impl<const N: usize> Running<N> {
             let [code, phase] = line.innovations(&self.estimate.mean, offset);
             [
                 Measurement { row: code_row, innovation: code, variance: line.code_variance },
-                Measurement { row: phase_row, innovation: phase, variance: line.phase_variance * line.phase_noise },
+                Measurement {
+                    row: phase_row,
+                    innovation: phase,
+                    variance: line.phase_variance + line.clock_variance,
+                },
             ]
         });
         let measurements: Vec<_, N> = collected(measurements);
@@ -167,7 +173,7 @@ impl<const N: usize> Running<N> {
         let common = (common / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
-                channel.watch.listen(phase, line.phase_variance, common);
+                channel.watch.listen(phase, line.phase_variance, line.clock_variance, common);
             }
         }
     }
@@ -195,7 +201,7 @@ impl<const N: usize> Running<N> {
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
             {
-                line.phase_noise = channel.watch.variance_factor();
+                line.clock_variance *= channel.watch.clock_noise();
             }
             if lines.push((sighting, line)).is_err() {
                 break;

@@ -4,6 +4,8 @@ use kestirim_robust_kalman::{Decision, Reason};
 
 /// Over how many epochs the noise is averaged.
 const MEMORY: f64 = 30.0;
+/// By how much a clock may be worse or better than it should be, in variances.
+const LARGEST: f64 = 9.0;
 /// What a single phase may say about the noise at most, in variances: outliers are not noise.
 const LOUDEST: f64 = 9.0;
 /// Below this weight a phase has no say.
@@ -19,7 +21,8 @@ const ENDURANCE: u8 = 10;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Watch {
-    /// Mean square of its standardised residuals: clocks and multipath differ.
+    /// The variance of its interpolated clock, in what it should be: a caesium clock wanders ten
+    /// times as far as a rubidium clock.
     noise: f64,
     /// Its residual when it last had a say, m.
     residual: f64,
@@ -32,9 +35,9 @@ pub(crate) struct Watch {
 impl Watch {
     pub(crate) const NEW: Self = Self { noise: 1.0, residual: 0.0, unheard: 0, jumped: false };
 
-    /// By what the variance of its phase is multiplied.
-    pub(crate) fn variance_factor(&self) -> f64 {
-        self.noise.clamp(1.0, nt())
+    /// By what the variance of its interpolated clock is multiplied.
+    pub(crate) fn clock_noise(&self) -> f64 {
+        self.noise
     }
 
     /// Whether the ambiguity must be another one: the phase jumped and stays where it is for
@@ -50,22 +53,24 @@ impl Watch {
         *self = Self { noise: self.noise, ..Self::NEW };
     }
 
-    /// Remembers what became of the phase of an epoch, whose variance by itself is `variance`.
-    pub(crate) fn listen(&mut self, phase: &Decision<f64>, variance: f64, common: f64) {
+    /// Remembers what became of the phase of an epoch, to whose variance its `own` noise and that of
+    /// its `clock` contributed, where the squares of all residuals are `common` times too large.
+    pub(crate) fn listen(&mut self, phase: &Decision<f64>, own: f64, clock: f64, common: f64) {
         if phase.weight > UNHEARD {
             (self.unheard, self.jumped, self.residual) = (0, false, phase.residual);
         } else {
             if self.unheard == 0 {
                 let jump = phase.residual - self.residual;
-                self.jumped = jump * jump > JUMP * JUMP * 2.0 * variance;
+                let allowed = own + clock.min(2.0 * own);
+                self.jumped = jump * jump > JUMP * JUMP * 2.0 * allowed;
             }
             self.unheard = self.unheard.saturating_add(1);
         }
         if !matches!(phase.reason, Reason::NoRedundancy | Reason::TooFew) {
             let square = (phase.standardised * phase.standardised / common).min(LOUDEST);
-            self.noise += (square * self.variance_factor() - self.noise) / MEMORY;
+            let share = clock / (own + clock);
+            self.noise *= 1.0 + share * (square - 1.0) / MEMORY;
+            self.noise = self.noise.clamp(1.0 / LARGEST, LARGEST);
         }
     }
 }
-
-pub(crate) fn nt() -> f64 { use std::sync::OnceLock; static X: OnceLock<f64> = OnceLock::new(); *X.get_or_init(|| std::env::var("NT").ok().and_then(|v| v.parse().ok()).unwrap_or(9.0)) }
