@@ -11,8 +11,8 @@ use kestirim_scalar::Scalar;
 pub enum Scale<T> {
     /// 1: the variances are believed. Where they deserve it, nothing finds more outliers.
     Unit,
-    /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements a single
-    /// one of any size has |ṽ| ≤ √n or so.
+    /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements no |ṽ|
+    /// is larger than √n, whatever the error. With k1 = 6 nothing is rejected among fewer than 37.
     Epoch,
     /// 1.4826 · median |ε/√(h P⁻ hᵀ + R)|, but no less than the floor: half of the measurements may be
     /// wild. Where all are off at once it grows, and nothing is rejected; of a state that is hardly

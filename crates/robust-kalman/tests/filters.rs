@@ -235,6 +235,14 @@ fn two_of_eight_hide_behind_the_scale_of_the_epoch() {
     let (masked, of_epoch) = level(Scale::Epoch);
     assert_eq!((of_epoch.rejected, of_epoch.down_weighted), (0, 0), "{of_epoch:?}");
     assert!(of_epoch.scale > 10.0 && masked > 0.9, "{masked}");
+    // No |ṽ| can be larger than √n.
+    let robust = Robust { scale: Scale::Epoch, ..Robust::plain() };
+    let mut single = epoch;
+    (single[3].innovation, single[6].innovation) = (1e6, 0.0);
+    let mut estimate = Gaussian::new(SVector::from([0.0]), Covariance::from_variances(&[1.0]));
+    let mut judged = [Decision::NONE; 8];
+    robust.update(&mut estimate, &single, &mut judged).expect("an update");
+    assert!((2.0..8.0_f64.sqrt()).contains(&judged[3].statistic), "{:?}", judged[3]);
     for scale in [Scale::Innovations { floor: 1.0 }, Scale::Unit] {
         let (found, summary) = level(scale);
         assert_eq!((summary.rejected, summary.down_weighted), (2, 0), "{summary:?}");
