@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 
 use crate::design::Design;
-use crate::systems::{drone, pedestrian, robot, uav};
+use crate::systems::{drone, gnss, pedestrian, robot, uav};
 
 /// Estimators on synthetic and recorded streams.
 ///
@@ -83,6 +83,8 @@ pub enum Replay {
     Drone(drone::replay::Replay),
     /// Inputs and outputs that a fixed-wing aircraft recorded
     Uav(uav::replay::Replay),
+    /// Observations that a GNSS receiver recorded
+    Gnss(gnss::replay::Replay),
 }
 
 /// `host-sim calibrate`.

@@ -38,6 +38,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Replay(Replay::Robot(replay))) => replay.run(),
         Some(Command::Replay(Replay::Drone(replay))) => replay.run(),
         Some(Command::Replay(Replay::Uav(replay))) => replay.run(),
+        Some(Command::Replay(Replay::Gnss(replay))) => replay.run(),
         Some(Command::Calibrate(Calibrate::Robot(calibrate))) => calibrate.run(),
         Some(Command::Design(design)) => design.run(),
         Some(Command::List) => output::print(&systems::list()),

@@ -5,9 +5,11 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process;
+use std::sync::Once;
+use std::time::{Duration, Instant};
 
 use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
 use crate::Error;
@@ -61,12 +63,47 @@ pub fn table() -> Table {
 /// A progress bar on standard error, invisible unless that is a terminal.
 pub fn progress(steps: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(steps);
+    style(&bar, what);
+    bar
+}
+
+fn style(bar: &ProgressBar, what: &str) {
     // The template is a constant; an unknown key would merely leave the default style.
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg} {eta}") {
         bar.set_style(style);
         bar.set_message(what.to_owned());
     }
-    bar
+}
+
+/// A progress bar that appears when the work takes longer than a second, and is invisible before.
+pub fn late_progress(steps: u64, what: &str) -> LateProgress {
+    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
+    style(&bar, what);
+    LateProgress { bar, begun: Instant::now(), shown: Once::new() }
+}
+
+/// See [`late_progress`].
+#[derive(Debug)]
+pub struct LateProgress {
+    bar: ProgressBar,
+    begun: Instant,
+    shown: Once,
+}
+
+impl LateProgress {
+    /// Another step is done.
+    pub fn inc(&self) {
+        if !self.shown.is_completed() && self.begun.elapsed() > Duration::from_secs(1) {
+            self.shown.call_once(|| self.bar.set_draw_target(ProgressDrawTarget::stderr()));
+        }
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for LateProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
 }
 
 /// Refuses to write to a file that is an input as well.

@@ -98,8 +98,13 @@ impl Products {
         };
         // By the satellite's own clock; it is off by less than a millisecond, in which it loses nothing.
         let sent = time.plus(-first / SPEED_OF_LIGHT);
-        let clock = clock.at(sent).ok_or(Unusable::NoClock)?;
         let orbit = Orbit { reference: self.reference, samples: &satellite.orbit };
+        // A satellite that the products do not know at all has no orbit, in the first place.
+        let missing =
+            || if orbit.at(sent).is_none() { Unusable::NoOrbit } else { Unusable::NoClock };
+        // Products that begin with the first epoch do not know when its signals were sent, 70 ms before: a clock
+        // runs away by less than a millimetre.
+        let clock = clock.at(sent).or_else(|| clock.at(time)).ok_or_else(missing)?;
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
         Ok(Sighting {
             satellite: observed.prn,

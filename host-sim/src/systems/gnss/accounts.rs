@@ -1,0 +1,249 @@
+//! What a replay reports of one filter.
+
+use std::fmt;
+
+use kestirim_gnss_ppp::{Correction, Corrections, Geodetic, zenith_hydrostatic};
+use kestirim_ppp_filter::Health;
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::accuracy::Accuracy;
+use super::follow::{Both, Followed, Slips};
+use super::options::{FilterKind, Mode};
+use super::outage::Unused;
+use crate::output;
+
+/// So many satellites are named as those with the most rejected observations.
+const WORST: usize = 5;
+
+/// What the command prints of one filter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Always `gnss`.
+    pub system: &'static str,
+    /// Which filter.
+    pub filter: FilterKind,
+    /// Whether by the letter of the paper.
+    pub printed: bool,
+    /// Whether the receiver was allowed to move.
+    pub mode: Mode,
+    /// All epochs from the first on.
+    pub epochs: usize,
+    /// Those with a solution.
+    pub solved: usize,
+    /// The last position of the marker, ECEF, m.
+    pub position_ecef_m: [f64; 3],
+    /// Its standard deviations to the east, north and up, m.
+    pub sd_enu_m: [f64; 3],
+    /// Of the last solution.
+    pub health: &'static str,
+    /// Since when every solution has been a converged one, min since the first epoch.
+    pub converged_since_min: Option<f64>,
+    /// Zenith delay of the troposphere at the end, m.
+    pub zenith_delay_m: f64,
+    /// Codes and phases that the filter was given.
+    pub observations: usize,
+    /// Those that were left out because they contradict the others.
+    pub rejected: usize,
+    /// Those that were given less weight.
+    pub deweighted: usize,
+    /// Ambiguities begun anew, but those of satellites that come or come back.
+    pub slips: usize,
+    /// The rejected codes and phases.
+    pub rejected_by_kind: Both,
+    /// The codes and phases of less weight.
+    pub deweighted_by_kind: Both,
+    /// The slips by what showed them.
+    pub slips_by_kind: Slips,
+    /// The satellites of which most was rejected.
+    pub most_rejected: Vec<Rejections>,
+    /// Observed satellites that did not serve, one an epoch.
+    pub unused: Unused,
+    /// What a reader should know.
+    pub warnings: Vec<String>,
+    /// How far from the truth, if it is known.
+    pub accuracy: Option<Accuracy>,
+}
+
+/// What was rejected of a satellite.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Rejections {
+    /// Its name.
+    pub satellite: String,
+    /// In how many epochs it was used.
+    pub epochs: usize,
+    /// The rejected codes and phases.
+    #[serde(flatten)]
+    pub rejected: Both,
+}
+
+/// What is known besides what the filter found.
+#[derive(Debug, Clone, Copy)]
+pub struct Circumstances<'a> {
+    /// Which filter.
+    pub filter: FilterKind,
+    /// Whether by the letter of the paper.
+    pub printed: bool,
+    /// Whether the receiver was allowed to move.
+    pub mode: Mode,
+    /// What was corrected.
+    pub corrections: Corrections,
+    /// The first epoch, s since the midnight before it.
+    pub begin: f64,
+    /// Where the marker really is, ECEF, m.
+    pub truth: Option<&'a Vector3<f64>>,
+}
+
+impl Report {
+    /// What a filter found; none if that is no position at all.
+    pub fn new(
+        followed: &Followed,
+        about: Circumstances<'_>,
+        warnings: Vec<String>,
+    ) -> Option<Self> {
+        let (last, fix) = (followed.last?, followed.fixes.last()?);
+        let Circumstances { filter, printed, mode, begin, .. } = about;
+        let dry = if about.corrections.has(Correction::Troposphere) {
+            zenith_hydrostatic(&Geodetic::from_ecef(&fix.position))
+        } else {
+            0.0
+        };
+        Some(Self {
+            system: "gnss",
+            filter,
+            printed: printed && filter.is_printed(),
+            mode,
+            epochs: followed.epochs,
+            solved: followed.fixes.len(),
+            position_ecef_m: fix.position.into(),
+            sd_enu_m: last.sd_enu,
+            health: health(last.health),
+            converged_since_min: followed.converged_since.map(|t| (t - begin) / 60.0),
+            zenith_delay_m: dry + last.wet_delay,
+            observations: followed.observations,
+            rejected: followed.rejected.sum(),
+            deweighted: followed.deweighted.sum(),
+            slips: followed.slips.sum(),
+            rejected_by_kind: followed.rejected,
+            deweighted_by_kind: followed.deweighted,
+            slips_by_kind: followed.slips,
+            most_rejected: most_rejected(followed),
+            unused: followed.unused,
+            warnings,
+            accuracy: about.truth.and_then(|truth| Accuracy::of(&followed.fixes, begin, truth)),
+        })
+    }
+}
+
+/// As in reports.
+pub const fn health(health: Health) -> &'static str {
+    match health {
+        Health::Converging => "converging",
+        Health::Converged => "converged",
+        Health::Unchecked => "unchecked",
+    }
+}
+
+fn most_rejected(followed: &Followed) -> Vec<Rejections> {
+    let mut rejections: Vec<_> = followed
+        .satellites
+        .iter()
+        .filter(|(_, tally)| tally.rejected.sum() > 0)
+        .map(|(prn, tally)| Rejections {
+            satellite: format!("G{prn:02}"),
+            epochs: tally.epochs,
+            rejected: tally.rejected,
+        })
+        .collect();
+    rejections.sort_by_key(|it| std::cmp::Reverse(it.rejected.sum()));
+    rejections.truncate(WORST);
+    rejections
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        let mut row = |name: &str, value: String| {
+            table.add_row([name, value.as_str()]);
+        };
+        let printed = if self.printed { ", as printed" } else { "" };
+        let mode = format!("{:?}", self.mode).to_lowercase();
+        row("filter", format!("{}{printed}, {mode}", self.filter.name()));
+        row("epochs", format!("{}, {} with a solution", self.epochs, self.solved));
+        let [x, y, z] = self.position_ecef_m;
+        row("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
+        let place = Geodetic::from_ecef(&Vector3::from(self.position_ecef_m));
+        let [latitude, longitude] = [place.latitude, place.longitude].map(f64::to_degrees);
+        row(
+            "latitude, longitude, height",
+            format!("{latitude:.9}°, {longitude:.9}°, {:.4} m", place.height),
+        );
+        row("standard deviation", enu(self.sd_enu_m));
+        let since = match self.converged_since_min {
+            Some(minutes) => format!(", since {minutes:.1} min"),
+            None => String::new(),
+        };
+        row("health", format!("{}{since}", self.health));
+        row("zenith delay", format!("{:.1} mm", 1e3 * self.zenith_delay_m));
+        row("observations", self.observations.to_string());
+        let both = |both: Both| format!("{} codes, {} phases", both.code, both.phase);
+        row("rejected", both(self.rejected_by_kind));
+        if !self.most_rejected.is_empty() {
+            let names = self
+                .most_rejected
+                .iter()
+                .map(|it| format!("{} {}", it.satellite, it.rejected.sum()));
+            row("  most of", names.collect::<Vec<_>>().join(", "));
+        }
+        row("down-weighted", both(self.deweighted_by_kind));
+        row("slips", slips(self.slips_by_kind));
+        row("not used", unused(&self.unused));
+        if let Some(accuracy) = &self.accuracy {
+            let Accuracy { final_3d_m, final_enu_m, .. } = *accuracy;
+            row("final error", format!("{} ({})", millimetres(final_3d_m), enu(final_enu_m)));
+            if let (Some(all), Some(each)) = (accuracy.rms_3d_m, accuracy.rms_enu_m) {
+                row("RMS after 1 h", format!("{} ({})", millimetres(all), enu(each)));
+            }
+            let never = || "never below 10 cm for 15 min".to_owned();
+            let minutes = |minutes: f64| format!("{minutes:.1} min");
+            row("convergence", accuracy.convergence_min.map_or_else(never, minutes));
+        }
+        table.fmt(f)
+    }
+}
+
+/// A length as in tables.
+pub fn millimetres(metres: f64) -> String {
+    if metres.abs() < 10.0 { format!("{:.1} mm", 1e3 * metres) } else { format!("{metres:.3} m") }
+}
+
+fn enu([east, north, up]: [f64; 3]) -> String {
+    let [east, north, up] = [east, north, up].map(millimetres);
+    format!("E {east}, N {north}, U {up}")
+}
+
+fn slips(slips: Slips) -> String {
+    let kinds = [
+        (slips.loss_of_lock, "loss of lock"),
+        (slips.geometry_free, "geometry-free"),
+        (slips.melbourne_wuebbena, "Melbourne–Wübbena"),
+        (slips.contradicted, "contradicted"),
+    ];
+    listed(&kinds)
+}
+
+fn unused(unused: &Unused) -> String {
+    let kinds = [
+        (unused.incomplete, "incomplete"),
+        (unused.no_orbit, "without an orbit"),
+        (unused.no_clock, "without a clock"),
+        (unused.below_mask, "below the mask"),
+    ];
+    listed(&kinds)
+}
+
+fn listed(kinds: &[(usize, &str)]) -> String {
+    let some = kinds.iter().filter(|(count, _)| *count > 0);
+    let some: Vec<_> = some.map(|(count, kind)| format!("{count} {kind}")).collect();
+    if some.is_empty() { "none".to_owned() } else { some.join(", ") }
+}

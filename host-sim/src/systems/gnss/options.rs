@@ -1,0 +1,278 @@
+//! What the command line can choose about positioning.
+
+use clap::ValueEnum;
+use kestirim_gnss_ppp::{Correction, Corrections};
+use kestirim_ppp_filter::{Config, Estimator, Motion, states};
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use crate::cli::ScalarKind;
+
+/// Number types the filter is built for: ranges of 26 000 km to a millimetre need the digits.
+pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];
+
+/// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
+pub const STATES: usize = states(20);
+
+/// Variance per second of each coordinate of a receiver that may move at will, m²/s: in the 30 s between
+/// epochs it gets 55 m away, so that only what is observed in an epoch tells where it is.
+pub const PROCESS_NOISE: f64 = 100.0;
+
+/// The highest mask, degrees: above it there are hardly ever four satellites.
+const HIGHEST_MASK: f64 = 60.0;
+/// No marker is nearer to the Earth's centre, or farther from it, m.
+const RADII: std::ops::Range<f64> = 6.3e6..6.5e6;
+
+/// Whether the receiver moves.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// It stands still
+    #[default]
+    Static,
+    /// It may move
+    Kinematic,
+}
+
+/// Which filter.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum FilterKind {
+    /// The plain Kalman filter (the paper's GKF)
+    Gkf,
+    /// IGG III weights, all at once (RKF)
+    Rkf,
+    /// Classification by a t-test (SKF)
+    Skf,
+    /// IGG III weights, the worst observation first (IKF)
+    Ikf,
+    /// The same and an adaptive factor on the position (the paper's UKF)
+    Adaptive,
+    /// Our own: robust, and slips that nothing else shows are found
+    #[default]
+    Default,
+}
+
+impl FilterKind {
+    /// Every filter, in the order of tables.
+    pub const ALL: [Self; 6] =
+        [Self::Gkf, Self::Rkf, Self::Skf, Self::Ikf, Self::Adaptive, Self::Default];
+
+    /// Whether the paper prints formulas of it from which ours differ.
+    pub const fn is_printed(self) -> bool {
+        matches!(self, Self::Rkf | Self::Skf | Self::Ikf | Self::Adaptive)
+    }
+
+    /// As on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gkf => "gkf",
+            Self::Rkf => "rkf",
+            Self::Skf => "skf",
+            Self::Ikf => "ikf",
+            Self::Adaptive => "adaptive",
+            Self::Default => "default",
+        }
+    }
+
+    /// What is done about observations that do not fit, by the letter of the paper if `printed`.
+    pub fn estimator(self, motion: Motion, printed: bool) -> Estimator {
+        let ours = match self {
+            Self::Gkf => Estimator::plain(),
+            Self::Rkf => Estimator::igg3(),
+            Self::Skf => Estimator::t_test(),
+            Self::Ikf => Estimator::iterative_igg3(),
+            Self::Adaptive => Estimator::adaptive(),
+            Self::Default => Estimator::guarded(motion),
+        };
+        if printed && self.is_printed() {
+            Estimator { robust: ours.robust.printed(), ..ours }
+        } else {
+            ours
+        }
+    }
+}
+
+/// One filter, or all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// One of them.
+    One(FilterKind),
+    /// All of them, in one table.
+    All,
+}
+
+impl ValueEnum for Choice {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [Choice; 7] = {
+            let mut all = [Choice::All; 7];
+            let mut place = 0;
+            while place < FilterKind::ALL.len() {
+                all[place] = Choice::One(FilterKind::ALL[place]);
+                place += 1;
+            }
+            all
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        match self {
+            Self::One(kind) => kind.to_possible_value(),
+            Self::All => Some(clap::builder::PossibleValue::new("all").help("All six, compared")),
+        }
+    }
+}
+
+/// A part of the observation model that can be left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// The satellite's clock on its eccentric orbit
+    Relativity,
+    /// The delay in the Earth's gravity
+    Shapiro,
+    /// The Earth's rotation while the signal travels
+    Sagnac,
+    /// The hydrostatic troposphere
+    Troposphere,
+    /// The tide of the solid Earth
+    SolidTide,
+    /// The load of the oceans' tides
+    OceanLoading,
+    /// The turning of the antennas against each other
+    WindUp,
+    /// The phase centre of the satellite's antenna
+    SatelliteAntenna,
+    /// The phase centre of the receiver's antenna
+    ReceiverAntenna,
+}
+
+impl From<Part> for Correction {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::Relativity => Self::Relativity,
+            Part::Shapiro => Self::Shapiro,
+            Part::Sagnac => Self::Sagnac,
+            Part::Troposphere => Self::Troposphere,
+            Part::SolidTide => Self::SolidTide,
+            Part::OceanLoading => Self::OceanLoading,
+            Part::WindUp => Self::WindUp,
+            Part::SatelliteAntenna => Self::SatelliteAntenna,
+            Part::ReceiverAntenna => Self::ReceiverAntenna,
+        }
+    }
+}
+
+/// Everything but some parts.
+pub fn all_but(parts: &[Part]) -> Corrections {
+    parts.iter().fold(Corrections::ALL, |all, &part| all.without(part.into()))
+}
+
+/// Everything that can be chosen about how observations become positions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// Whether the receiver moves, and how.
+    pub motion: Motion,
+    /// Lowest elevation of a satellite, rad; none: the filter's own choice.
+    pub mask: Option<f64>,
+    /// Whether the paper's filters are taken by its letter.
+    pub printed: bool,
+}
+
+impl Setup {
+    /// The settings of a filter.
+    pub fn config(&self, filter: FilterKind) -> Config {
+        let config = Config::new(self.motion);
+        Config {
+            elevation_mask: self.mask.unwrap_or(config.elevation_mask),
+            estimator: filter.estimator(self.motion, self.printed),
+            ..config
+        }
+    }
+}
+
+/// Reads `X,Y,Z`, a place on the ground.
+///
+/// # Errors
+/// In words: what was expected.
+pub fn place(text: &str) -> Result<Vector3<f64>, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|field| field.trim().parse()).collect();
+    numbers
+        .ok()
+        .and_then(|numbers| <[f64; 3]>::try_from(numbers).ok())
+        .map(Vector3::from)
+        .filter(|place| RADII.contains(&place.norm()))
+        .ok_or_else(|| "expected a place on the ground as X,Y,Z (ECEF, m)".to_owned())
+}
+
+/// Reads a process noise, m²/s.
+///
+/// # Errors
+/// In words: what was expected.
+pub fn process_noise(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number| (1e-12..=1e6).contains(number));
+    number.ok_or_else(|| "expected a variance per second from 1e-12 to 1e6 m²/s".to_owned())
+}
+
+/// Reads an elevation in degrees, as rad.
+///
+/// # Errors
+/// In words: what was expected.
+pub fn mask(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok();
+    let number = number.filter(|number| (0.0..=HIGHEST_MASK).contains(number));
+    number
+        .map(f64::to_radians)
+        .ok_or_else(|| format!("expected an elevation from 0 to {HIGHEST_MASK} degrees"))
+}
+
+/// Reads a time, s.
+///
+/// # Errors
+/// In words: what was expected.
+pub fn time(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok();
+    let number = number.filter(|number| (0.0..=1e9).contains(number));
+    number.ok_or_else(|| {
+        "expected a time from 0 on, in seconds since the midnight before the first epoch".to_owned()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_where_they_can_be() {
+        assert_eq!(
+            place("3582104.7, 532590.2,-5232755.1"),
+            Ok(Vector3::new(3_582_104.7, 532_590.2, -5_232_755.1))
+        );
+        for text in ["", "1,2,3", "55.5,8.4,60", "3582104,532590", "nan,0,6400000", "a,b,c"] {
+            assert!(place(text).is_err(), "{text}");
+        }
+        assert_eq!(process_noise("1e-4"), Ok(1e-4));
+        assert_eq!(mask("8"), Ok(8_f64.to_radians()));
+        assert_eq!(time("85500"), Ok(85_500.0));
+        for text in ["", "-1", "nan", "inf", "x", "1e300"] {
+            assert!(process_noise(text).is_err() && mask(text).is_err() && time(text).is_err());
+        }
+    }
+
+    #[test]
+    fn the_letter_of_the_paper_is_for_its_robust_filters() {
+        let estimator = |kind: FilterKind, printed| kind.estimator(Motion::Static, printed);
+        for kind in FilterKind::ALL {
+            assert_eq!(estimator(kind, true) != estimator(kind, false), kind.is_printed());
+        }
+    }
+
+    #[test]
+    fn parts_can_be_left_out() {
+        let all = all_but(&[Part::SolidTide, Part::SolidTide]);
+        for correction in Correction::ALL {
+            assert_eq!(all.has(correction), correction != Correction::SolidTide);
+        }
+        assert_eq!(Part::value_variants().len(), Correction::ALL.len());
+    }
+}
