@@ -14,6 +14,9 @@ pub enum Slip {
     LossOfLock,
     /// The geometry-free phase jumped.
     GeometryFree,
+    /// The Melbourne–Wübbena combination jumped, and something else agrees with it: see
+    /// [`Arc::is_suspicious`].
+    MelbourneWuebbena,
 }
 
 /// From when on a jump is a slip.

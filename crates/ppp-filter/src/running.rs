@@ -227,13 +227,11 @@ impl<const N: usize> Running<N> {
                 channel.wind_up = expected.wind_up_cycles;
                 let slip =
                     channel.arc.observe(time, phase, code, sighting.lock_lost, &config.slips);
-                let suspicious = channel.arc.is_suspicious();
-                let contradicted = config
-                    .estimator
-                    .patience
-                    .is_some_and(|patience| channel.watch.contradicts(patience, suspicious));
-                let slipped =
-                    slip.map(Slipped::Seen).or(contradicted.then_some(Slipped::Contradicted));
+                let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
+                let slipped = slip.map(Slipped::Seen).or_else(|| {
+                    let patience = config.estimator.patience?;
+                    channel.watch.contradicts(patience).then_some(Slipped::Contradicted)
+                });
                 if slipped.is_some() {
                     channel.watch.begin();
                 }

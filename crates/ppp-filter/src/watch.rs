@@ -41,11 +41,15 @@ impl Watch {
     }
 
     /// Whether the ambiguity must be another one: the phase jumped and stays where it is for
-    /// `patience` epochs, or at once where its own observations are `suspicious`.
-    pub(crate) fn contradicts(&self, patience: u8, suspicious: bool) -> bool {
+    /// `patience` epochs.
+    pub(crate) fn contradicts(&self, patience: u8) -> bool {
         let long = self.unheard >= patience.saturating_mul(ENDURANCE);
-        let jumped = self.jumped && self.unheard >= patience;
-        long || jumped || (suspicious && self.unheard > 0)
+        long || (self.jumped && self.unheard >= patience)
+    }
+
+    /// Whether the phase had no say in the last epoch.
+    pub(crate) fn is_unheard(&self) -> bool {
+        self.unheard > 0
     }
 
     /// The ambiguity begins anew.
