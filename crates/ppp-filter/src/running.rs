@@ -141,12 +141,13 @@ impl<const N: usize> Running<N> {
         offset: &Vector3<f64>,
         config: &Config,
     ) -> Result<Decisions<N>, Error> {
-        let rows: Vec<[Row; 2], N> = collected(lines.iter().map(|(_, line)| line.rows()));
-        let measurements = lines.iter().zip(&rows).map(|((_, line), [code_row, phase_row])| {
+        let rows: Vec<Row, N> = collected(lines.iter().map(|(_, line)| line.row()));
+        let measurements = lines.iter().zip(&rows).map(|((_, line), row)| {
+            let [common @ .., _] = row;
             let [code, phase] = line.innovations(&self.estimate.mean, offset);
             [
-                Measurement { row: code_row, innovation: code, variance: line.code_variance },
-                Measurement { row: phase_row, innovation: phase, variance: line.phase_variance },
+                Measurement { row: common, innovation: code, variance: line.code_variance },
+                Measurement { row, innovation: phase, variance: line.phase_variance },
             ]
         });
         let measurements: Vec<_, N> = collected(measurements);
