@@ -3,7 +3,7 @@
 use crate::channel::Channel;
 use crate::collected::collected;
 use crate::line::{Line, Row};
-use crate::start::code_position;
+use crate::start::CodePosition;
 use crate::states::{CLOCK, COMMON, WET};
 use crate::watch::Watch;
 use crate::{Config, Error, Motion, Sighting, Slipped, Solution};
@@ -46,13 +46,8 @@ pub(crate) struct Running<const N: usize> {
 }
 
 impl<const N: usize> Running<N> {
-    /// Begins with the codes of an epoch.
-    pub(crate) fn start(
-        time: GpsTime,
-        sightings: &[Sighting<'_>],
-        config: &Config,
-    ) -> Result<Self, Error> {
-        let start = code_position(sightings)?;
+    /// Begins where the codes of an epoch have it.
+    pub(crate) fn start(time: GpsTime, start: &CodePosition, config: &Config) -> Self {
         let mut mean = SVector::<f64, N>::zeros();
         let mut variances = [0.0; N];
         let [x, y, z] = start.position.data.0[0];
@@ -68,7 +63,7 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        Ok(Self { estimate, time, interval: None, channels: [None; N] })
+        Self { estimate, time, interval: None, channels: [None; N] }
     }
 
     /// Lets time pass.
@@ -105,7 +100,8 @@ impl<const N: usize> Running<N> {
             let ambiguity = line.phase - line.code;
             self.estimate.reset_at(line.state, ambiguity, AMBIGUITY_VARIANCE)?;
         }
-        let decisions = self.settle(receiver, &mut site, &mut lines, config)?;
+        let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
+        self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.listen(&lines, &decisions);
         Ok(self.solution(&site, &lines, &decisions, config))
     }
@@ -117,17 +113,18 @@ impl<const N: usize> Running<N> {
         receiver: &Receiver<'r>,
         site: &mut Site<'r>,
         lines: &mut Lines<'_, '_, N>,
+        decisions: &mut Decisions<N>,
         config: &Config,
-    ) -> Result<Decisions<N>, Error> {
+    ) -> Result<(), Error> {
         let predicted = self.estimate;
         let expected = self.position();
         let mut linearised = expected;
         for _ in 0..RELINEARISATIONS {
             self.estimate = predicted;
-            let decisions = self.update(lines, &(expected - linearised), config)?;
+            self.update(lines, &(expected - linearised), decisions, config)?;
             let found = self.position();
             if (found - linearised).norm() < LINEAR {
-                return Ok(decisions);
+                return Ok(());
             }
             *site = Site::new(receiver, &found, self.time);
             for (sighting, line) in &mut *lines {
@@ -143,28 +140,29 @@ impl<const N: usize> Running<N> {
         &mut self,
         lines: &Lines<'_, '_, N>,
         offset: &Vector3<f64>,
+        decisions: &mut Decisions<N>,
         config: &Config,
-    ) -> Result<Decisions<N>, Error> {
-        let rows: Vec<[Row; 2], N> = collected(lines.iter().map(|(_, line)| line.rows()));
-        let measurements = lines.iter().zip(&rows).map(|((_, line), [code_row, phase_row])| {
+    ) -> Result<(), Error> {
+        let rows: Vec<Row, N> = collected(lines.iter().map(|(_, line)| line.row()));
+        let measurements = lines.iter().zip(&rows).map(|((_, line), row)| {
+            let [common @ .., _] = row;
             let [code, phase] = line.innovations(&self.estimate.mean, offset);
             [
-                Measurement { row: code_row, innovation: code, variance: line.code_variance },
+                Measurement { row: common, innovation: code, variance: line.code_variance },
                 Measurement {
-                    row: phase_row,
+                    row,
                     innovation: phase,
                     variance: line.phase_variance + line.clock_variance,
                 },
             ]
         });
         let measurements: Vec<_, N> = collected(measurements);
-        let mut decisions: Decisions<N> = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         config.estimator.robust.update(
             &mut self.estimate,
             measurements.as_flattened(),
             decisions.as_flattened_mut(),
         )?;
-        Ok(decisions)
+        Ok(())
     }
 
     /// Remembers how the phases behaved. What all of them show at once is none's own noise.
