@@ -3,6 +3,8 @@
 #[path = "../firmware/images/src/design.rs"]
 pub mod design;
 pub mod firmware;
+#[path = "../firmware/images/src/ppp.rs"]
+pub mod ppp;
 pub mod recordings;
 pub mod robot;
 #[path = "../firmware/images/src/uav.rs"]

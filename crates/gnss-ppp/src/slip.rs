@@ -14,7 +14,8 @@ pub enum Slip {
     LossOfLock,
     /// The geometry-free phase jumped.
     GeometryFree,
-    /// The Melbourne–Wübbena combination jumped.
+    /// The Melbourne–Wübbena combination jumped, and something else agrees with it: see
+    /// [`Arc::is_suspicious`].
     MelbourneWuebbena,
 }
 
@@ -25,13 +26,12 @@ pub enum Slip {
 pub struct SlipLimits {
     /// The longest time without observations that an ambiguity survives, s.
     pub gap: f64,
-    /// Jump of L1 − L2 between epochs, m. Slips of 9 and 7 cycles jump by 5 cm only where the
-    /// ionosphere does so by itself.
+    /// Jump of L1 − L2 between epochs, m, at least. Slips of 9 and 7 cycles jump by 3 mm only.
     pub geometry_free: f64,
     /// Jump of the Melbourne–Wübbena combination beside its running mean, cycles of the wide lane,
     /// at least.
     pub melbourne_wuebbena: f64,
-    /// The same in its own running standard deviations: both must be exceeded.
+    /// Either jump in its own running standard deviations: this must be exceeded, too.
     pub deviations: f64,
     /// Whether the receiver's own flag of lost lock counts.
     pub loss_of_lock: bool,
@@ -42,7 +42,7 @@ impl Default for SlipLimits {
         Self {
             gap: 300.0,
             geometry_free: 0.05,
-            melbourne_wuebbena: 2.0,
+            melbourne_wuebbena: 1.5,
             deviations: 5.0,
             loss_of_lock: true,
         }
@@ -56,15 +56,24 @@ impl Default for SlipLimits {
 pub struct Arc {
     last: GpsTime,
     geometry_free: f64,
+    /// Of the jumps, m².
+    geometry_free_variance: f64,
     wide_lane: f64,
+    /// Around the running mean, cycles².
     wide_lane_variance: f64,
     count: u16,
+    /// In how many epochs, up to the last one, the wide lane was off.
+    off: u16,
 }
 
 /// The running mean forgets over this many epochs: multipath of the code wanders.
 const MEMORY: u16 = 100;
-/// Standard deviation of one epoch's combination before any is known, cycles.
+/// Standard deviation of one epoch's wide lane before any is known, cycles.
 const WIDE_LANE_DEVIATION: f64 = 0.7;
+/// Standard deviation of a jump of the geometry-free phase before any is known, m.
+const GEOMETRY_FREE_DEVIATION: f64 = 0.01;
+/// For so many epochs a wide lane is suspicious; then that is where it is.
+const ACCUSTOMED: u16 = 10;
 
 impl Arc {
     /// An arc that begins: `phase` in cycles, `code` in m.
@@ -72,13 +81,18 @@ impl Arc {
         Self {
             last: time,
             geometry_free: geometry_free(phase),
+            geometry_free_variance: GEOMETRY_FREE_DEVIATION * GEOMETRY_FREE_DEVIATION,
             wide_lane: melbourne_wuebbena(phase, code),
             wide_lane_variance: WIDE_LANE_DEVIATION * WIDE_LANE_DEVIATION,
             count: 1,
+            off: 0,
         }
     }
 
     /// Goes on with the next epoch; a slip begins a new arc.
+    ///
+    /// A jump of the wide lane alone is no slip yet, as an outlier of the code looks the same:
+    /// see [`Self::is_suspicious`].
     pub fn observe(
         &mut self,
         time: GpsTime,
@@ -87,32 +101,50 @@ impl Arc {
         lock_lost: bool,
         limits: &SlipLimits,
     ) -> Option<Slip> {
-        let elapsed = time.since(self.last);
         let jump = geometry_free(phase) - self.geometry_free;
-        let wide_lane = melbourne_wuebbena(phase, code) - self.wide_lane;
-        let allowed = limits.deviations * libm::sqrt(self.wide_lane_variance);
-        let slip = if !(elapsed <= limits.gap) {
+        let spread = limits.deviations * libm::sqrt(self.geometry_free_variance);
+        let slip = if !(time.since(self.last) <= limits.gap) {
             Some(Slip::Gap)
         } else if lock_lost && limits.loss_of_lock {
             Some(Slip::LossOfLock)
-        } else if !(jump.abs() <= limits.geometry_free) {
+        } else if !(jump.abs() <= spread.max(limits.geometry_free)) {
             Some(Slip::GeometryFree)
-        } else if !(wide_lane.abs() <= allowed.max(limits.melbourne_wuebbena)) {
-            Some(Slip::MelbourneWuebbena)
         } else {
             None
         };
         if slip.is_some() {
+            let variance = self.geometry_free_variance;
             *self = Self::begin(time, phase, code);
+            self.geometry_free_variance = variance;
             return slip;
         }
-        self.count = (self.count + 1).min(MEMORY);
-        let share = 1.0 / f64::from(self.count);
         self.last = time;
         self.geometry_free += jump;
-        self.wide_lane += share * wide_lane;
-        self.wide_lane_variance += share * (wide_lane * wide_lane - self.wide_lane_variance);
+        self.count = (self.count + 1).min(MEMORY);
+        let share = 1.0 / f64::from(self.count);
+        self.geometry_free_variance += share * (jump * jump - self.geometry_free_variance);
+        self.widen(melbourne_wuebbena(phase, code) - self.wide_lane, share, limits);
         None
+    }
+
+    /// The wide lane is `jump` beside its mean.
+    fn widen(&mut self, jump: f64, share: f64, limits: &SlipLimits) {
+        let spread = limits.deviations * libm::sqrt(self.wide_lane_variance);
+        if jump.abs() <= spread.max(limits.melbourne_wuebbena) {
+            self.off = 0;
+            self.wide_lane += share * jump;
+            self.wide_lane_variance += share * (jump * jump - self.wide_lane_variance);
+        } else if self.off < ACCUSTOMED {
+            self.off += 1;
+        } else {
+            (self.off, self.wide_lane) = (0, self.wide_lane + jump);
+        }
+    }
+
+    /// Whether the wide lane is not where it was: after a slip, or for an outlier of the code. What
+    /// else contradicts then, as a phase that does not fit, has an ally.
+    pub const fn is_suspicious(&self) -> bool {
+        self.off > 0
     }
 
     /// When the satellite was observed last.

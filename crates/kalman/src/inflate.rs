@@ -1,34 +1,39 @@
-//! Doubt in one state of many.
+//! Doubt in a few states of many.
 
 use crate::{Covariance, Error};
 use kestirim_scalar::Scalar;
 
 impl<T: Scalar, const N: usize> Covariance<T, N> {
-    /// P ← D P D with D = diag(1, …, √`factor`, …, 1): the variance of a state times `factor`, its
-    /// correlations as they were.
+    /// Multiplies the covariance of `count` states from index `first` on among each other by `factor` ≥ 1,
+    /// and leaves what ties them to the other states.
     ///
-    /// So P stays positive, whatever the factor; its rounding is left to the next update, as that of a
-    /// [`Covariance::shear`] is. An adaptive factor a on a block of the state is an inflation by 1/a of
-    /// each of the block's states.
+    /// That is process noise in proportion to what the block is uncertain by: P stays positive, and a
+    /// surprise in the block is not taken for one in states that correlate with it. (Had the
+    /// correlations been kept, a receiver that moves would move its ambiguities.) Rounding is left to
+    /// the next update, as that of a [`Covariance::shear`] is.
     ///
     /// # Errors
-    /// [`Error::IndexOutOfRange`], [`Error::NotPositive`] for a negative factor, or
-    /// [`Error::NotFinite`] if the variance would cease to be finite; P is untouched.
+    /// [`Error::IndexOutOfRange`], [`Error::NotPositive`] for a factor below one, or
+    /// [`Error::NotFinite`] if a variance would cease to be finite; P is untouched.
     #[inline]
-    pub fn inflate(&mut self, index: usize, factor: T) -> Result<(), Error> {
-        if index >= N {
-            return Err(Error::IndexOutOfRange);
-        }
-        if factor < T::ZERO {
-            return Err(Error::NotPositive);
-        }
-        let variance = self.at(index, index) * factor;
-        let root = factor.sqrt();
-        if !(factor.is_finite() && variance.is_finite()) {
+    pub fn inflate(&mut self, first: usize, count: usize, factor: T) -> Result<(), Error> {
+        let end = first.checked_add(count).filter(|&end| end <= N);
+        let end = end.ok_or(Error::IndexOutOfRange)?;
+        if !factor.is_finite() {
             return Err(Error::NotFinite);
         }
-        self.scale_component(index, root);
-        *self.entry(index, index) = variance;
+        if factor < T::ONE {
+            return Err(Error::NotPositive);
+        }
+        let overflows = |state: usize| !(self.at(state, state) * factor).is_finite();
+        if (first..end).any(overflows) {
+            return Err(Error::NotFinite);
+        }
+        for column in first..end {
+            for row in column..end {
+                *self.entry(row, column) *= factor;
+            }
+        }
         Ok(())
     }
 }

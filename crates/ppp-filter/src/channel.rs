@@ -1,4 +1,5 @@
-use kestirim_gnss_ppp::Arc;
+use crate::watch::Watch;
+use kestirim_gnss_ppp::{Arc, Slip};
 
 /// What is remembered of a satellite as long as its ambiguity is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +12,15 @@ pub(crate) struct Channel {
     pub(crate) arc: Arc,
     /// Phase wind-up of its last epoch, cycles.
     pub(crate) wind_up: f64,
-    /// In how many epochs, up to the last one, its phase had no say.
-    pub(crate) unheard: u8,
+    /// How its phase behaves.
+    pub(crate) watch: Watch,
+}
+
+impl Channel {
+    /// A slip by two witnesses: the wide lane is off, and the phase was not heard. Only an estimator
+    /// with patience for slips listens.
+    pub(crate) fn agrees(&self, patience: Option<u8>) -> Option<Slip> {
+        let both = self.arc.is_suspicious() && self.watch.is_unheard();
+        (both && patience.is_some()).then_some(Slip::MelbourneWuebbena)
+    }
 }

@@ -58,6 +58,9 @@ pub struct Config {
     pub wet_delay_walk: f64,
     /// From when on a jump of the combinations is a slip.
     pub slips: SlipLimits,
+    /// For how long the errors of an observation stay alike (multipath, troposphere, orbits), s: the
+    /// covariances that are reported count as one what was observed within.
+    pub correlation_time: f64,
     /// What is done about observations that do not fit.
     pub estimator: Estimator,
 }
@@ -85,6 +88,7 @@ impl Config {
             wet_delay: 0.3,
             wet_delay_walk: 1e-8,
             slips: SlipLimits::default(),
+            correlation_time: 600.0,
             estimator: Estimator::guarded(motion),
         }
     }

@@ -42,19 +42,34 @@ impl Estimator {
         Self { robust: Robust::adaptive(POSITION), patience: None }
     }
 
-    /// The default, of our own design.
+    /// The default, of our own design: the worst observation first, judged by variances that are
+    /// believed, as any scale that an epoch's residuals give is inflated by the outliers it is to find
+    /// or, where few satellites are in view, shrunk by chance. Between samples of their product,
+    /// clocks are believed as far as each satellite's has proved good. A phase that jumps and stays away
+    /// has slipped; one that drifts has not.
+    ///
+    /// A receiver that moves is asked first whether its prediction holds: a step that all satellites
+    /// show is motion. Each of its epochs has to find its own outliers, so the thresholds are nearer.
     pub fn guarded(motion: Motion) -> Self {
+        let (k0, k1, adaptive) = match motion {
+            Motion::Static => (3.5, 8.0, None),
+            Motion::Kinematic { .. } => {
+                let adaptive = Adaptive {
+                    order: Order::BeforeWeights,
+                    c0: 2.0,
+                    c1: 3.0,
+                    floor: 1e-6,
+                    ..Adaptive::new(POSITION)
+                };
+                (3.0, 6.0, Some(adaptive))
+            }
+        };
         let robust = Robust {
-            weight: Weight::Igg3 { k0: 2.5, k1: 6.0, descent: Descent::Squared },
+            weight: Weight::Igg3 { k0, k1, descent: Descent::Squared },
             scale: Scale::Unit,
             reweighting: Reweighting::WorstFirst { most: usize::MAX },
             least_redundancy: 0.01,
-            adaptive: match motion {
-                Motion::Static => None,
-                Motion::Kinematic { .. } => {
-                    Some(Adaptive { order: Order::BeforeWeights, ..Adaptive::new(POSITION) })
-                }
-            },
+            adaptive,
         };
         Self { robust, patience: Some(3) }
     }

@@ -1,4 +1,5 @@
 use crate::running::Running;
+use crate::start::code_position;
 use crate::{Config, Error, Sighting, Solution};
 use kestirim_gnss_ppp::{GpsTime, Receiver};
 
@@ -39,10 +40,12 @@ impl<const N: usize> PppFilter<N> {
                 running.advance(time, &self.config)?;
                 running
             }
-            None => Running::start(time, sightings, &self.config)?,
+            None => Running::start(time, &code_position(sightings)?, &self.config),
         };
-        let solution = next.observe(receiver, sightings, &self.config)?;
-        self.running = Some(next);
-        Ok(solution)
+        let solution = next.observe(receiver, sightings, &self.config);
+        if solution.is_ok() {
+            self.running = Some(next);
+        }
+        solution
     }
 }

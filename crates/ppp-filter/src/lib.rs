@@ -2,6 +2,7 @@
 #![no_std]
 
 mod channel;
+mod collected;
 mod config;
 mod epoch;
 mod error;
@@ -13,6 +14,7 @@ mod running;
 mod solution;
 mod start;
 mod states;
+mod watch;
 
 pub use config::{Config, Deviation, Motion};
 pub use epoch::Sighting;

@@ -21,6 +21,7 @@ pub(crate) struct Line {
     pub(crate) phase: f64,
     pub(crate) code_variance: f64,
     pub(crate) phase_variance: f64,
+    pub(crate) clock_variance: f64,
 }
 
 impl Line {
@@ -41,7 +42,8 @@ impl Line {
             code: 0.0,
             phase: 0.0,
             code_variance: config.code.variance(sine) + clock,
-            phase_variance: config.phase.variance(sine) + clock,
+            phase_variance: config.phase.variance(sine),
+            clock_variance: clock,
         };
         line.compare(sighting);
         line
@@ -62,14 +64,11 @@ impl Line {
         self.phase = ionosphere_free_phase(sighting.phase) - range - wind_up;
     }
 
-    /// The rows of the code and of the phase.
-    pub(crate) fn rows(&self) -> [Row; 2] {
+    /// The row of the phase; that of the code ends before the ambiguity.
+    pub(crate) fn row(&self) -> Row {
         let [x, y, z] = self.expected.sight.data.0[0];
-        let row = |ambiguity: f64| {
-            let wet = (WET, self.expected.wet_mapping);
-            [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet, (self.state, ambiguity)]
-        };
-        [row(0.0), row(1.0)]
+        let wet = (WET, self.expected.wet_mapping);
+        [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet, (self.state, 1.0)]
     }
 
     /// z − h(x⁻) of the code and of the phase, where the line is linearised at a position off by

@@ -1,8 +1,9 @@
 //! What a filter says of an epoch.
 
+use crate::collected::collected;
 use crate::running::{Decisions, Lines, Running};
 use crate::states::{CLOCK, WET};
-use crate::{Health, SatelliteReport, Solution};
+use crate::{Config, Health, Motion, SatelliteReport, Solution};
 use kestirim_gnss_ppp::Site;
 use nalgebra::Matrix3;
 
@@ -15,8 +16,10 @@ impl<const N: usize> Running<N> {
         site: &Site<'_>,
         lines: &Lines<'_, '_, N>,
         decisions: &Decisions<N>,
+        config: &Config,
     ) -> Solution<N> {
-        let covariance = Matrix3::from_fn(|i, j| self.estimate.covariance.get(i, j).unwrap_or(0.0));
+        let formal = Matrix3::from_fn(|i, j| self.estimate.covariance.get(i, j).unwrap_or(0.0));
+        let covariance = formal * self.repetition(config);
         let rotation = site.enu_from_ecef();
         let satellites = lines.iter().zip(decisions).map(|((_, line), &[code, phase])| {
             let direction = line.expected.direction;
@@ -45,7 +48,22 @@ impl<const N: usize> Running<N> {
             } else {
                 Health::Converging
             },
-            satellites: satellites.collect(),
+            satellites: collected(satellites),
+        }
+    }
+
+    /// By how much the filter's own variances are too small, as it takes each epoch's errors for new.
+    ///
+    /// Within the correlation time τ they are the same: n epochs Δt apart tell as much as n·Δt/2τ. A
+    /// position that moves does not average them; what it owes to the ambiguities does.
+    fn repetition(&self, config: &Config) -> f64 {
+        let repeated = match self.interval {
+            Some(interval) => 1.0 + 2.0 * config.correlation_time / interval,
+            None => 1.0,
+        };
+        match config.motion {
+            Motion::Static => repeated,
+            Motion::Kinematic { .. } => libm::sqrt(repeated),
         }
     }
 }

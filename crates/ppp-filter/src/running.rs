@@ -1,9 +1,11 @@
 //! A filter that has a position.
 
 use crate::channel::Channel;
+use crate::collected::collected;
 use crate::line::{Line, Row};
-use crate::start::code_position;
+use crate::start::CodePosition;
 use crate::states::{CLOCK, COMMON, WET};
+use crate::watch::Watch;
 use crate::{Config, Error, Motion, Sighting, Slipped, Solution};
 use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
@@ -24,8 +26,9 @@ const WET_DELAY: f64 = 0.1;
 const LINEAR: f64 = 100.0;
 /// How often, before the observations are given up.
 const RELINEARISATIONS: usize = 5;
-/// Below this weight a phase has no say.
-const UNHEARD: f64 = 0.1;
+
+/// Of the squares of standard normal numbers.
+const MEDIAN_OF_SQUARES: f64 = 0.455;
 
 /// What is used of an epoch.
 pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a Sighting<'b>, Line), N>;
@@ -36,18 +39,15 @@ pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 pub(crate) struct Running<const N: usize> {
     pub(crate) estimate: Gaussian<f64, N>,
     pub(crate) time: GpsTime,
+    /// Since the epoch before, s.
+    pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
 }
 
 impl<const N: usize> Running<N> {
-    /// Begins with the codes of an epoch.
-    pub(crate) fn start(
-        time: GpsTime,
-        sightings: &[Sighting<'_>],
-        config: &Config,
-    ) -> Result<Self, Error> {
-        let start = code_position(sightings)?;
+    /// Begins where the codes of an epoch have it.
+    pub(crate) fn start(time: GpsTime, start: &CodePosition, config: &Config) -> Self {
         let mut mean = SVector::<f64, N>::zeros();
         let mut variances = [0.0; N];
         let [x, y, z] = start.position.data.0[0];
@@ -63,7 +63,7 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        Ok(Self { estimate, time, channels: [None; N] })
+        Self { estimate, time, interval: None, channels: [None; N] }
     }
 
     /// Lets time pass.
@@ -72,7 +72,7 @@ impl<const N: usize> Running<N> {
         if !(elapsed > 0.0) {
             return Err(Error::TimeNotAdvancing);
         }
-        self.time = time;
+        (self.time, self.interval) = (time, Some(elapsed));
         if let Motion::Kinematic { process_noise } = config.motion {
             for coordinate in 0..3 {
                 self.estimate.add_variance_at(coordinate, process_noise * elapsed)?;
@@ -100,9 +100,10 @@ impl<const N: usize> Running<N> {
             let ambiguity = line.phase - line.code;
             self.estimate.reset_at(line.state, ambiguity, AMBIGUITY_VARIANCE)?;
         }
-        let decisions = self.settle(receiver, &mut site, &mut lines, config)?;
+        let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
+        self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.listen(&lines, &decisions);
-        Ok(self.solution(&site, &lines, &decisions))
+        Ok(self.solution(&site, &lines, &decisions, config))
     }
 
     /// Updates with the lines, and again from nearer the solution if that was far from where they
@@ -112,17 +113,18 @@ impl<const N: usize> Running<N> {
         receiver: &Receiver<'r>,
         site: &mut Site<'r>,
         lines: &mut Lines<'_, '_, N>,
+        decisions: &mut Decisions<N>,
         config: &Config,
-    ) -> Result<Decisions<N>, Error> {
+    ) -> Result<(), Error> {
         let predicted = self.estimate;
         let expected = self.position();
         let mut linearised = expected;
         for _ in 0..RELINEARISATIONS {
             self.estimate = predicted;
-            let decisions = self.update(lines, &(expected - linearised), config)?;
+            self.update(lines, &(expected - linearised), decisions, config)?;
             let found = self.position();
             if (found - linearised).norm() < LINEAR {
-                return Ok(decisions);
+                return Ok(());
             }
             *site = Site::new(receiver, &found, self.time);
             for (sighting, line) in &mut *lines {
@@ -138,39 +140,38 @@ impl<const N: usize> Running<N> {
         &mut self,
         lines: &Lines<'_, '_, N>,
         offset: &Vector3<f64>,
+        decisions: &mut Decisions<N>,
         config: &Config,
-    ) -> Result<Decisions<N>, Error> {
-        let rows: Vec<[Row; 2], N> = lines.iter().map(|(_, line)| line.rows()).collect();
-        let measurements: Vec<[Measurement<'_, f64>; 2], N> = lines
-            .iter()
-            .zip(&rows)
-            .map(|((_, line), [code_row, phase_row])| {
-                let [code, phase] = line.innovations(&self.estimate.mean, offset);
-                [
-                    Measurement { row: code_row, innovation: code, variance: line.code_variance },
-                    Measurement {
-                        row: phase_row,
-                        innovation: phase,
-                        variance: line.phase_variance,
-                    },
-                ]
-            })
-            .collect();
-        let mut decisions: Decisions<N> = lines.iter().map(|_| [Decision::NONE; 2]).collect();
+    ) -> Result<(), Error> {
+        let rows: Vec<Row, N> = collected(lines.iter().map(|(_, line)| line.row()));
+        let measurements = lines.iter().zip(&rows).map(|((_, line), row)| {
+            let [common @ .., _] = row;
+            let [code, phase] = line.innovations(&self.estimate.mean, offset);
+            [
+                Measurement { row: common, innovation: code, variance: line.code_variance },
+                Measurement {
+                    row,
+                    innovation: phase,
+                    variance: line.phase_variance + line.clock_variance,
+                },
+            ]
+        });
+        let measurements: Vec<_, N> = collected(measurements);
         config.estimator.robust.update(
             &mut self.estimate,
             measurements.as_flattened(),
             decisions.as_flattened_mut(),
         )?;
-        Ok(decisions)
+        Ok(())
     }
 
-    /// Remembers which phases had no say.
+    /// Remembers how the phases behaved. What all of them show at once is none's own noise.
     fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>) {
+        let common = median(decisions, |[_, phase]| phase.standardised * phase.standardised);
+        let common = (common / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
-                let heard = phase.weight > UNHEARD;
-                channel.unheard = if heard { 0 } else { channel.unheard.saturating_add(1) };
+                channel.watch.listen(phase, line.phase_variance, line.clock_variance, common);
             }
         }
     }
@@ -194,7 +195,12 @@ impl<const N: usize> Running<N> {
             let Some((state, slipped)) = self.track(known, sighting, &expected, config) else {
                 continue;
             };
-            let line = Line::new(sighting, expected, state, slipped, config);
+            let mut line = Line::new(sighting, expected, state, slipped, config);
+            if config.estimator.patience.is_some()
+                && let Some(channel) = self.channel(state)
+            {
+                line.clock_variance *= channel.watch.clock_noise();
+            }
             if lines.push((sighting, line)).is_err() {
                 break;
             }
@@ -219,12 +225,13 @@ impl<const N: usize> Running<N> {
                 channel.wind_up = expected.wind_up_cycles;
                 let slip =
                     channel.arc.observe(time, phase, code, sighting.lock_lost, &config.slips);
-                let patience = config.estimator.patience;
-                let contradicted = patience.is_some_and(|patience| channel.unheard >= patience);
-                let slipped =
-                    slip.map(Slipped::Seen).or(contradicted.then_some(Slipped::Contradicted));
+                let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
+                let slipped = slip.map(Slipped::Seen).or_else(|| {
+                    let patience = config.estimator.patience?;
+                    channel.watch.contradicts(patience).then_some(Slipped::Contradicted)
+                });
                 if slipped.is_some() {
-                    channel.unheard = 0;
+                    channel.watch.begin();
                 }
                 Some((state, slipped))
             }
@@ -233,7 +240,7 @@ impl<const N: usize> Running<N> {
                     satellite: sighting.satellite,
                     arc: Arc::begin(time, phase, code),
                     wind_up: expected.wind_up_cycles,
-                    unheard: 0,
+                    watch: Watch::NEW,
                 });
                 Some((state, Some(Slipped::New)))
             }
@@ -267,7 +274,7 @@ impl<const N: usize> Running<N> {
 }
 
 fn median<T, const N: usize>(items: &Vec<T, N>, value: impl Fn(&T) -> f64) -> f64 {
-    let mut sorted: Vec<f64, N> = items.iter().map(value).collect();
+    let mut sorted: Vec<f64, N> = collected(items.iter().map(value));
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }

@@ -51,10 +51,14 @@ pub enum Order {
     AfterWeights,
     /// Before: the other way round.
     BeforeWeights,
+    /// After, unless more than a third of the measurements would lose weight: then it was motion, and
+    /// they are judged anew when the block has been put in doubt.
+    ByMajority,
 }
 
-/// An adaptive factor a ≤ 1 on a block of P⁻: that of the block over a, its covariances with other
-/// states over √a. Elsewhere P⁻ is kept: on all of it, a would throw away what is not in doubt.
+/// An adaptive factor a ≤ 1 on a block of P⁻: the block over a. The rest of P⁻ is kept, with what ties it
+/// to the block: on all of it, a would throw away what is not in doubt, and a surprise in the block would be
+/// taken for one in what correlates with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -42,7 +42,8 @@ impl<T: Scalar> Robust<T> {
         Self { reweighting: Reweighting::Never, ..Self::igg3() }
     }
 
-    /// RKF: IGG III on all measurements at once.
+    /// RKF: IGG III on all measurements at once. A large outlier has moved all residuals, so good
+    /// measurements lose weight with it.
     pub fn igg3() -> Self {
         Self {
             weight: Weight::Igg3 {
@@ -50,7 +51,7 @@ impl<T: Scalar> Robust<T> {
                 k1: T::from_f64(6.0),
                 descent: Descent::Squared,
             },
-            scale: Scale::Innovations { floor: T::ONE },
+            scale: Scale::Unit,
             reweighting: Reweighting::OneShot,
             least_redundancy: T::from_f64(0.001),
             adaptive: None,

@@ -9,10 +9,10 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Scale<T> {
-    /// 1: the variances are believed.
+    /// 1: the variances are believed. Where they deserve it, nothing finds more outliers.
     Unit,
-    /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements a single
-    /// one of any size has |ṽ| ≤ √n or so.
+    /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements no |ṽ|
+    /// is larger than √n, whatever the error. With k1 = 6 nothing is rejected among fewer than 37.
     Epoch,
     /// 1.4826 · median |ε/√(h P⁻ hᵀ + R)|, but no less than the floor: half of the measurements may be
     /// wild. Where all are off at once it grows, and nothing is rejected; of a state that is hardly
@@ -72,12 +72,11 @@ fn from_median<T: Scalar>(decisions: &[Decision<T>], floor: T) -> T {
     median(decisions).map_or(floor, |median| (T::from_f64(1.4826) * median).max(floor))
 }
 
-/// Of |ṽ| of the measurements that count. By counting, so that nothing needs to be stored.
+/// Of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
+/// of four measurements two may be wild. By counting, so that nothing needs to be stored.
 fn median<T: Scalar>(decisions: &[Decision<T>]) -> Option<T> {
     let count = decisions.iter().filter(|decision| decision.counts()).count();
-    let upper = ranked(decisions, count / 2)?;
-    let lower = if count % 2 == 0 { ranked(decisions, count / 2 - 1)? } else { upper };
-    Some(lower + (upper - lower) * T::HALF)
+    ranked(decisions, count.checked_sub(1)? / 2)
 }
 
 /// The value that `rank` others are below of, or as large as.

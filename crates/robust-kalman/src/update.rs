@@ -38,32 +38,12 @@ impl<T: Scalar> Robust<T> {
             measurements,
             passes: 0,
         };
-        let mut passed = run.pass(decisions)?;
+        let passed = run.pass(decisions)?;
         let nis = passed.nis;
-        let (mut discrepancy, mut factor) = (T::ZERO, T::ONE);
-        if let Some(adaptive) =
-            self.adaptive.filter(|adaptive| adaptive.order == Order::BeforeWeights)
-        {
-            discrepancy = run.discrepancy(&adaptive, decisions);
-            factor = adaptive.factor(discrepancy);
-            run.bias = None;
-            if factor < T::ONE {
-                run.inflate(adaptive.block, factor)?;
-                passed = run.pass(decisions)?;
-            }
-        }
-        let scale = run.reweight(passed, decisions)?;
-        if let Some(adaptive) =
-            self.adaptive.filter(|adaptive| adaptive.order == Order::AfterWeights)
-        {
-            discrepancy = run.discrepancy(&adaptive, decisions);
-            factor = adaptive.factor(discrepancy);
-            run.bias = None;
-            if factor < T::ONE {
-                run.inflate(adaptive.block, factor)?;
-                run.pass(decisions)?;
-            }
-        }
+        let judged = match &self.adaptive {
+            None => Judged { scale: run.reweight(passed, decisions)?, ..Judged::default() },
+            Some(adaptive) => run.adapt(adaptive, passed, decisions)?,
+        };
         for (measurement, decision) in measurements.iter().zip(&mut *decisions) {
             decision.residual = measurement.left(&run.prior, &run.posterior);
         }
@@ -71,12 +51,12 @@ impl<T: Scalar> Robust<T> {
         let of = |reason| decisions.iter().filter(|decision| decision.reason == reason).count();
         Ok(Summary {
             nis,
-            scale,
+            scale: judged.scale,
             down_weighted: of(Reason::DownWeighted),
             rejected: of(Reason::Rejected),
             passes: run.passes,
-            discrepancy,
-            adaptive_factor: factor,
+            discrepancy: judged.discrepancy,
+            adaptive_factor: judged.factor,
         })
     }
 }
@@ -110,6 +90,26 @@ impl<T: Scalar> Adaptive<T> {
         let wanted = self.discrepancy != Discrepancy::Innovation;
         wanted.then(|| Bias::new(prior, self.block))
     }
+}
+
+/// What an epoch came to.
+struct Judged<T> {
+    scale: T,
+    discrepancy: T,
+    factor: T,
+}
+
+impl<T: Scalar> Default for Judged<T> {
+    fn default() -> Self {
+        Self { scale: T::ONE, discrepancy: T::ZERO, factor: T::ONE }
+    }
+}
+
+/// Whether more than a third of what could be judged was found wanting.
+fn many_are_off<T: Scalar>(decisions: &[Decision<T>]) -> bool {
+    let treated = decisions.iter().filter(|decision| decision.was_treated()).count();
+    let agreeing = decisions.iter().filter(|decision| decision.counts()).count();
+    treated > agreeing / 2
 }
 
 /// An epoch on its way.
@@ -162,6 +162,40 @@ impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
         Ok(scale)
     }
 
+    /// [`Run::reweight`] and the adaptive factor in the order that is wanted.
+    fn adapt(
+        &mut self,
+        adaptive: &Adaptive<T>,
+        passed: Passed<T>,
+        decisions: &mut [Decision<T>],
+    ) -> Result<Judged<T>, Error> {
+        let mut judged = Judged::default();
+        let unweighted = self.discrepancy(adaptive, decisions);
+        let mut dynamics_first = adaptive.order == Order::BeforeWeights;
+        if !dynamics_first {
+            judged.scale = self.reweight(passed, decisions)?;
+            dynamics_first = adaptive.order == Order::ByMajority && many_are_off(decisions);
+        }
+        judged.discrepancy =
+            if dynamics_first { unweighted } else { self.discrepancy(adaptive, decisions) };
+        judged.factor = adaptive.factor(judged.discrepancy);
+        self.bias = None;
+        let mut passed = passed;
+        if judged.factor < T::ONE {
+            if dynamics_first {
+                decisions.fill(Decision::NONE);
+            }
+            self.inflate(adaptive.block, judged.factor)?;
+            passed = self.pass(decisions)?;
+        } else if adaptive.order == Order::ByMajority {
+            return Ok(judged);
+        }
+        if dynamics_first {
+            judged.scale = self.reweight(passed, decisions)?;
+        }
+        Ok(judged)
+    }
+
     fn epoch(&self) -> Epoch<'_, 'b, T, N> {
         Epoch { prior: &self.prior, posterior: &self.posterior, measurements: self.measurements }
     }
@@ -188,10 +222,7 @@ impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
 
     /// The block's covariance over a.
     fn inflate(&mut self, block: Block, factor: T) -> Result<(), Error> {
-        let growth = factor.recip();
-        for state in block.first..block.first + block.count {
-            self.prior.covariance.inflate(state, growth)?;
-        }
+        self.prior.covariance.inflate(block.first, block.count, factor.recip())?;
         Ok(())
     }
 }

@@ -9,6 +9,7 @@
 pub mod accounts;
 pub mod accuracy;
 pub mod comparison;
+pub mod experiment;
 pub mod files;
 pub mod follow;
 pub mod options;
@@ -16,5 +17,7 @@ pub mod outage;
 pub mod products;
 pub mod recording;
 pub mod replay;
+pub mod report;
 pub mod session;
+pub mod sky;
 pub mod tables;

@@ -27,10 +27,13 @@ pub enum Unusable {
 
 /// One satellite's products.
 #[derive(Debug, Default)]
-struct Satellite {
-    orbit: Vec<OrbitSample>,
-    clock: Vec<ClockSample>,
-    antenna: Option<Antenna>,
+pub struct Satellite {
+    /// Its orbit, in the order of time.
+    pub orbit: Vec<OrbitSample>,
+    /// Its clock, in the order of time.
+    pub clock: Vec<ClockSample>,
+    /// Its antenna, where known.
+    pub antenna: Option<Antenna>,
 }
 
 /// The products of a day.
@@ -79,6 +82,15 @@ impl Products {
             Satellite { orbit: orbit.collect(), clock, antenna }
         });
         Self { reference, satellites: satellites.collect() }
+    }
+
+    /// Products of which all samples count from `reference`: the satellites in the order of their numbers, from 1.
+    pub fn of_satellites(
+        reference: GpsTime,
+        satellites: impl IntoIterator<Item = Satellite>,
+    ) -> Self {
+        let satellites = std::iter::once(Satellite::default()).chain(satellites).collect();
+        Self { reference, satellites }
     }
 
     /// An observed satellite with its state when it sent what was received at `time`.

@@ -10,6 +10,7 @@ pub mod four_ranges;
 pub mod observer;
 pub mod path_loss;
 pub mod pedestrian;
+pub mod ppp;
 pub mod replay;
 pub mod stream;
 pub mod uav;

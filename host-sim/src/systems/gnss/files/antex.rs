@@ -212,7 +212,7 @@ impl Grid {
             } else if line.label() == b"NORTH / EAST / UP" {
                 offset_known = true;
                 for (i, offset) in centre.offset.iter_mut().enumerate() {
-                    *offset = 1e-3 * line.finite("an offset in mm", 10 * i, 10 * i + 10)?;
+                    *offset = line.finite("an offset in mm", 10 * i, 10 * i + 10)? / 1e3;
                 }
             } else if line.columns(0, 8) == b"NOAZI" {
                 row(&line, angles, &mut centre.mean)?;
@@ -240,7 +240,11 @@ fn steps(first: f64, last: f64, step: f64) -> Option<usize> {
 
 fn row(line: &Line<'_>, angles: usize, values: &mut Vec<f64>) -> Result<(), Error> {
     for i in 1..=angles {
-        values.push(1e-3 * line.finite("a phase centre variation in mm", 8 * i, 8 * i + 8)?);
+        values.push(line.finite("a phase centre variation in mm", 8 * i, 8 * i + 8)? / 1e3);
     }
     Ok(())
 }
+
+#[cfg(test)]
+#[path = "antex_tests.rs"]
+mod tests;

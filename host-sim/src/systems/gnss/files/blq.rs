@@ -79,9 +79,14 @@ fn stations(text: &Text) -> Result<Vec<Station>, Error> {
         if is_comment(&line) {
             continue;
         }
-        let named = blank_separated(line.bytes).next().is_some_and(|name| decimal(name).is_none());
-        if !named || !line.bytes.is_ascii() {
-            return Err(text.wrong_kind("ocean loading (BLQ)"));
+        let name = line.bytes.trim_ascii();
+        let number = blank_separated(name).next().is_some_and(|field| decimal(field).is_some());
+        if number || !name[0].is_ascii_alphanumeric() {
+            return Err(if stations.is_empty() {
+                text.wrong_kind("ocean loading (BLQ)")
+            } else {
+                line.expected("a station's name")
+            });
         }
         let mut place = None;
         while let Some(comment) = lines.next_if(is_comment) {
@@ -137,4 +142,59 @@ fn four_letters(name: &[u8]) -> [u8; 4] {
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let east = (a[0] - b[0] + 540.0).rem_euclid(360.0) - 180.0;
     (east * a[1].to_radians().cos()).hypot(a[1] - b[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::{loading, text};
+    use super::*;
+
+    fn place(longitude: f64) -> [f64; 3] {
+        let (longitude, latitude) = (f64::to_radians(longitude), f64::to_radians(50.0));
+        let place = Geodetic { latitude, longitude, height: 10.0 };
+        place.to_ecef().into()
+    }
+
+    #[test]
+    fn a_station_is_found_by_its_name() -> Result<(), Error> {
+        for place in [None, Some(place(-2.05))] {
+            let found = StationLoading::parse(&text(loading()), "here00XXX", place)?;
+            let loading = found.loading.expect("it is there");
+            assert_eq!((loading.amplitude[2][1], loading.lag[0][10]), (2.01, 3.1));
+            assert_eq!(found.warnings, [""; 0]);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_station_is_found_by_its_place() -> Result<(), Error> {
+        let found = StationLoading::parse(&text(loading()), "ELSE", Some(place(1.0)))?;
+        assert!(found.loading.is_some());
+        assert_eq!(found.warnings, ["file: does not know station \"ELSE\": THER is at its place"]);
+        Ok(())
+    }
+
+    #[test]
+    fn a_station_that_is_not_there_is_told() -> Result<(), Error> {
+        let names = [("ELSE", None), ("HERE", Some(place(90.0))), ("", None)];
+        for (name, place) in names {
+            let found = StationLoading::parse(&text(loading()), name, place)?;
+            assert_eq!(found.loading, None);
+            assert!(found.warnings[0].ends_with("its ocean loading is left out"));
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn damage_is_located() {
+        let complaint = |file: &str| {
+            StationLoading::parse(&text(file), "HERE", None).expect_err(file).to_string()
+        };
+        let file = loading().replacen(" 2.05", " 2.x5", 1);
+        assert!(complaint(&file).starts_with("file, line 7: expected eleven numbers"));
+        let file = loading();
+        assert!(complaint(&file[..file.len() - 112]).contains("expected six lines"));
+        assert!(complaint("1.0 2.0\n").contains("expected ocean loading (BLQ), found \"1.0 2.0\""));
+        assert!(complaint("$$ nothing\n").contains("expected ocean loading (BLQ)"));
+    }
 }

@@ -53,21 +53,25 @@ fn slowly(digits: &[u8]) -> Option<f64> {
 
 /// An integer; none if there is anything else.
 pub(super) fn integer(field: &[u8]) -> Option<i32> {
+    large_integer(field)?.try_into().ok()
+}
+
+/// An integer; none if there is anything else.
+pub(super) fn large_integer(field: &[u8]) -> Option<i64> {
     let (negative, digits) = signed(field);
-    let mut number = 0_i32;
+    let mut number = 0_i64;
     for &byte in digits {
         let digit = byte.checked_sub(b'0').filter(|&digit| digit < 10)?;
-        number = number.checked_mul(10)?.checked_add(i32::from(digit))?;
+        number = number.checked_mul(10)?.checked_add(i64::from(digit))?;
     }
     let number = if negative { -number } else { number };
     (!digits.is_empty()).then_some(number)
 }
 
 fn signed(field: &[u8]) -> (bool, &[u8]) {
-    match field {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
+    match field.strip_prefix(b"-") {
+        Some(digits) => (true, digits),
+        None => (false, field.strip_prefix(b"+").unwrap_or(field)),
     }
 }
 
@@ -78,10 +82,7 @@ pub(super) fn blank_separated(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// The number of a GPS satellite called `G05`, `G 5` or, where GPS goes without saying, ` 5`.
 pub(super) fn gps_satellite(name: &[u8]) -> Option<u8> {
-    let digits = match name {
-        [b'G' | b' ', digits @ ..] => digits,
-        digits => digits,
-    };
+    let digits = name.strip_prefix(b"G").unwrap_or(name);
     let number = integer(digits.trim_ascii())?;
     u8::try_from(number).ok().filter(|number| (1..=99).contains(number))
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use kestirim_gnss_ppp::GpsTime;
 
-use super::compressed;
 use super::fields::{decimal, integer};
 use super::time::from_calendar;
+use super::{compressed, crinex};
 use crate::Error;
 use crate::text::printable;
 
@@ -23,12 +23,21 @@ impl Text {
     /// # Errors
     /// [`Error::Read`] if it cannot be read, [`Error::File`] or [`Error::Line`] if it cannot be unpacked.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(Self { path: path.to_path_buf(), bytes: compressed::read(path)? })
+        Self::unpack(path, compressed::read(path)?)
     }
 
-    /// Takes the contents of the file `path`, unpacked.
-    pub fn from_bytes(path: &Path, bytes: impl Into<Vec<u8>>) -> Self {
-        Self { path: path.to_path_buf(), bytes: bytes.into() }
+    /// Takes the contents of the file `path`, which may be compressed.
+    ///
+    /// # Errors
+    /// [`Error::File`] or [`Error::Line`] if they cannot be unpacked.
+    pub fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Self, Error> {
+        let bytes = compressed::unpack(path, bytes)?;
+        let text = Self { path: path.to_path_buf(), bytes };
+        if crinex::is_compressed(&text.bytes) {
+            let bytes = crinex::decompress(&text, compressed::LARGEST)?;
+            return Ok(Self { bytes, ..text });
+        }
+        Ok(text)
     }
 
     /// Its lines, blank ones too.
@@ -59,34 +68,27 @@ impl Text {
 
 /// What a text is, by its beginning.
 fn kind(bytes: &[u8]) -> String {
+    const RINEX: &[u8] = b"RINEX VERSION / TYPE";
     let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let label = first.get(60..).unwrap_or_default();
-    if bytes.is_empty() {
-        return "an empty file".to_owned();
-    }
-    if label.starts_with(b"RINEX VERSION / TYPE") {
-        return match first[20] {
-            b'O' => "observations (RINEX)",
-            b'N' | b'G' | b'E' | b'H' | b'L' => "a navigation file (RINEX)",
-            b'M' => "a meteorological file (RINEX)",
-            b'C' => "satellite clocks (RINEX)",
-            _ => "a RINEX file of another type",
-        }
-        .to_owned();
-    }
     let start = first.trim_ascii_start();
-    let known: [(bool, &str); 6] = [
-        (label.starts_with(b"ANTEX VERSION"), "antenna patterns (ANTEX)"),
-        (label.starts_with(b"IONEX VERSION"), "an ionosphere map (IONEX)"),
-        (label.starts_with(b"CRINEX VERS"), "compressed observations (CRINEX)"),
-        (matches!(first, [b'#', b'a'..=b'd', b'P' | b'V', ..]), "orbits (SP3)"),
-        (start.starts_with(b"$$"), "ocean loading (BLQ)"),
-        (start.starts_with(b"<"), "a web page: the download did not work"),
-    ];
-    match known.iter().find(|(fits, _)| *fits) {
-        Some((_, name)) => (*name).to_owned(),
-        None => printable(&String::from_utf8_lossy(first.trim_ascii())),
-    }
+    let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
+    let name = match first {
+        [] if bytes.is_empty() => "an empty file",
+        _ if named(RINEX) => match first.get(20).filter(|byte| **byte != b' ').or(first.get(21)) {
+            Some(b'O') => "observations (RINEX)",
+            Some(b'N' | b'G' | b'E' | b'H' | b'L') => "a navigation file (RINEX)",
+            Some(b'M') => "a meteorological file (RINEX)",
+            Some(b'C') => "satellite clocks (RINEX)",
+            _ => "a RINEX file of another type",
+        },
+        _ if named(b"ANTEX VERSION") => "antenna patterns (ANTEX)",
+        _ if named(b"IONEX VERSION") => "an ionosphere map (IONEX)",
+        [b'#', b'a'..=b'd', b'P' | b'V', ..] => "orbits (SP3)",
+        _ if start.starts_with(b"$$") => "ocean loading (BLQ)",
+        _ if start.starts_with(b"<") => "a web page: the download did not work",
+        _ => return printable(&String::from_utf8_lossy(first.trim_ascii())),
+    };
+    name.to_owned()
 }
 
 /// The lines of a [`Text`] from some place on.
@@ -131,7 +133,8 @@ impl<'a> Iterator for Lines<'a> {
         let start = self.position;
         let rest = self.text.bytes.get(start..).filter(|rest| !rest.is_empty())?;
         let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
-        self.position = start + length + 1;
+        // The last line may have no break.
+        self.position = (start + length + 1).min(self.text.bytes.len());
         let bytes = rest[..length].strip_suffix(b"\r").unwrap_or(&rest[..length]);
         Some(Line { text: self.text, start, bytes })
     }

@@ -5,6 +5,7 @@
 pub mod antex;
 pub mod blq;
 mod compressed;
+mod crinex;
 mod fields;
 pub mod lines;
 pub mod rinex_clock;
@@ -12,3 +13,8 @@ pub mod rinex_obs;
 mod satellites;
 pub mod sp3;
 pub mod time;
+
+#[cfg(test)]
+mod mutations;
+#[cfg(test)]
+mod samples;

@@ -90,8 +90,10 @@ fn parse_file(text: &Text, warnings: &mut Vec<String>) -> Result<PerSatellite<Cl
                 }
             }
             // Of other satellites, of receivers, and lines that go on.
-            [b'A', b'S' | b'R', b' ', ..] | [b'C' | b'D', b'R', b' ', ..] => {}
-            [b'M', b'S', b' ', ..] | [b' ', ..] | [] => {}
+            [b'A' | b'M', b'S', b' ', ..]
+            | [b'A' | b'C' | b'D', b'R', b' ', ..]
+            | [b' ', ..]
+            | [] => {}
             _ => return Err(line.expected("a record of a clock file")),
         }
     }
@@ -145,4 +147,78 @@ fn record(bytes: &[u8]) -> Option<(u8, ClockSample)> {
     let time = from_calendar(calendar, decimal(fields.next()?)?)?;
     let bias = decimal(fields.nth(1)?)?;
     Some((prn, ClockSample { time, bias }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::{clocks, header, text};
+    use super::*;
+
+    fn complaint(file: &str) -> String {
+        Clocks::parse(&[text(file)]).expect_err(file).to_string()
+    }
+
+    #[test]
+    fn satellites_are_read() -> Result<(), Error> {
+        let clocks = Clocks::parse(&[text(clocks())])?;
+        assert_eq!(clocks.satellites().collect::<Vec<_>>(), [5]);
+        let time = |second| GpsTime::new(58_849, second);
+        let samples = [
+            ClockSample { time: time(0.0), bias: 1e-5 },
+            ClockSample { time: time(30.0), bias: -2e-5 },
+        ];
+        assert_eq!(clocks.satellite(5), samples);
+        let [first, second] = &samples;
+        assert_eq!(clocks.around(5, time(10.0)), Some([first, second]));
+        assert_eq!(clocks.around(5, time(0.0)), Some([first, first]));
+        assert_eq!(clocks.around(5, time(30.0)), Some([second, second]));
+        assert_eq!(clocks.around(5, time(30.1)), None);
+        assert_eq!(clocks.around(5, time(-0.1)), None);
+        assert_eq!(clocks.around(6, time(0.0)), None);
+        Ok(())
+    }
+
+    #[test]
+    fn the_wide_lines_of_version_3_04_are_read() -> Result<(), Error> {
+        let wide = |content: &str, label| format!("{content:<65}{label}\n");
+        let file = wide("3.04                 C                    G", "RINEX VERSION / TYPE")
+            + &wide("   GPS", "TIME SYSTEM ID")
+            + &wide("", "END OF HEADER")
+            + "AR ABMF00GLP 2020  1  1  0  0  0.000000  1   -0.159438015248E-04\n"
+            + "AS G05       2020  1  1  0  0  0.000000  2   -0.159438015248E-04  0.640687583086E-11\n";
+        let clocks = Clocks::parse(&[text(file)])?;
+        assert_eq!(clocks.satellite(5)[0].bias, -0.159_438_015_248e-4);
+        Ok(())
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_refused() {
+        let file = clocks().replace("   GPS ", "   UTC ");
+        assert!(
+            complaint(&file)
+                .contains("line 2: expected times of GPS, found the time system \"UTC\"")
+        );
+        let file = clocks().replace("0.100000000000E-04", "0.10000000000xE-04");
+        assert!(complaint(&file).contains("line 5: expected a satellite's clock"));
+        assert!(
+            complaint(&clocks().replace("AS G", "AS E")).contains("GPS satellites, found none")
+        );
+        let file = header("     3.04           O", "RINEX VERSION / TYPE");
+        assert_eq!(
+            complaint(&file),
+            "file: expected satellite clocks (RINEX), found observations (RINEX)"
+        );
+    }
+
+    #[test]
+    fn a_line_cut_off_is_left_out() -> Result<(), Error> {
+        let file = clocks();
+        let cut = Clocks::parse(&[text(&file[..file.len() - 8])])?;
+        assert_eq!(cut.satellite(5).len(), 1);
+        assert_eq!(
+            cut.warnings,
+            ["file, line 8: the file ends within this line, which is left out"]
+        );
+        Ok(())
+    }
 }

@@ -151,8 +151,81 @@ fn position(line: &Line<'_>, time: GpsTime) -> Result<Option<OrbitSample>, Error
     Ok(known.then(|| OrbitSample {
         time,
         position,
-        clock: clock.filter(|clock| clock.abs() < NO_CLOCK).map(|clock| clock * 1e-6),
+        clock: clock.filter(|clock| clock.abs() < NO_CLOCK).map(|clock| clock / 1e6),
         clock_event: line.column(74) == b'E',
         manoeuvre: line.column(78) == b'M',
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::{orbits, text};
+    use super::*;
+
+    fn complaint(file: &str) -> String {
+        Orbits::parse(&[text(file)]).expect_err(file).to_string()
+    }
+
+    #[test]
+    fn positions_and_clocks_are_read() -> Result<(), Error> {
+        let orbits = Orbits::parse(&[text(orbits())])?;
+        assert_eq!(orbits.satellites().collect::<Vec<_>>(), [5]);
+        let [first, second] = *orbits.satellite(5) else { panic!("two samples") };
+        assert_eq!(first.position, [10_000_000.001, -20e6, 15_000_500.0]);
+        assert_eq!((first.time, first.clock), (GpsTime::new(58_849, 0.0), Some(1e-4)));
+        assert!(!first.clock_event && !first.manoeuvre);
+        assert_eq!((second.time, second.clock), (GpsTime::new(58_849, 900.0), None));
+        assert!(second.clock_event && second.manoeuvre);
+        let warning = "file: holds 1 predicted positions, worse than computed ones";
+        assert_eq!(orbits.warnings, [warning]);
+        Ok(())
+    }
+
+    #[test]
+    fn days_are_put_together_in_any_order() -> Result<(), Error> {
+        let earlier =
+            text(orbits().replace("EP  MP", "").replace("PG05  10001.0", "PG05  10009.0"));
+        let later = orbits().replace("*  2020  1  1  0 15", "*  2020  1  1  0 30");
+        let later = text(later.replace("*  2020  1  1  0  0", "*  2020  1  1  0 15"));
+        let one = Orbits::parse(&[earlier.clone(), later.clone()])?;
+        assert_eq!(one, Orbits::parse(&[later, earlier])?);
+        let times: Vec<_> = one.satellite(5).iter().map(|sample| sample.time.second()).collect();
+        assert_eq!(times, [0.0, 900.0, 1800.0]);
+        assert_eq!(one.satellite(5)[1].position[0], 10_000_000.001);
+        Ok(())
+    }
+
+    #[test]
+    fn satellites_without_letter_are_of_gps() -> Result<(), Error> {
+        let file =
+            orbits().replace("#c", "#a").replace("PG05", "P  5").replace("GPS ccc", "ccc ccc");
+        assert_eq!(Orbits::parse(&[text(file)])?.satellite(5).len(), 2);
+        let blank = orbits().replace("cc GPS", "cc    ");
+        assert_eq!(Orbits::parse(&[text(blank)])?.satellite(5).len(), 2);
+        Ok(())
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_refused() {
+        let file = orbits().replace("cc GPS", "cc UTC");
+        assert_eq!(
+            complaint(&file),
+            "file, line 5: expected times of GPS, found the time system \"UTC\""
+        );
+        let file = orbits().replace("-20000.000000", "-20000.00000x");
+        assert!(complaint(&file).starts_with("file, line 11: expected a position in km"));
+        assert!(
+            complaint(&orbits().replace("PG05", "PE05")).contains("GPS satellites, found none")
+        );
+        assert!(complaint("walk\n").contains("expected orbits (SP3), found \"walk\""));
+    }
+
+    #[test]
+    fn a_file_cut_off_is_told() -> Result<(), Error> {
+        let file = orbits();
+        let cut = Orbits::parse(&[text(&file[..file.len() - 60])])?;
+        assert_eq!(cut.satellite(5).len(), 1);
+        assert!(cut.warnings[0].contains("no EOF"), "{:?}", cut.warnings);
+        Ok(())
+    }
 }

@@ -151,7 +151,7 @@ fn three(line: &Line<'_>) -> Result<[f64; 3], Error> {
     Ok([next()?, next()?, next()?])
 }
 
-/// Times of Galileo, QZSS and NavIC are those of GPS to some nanoseconds.
+/// Times of Galileo, QZSS and IRNSS are those of GPS to some nanoseconds.
 fn time_system(line: &Line<'_>) -> Result<(), Error> {
     match line.columns(48, 51) {
         b"" | b"GPS" | b"GAL" | b"QZS" | b"IRN" => Ok(()),

@@ -55,13 +55,16 @@ pub(super) struct Raw {
 
 /// How often each signal was observed of each satellite.
 #[derive(Debug, Default)]
-pub(super) struct Seen(BTreeMap<u8, BTreeMap<Signal, usize>>);
+pub(super) struct Seen(BTreeMap<u8, Vec<(Signal, usize)>>);
 
 impl Seen {
     pub(super) fn count(&mut self, prn: u8, raw: &[Raw]) {
         let counts = self.0.entry(prn).or_default();
-        for observation in raw {
-            *counts.entry(observation.signal).or_default() += 1;
+        for &Raw { signal, .. } in raw {
+            match counts.iter_mut().find(|(other, _)| *other == signal) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((signal, 1)),
+            }
         }
     }
 
@@ -81,8 +84,10 @@ pub struct Signals {
 
 impl Signals {
     /// The best of those that are there at least half as often as the most frequent one.
-    fn choose(counts: &BTreeMap<Signal, usize>) -> Self {
-        let count = |signal: &Signal| counts.get(signal).copied().unwrap_or_default();
+    fn choose(counts: &[(Signal, usize)]) -> Self {
+        let count = |signal: &Signal| {
+            counts.iter().find(|(other, _)| other == signal).map_or(0, |&(_, count)| count)
+        };
         let best = |phase, band, first: Option<u8>, order: &[u8]| {
             let signal = |tracking| Signal { phase, band, tracking };
             let most = order.iter().map(|&tracking| count(&signal(tracking))).max()?;

@@ -1,0 +1,209 @@
+//! `host-sim run gnss`: the paper's filters and ours on synthetic station-days.
+//!
+//! Every filter gets the same days, with faults; two of them get the same days without faults, too.
+
+use indicatif::ProgressBar;
+use kestirim_gnss_ppp::{Corrections, Receiver};
+use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, Sighting, states};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::report::{Report, Row};
+use super::sky::score::Score;
+use super::sky::{Day, Rates, UTC_MINUS_GPS};
+use crate::cli::{RunOptions, ScalarKind};
+use crate::published::{GNSS_KINEMATIC, GNSS_STATIC, PppErrors};
+use crate::systems::choose_scalar;
+use crate::{Error, output};
+
+/// Station-days unless told otherwise; the paper has 100.
+const TRIALS: u32 = 10;
+/// Variance that a kinematic filter gives each coordinate, m²/s: it knows nothing of the station's standing still.
+pub const PROCESS_NOISE: f64 = 1e-4;
+/// Satellites that a filter has room for.
+const STATES: usize = states(16);
+
+/// One filter on one kind of days.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    table: &'static str,
+    filter: &'static str,
+    motion: Motion,
+    estimator: Estimator,
+    faults: bool,
+    published: Option<PppErrors>,
+}
+
+/// All rows of the tables.
+fn cases() -> Vec<Case> {
+    const STATIC: &str = "Table 2: static";
+    const KINEMATIC: &str = "Table 3: kinematic";
+    const CLEAN: &str = "the same days without faults";
+    let printed =
+        |estimator: Estimator| Estimator { robust: estimator.robust.printed(), ..estimator };
+    let standing = Motion::Static;
+    let moving = Motion::Kinematic { process_noise: PROCESS_NOISE };
+    let case = |table, filter, motion, estimator, published| Case {
+        table,
+        filter,
+        motion,
+        estimator,
+        published,
+        faults: true,
+    };
+    let [gkf, rkf, skf, ikf, ukf] = GNSS_STATIC.map(Some);
+    let [moving_ikf, moving_ukf] = GNSS_KINEMATIC.map(Some);
+    let clean = |filter, motion, estimator| Case {
+        faults: false,
+        ..case(CLEAN, filter, motion, estimator, None)
+    };
+    let [plain, igg3, t_test] = [Estimator::plain(), Estimator::igg3(), Estimator::t_test()];
+    let [iterative, adaptive] = [Estimator::iterative_igg3(), Estimator::adaptive()];
+    vec![
+        case(STATIC, "plain (GKF)", standing, plain, gkf),
+        case(STATIC, "IGG III (RKF)", standing, igg3, rkf),
+        case(STATIC, "t-test (SKF)", standing, t_test, skf),
+        case(STATIC, "iterative IGG III (IKF)", standing, iterative, ikf),
+        case(STATIC, "adaptive (UKF)", standing, adaptive, ukf),
+        case(STATIC, "default", standing, Estimator::guarded(standing), None),
+        case(STATIC, "RKF by the letter", standing, printed(igg3), None),
+        case(STATIC, "SKF by the letter", standing, printed(t_test), None),
+        case(STATIC, "IKF by the letter", standing, printed(iterative), None),
+        case(STATIC, "UKF by the letter", standing, printed(adaptive), None),
+        case(KINEMATIC, "plain (GKF)", moving, plain, None),
+        case(KINEMATIC, "iterative IGG III (IKF)", moving, iterative, moving_ikf),
+        case(KINEMATIC, "adaptive (UKF)", moving, adaptive, moving_ukf),
+        case(KINEMATIC, "default", moving, Estimator::guarded(moving), None),
+        case(KINEMATIC, "IKF by the letter", moving, printed(iterative), None),
+        case(KINEMATIC, "UKF by the letter", moving, printed(adaptive), None),
+        clean("plain, static", standing, plain),
+        clean("default, static", standing, Estimator::guarded(standing)),
+        clean("plain, kinematic", moving, plain),
+        clean("default, kinematic", moving, Estimator::guarded(moving)),
+    ]
+}
+
+/// Runs all.
+///
+/// # Errors
+/// If the scalar is not supported.
+pub fn run(options: RunOptions) -> Result<Report, Error> {
+    let scalar = choose_scalar("gnss", options.scalar, &[ScalarKind::F64], ScalarKind::F64)?;
+    let trials = options.trials.unwrap_or(TRIALS);
+    let cases = cases();
+    let bar = output::progress(u64::from(trials) * cases.len() as u64, "filter days");
+    let days: Vec<_> = (0..u64::from(trials))
+        .into_par_iter()
+        .map(|index| trial(options.seed, index, &cases, &bar))
+        .collect();
+    bar.finish_and_clear();
+    let rows = cases.iter().enumerate().map(|(place, case)| {
+        let scores: Vec<_> = days.iter().map(|scores| scores[place]).collect();
+        Row::of(case.table, case.filter, case.published, scores)
+    });
+    Ok(Report {
+        system: "gnss",
+        seed: options.seed,
+        scalar,
+        trials,
+        process_noise: PROCESS_NOISE,
+        rows: rows.collect(),
+    })
+}
+
+/// All cases on one station-day.
+fn trial(seed: u64, index: u64, cases: &[Case], bar: &ProgressBar) -> Vec<Score> {
+    let days = [Rates::NONE, Rates::RECORDING].map(|rates| Day::new(seed, index, &rates));
+    let sightings = days.each_ref().map(sightings);
+    // Filters of a day beside each other, so that few days keep all threads busy, too.
+    cases
+        .par_iter()
+        .map(|case| {
+            let which = usize::from(case.faults);
+            let config = Config { estimator: case.estimator, ..Config::new(case.motion) };
+            let score = follow(&days[which], &sightings[which], config);
+            bar.inc(1);
+            score
+        })
+        .collect()
+}
+
+/// What the receiver observed, with the products of each satellite.
+fn sightings(day: &Day) -> Vec<Vec<Sighting<'_>>> {
+    let epochs = day.epochs.iter().map(|epoch| {
+        let seen = epoch.satellites.iter();
+        seen.filter_map(|observed| day.products.sighting(epoch.time, observed).ok()).collect()
+    });
+    epochs.collect()
+}
+
+/// One filter through one day.
+fn follow(day: &Day, sightings: &[Vec<Sighting<'_>>], config: Config) -> Score {
+    let receiver = Receiver {
+        antenna: None,
+        eccentricity: [0.0; 3],
+        ocean_loading: None,
+        ut1_minus_gps: UTC_MINUS_GPS,
+        corrections: Corrections::ALL,
+    };
+    let mut filter = PppFilter::<STATES>::new(config);
+    let enu = kestirim_gnss_ppp::Geodetic::from_ecef(&day.marker).enu_from_ecef();
+    let errors: Vec<_> = day
+        .epochs
+        .iter()
+        .zip(sightings)
+        .map(|(epoch, sightings)| {
+            let solution = filter.process(epoch.time, &receiver, sightings).ok()?;
+            let [east, north, up] = (enu * (solution.position - day.marker)).data.0[0];
+            Some(Vector3::new(north, east, up))
+        })
+        .collect();
+    Score::of(&errors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_seed_gives_the_same_report_at_any_number_of_threads() {
+        let options = RunOptions { trials: Some(1), seed: 3, scalar: None };
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let report = run(options).unwrap();
+        assert_eq!(report, alone.install(|| run(options)).unwrap());
+        assert_ne!(report, run(RunOptions { seed: 4, ..options }).unwrap());
+    }
+
+    #[test]
+    fn only_doubles_will_do() {
+        let options = RunOptions { trials: Some(1), seed: 0, scalar: Some(ScalarKind::F32) };
+        let sentence = run(options).unwrap_err().to_string();
+        assert_eq!(sentence, "gnss computes in f64, not in f32 (--scalar)");
+    }
+
+    /// On one day: (plain, default) without faults, and with them.
+    fn plain_and_default(index: u64) -> [[Score; 2]; 2] {
+        [Rates::NONE, Rates::RECORDING].map(|rates| {
+            let day = Day::new(11, index, &rates);
+            let sightings = sightings(&day);
+            [Estimator::plain(), Estimator::guarded(Motion::Static)].map(|estimator| {
+                let config = Config { estimator, ..Config::new(Motion::Static) };
+                follow(&day, &sightings, config)
+            })
+        })
+    }
+
+    #[test]
+    fn faults_harm_the_plain_filter_and_not_the_default() {
+        for index in 0..3 {
+            let [clean, faulty] = plain_and_default(index);
+            for score in clean {
+                assert!(score.final_mm[3] < 15.0 && score.rms_mm[3] < 30.0, "{score:?}");
+                assert!(score.convergence_min.is_some_and(|minutes| minutes < 90.0), "{score:?}");
+                assert_eq!(score.unsolved, 0);
+            }
+            let [plain, default] = faulty.map(|score| score.rms_mm[3]);
+            assert!(plain > 100.0 && default < plain / 3.0, "{index}: {plain} {default}");
+        }
+    }
+}

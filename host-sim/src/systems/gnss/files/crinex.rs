@@ -1,0 +1,220 @@
+//! Hatanaka compression of observations: CRINEX 1.0 and 3.0.
+//!
+//! Lines are stored as what changed since the epoch before: texts character by character, numbers as
+//! differences of some order since an arc began.
+
+mod arcs;
+
+use self::arcs::{Satellite, repair};
+use super::fields::integer;
+use super::lines::{Line, Lines, Text};
+use crate::Error;
+
+/// More satellites or observables than any file has.
+const MOST: usize = 999;
+
+/// What stands in place of an epoch that was cut off.
+const CUT: &[u8] = b"> cut off";
+
+/// Whether a text is compressed so.
+pub(super) fn is_compressed(bytes: &[u8]) -> bool {
+    bytes.get(60..).is_some_and(|label| label.starts_with(b"CRINEX VERS"))
+}
+
+/// The RINEX file as it was, without the receiver's clock offsets, which nothing here needs. An epoch that was
+/// cut off at the end of the file is only marked.
+///
+/// # Errors
+/// The line of the compressed file, and what was expected there.
+pub(super) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> {
+    let mut lines = text.lines();
+    let mut decoder = Decoder::default();
+    if let Some(first) = lines.next() {
+        decoder.compact_version = match first.columns(0, 20) {
+            b"1.0" => 1,
+            b"3.0" => 3,
+            _ => return Err(first.expected("version 1.0 or 3.0 of compressed observations")),
+        };
+    }
+    lines.next();
+    let first = lines.expect("a header")?;
+    decoder.version = match first.finite("a version of RINEX", 0, 9)? {
+        version if (2.0..5.0).contains(&version) => version as i32,
+        _ => return Err(first.expected("RINEX 2, 3 or 4")),
+    };
+    decoder.copy(&first)?;
+    loop {
+        let line = lines.expect("the end of the header")?;
+        decoder.copy(&line)?;
+        if line.label() == b"END OF HEADER" {
+            break;
+        }
+    }
+    while let Some(line) = lines.next() {
+        let before = decoder.out.len();
+        let result = decoder.epoch(&line, &mut lines);
+        let at_end = lines.is_at_end();
+        if at_end && (result.is_err() || !text.ends_with_line_break()) {
+            // In place of this epoch; whoever reads the observations will say so.
+            decoder.out.truncate(before);
+            decoder.out.extend_from_slice(CUT);
+            break;
+        }
+        result?;
+        if decoder.out.len() > largest {
+            return Err(text.error("unpacks to more than any file of observations needs"));
+        }
+    }
+    Ok(decoder.out)
+}
+
+#[derive(Debug, Default)]
+struct Decoder {
+    compact_version: i32,
+    version: i32,
+    /// How many observables each satellite system has, by its letter; of RINEX 2 that of letter 0.
+    observables: Vec<(u8, usize)>,
+    /// The line of the epoch before.
+    epoch: Vec<u8>,
+    satellites: Vec<Satellite>,
+    out: Vec<u8>,
+}
+
+impl Decoder {
+    /// Copies a line of a header, and counts its observables.
+    fn copy(&mut self, line: &Line<'_>) -> Result<(), Error> {
+        self.put(line.bytes);
+        let (system, from, to) = match line.label() {
+            b"# / TYPES OF OBSERV" => (0, 0, 6),
+            b"SYS / # / OBS TYPES" => (line.column(0), 3, 6),
+            _ => return Ok(()),
+        };
+        if line.columns(from, to).is_empty() {
+            return Ok(());
+        }
+        let count = line.count("how many observables there are", from, to)?;
+        if count > MOST {
+            return Err(line.expected("a possible number of observables"));
+        }
+        self.observables.retain(|(other, _)| *other != system);
+        self.observables.push((system, count));
+        Ok(())
+    }
+
+    fn put(&mut self, line: &[u8]) {
+        self.out.extend_from_slice(line);
+        end_line(&mut self.out);
+    }
+
+    /// Unpacks an epoch or event that begins with a line.
+    fn epoch<'a>(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), Error> {
+        let old = self.version < 3;
+        let (mark, flag, list) = if old { (b'&', 28, 32) } else { (b'>', 31, 41) };
+        match line.bytes.first() {
+            // Lines to be ignored, and the end of a file of DOS.
+            Some(b'&') if !old => return Ok(()),
+            Some(0x1a) => return Ok(()),
+            Some(&first) if first == mark => {
+                self.epoch.clear();
+                self.satellites.clear();
+            }
+            _ if self.epoch.is_empty() => {
+                return Err(line.expected("an epoch that does not build upon another"));
+            }
+            _ => {}
+        }
+        repair(&mut self.epoch, line.bytes);
+        if old && let Some(first) = self.epoch.first_mut() {
+            *first = b' ';
+        }
+        let columns = |from, to| self.epoch.get(from..to).unwrap_or_default().trim_ascii();
+        let count =
+            integer(columns(flag + 1, flag + 4)).and_then(|count| usize::try_from(count).ok());
+        let count = count.filter(|&count| count <= MOST);
+        let count = count.ok_or_else(|| line.expected("how many satellites or lines follow"))?;
+        if !matches!(columns(flag, flag + 1), b"" | b"0" | b"1") {
+            // An event; what follows it begins anew.
+            let epoch = std::mem::take(&mut self.epoch);
+            self.put(&epoch);
+            for _ in 0..count {
+                self.copy(&lines.expect("a line of an event")?)?;
+            }
+            return Ok(());
+        }
+        self.put_epoch(list, count, line)?;
+        lines.expect("the receiver's clock offset")?;
+        let mut before = std::mem::take(&mut self.satellites);
+        for i in 0..count {
+            let name = self.epoch[list + 3 * i..][..3].try_into().unwrap_or_default();
+            let line = lines.expect("a satellite's observations")?;
+            let known = before.iter().position(|satellite| satellite.name == name);
+            let mut satellite = match known {
+                Some(place) => before.swap_remove(place),
+                None => Satellite { name, arcs: Vec::new(), flags: Vec::new() },
+            };
+            let system = if old { 0 } else { name[0] };
+            let observables = self.observables.iter().find(|(other, _)| *other == system);
+            let (_, observables) = observables
+                .ok_or_else(|| line.error("expected a satellite system of the header"))?;
+            satellite.arcs.resize(*observables, None);
+            satellite.step(&line, self.compact_version)?;
+            self.put_satellite(&satellite, &line)?;
+            self.satellites.push(satellite);
+        }
+        Ok(())
+    }
+
+    /// Writes the line of an epoch, in RINEX 2 twelve satellites in each, and checks that they are there.
+    fn put_epoch(&mut self, list: usize, count: usize, line: &Line<'_>) -> Result<(), Error> {
+        // Blanks at its end may have been cut.
+        let last = self.epoch.iter().rposition(|&byte| byte != b' ').unwrap_or_default();
+        let end = list + 3 * count;
+        if last >= end || (count > 0 && last + 3 < end) {
+            return Err(line.error(format!("expected a list of {count} satellites")));
+        }
+        self.epoch.resize(end, b' ');
+        let first = if self.version < 3 { self.epoch.len().min(list + 36) } else { list };
+        self.out.extend_from_slice(&self.epoch[..first]);
+        end_line(&mut self.out);
+        if self.version < 3 {
+            for names in self.epoch[first..].chunks(36) {
+                self.out.resize(self.out.len() + list, b' ');
+                self.out.extend_from_slice(names);
+                end_line(&mut self.out);
+            }
+        }
+        Ok(())
+    }
+
+    fn put_satellite(&mut self, satellite: &Satellite, line: &Line<'_>) -> Result<(), Error> {
+        let in_a_line = if self.version < 3 { 5 } else { usize::MAX };
+        if self.version >= 3 {
+            self.out.extend_from_slice(&satellite.name);
+        }
+        for (i, (arc, flags)) in satellite.arcs.iter().zip(satellite.flags.chunks(2)).enumerate() {
+            if i > 0 && i % in_a_line == 0 {
+                end_line(&mut self.out);
+            }
+            let field = match arc {
+                Some(arc) => arc
+                    .field()
+                    .ok_or_else(|| line.error("expected observations of at most 14 characters"))?,
+                None => [b' '; 14],
+            };
+            self.out.extend_from_slice(&field);
+            self.out.extend_from_slice(flags);
+        }
+        end_line(&mut self.out);
+        Ok(())
+    }
+}
+
+fn end_line(out: &mut Vec<u8>) {
+    while out.last() == Some(&b' ') {
+        out.pop();
+    }
+    out.push(b'\n');
+}
+
+#[cfg(test)]
+mod tests;

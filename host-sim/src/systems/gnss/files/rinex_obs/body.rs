@@ -1,0 +1,256 @@
+//! What an observation file tells of its epochs.
+
+use kestirim_gnss_ppp::GpsTime;
+
+use super::super::fields::gps_satellite;
+use super::super::lines::{Line, Lines, Text};
+use super::super::time::full_year;
+use super::header::Header;
+use super::signals::{Raw, Seen};
+use super::{Epoch, Observations, Signals};
+use crate::Error;
+
+/// What a file holds, with all the signals it tells of.
+#[derive(Debug, Default)]
+pub(super) struct Body {
+    header: Header,
+    epochs: Vec<RawEpoch>,
+    /// Of all epochs, one after the other: satellite, and the end of its part of `raw`.
+    records: Vec<(u8, usize)>,
+    raw: Vec<Raw>,
+    moved: bool,
+    backwards: usize,
+    doubled: usize,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug)]
+struct RawEpoch {
+    time: GpsTime,
+    power_failure: bool,
+    /// The end of its part of the records.
+    end: usize,
+}
+
+impl Body {
+    pub(super) fn new(header: Header) -> Self {
+        Self { header, ..Self::default() }
+    }
+
+    /// Reads all epochs.
+    pub(super) fn read<'a>(&mut self, text: &'a Text, lines: &mut Lines<'a>) -> Result<(), Error> {
+        while let Some(line) = lines.next() {
+            if line.bytes.trim_ascii().is_empty() {
+                continue;
+            }
+            let (records, raw) = (self.records.len(), self.raw.len());
+            let epochs = self.epochs.len();
+            let (backwards, doubled) = (self.backwards, self.doubled);
+            let result = self.epoch(&line, lines);
+            let complete = result.is_ok() && (text.ends_with_line_break() || !lines.is_at_end());
+            if complete {
+                continue;
+            }
+            if let Err(error) = result {
+                // What goes wrong before the last line is no cut.
+                if !lines.is_at_end() || epochs == 0 {
+                    return Err(error);
+                }
+            }
+            (self.backwards, self.doubled) = (backwards, doubled);
+            self.epochs.truncate(epochs);
+            self.records.truncate(records);
+            self.raw.truncate(raw);
+            self.warnings
+                .push(line.warning("the file was cut off in this epoch, which is left out"));
+        }
+        if self.raw.is_empty() {
+            return Err(
+                text.error("expected observations of GPS satellites on L1 or L2, found none")
+            );
+        }
+        Ok(())
+    }
+
+    /// Reads an epoch or event that begins with a line.
+    fn epoch<'a>(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), Error> {
+        let old = self.header.version < 3;
+        if !old && line.column(0) != b'>' {
+            return Err(line.expected("an epoch, which begins with >"));
+        }
+        let place = if old { 28 } else { 31 };
+        let flag = line.column(place);
+        if !matches!(flag, b'0'..=b'6' | b' ') {
+            return Err(line.expected("an epoch with a flag from 0 to 6"));
+        }
+        let count = line.count("how many satellites or lines follow", place + 1, place + 4)?;
+        if matches!(flag, b'2'..=b'5') {
+            return self.event(flag, count, line, lines);
+        }
+        let names = if old { names(line, lines, count)? } else { Vec::new() };
+        // Slips that a receiver mended are told as if observed.
+        let time = if flag == b'6' { None } else { Some(self.time(line)?) };
+        let last = self.epochs.last().map(|epoch| epoch.time);
+        let wanted = time.filter(|time| last.is_none_or(|last| last < *time));
+        self.backwards += usize::from(time != wanted);
+        let (first, raw) = (self.records.len(), self.raw.len());
+        for i in 0..count {
+            let line = lines.expect("a satellite's observations")?;
+            let name = names.get(i).copied().unwrap_or([0, 1, 2].map(|place| line.column(place)));
+            let named =
+                satellite(name).ok_or_else(|| line.expected("a satellite's observations"))?;
+            let start = self.raw.len();
+            self.observations(named, line, lines)?;
+            let Named::Gps(prn) = named else { continue };
+            if self.records[first..].iter().any(|&(other, _)| other == prn) {
+                self.doubled += 1;
+                self.raw.truncate(start);
+            } else {
+                self.records.push((prn, self.raw.len()));
+            }
+        }
+        if let Some(time) = wanted {
+            let end = self.records.len();
+            self.epochs.push(RawEpoch { time, power_failure: flag == b'1', end });
+        } else {
+            self.records.truncate(first);
+            self.raw.truncate(raw);
+        }
+        Ok(())
+    }
+
+    fn time(&self, line: &Line<'_>) -> Result<GpsTime, Error> {
+        if self.header.version < 3 {
+            line.short_time([1, 3, 6, 9, 12, 15, 26], full_year)
+        } else {
+            line.time([2, 6, 9, 12, 15, 18, 29])
+        }
+    }
+
+    /// Skips an event, unless it brings another list of observations.
+    fn event<'a>(
+        &mut self,
+        flag: u8,
+        count: usize,
+        line: &Line<'a>,
+        lines: &mut Lines<'a>,
+    ) -> Result<(), Error> {
+        if matches!(flag, b'2' | b'3') && !self.moved {
+            self.moved = true;
+            let problem = "the antenna is moved or the marker changes from here on";
+            self.warnings.push(line.warning(problem));
+        }
+        let mut changed = self.header.clone();
+        for _ in 0..count {
+            let line = lines.expect("a line of an event")?;
+            changed.observables(&line)?;
+        }
+        self.header = changed.complete();
+        Ok(())
+    }
+
+    /// Reads what was observed of a satellite, or skips it without a number of it.
+    fn observations<'a>(
+        &mut self,
+        named: Named,
+        first: Line<'a>,
+        lines: &mut Lines<'a>,
+    ) -> Result<(), Error> {
+        let old = self.header.version < 3;
+        let (offset, in_a_line) = if old { (0, 5) } else { (3, usize::MAX) };
+        let mut line = first;
+        for (i, observable) in self.header.observables.iter().enumerate() {
+            let place = i % in_a_line;
+            if i > 0 && place == 0 {
+                line = lines.expect("a satellite's further observations")?;
+            }
+            let (Some(observable), Named::Gps(_)) = (observable, named) else { continue };
+            let column = offset + 16 * place;
+            let value = line.optional_number("an observation", column, column + 14)?;
+            let Some(value) = value.filter(|&value| value != 0.0) else { continue };
+            let lock = line.column(column + 14);
+            let lock_lost = lock.is_ascii_digit() && (lock - b'0') & 1 == 1;
+            let value = value / observable.scale;
+            self.raw.push(Raw { signal: observable.signal, value, lock_lost });
+        }
+        Ok(())
+    }
+
+    /// Chooses the signals and takes them out.
+    pub(super) fn finish(mut self, text: &Text) -> Observations {
+        let mut seen = Seen::default();
+        let mut start = 0;
+        for &(prn, end) in &self.records {
+            seen.count(prn, &self.raw[start..end]);
+            start = end;
+        }
+        let signals = seen.choose();
+        let mut epochs = Vec::with_capacity(self.epochs.len());
+        let (mut record, mut start) = (0, 0);
+        for epoch in &self.epochs {
+            let mut satellites = Vec::with_capacity(epoch.end - record);
+            for &(prn, end) in &self.records[record..epoch.end] {
+                let chosen = signals.get(&prn).copied().unwrap_or_default();
+                satellites.push(chosen.take(prn, &self.raw[start..end]));
+                start = end;
+            }
+            record = epoch.end;
+            let RawEpoch { time, power_failure, .. } = *epoch;
+            epochs.push(Epoch { time, power_failure, satellites });
+        }
+        let mut warn = |count: usize, problem: &str| {
+            if count > 0 {
+                self.warnings.push(text.warning(format!("{count} {problem}")));
+            }
+        };
+        warn(self.backwards, "epochs are not later than the one before and are left out");
+        warn(self.doubled, "satellites are told of twice in an epoch; the first is taken");
+        self.warnings.extend(Signals::warnings(&signals).into_iter().map(|it| text.warning(it)));
+        let Header { marker, receiver, antenna, approximate_position, antenna_delta_hen, .. } =
+            self.header;
+        Observations {
+            marker,
+            receiver,
+            antenna,
+            approximate_position,
+            antenna_delta_hen,
+            epochs,
+            signals,
+            warnings: self.warnings,
+        }
+    }
+}
+
+/// The satellites of an epoch of RINEX 2: twelve in a line.
+fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec<[u8; 3]>, Error> {
+    let mut names = Vec::with_capacity(count.min(999));
+    let mut line = *line;
+    for i in 0..count {
+        if i > 0 && i % 12 == 0 {
+            line = lines.expect("further satellites of the epoch")?;
+        }
+        let column = 32 + 3 * (i % 12);
+        let name = [0, 1, 2].map(|place| line.column(column + place));
+        if satellite(name).is_none() {
+            return Err(line.expected("the satellites of an epoch"));
+        }
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy)]
+enum Named {
+    Gps(u8),
+    Other,
+}
+
+/// What satellite a name stands for, if it is one.
+fn satellite(name: [u8; 3]) -> Option<Named> {
+    match name {
+        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Gps),
+        [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other),
+        _ => None,
+    }
+}

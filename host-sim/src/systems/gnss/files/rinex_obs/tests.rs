@@ -1,0 +1,146 @@
+use super::super::samples::{
+    header, lines, observations_2, observations_3, observations_3_header, text,
+};
+use super::*;
+
+fn complaint(file: &str) -> String {
+    let sentence = Observations::parse(&text(file)).expect_err(file).to_string();
+    assert!(!sentence.contains('\n'), "{sentence}");
+    sentence
+}
+
+#[test]
+fn rinex_3_is_read() -> Result<(), Error> {
+    let observations = Observations::parse(&text(observations_3()))?;
+    assert_eq!(observations.marker, "HERE00XXX");
+    assert_eq!(observations.receiver, "RECEIVER");
+    assert_eq!(observations.antenna, "ANT  TYPE       DOME");
+    assert_eq!(observations.approximate_position, Some([4_000_000.1, 2e5, 4.9e6]));
+    assert_eq!(observations.antenna_delta_hen, [1.5, 0.2, -0.1]);
+    assert_eq!(observations.warnings, [""; 0]);
+    let epochs = &observations.epochs;
+    let seconds: Vec<_> = epochs.iter().map(|epoch| epoch.time.second()).collect();
+    assert_eq!(seconds, [0.0, 30.0, 60.0]);
+    assert_eq!(epochs[0].time.day(), 58_849);
+    assert_eq!(
+        epochs.iter().map(|epoch| epoch.power_failure).collect::<Vec<_>>(),
+        [false, true, false]
+    );
+    let first = Observed {
+        prn: 5,
+        code: [Some(20_000_000.625), Some(20_000_001.5)],
+        phase: [Some(105_100_000.25), Some(81_900_000.5)],
+        loss_of_lock: [true, false],
+    };
+    assert_eq!(epochs[0].satellites, [first]);
+    let [twelve, five] = epochs[1].satellites[..] else { panic!("two satellites") };
+    assert_eq!((twelve.prn, five.prn), (12, 5));
+    assert_eq!((five.phase[0], five.loss_of_lock), (None, [false, true]));
+    let signals = observations.signals[&5];
+    let names = signals.code.iter().chain(&signals.phase).flatten().map(Signal::to_string);
+    assert_eq!(names.collect::<Vec<_>>(), ["C1W", "C2W", "L1C", "L2W"]);
+    Ok(())
+}
+
+#[test]
+fn rinex_2_is_read() -> Result<(), Error> {
+    let observations = Observations::parse(&text(observations_2()))?;
+    let [first, second] = &observations.epochs[..] else { panic!("two epochs") };
+    assert_eq!(first.time.plus(30.0), second.time);
+    assert_eq!(second.time.day(), 51_544);
+    let numbers: Vec<_> = first.satellites.iter().map(|satellite| satellite.prn).collect();
+    assert_eq!(numbers, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13]);
+    assert_eq!(first.satellites[11].phase[0], Some(1_000_000_012.25));
+    assert_eq!(first.satellites[2].code, [Some(20_000_000.5), Some(20_000_001.0)]);
+    // P1 is missing once; C1 does not step in.
+    assert_eq!(second.satellites[0].code, [None, Some(20_000_101.0)]);
+    assert_eq!(observations.warnings, [""; 0]);
+    Ok(())
+}
+
+#[test]
+fn codes_without_reference_are_taken_with_a_warning() -> Result<(), Error> {
+    let file = observations_3().replace("       C1W", "       S1C");
+    let observations = Observations::parse(&text(file))?;
+    assert_eq!(observations.epochs[0].satellites[0].code[0], Some(20_000_000.125));
+    let [warning] = &observations.warnings[..] else { panic!("{:?}", observations.warnings) };
+    assert!(warning.starts_with("file: C1C is taken instead of C1W"), "{warning}");
+    assert!(warning.contains("G05 G12"), "{warning}");
+    Ok(())
+}
+
+#[test]
+fn scale_factors_are_divided_out() -> Result<(), Error> {
+    let end = header("", "END OF HEADER");
+    let file =
+        observations_3().replace(&end, &(header("G  100  1 L1C", "SYS / SCALE FACTOR") + &end));
+    let observations = Observations::parse(&text(file))?;
+    assert_eq!(observations.epochs[0].satellites[0].phase[0], Some(1_051_000.002_5));
+    Ok(())
+}
+
+#[test]
+fn an_event_may_change_the_observables() -> Result<(), Error> {
+    let file = observations_3_header()
+        + &lines(&["> 2020 01 01 00 00  0.0000000  4  2"])
+        + &header("G    2 L2W C1W", "SYS / # / OBS TYPES")
+        + &header("", "COMMENT")
+        + &lines(&["> 2020 01 01 00 00  0.0000000  0  1", "G05  81900000.500    20000000.625"]);
+    let observations = Observations::parse(&text(file))?;
+    let observed = observations.epochs[0].satellites[0];
+    assert_eq!(observed.code, [Some(20_000_000.625), None]);
+    assert_eq!(observed.phase, [None, Some(81_900_000.5)]);
+    Ok(())
+}
+
+#[test]
+fn a_file_cut_off_loses_its_last_epoch() -> Result<(), Error> {
+    let whole = observations_3();
+    let cut = &whole[..whole.len() - 3];
+    let line = whole.lines().count() - 1;
+    for file in [cut, &whole[..whole.len() - 60]] {
+        let observations = Observations::parse(&text(file))?;
+        assert_eq!(observations.epochs.len(), 2);
+        let warning =
+            format!("file, line {line}: the file was cut off in this epoch, which is left out");
+        assert_eq!(observations.warnings, [warning]);
+    }
+    Ok(())
+}
+
+#[test]
+fn garbage_in_the_middle_is_located() {
+    let file = observations_3().replace("22000001.000", "2200x001.000");
+    assert_eq!(complaint(&file), "file, line 18: expected an observation, found \"2200x001.000\"");
+    let file = observations_3().replace("> 2020 01 01 00 00 30", "> 2020 01 41 00 00 30");
+    assert!(complaint(&file).starts_with("file, line 17: expected a date and time"));
+    let file = observations_3().replacen("  0  2\n", "  0  3\n", 1);
+    assert!(complaint(&file).starts_with("file, line 15: expected a satellite's observations"));
+}
+
+#[test]
+fn epochs_told_twice_are_taken_once() -> Result<(), Error> {
+    let whole = observations_3();
+    let body = &whole[observations_3_header().len()..];
+    let observations = Observations::parse(&text(whole.clone() + body))?;
+    assert_eq!(observations.epochs.len(), 3);
+    let warning = "file: 3 epochs are not later than the one before and are left out";
+    assert_eq!(observations.warnings, [warning]);
+    Ok(())
+}
+
+#[test]
+fn what_cannot_be_used_is_refused() {
+    let file = observations_3().replace("     GPS", "     GLO");
+    assert!(complaint(&file).ends_with("expected times of GPS, found the time system \"GLO\""));
+    let file = observations_3().replace("3.04 ", "1.04 ");
+    assert!(complaint(&file).contains("expected RINEX 2, 3 or 4, found version 1.04"));
+    let file = observations_3().replace("G    5", "E    5");
+    assert!(complaint(&file).contains("expected observations of GPS on L1 or L2 in the header"));
+    let file = header("     3.04           N", "RINEX VERSION / TYPE");
+    let sentence = "file: expected observations (RINEX), found a navigation file (RINEX)";
+    assert_eq!(complaint(&file), sentence);
+    assert!(complaint("<!DOCTYPE html>\n").contains("found a web page"));
+    assert!(complaint("").ends_with("found an empty file"));
+    assert!(complaint(&observations_3_header()).contains("found none"));
+}

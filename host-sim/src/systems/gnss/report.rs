@@ -1,0 +1,143 @@
+//! What the command prints.
+
+use std::fmt;
+
+use comfy_table::Table;
+use serde::Serialize;
+
+use super::sky::score::Score;
+use crate::cli::ScalarKind;
+use crate::metrics::mean;
+use crate::output;
+use crate::published::PppErrors;
+
+/// A filter's errors.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Table of the paper, or what goes beyond it.
+    pub table: &'static str,
+    /// Which filter.
+    pub filter: &'static str,
+    /// What the paper prints.
+    pub published: Option<PppErrors>,
+    /// Means over the station-days; the convergence's over those that converged.
+    pub ours: PppErrors,
+    /// Largest RMS of a station-day, mm.
+    pub worst_rms_mm: f64,
+    /// Station-days whose solution did not converge.
+    pub unconverged: usize,
+    /// Epochs without a solution, of all station-days.
+    pub unsolved: usize,
+    /// Each station-day.
+    pub days: Vec<Score>,
+}
+
+impl Row {
+    /// The means of station-days.
+    pub fn of(
+        table: &'static str,
+        filter: &'static str,
+        published: Option<PppErrors>,
+        days: Vec<Score>,
+    ) -> Self {
+        let means = |of: fn(&Score) -> [f64; 4]| {
+            [0, 1, 2, 3].map(|part| mean(&days.iter().map(|day| of(day)[part]).collect::<Vec<_>>()))
+        };
+        let converged: Vec<_> = days.iter().filter_map(|day| day.convergence_min).collect();
+        let ours = PppErrors {
+            final_mm: means(|day| day.final_mm),
+            rms_mm: means(|day| day.rms_mm),
+            convergence_min: (!converged.is_empty()).then(|| mean(&converged)),
+        };
+        Self {
+            table,
+            filter,
+            published,
+            ours,
+            worst_rms_mm: days.iter().map(|day| day.rms_mm[3]).fold(0.0, f64::max),
+            unconverged: days.len() - converged.len(),
+            unsolved: days.iter().map(|day| day.unsolved).sum(),
+            days,
+        }
+    }
+}
+
+/// All filters on the same station-days.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Always `gnss`.
+    pub system: &'static str,
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// Number type of the filters.
+    pub scalar: ScalarKind,
+    /// Station-days.
+    pub trials: u32,
+    /// Variance that kinematic filters give each coordinate, m²/s.
+    pub process_noise: f64,
+    /// The filters.
+    pub rows: Vec<Row>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { seed, trials, process_noise, .. } = self;
+        writeln!(
+            f,
+            "gnss: mean errors N E U 3-D of static and kinematic receivers that stand still, mm: at the end of the \
+             day, and\nRMS after the first hour (in brackets: the worst day's); minutes until 3-D stays below 10 cm \
+             for a quarter of an hour;\n{trials} synthetic station-days with faults (published: 100 real ones, whose \
+             faults are not known), seed {seed};\nkinematic: {process_noise:e} m²/s a coordinate"
+        )?;
+        for rows in self.rows.chunk_by(|a, b| a.table == b.table) {
+            writeln!(f, "{}", shown(rows))?;
+        }
+        Ok(())
+    }
+}
+
+fn shown(rows: &[Row]) -> Table {
+    let mut table = output::table();
+    let title = rows.first().map_or("", |row| row.table);
+    table.set_header([
+        title,
+        "error: published",
+        "ours",
+        "RMS: published",
+        "ours",
+        "converged: published",
+        "ours",
+    ]);
+    for row in rows {
+        let published =
+            |of: fn(&PppErrors) -> String| row.published.as_ref().map_or(String::new(), of);
+        table.add_row([
+            row.filter.to_owned(),
+            published(|it| four(it.final_mm)),
+            four(row.ours.final_mm),
+            published(|it| four(it.rms_mm)),
+            format!("{} ({:.0})", four(row.ours.rms_mm), row.worst_rms_mm),
+            published(|it| it.convergence_min.map_or(String::new(), |it| format!("{it:.1}"))),
+            converged(row),
+        ]);
+    }
+    table
+}
+
+fn four(numbers: [f64; 4]) -> String {
+    numbers.map(|number| format!("{number:.1}")).join(" ")
+}
+
+fn converged(row: &Row) -> String {
+    let mean = row.ours.convergence_min.map_or("never".to_owned(), |it| format!("{it:.1}"));
+    let never = match row.unconverged {
+        0 => String::new(),
+        count if count == row.days.len() => String::new(),
+        count => format!(", {count} never"),
+    };
+    let unsolved = match row.unsolved {
+        0 => String::new(),
+        count => format!(", {count} epochs unsolved"),
+    };
+    mean + &never + &unsolved
+}

@@ -1,0 +1,71 @@
+//! Precise point positioning by the target itself: a station is found from ten satellites, by the default filter and
+//! by the plain one.
+//!
+//! Tells the host
+//!
+//! - `name`, `scalar` and `object_bytes` (size of the filter);
+//! - for each filter and epoch `FILTER.solution`, the bits of x y z, the receiver's clock and the wet delay, and
+//!   `FILTER.treated`, how many codes and how many phases had less than full weight;
+//! - the meter's report of the first epoch, of those with good observations, and of that with outliers.
+
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use images::ppp::{Epochs, Filter, OUTLIERS, receiver, station};
+use kestirim_ppp_filter::{Config, Error, Estimator, Motion};
+use support::{Class, Meter, fail, image, line, line_of_text};
+
+/// Deeper than any epoch reaches into the stack, in bytes.
+const REACH: usize = 96 * 1024;
+
+fn run() {
+    line_of_text("name", "ppp");
+    line_of_text("scalar", "f64");
+    line("object_bytes", &[size_of::<Filter>() as i64]);
+    let default = Config::new(Motion::Static);
+    position(
+        &["default.solution", "default.treated"],
+        ["default first", "default clean", "default outliers"],
+        default,
+    );
+    let plain = Config { estimator: Estimator::plain(), ..default };
+    position(
+        &["plain.solution", "plain.treated"],
+        ["plain first", "plain clean", "plain outliers"],
+        plain,
+    );
+}
+
+#[inline(never)] // One filter's code for both.
+fn position(keys: &[&str; 2], names: [&str; 3], config: Config) {
+    let mut filter = Filter::new(black_box(config));
+    let mut meters = names.map(|name| (name, Meter::reaching(REACH)));
+    let [(_, first), (_, clean), (_, outliers)] = &mut meters;
+    for (index, epoch) in Epochs::at(black_box(station())).enumerate() {
+        let meter = match index {
+            0 => &mut *first,
+            OUTLIERS => &mut *outliers,
+            _ => &mut *clean,
+        };
+        let mut answer = Err(Error::TimeNotAdvancing);
+        meter.measure(|| {
+            answer = filter.process(epoch.time, &receiver(), &epoch.sightings);
+            if answer.is_ok() { Class::Update } else { Class::Rejected }
+        });
+        let Ok(solution) = answer else { fail("an epoch without a solution") };
+        let [x, y, z] = solution.position.data.0[0];
+        let [solution_key, treated_key] = keys;
+        let numbers = [x, y, z, solution.clock, solution.wet_delay];
+        line(solution_key, &numbers.map(|number| number.to_bits() as i64));
+        let codes = solution.satellites.iter().filter(|report| report.code.was_treated()).count();
+        let phases = solution.satellites.iter().filter(|report| report.phase.was_treated()).count();
+        line(treated_key, &[codes as i64, phases as i64]);
+    }
+    for (name, meter) in &meters {
+        meter.report(name);
+    }
+}
+
+image!(run);
