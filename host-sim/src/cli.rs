@@ -45,6 +45,8 @@ pub enum Run {
     Drone(drone::options::Run),
     /// The longitudinal motion of a fixed-wing aircraft
     Uav(PlainRun),
+    /// A GNSS receiver, positioned precisely
+    Gnss(PlainRun),
 }
 
 /// An experiment without options of its own.

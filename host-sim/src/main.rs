@@ -34,6 +34,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Run(Run::Robot(run))) => systems::run_robot(run),
         Some(Command::Run(Run::Drone(run))) => systems::run_drone(run),
         Some(Command::Run(Run::Uav(run))) => systems::run_uav(run),
+        Some(Command::Run(Run::Gnss(run))) => systems::run_gnss(run),
         Some(Command::Replay(Replay::Pedestrian(replay))) => replay.run(),
         Some(Command::Replay(Replay::Robot(replay))) => replay.run(),
         Some(Command::Replay(Replay::Drone(replay))) => replay.run(),

@@ -21,6 +21,8 @@ pub enum System {
     Drone,
     /// The longitudinal motion of a fixed-wing aircraft.
     Uav,
+    /// A GNSS receiver, positioned precisely.
+    Gnss,
 }
 
 /// Runs the pedestrian's experiment and prints its report.
@@ -55,9 +57,17 @@ pub fn run_uav(run: PlainRun) -> Result<(), Error> {
     output::show(&uav::experiment::run(run.options)?, run.json)
 }
 
+/// Runs the GNSS receiver's experiment and prints its report.
+///
+/// # Errors
+/// As [`run_pedestrian`].
+pub fn run_gnss(run: PlainRun) -> Result<(), Error> {
+    output::show(&gnss::experiment::run(run.options)?, run.json)
+}
+
 impl System {
     /// Every system, in the order in which they run.
-    pub const ALL: [Self; 4] = [Self::Pedestrian, Self::Robot, Self::Drone, Self::Uav];
+    pub const ALL: [Self; 5] = [Self::Pedestrian, Self::Robot, Self::Drone, Self::Uav, Self::Gnss];
 
     /// Runs the system on its synthetic streams and prints the report.
     ///
@@ -70,6 +80,7 @@ impl System {
             Self::Robot => run_robot(plain),
             Self::Drone => run_drone(drone::options::Run::default()),
             Self::Uav => run_uav(plain),
+            Self::Gnss => run_gnss(plain),
         }
     }
 
@@ -80,6 +91,7 @@ impl System {
             Self::Robot => robot::DESCRIPTION,
             Self::Drone => drone::DESCRIPTION,
             Self::Uav => uav::DESCRIPTION,
+            Self::Gnss => gnss::DESCRIPTION,
         }
     }
 }

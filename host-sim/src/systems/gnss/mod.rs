@@ -1,5 +1,6 @@
 //! GNSS receivers at a fixed or moving place.
 //!
+//! `sky` makes observations, and `experiment` repeats the paper's tables on them.
 //! `files` reads observations and what services tell of satellites; `products` and `recording` put together what
 //! a filter needs. `follow` feeds one and counts what becomes of the observations, `accuracy` compares with the
 //! truth; `session` runs one filter or all for a [replay](replay::Replay).
@@ -21,3 +22,13 @@ pub mod report;
 pub mod session;
 pub mod sky;
 pub mod tables;
+
+/// What `host-sim list` says of this system.
+pub(super) const DESCRIPTION: &str = "\
+gnss        where a GPS receiver is, to a centimetre, from precise orbits and clocks
+  scenario  days of a station under a synthetic sky, static and kinematic, with and without faults
+  obs       RINEX 2, 3 or 4 observations of GPS on L1 and L2, as all these files perhaps packed with gzip; CRINEX
+  sp3, clk  precise orbits (SP3) and clocks (RINEX), one file or more
+  antex     phase centres of antennas (ANTEX)
+  blq       ocean loading of stations (BLQ)
+  truth     X,Y,Z of the marker in m, ECEF, on the command line";
