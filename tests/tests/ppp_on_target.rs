@@ -128,6 +128,6 @@ fn cortex_m4f() -> Result<()> {
 fn rv32imc() -> Result<()> {
     let [default, plain] = [[4_430, 3_730, 6_470], [4_540, 3_880, 3_830]];
     check(&RV32IMC, Profile::Speed, &Budgets { default, plain, stack: 25 << 10 })?;
-    let [default, plain] = [[9_000; 3]; 2];
+    let [default, plain] = [[4_850, 3_980, 6_830], [4_970, 4_150, 4_100]];
     check(&RV32IMC, Profile::Size, &Budgets { default, plain, stack: 25 << 10 })
 }
