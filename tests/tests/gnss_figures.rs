@@ -39,7 +39,7 @@ fn colour(filter: FilterKind) -> RGBColor {
 
 /// As thick as it matters.
 fn width(filter: FilterKind) -> u32 {
-    if filter == FilterKind::Default { 3 } else { 1 }
+    if filter == FilterKind::Default { 2 } else { 1 }
 }
 
 fn name(filter: FilterKind) -> &'static str {
@@ -158,6 +158,7 @@ fn legend<'a>(root: &Area<'a>, filters: &[FilterKind]) -> Result<Area<'a>, Box<d
 fn panel(area: &Area, title: &str, ys: std::ops::Range<f64>, lines: &[Line]) -> Done {
     let mut chart = ChartBuilder::on(area)
         .margin(8)
+        .margin_right(16)
         .caption(title, ("sans-serif", 14))
         .x_label_area_size(34)
         .y_label_area_size(58)
@@ -168,8 +169,9 @@ fn panel(area: &Area, title: &str, ys: std::ops::Range<f64>, lines: &[Line]) -> 
         .y_desc("3-D error, m")
         .x_labels(13)
         .y_labels(6)
+        .x_label_formatter(&f64::to_string)
         .y_label_formatter(&f64::to_string)
-        .light_line_style(WHITE)
+        .max_light_lines(0)
         .draw()?;
     for (filter, points) in lines {
         let style = colour(*filter).stroke_width(width(*filter));
@@ -194,7 +196,7 @@ fn residuals() -> Done {
     /// Everything beyond this is drawn …
     const FAR: f64 = 4.0;
     /// … and of the rest one in so many, in no order that would show.
-    const THINNED: usize = 67;
+    const THINNED: usize = 113;
     let Some(folder) = folder_of("gnss") else { return Ok(()) };
     let path = file("gnss-residuals.svg")?;
     let root = SVGBackend::new(&path, (720, 640)).into_drawing_area();
@@ -213,17 +215,20 @@ fn residuals() -> Done {
         let title = format!("{}: {rejected} codes rejected", name(*filter));
         let mut chart = ChartBuilder::on(area)
             .margin(6)
+            .margin_right(14)
             .caption(title, ("sans-serif", 14))
             .x_label_area_size(32)
             .y_label_area_size(44)
-            .build_cartesian_2d(0.0..24.0, -10.0..34.0)?;
+            .build_cartesian_2d(0.0..24.0, -34.0..34.0)?;
         chart
             .configure_mesh()
             .x_desc("hours")
             .y_desc("code residual, σ")
-            .x_labels(7)
-            .y_labels(6)
-            .light_line_style(WHITE)
+            .x_labels(5)
+            .y_labels(7)
+            .x_label_formatter(&f64::to_string)
+            .y_label_formatter(&f64::to_string)
+            .max_light_lines(0)
             .draw()?;
         chart.draw_series(codes.iter().map(|&(t, value, satellite)| {
             let colour = COLOURS[satellite % COLOURS.len()];
