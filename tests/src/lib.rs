@@ -3,6 +3,7 @@
 #[path = "../firmware/images/src/design.rs"]
 pub mod design;
 pub mod firmware;
+pub mod gnss;
 #[path = "../firmware/images/src/ppp.rs"]
 pub mod ppp;
 pub mod recordings;

@@ -18,3 +18,9 @@ pub struct Sighting<'a> {
     /// Its antenna on L1 and L2, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
 }
+
+impl Sighting<'_> {
+    pub(crate) fn is_finite(&self) -> bool {
+        self.code.iter().chain(&self.phase).all(|value| value.is_finite())
+    }
+}

@@ -189,12 +189,17 @@ impl<const N: usize> Running<N> {
             let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
             let expected = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up);
             let Some(expected) = expected else { continue };
-            if !(expected.direction.elevation >= config.elevation_mask) {
+            let below = !(expected.direction.elevation >= config.elevation_mask);
+            let twice =
+                lines.iter().any(|(_, line): &(_, Line)| line.satellite == sighting.satellite);
+            if below && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
+                *place = None;
+            }
+            if below || twice || !sighting.is_finite() {
                 continue;
             }
-            let Some((state, slipped)) = self.track(known, sighting, &expected, config) else {
-                continue;
-            };
+            let Some(state) = known.or_else(|| self.free(sightings)) else { continue };
+            let slipped = self.track(state, sighting, &expected, config);
             let mut line = Line::new(sighting, expected, state, slipped, config);
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
@@ -208,43 +213,37 @@ impl<const N: usize> Running<N> {
         lines
     }
 
-    /// The state of a satellite's ambiguity, and whether it begins anew.
+    /// Follows a satellite whose ambiguity is `state`. Whether and why that begins anew.
     fn track(
         &mut self,
-        known: Option<usize>,
+        state: usize,
         sighting: &Sighting<'_>,
         expected: &Expected,
         config: &Config,
-    ) -> Option<(usize, Option<Slipped>)> {
-        let Sighting { phase, code, .. } = *sighting;
-        let state = known.or_else(|| self.free())?;
+    ) -> Option<Slipped> {
+        let Sighting { satellite, phase, code, lock_lost, .. } = *sighting;
         let time = self.time;
-        let channel = self.channels.get_mut(state)?;
-        match channel {
-            Some(channel) if known.is_some() => {
-                channel.wind_up = expected.wind_up_cycles;
-                let slip =
-                    channel.arc.observe(time, phase, code, sighting.lock_lost, &config.slips);
-                let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
-                let slipped = slip.map(Slipped::Seen).or_else(|| {
-                    let patience = config.estimator.patience?;
-                    channel.watch.contradicts(patience).then_some(Slipped::Contradicted)
-                });
-                if slipped.is_some() {
-                    channel.watch.begin();
-                }
-                Some((state, slipped))
-            }
-            _ => {
-                *channel = Some(Channel {
-                    satellite: sighting.satellite,
-                    arc: Arc::begin(time, phase, code),
-                    wind_up: expected.wind_up_cycles,
-                    watch: Watch::NEW,
-                });
-                Some((state, Some(Slipped::New)))
-            }
+        let place = self.channels.get_mut(state)?;
+        let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
+            *place = Some(Channel {
+                satellite,
+                arc: Arc::begin(time, phase, code),
+                wind_up: expected.wind_up_cycles,
+                watch: Watch::NEW,
+            });
+            return Some(Slipped::New);
+        };
+        channel.wind_up = expected.wind_up_cycles;
+        let slip = channel.arc.observe(time, phase, code, lock_lost, &config.slips);
+        let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
+        let slipped = slip.map(Slipped::Seen).or_else(|| {
+            let patience = config.estimator.patience?;
+            channel.watch.contradicts(patience).then_some(Slipped::Contradicted)
+        });
+        if slipped.is_some() {
+            channel.watch.begin();
         }
+        slipped
     }
 
     fn find(&self, satellite: u8) -> Option<usize> {
@@ -257,13 +256,17 @@ impl<const N: usize> Running<N> {
     }
 
     /// A state that is no satellite's, or that of the satellite unseen for longest.
-    fn free(&self) -> Option<usize> {
-        let unseen = |state: &usize| match self.channel(*state) {
-            None => f64::INFINITY,
-            Some(channel) => self.time.since(channel.arc.last()),
+    fn free(&self, sightings: &[Sighting<'_>]) -> Option<usize> {
+        let unseen = |state: usize| match self.channel(state) {
+            None => Some(f64::INFINITY),
+            Some(Channel { satellite, .. })
+                if sightings.iter().any(|sighting| sighting.satellite == *satellite) =>
+            {
+                None
+            }
+            Some(channel) => Some(self.time.since(channel.arc.last())),
         };
-        let ambiguities = (COMMON..N).map(|state| (state, unseen(&state)));
-        let free = ambiguities.filter(|&(_, unseen)| unseen > 0.0);
+        let free = (COMMON..N).filter_map(|state| Some((state, unseen(state)?)));
         free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
     }
 
@@ -273,8 +276,14 @@ impl<const N: usize> Running<N> {
     }
 }
 
+/// By counting: what sorts brings its panics along.
 fn median<T, const N: usize>(items: &Vec<T, N>, value: impl Fn(&T) -> f64) -> f64 {
-    let mut sorted: Vec<f64, N> = collected(items.iter().map(value));
-    sorted.sort_unstable_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    let values = || items.iter().map(&value);
+    let middle = items.len() / 2;
+    let is_median = |candidate: &f64| {
+        let below = values().filter(|other| other.total_cmp(candidate).is_lt()).count();
+        let up_to = values().filter(|other| other.total_cmp(candidate).is_le()).count();
+        below <= middle && middle < up_to
+    };
+    values().find(is_median).unwrap_or(0.0)
 }

@@ -30,9 +30,16 @@ const LARGEST_RESIDUAL: f64 = 15.0;
 /// Least squares on the ionosphere-free codes, begun at the Earth's centre; the worst code is
 /// dropped while its residual is not believable and five others remain.
 pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, Error> {
+    // A satellite that is there twice counts once; from no place are more than 32 seen.
     let mut dropped = 0_u32;
+    for (index, sighting) in sightings.iter().take(32).enumerate() {
+        let before = sightings.get(..index).unwrap_or(&[]);
+        if before.iter().any(|other| other.satellite == sighting.satellite) {
+            dropped |= 1 << index;
+        }
+    }
     loop {
-        let used = |index: usize| index >= 32 || dropped & (1 << index) == 0;
+        let used = |index: usize| dropped & (1_u32.checked_shl(index as u32).unwrap_or(0)) == 0;
         let solution = least_squares(sightings, used)?;
         let worst = sightings
             .iter()

@@ -3,7 +3,7 @@
 //! Every filter gets the same days, with faults; two of them get the same days without faults, too.
 
 use indicatif::ProgressBar;
-use kestirim_gnss_ppp::{Corrections, Receiver};
+use kestirim_gnss_ppp::{Corrections, Geodetic, Receiver};
 use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, Sighting, states};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -34,7 +34,8 @@ struct Case {
     published: Option<PppErrors>,
 }
 
-/// All rows of the tables.
+/// All rows of the tables. By the letter of the paper the t-test is what it is anyway; UKF is IKF, as its factor never
+/// falls: one of the tables shows it.
 fn cases() -> Vec<Case> {
     const STATIC: &str = "Table 2: static";
     const KINEMATIC: &str = "Table 3: kinematic";
@@ -67,9 +68,7 @@ fn cases() -> Vec<Case> {
         case(STATIC, "adaptive (UKF)", standing, adaptive, ukf),
         case(STATIC, "default", standing, Estimator::guarded(standing), None),
         case(STATIC, "RKF by the letter", standing, printed(igg3), None),
-        case(STATIC, "SKF by the letter", standing, printed(t_test), None),
         case(STATIC, "IKF by the letter", standing, printed(iterative), None),
-        case(STATIC, "UKF by the letter", standing, printed(adaptive), None),
         case(KINEMATIC, "plain (GKF)", moving, plain, None),
         case(KINEMATIC, "iterative IGG III (IKF)", moving, iterative, moving_ikf),
         case(KINEMATIC, "adaptive (UKF)", moving, adaptive, moving_ukf),
@@ -147,7 +146,7 @@ fn follow(day: &Day, sightings: &[Vec<Sighting<'_>>], config: Config) -> Score {
         corrections: Corrections::ALL,
     };
     let mut filter = PppFilter::<STATES>::new(config);
-    let enu = kestirim_gnss_ppp::Geodetic::from_ecef(&day.marker).enu_from_ecef();
+    let enu = Geodetic::from_ecef(&day.marker).enu_from_ecef();
     let errors: Vec<_> = day
         .epochs
         .iter()
@@ -203,7 +202,8 @@ mod tests {
                 assert_eq!(score.unsolved, 0);
             }
             let [plain, default] = faulty.map(|score| score.rms_mm[3]);
-            assert!(plain > 100.0 && default < plain / 3.0, "{index}: {plain} {default}");
+            assert!(plain > 70.0 && default < plain / 3.0, "{index}: {plain} {default}");
+            assert!(default < 35.0, "{index}: {default}");
         }
     }
 }

@@ -99,27 +99,34 @@ impl fmt::Display for Report {
 fn shown(rows: &[Row]) -> Table {
     let mut table = output::table();
     let title = rows.first().map_or("", |row| row.table);
-    table.set_header([
-        title,
-        "error: published",
-        "ours",
-        "RMS: published",
-        "ours",
-        "converged: published",
-        "ours",
-    ]);
+    let compared = rows.iter().any(|row| row.published.is_some());
+    // What was not published needs no columns.
+    let cells = |first: String, pairs: [[String; 2]; 3]| {
+        let pairs = pairs.into_iter().flat_map(|[published, ours]| {
+            compared.then_some(published).into_iter().chain(std::iter::once(ours))
+        });
+        std::iter::once(first).chain(pairs).collect::<Vec<_>>()
+    };
+    let names = ["error", "RMS", "converged"];
+    table.set_header(cells(
+        title.to_owned(),
+        names.map(|name| {
+            let ours = if compared { "ours" } else { name };
+            [format!("{name}: published"), ours.to_owned()]
+        }),
+    ));
     for row in rows {
         let published =
             |of: fn(&PppErrors) -> String| row.published.as_ref().map_or(String::new(), of);
-        table.add_row([
-            row.filter.to_owned(),
-            published(|it| four(it.final_mm)),
-            four(row.ours.final_mm),
-            published(|it| four(it.rms_mm)),
-            format!("{} ({:.0})", four(row.ours.rms_mm), row.worst_rms_mm),
-            published(|it| it.convergence_min.map_or(String::new(), |it| format!("{it:.1}"))),
-            converged(row),
-        ]);
+        let rms = format!("{} ({:.0})", four(row.ours.rms_mm), row.worst_rms_mm);
+        let minutes =
+            |it: &PppErrors| it.convergence_min.map_or(String::new(), |it| format!("{it:.1}"));
+        let pairs = [
+            [published(|it| four(it.final_mm)), four(row.ours.final_mm)],
+            [published(|it| four(it.rms_mm)), rms],
+            [published(minutes), converged(row)],
+        ];
+        table.add_row(cells(row.filter.to_owned(), pairs));
     }
     table
 }

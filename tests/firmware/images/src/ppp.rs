@@ -38,7 +38,7 @@ const NOISE: [f64; 2] = [0.3, 0.002];
 
 /// Semi-major axis of all orbits, m, eccentricity, and the cosine and sine of the inclination, 55°.
 const ORBIT: (f64, f64, [f64; 2]) =
-    (26_559_800.0, 0.01, [0.573_576_436_351_046_1, 0.819_152_044_288_991_8]);
+    (26_559_800.0, 0.01, [0.573_576_436_351_046, 0.819_152_044_288_991_8]);
 /// Longitude of the ascending node and mean argument of latitude at the start, degrees.
 const PLACES: [[f64; 2]; SATELLITES] = [
     [0.0, 0.0],
@@ -120,7 +120,7 @@ pub struct Epoch {
 }
 
 /// The epochs one after the other.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Epochs {
     station: Vector3<f64>,
     next: usize,

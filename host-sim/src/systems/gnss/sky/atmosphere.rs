@@ -76,9 +76,10 @@ pub(super) struct Ionosphere {
 }
 
 impl Ionosphere {
-    /// Between the Sun's calm and its active years.
+    /// Of the Sun's calm years, as the recordings' 2008 and 2020 and the paper's 2019 are. In active ones it jumps by
+    /// more than slips do.
     pub(super) fn draw(rng: &mut impl Rng) -> Self {
-        Self { night: 3.0 + 5.0 * uniform(rng), noon: 10.0 + 40.0 * uniform(rng) }
+        Self { night: 2.0 + 3.0 * uniform(rng), noon: 5.0 + 20.0 * uniform(rng) }
     }
 
     /// The delay of L1's code from a direction, m; `wave` disturbs it.
@@ -115,7 +116,7 @@ impl Wave {
     /// Of medium scale.
     pub(super) fn draw(rng: &mut impl Rng) -> Self {
         Self {
-            size: normal(rng, 0.3),
+            size: normal(rng, 0.15),
             period_s: 900.0 + 1800.0 * uniform(rng),
             phase: TAU * uniform(rng),
         }

@@ -79,12 +79,13 @@ pub(super) fn disturb(epochs: &mut [Epoch], rates: &Rates, rng: &mut impl Rng) {
     }
 }
 
+/// Unseen for so many epochs, a satellite has set: longer than any gap, shorter than it takes to rise again.
+const SET: usize = 60;
+
 /// A satellite's phases are others from some epoch until it sets.
 fn slip(epochs: &mut [Epoch], metres: [f64; 2], rng: &mut impl Rng) {
     let start = below(epochs.len(), rng);
     let Some(&prn) = chosen(&epochs[start], 1, rng).first() else { return };
-    // Longer than any gap, shorter than it takes to rise again.
-    const SET: usize = 60;
     let mut unseen = 0;
     for epoch in &mut epochs[start..] {
         match find(epoch, prn) {

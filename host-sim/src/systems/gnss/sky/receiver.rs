@@ -27,12 +27,12 @@ const LOST: f64 = 0.1;
 /// White noise of a code.
 const CODE: Spread = Spread { zenith: 0.12, horizon: 0.6 };
 /// Multipath of a code, and how long it remembers, s.
-const CODE_MULTIPATH: Spread = Spread { zenith: 0.12, horizon: 0.5 };
-const CODE_MEMORY_S: f64 = 180.0;
+const CODE_MULTIPATH: Spread = Spread { zenith: 0.2, horizon: 0.6 };
+const CODE_MEMORY_S: f64 = 600.0;
 /// White noise of a phase.
 const PHASE: Spread = Spread { zenith: 1e-3, horizon: 3e-3 };
 /// Multipath of a phase.
-const PHASE_MULTIPATH: Spread = Spread { zenith: 1.5e-3, horizon: 5e-3 };
+const PHASE_MULTIPATH: Spread = Spread { zenith: 1.2e-3, horizon: 4e-3 };
 const PHASE_MEMORY_S: f64 = 360.0;
 
 /// A receiver at its place.

@@ -1,0 +1,236 @@
+//! The filter under a sky without noise: what it must find, and what it must not fall for.
+
+mod sky;
+
+use kestirim_gnss_ppp::Receiver;
+use kestirim_ppp_filter::{
+    Config, Error, Estimator, Motion, PppFilter, SatelliteReport, Sighting, Slipped, Solution,
+    states,
+};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use sky::{START, marker, observe, spoil};
+
+const N: usize = states(20);
+const SLOW: Motion = Motion::Kinematic { process_noise: 1e-4 };
+
+fn filter(motion: Motion) -> PppFilter<N> {
+    PppFilter::new(Config::new(motion))
+}
+
+fn step<const N: usize>(
+    filter: &mut PppFilter<N>,
+    seconds: f64,
+    sightings: &[Sighting<'_>],
+) -> Result<Solution<N>, Error> {
+    filter.process(START.plus(seconds), &Receiver::default(), sightings)
+}
+
+/// Epochs every half minute up to `until`, as `change` makes them.
+fn run<const N: usize>(
+    filter: &mut PppFilter<N>,
+    until: f64,
+    change: impl Fn(f64, &mut Vec<Sighting<'static>>),
+) -> Vec<Solution<N>> {
+    let epochs = (0..).map(|k| 30.0 * f64::from(k)).take_while(|&seconds| seconds <= until);
+    epochs
+        .map(|seconds| {
+            let mut sightings = observe(seconds, &marker());
+            change(seconds, &mut sightings);
+            step(filter, seconds, &sightings).expect("a solution")
+        })
+        .collect()
+}
+
+/// A satellite that stays in view.
+fn highest() -> u8 {
+    let solution = step(&mut filter(Motion::Static), 1800.0, &observe(1800.0, &marker())).unwrap();
+    let elevation = |a: &SatelliteReport| a.direction.elevation;
+    let by_elevation = |a: &&_, b: &&_| elevation(a).total_cmp(&elevation(b));
+    solution.satellites.iter().max_by(by_elevation).unwrap().satellite
+}
+
+fn error<const N: usize>(solution: &Solution<N>) -> f64 {
+    (solution.position - marker()).norm()
+}
+
+#[test]
+fn a_clean_sky_is_fixed_to_millimetres() {
+    for motion in [Motion::Static, SLOW] {
+        let solutions = run(&mut filter(motion), 3600.0, |_, _| {});
+        let last = solutions.last().unwrap();
+        assert!(last.satellites.len() >= 6, "{}", last.satellites.len());
+        assert!(error(last) < 2e-3, "{motion:?}: {}", error(last));
+        let untreated = |solution: &Solution<N>| {
+            solution.satellites.iter().all(|it| !it.code.was_treated() && !it.phase.was_treated())
+        };
+        assert!(solutions.iter().all(untreated));
+        let ([east, north, up], trace) = (last.deviations_enu(), last.covariance.trace());
+        assert!((east * east + north * north + up * up - trace).abs() < 1e-9 * trace);
+    }
+}
+
+#[test]
+fn a_slip_that_no_detector_sees_is_found_by_the_filter() {
+    let victim = highest();
+    let slip = |seconds: f64, sightings: &mut Vec<Sighting<'static>>| {
+        if seconds >= 1800.0 {
+            spoil(sightings, victim, 0.0, 0.3);
+        }
+    };
+    let ours = run(&mut filter(Motion::Static), 3600.0, slip);
+    let slipped = |solution: &Solution<N>| {
+        let found = solution.satellites.iter().find(|it| it.satellite == victim);
+        found.and_then(|it| it.slipped)
+    };
+    let when: Vec<usize> =
+        (60..ours.len()).filter(|&epoch| slipped(&ours[epoch]).is_some()).collect();
+    assert_eq!(when, [63], "after three epochs without a say");
+    assert_eq!(slipped(&ours[63]), Some(Slipped::Contradicted));
+    assert!(error(ours.last().unwrap()) < 5e-3);
+
+    let config = Config { estimator: Estimator::plain(), ..Config::new(Motion::Static) };
+    let plain = run(&mut PppFilter::<N>::new(config), 3600.0, slip);
+    assert!(error(plain.last().unwrap()) > 2e-2);
+}
+
+#[test]
+fn an_outlier_is_left_out_and_told() {
+    let victim = highest();
+    let solutions = run(&mut filter(Motion::Static), 1860.0, |seconds, sightings| {
+        if seconds == 1800.0 {
+            spoil(sightings, victim, 20.0, -0.5);
+        }
+    });
+    let report = |epoch: usize| {
+        *solutions[epoch].satellites.iter().find(|it| it.satellite == victim).unwrap()
+    };
+    let hit = report(60);
+    assert!(hit.code.weight == 0.0 && hit.phase.weight == 0.0);
+    assert!((hit.code.residual - 20.0).abs() < 0.1 && (hit.phase.residual + 0.5).abs() < 0.02);
+    assert!(!report(61).phase.was_treated() && report(62).slipped.is_none());
+    assert!(error(&solutions[60]) < 5e-3);
+}
+
+/// A step of a metre that all satellites show is no outlier of any.
+#[test]
+fn a_step_is_motion() {
+    let step = Vector3::new(0.6, -0.6, 0.53);
+    let solutions = run(&mut filter(SLOW), 2400.0, |seconds, sightings| {
+        if seconds >= 1800.0 {
+            *sightings = observe(seconds, &(marker() + step));
+        }
+    });
+    for solution in &solutions[60..] {
+        let missed = (solution.position - marker() - step).norm();
+        assert!(missed < 0.03, "{missed}");
+        assert!(solution.satellites.iter().all(|it| it.phase.weight > 0.9));
+    }
+}
+
+/// A receiver on a fast train is found where it is, though the model is linear.
+#[test]
+fn a_fast_receiver_is_followed() {
+    let mut filter = filter(Motion::Kinematic { process_noise: 100.0 });
+    for epoch in 0..60 {
+        let seconds = 30.0 * f64::from(epoch);
+        let place = marker() + Vector3::new(-20.0, 60.0, 8.0) * seconds;
+        let solution = step(&mut filter, seconds, &observe(seconds, &place)).unwrap();
+        let missed = (solution.position - place).norm();
+        assert!(epoch < 30 || missed < 0.1, "{missed}");
+    }
+}
+
+#[test]
+fn an_epoch_without_a_solution_leaves_no_trace() {
+    let mut disturbed = filter(Motion::Static);
+    run(&mut disturbed, 600.0, |_, _| {});
+    let mut undisturbed = disturbed;
+    let sightings = observe(630.0, &marker());
+    assert_eq!(step(&mut disturbed, 630.0, &sightings[..3]).unwrap_err(), Error::TooFewSatellites);
+    assert_eq!(step(&mut disturbed, 600.0, &sightings).unwrap_err(), Error::TimeNotAdvancing);
+    assert_eq!(step(&mut disturbed, f64::NAN, &sightings).unwrap_err(), Error::TimeNotAdvancing);
+    let [a, b] =
+        [&mut disturbed, &mut undisturbed].map(|it| step(it, 660.0, &observe(660.0, &marker())));
+    assert_eq!(a.unwrap(), b.unwrap());
+    let start = step(&mut filter(Motion::Static), 0.0, &sightings[..3]);
+    assert_eq!(start.unwrap_err(), Error::TooFewSatellites);
+}
+
+#[test]
+fn what_is_no_observation_is_left_out() {
+    let (mut spoilt, mut clean) = (filter(Motion::Static), filter(Motion::Static));
+    for epoch in 0..20 {
+        let seconds = 30.0 * f64::from(epoch);
+        let mut sightings = observe(seconds, &marker());
+        let without = sightings[1..].to_vec();
+        sightings[0].phase[1] = f64::NAN;
+        // A satellite twice.
+        sightings.push(Sighting { code: [2e7; 2], ..sightings[2] });
+        let solutions =
+            [step(&mut spoilt, seconds, &sightings), step(&mut clean, seconds, &without)];
+        let [spoilt, clean] = solutions.map(Result::unwrap);
+        let heard = |solution: &Solution<N>| {
+            solution.satellites.iter().map(|it| it.satellite).collect::<Vec<_>>()
+        };
+        assert_eq!(heard(&spoilt), heard(&clean));
+        // The start takes the code without its phase.
+        assert!((spoilt.position - clean.position).norm() < 0.02);
+    }
+}
+
+#[test]
+fn more_satellites_than_places() {
+    let mut small = PppFilter::<{ states(5) }>::new(Config::new(Motion::Static));
+    for epoch in 0..240 {
+        let seconds = 60.0 * f64::from(epoch);
+        let solution = step(&mut small, seconds, &observe(seconds, &marker())).unwrap();
+        assert_eq!(solution.satellites.len(), 5);
+    }
+}
+
+#[test]
+fn a_satellite_that_was_away_begins_anew() {
+    let mut filter = filter(Motion::Static);
+    let away = |seconds: f64, sightings: &mut Vec<Sighting<'static>>| {
+        if (600.0..1200.0).contains(&seconds) {
+            sightings.remove(0);
+        }
+    };
+    let solutions = run(&mut filter, 1500.0, away);
+    let back = solutions[40].satellites[0].slipped;
+    assert_eq!(back, Some(Slipped::Seen(kestirim_gnss_ppp::Slip::Gap)));
+    assert!(error(solutions.last().unwrap()) < 2e-2);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    /// Whatever comes in, there is an error or a number.
+    #[test]
+    fn nothing_panics(
+        changes in prop::collection::vec((0..40_usize, 0..6_usize, any::<f64>(), any::<u8>()), 0..60),
+        steps in prop::collection::vec(prop_oneof![Just(30.0), any::<f64>()], 12),
+    ) {
+        let mut filter = filter(SLOW);
+        let mut seconds = 0.0;
+        for (epoch, step_by) in steps.into_iter().enumerate() {
+            seconds += step_by;
+            let mut sightings = observe(30.0 * epoch as f64, &marker());
+            for &(place, which, value, satellite) in changes.iter().skip(epoch * 5).take(5) {
+                let Some(sighting) = sightings.get_mut(place) else { continue };
+                match which {
+                    0 => sighting.code[0] = value,
+                    1 => sighting.phase[1] = value,
+                    2 => sighting.satellite = satellite,
+                    3 => sighting.state.position.x = value,
+                    4 => sighting.state.velocity.y = value,
+                    _ => sighting.state.clock = value,
+                }
+            }
+            if let Ok(solution) = step(&mut filter, seconds, &sightings) {
+                prop_assert!(solution.position.iter().all(|value| value.is_finite()));
+                prop_assert!(solution.covariance.iter().all(|value| value.is_finite()));
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Recorded GNSS observations with truth, from `../shared/data/gnss` beside the repository.
+
+use std::path::{Path, PathBuf};
+
+use host_sim::systems::gnss::accuracy::{Accuracy, Fix};
+use host_sim::systems::gnss::options::STATES;
+use host_sim::systems::gnss::recording::{Files, Recording};
+use kestirim_gnss_ppp::{Corrections, sagnac};
+use kestirim_ppp_filter::{Config, PppFilter, Sighting};
+use nalgebra::Vector3;
+
+/// A station's day.
+#[derive(Clone, Copy, Debug)]
+pub struct Station {
+    /// The file of observations.
+    pub observations: &'static str,
+    orbits: &'static [&'static str],
+    clocks: &'static [&'static str],
+    antennas: &'static str,
+    ocean_loading: Option<&'static str>,
+    /// The marker's true place, ECEF, m.
+    pub truth: [f64; 3],
+    /// Up to when there are orbits, s of the day.
+    pub until: f64,
+}
+
+/// Esbjerg, 25 June 2020: clocks every 30 s.
+pub const ESBC: Station = Station {
+    observations: "esbc2020177/esbc_gps.rnx.gz",
+    orbits: &["esbc2020177/grg176_gps.sp3.gz", "esbc2020177/grg177_gps.sp3.gz"],
+    clocks: &["esbc2020177/grg177_gps.clk.gz"],
+    antennas: "esbc2020177/esbc.atx.gz",
+    ocean_loading: None,
+    truth: [3_582_104.7645, 532_590.1790, 5_232_755.1455],
+    until: 85_500.0,
+};
+
+/// The same with injected faults.
+pub const ESBC_INJECTED: Station =
+    Station { observations: "esbc2020177_injected/esbc_gps_CPSB0.rnx.gz", ..ESBC };
+
+/// A Coruña, 27 May 2008: clocks every 15 minutes.
+pub const ACOR: Station = Station {
+    observations: "igs2008148/acor_gps.rnx.gz",
+    orbits: &[
+        "igs2008148/igs14811.sp3.gz",
+        "igs2008148/igs14812.sp3.gz",
+        "igs2008148/igs14813.sp3.gz",
+    ],
+    clocks: &[],
+    antennas: "igs2008148/igs05_trim.atx.gz",
+    ocean_loading: Some("igs2008148/subset.blq"),
+    truth: [4_594_489.6751, -678_367.6935, 4_357_066.1667],
+    until: 86_400.0,
+};
+
+/// Toulouse, the same day.
+pub const TLSE: Station = Station {
+    observations: "igs2008148/tlse_gps.rnx.gz",
+    truth: [4_627_851.7946, 119_640.0868, 4_372_993.5917],
+    ..ACOR
+};
+
+impl Station {
+    /// Reads its files.
+    ///
+    /// # Panics
+    /// A file cannot be read: those beside the repository can.
+    pub fn read(&self, folder: &Path) -> Recording {
+        let paths =
+            |names: &[&str]| names.iter().map(|name| folder.join(name)).collect::<Vec<PathBuf>>();
+        let loading = self.ocean_loading.map(|name| folder.join(name));
+        let files = Files {
+            observations: &folder.join(self.observations),
+            orbits: &paths(self.orbits),
+            clocks: &paths(self.clocks),
+            antennas: &folder.join(self.antennas),
+            ocean_loading: loading.as_deref(),
+        };
+        Recording::read(&files, Corrections::ALL).expect("files that can be read")
+    }
+
+    /// Follows a receiver that is `away(t)` (ECEF, m) from the marker at second t of the day, and whose other
+    /// faults `spoil` adds.
+    pub fn follow(
+        &self,
+        recording: &Recording,
+        config: Config,
+        corrections: Corrections,
+        away: impl Fn(f64) -> Vector3<f64>,
+        mut spoil: impl FnMut(f64, &mut Sighting<'_>),
+    ) -> Vec<Fix> {
+        let receiver = recording.receiver(corrections);
+        let marker = Vector3::from(self.truth);
+        let mut filter = PppFilter::<STATES>::new(config);
+        let mut fixes = Vec::new();
+        for epoch in recording.epochs(Some(self.until)) {
+            let t = recording.seconds(epoch);
+            let known = |observed| recording.products().sighting(epoch.time, observed).ok();
+            let mut sightings: Vec<_> = epoch.satellites.iter().filter_map(known).collect();
+            for sighting in &mut sightings {
+                move_receiver(sighting, &marker, &(marker + away(t)));
+                spoil(t, sighting);
+            }
+            if let Ok(solution) = filter.process(epoch.time, &receiver, &sightings) {
+                fixes.push(Fix { t, position: solution.position });
+            }
+        }
+        fixes
+    }
+
+    /// The paper's measures of a day with one configuration.
+    ///
+    /// # Panics
+    /// No epoch has a solution.
+    pub fn accuracy(&self, recording: &Recording, config: Config) -> Accuracy {
+        let fixes =
+            self.follow(recording, config, Corrections::ALL, |_| Vector3::zeros(), |_, _| {});
+        self.compare(&fixes)
+    }
+
+    /// Positions against the truth.
+    ///
+    /// # Panics
+    /// There are none.
+    pub fn compare(&self, fixes: &[Fix]) -> Accuracy {
+        Accuracy::of(fixes, 0.0, &Vector3::from(self.truth)).expect("a position")
+    }
+}
+
+/// Adds to a satellite's codes and phases, m.
+pub fn lengthen(sighting: &mut Sighting<'_>, code: f64, phase: f64) {
+    for carrier in 0..2 {
+        sighting.code[carrier] += code;
+        sighting.phase[carrier] += phase / kestirim_gnss_ppp::WAVELENGTH[carrier];
+    }
+}
+
+/// What the receiver would have observed elsewhere.
+fn move_receiver(sighting: &mut Sighting<'_>, from: &Vector3<f64>, to: &Vector3<f64>) {
+    let satellite = sighting.state.position;
+    let range = |place: &Vector3<f64>| (satellite - place).norm() + sagnac(&satellite, place);
+    let farther = range(to) - range(from);
+    lengthen(sighting, farther, farther);
+}

@@ -1,0 +1,182 @@
+//! Recorded GNSS observations with truth: the accuracy that the book promises, one configuration for all.
+//!
+//! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
+//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+
+use host_sim::metrics::rms;
+use host_sim::systems::gnss::accuracy::Accuracy;
+use host_sim::systems::gnss::recording::Recording;
+use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
+use kestirim_ppp_filter::{Config, Estimator, Motion, Sighting};
+use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station, TLSE, lengthen};
+use kestirim_tests::recordings::folder_of;
+use nalgebra::Vector3;
+use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
+
+fn read(station: Station) -> Option<Recording> {
+    Some(station.read(&folder_of("gnss")?))
+}
+
+fn plain(motion: Motion) -> Config {
+    Config { estimator: Estimator::plain(), ..Config::new(motion) }
+}
+
+/// Last error and RMS, mm, and minutes of convergence (infinite without).
+fn measures(what: &str, accuracy: &Accuracy) -> [f64; 3] {
+    let end = 1e3 * accuracy.final_3d_m;
+    let rms = 1e3 * accuracy.rms_3d_m.expect("more than an hour");
+    let convergence = accuracy.convergence_min.unwrap_or(f64::INFINITY);
+    println!("{what}: final {end:.1} mm, RMS {rms:.2} mm, convergence {convergence:.1} min");
+    [end, rms, convergence]
+}
+
+#[test]
+fn a_modern_station() {
+    let Some(recording) = read(ESBC) else { return };
+    let run = |what, config| measures(what, &ESBC.accuracy(&recording, config));
+    let [_, opponent, _] = run("ESBC, static, plain", plain(Motion::Static));
+    let [end, rms, convergence] = run("ESBC, static", Config::new(Motion::Static));
+    assert!(end <= 8.0 && rms <= 12.5 && convergence <= 34.0);
+    assert!(opponent <= 13.0, "the plain filter is a fair opponent");
+    assert!(rms <= 1.05 * opponent, "the default does no harm");
+    let [_, rms, _] = run("ESBC, kinematic", Config::new(KINEMATIC));
+    assert!(rms <= 43.0);
+}
+
+#[test]
+fn stations_with_clocks_every_quarter_of_an_hour() {
+    let mut all = Vec::new();
+    for station in [ACOR, TLSE] {
+        let Some(recording) = read(station) else { return };
+        let run = |config| measures(station.observations, &station.accuracy(&recording, config));
+        let [_, opponent, _] = run(plain(Motion::Static));
+        let ours = run(Config::new(Motion::Static));
+        assert!(ours[1] <= opponent, "the default does no harm");
+        all.push(ours);
+    }
+    let mean = [0, 1, 2].map(|which| all.iter().map(|ours| ours[which]).sum::<f64>() / 2.0);
+    // RTKLIB demo5 on the same files: 8.5, 19.5, 47.8.
+    assert!(mean[0] <= 8.5 && mean[1] <= 19.5 && mean[2] <= 47.8, "{mean:?}");
+}
+
+#[test]
+fn faults_in_the_file() {
+    let Some(recording) = read(ESBC_INJECTED) else { return };
+    let run = |what, config| measures(what, &ESBC.accuracy(&recording, config));
+    let [_, opponent, _] = run("injected, static, plain", plain(Motion::Static));
+    let [end, rms, convergence] = run("injected, static", Config::new(Motion::Static));
+    assert!(end <= 10.0 && rms <= 14.0 && convergence <= 35.0);
+    assert!(opponent >= 10.0 * rms, "the plain filter suffers");
+    let [_, rms, _] = run("injected, kinematic", Config::new(KINEMATIC));
+    assert!(rms <= 55.0);
+}
+
+/// Faults as in the injected file, but with other dice and on other stations.
+#[test]
+fn faults_of_other_days() {
+    for (station, most) in [(ESBC, 14.5), (ACOR, 25.0), (TLSE, 35.0)] {
+        let Some(recording) = read(station) else { return };
+        for seed in 1..=3 {
+            let mut dice = Xoshiro256PlusPlus::seed_from_u64(seed);
+            let mut slips = [0.0; 33];
+            let spoil = |t: f64, sighting: &mut Sighting<'_>| {
+                spoil(t, sighting, &mut dice, &mut slips);
+            };
+            let config = Config::new(Motion::Static);
+            let still = |_| Vector3::zeros();
+            let fixes = station.follow(&recording, config, Corrections::ALL, still, spoil);
+            let what = format!("{}, seed {seed}", station.observations);
+            let [_, rms, _] = measures(&what, &station.compare(&fixes));
+            assert!(rms <= most, "{what}: {rms} mm");
+        }
+    }
+}
+
+/// 2 % code outliers of 3 to 30 m, 1 % phase outliers of 0.05 to 1 m, some 24 slips of that size which no
+/// detector sees, and 10 m on the codes of three satellites for a quarter of an hour, twice.
+fn spoil(
+    t: f64,
+    sighting: &mut Sighting<'_>,
+    dice: &mut Xoshiro256PlusPlus,
+    slips: &mut [f64; 33],
+) {
+    let mut uniform = || dice.next_u64() as f64 / u64::MAX as f64;
+    let mut either = |least: f64, range: f64| {
+        let size = least + range * uniform();
+        if uniform() < 0.5 { size } else { -size }
+    };
+    let (code, phase, slip) = (either(3.0, 27.0), either(0.05, 0.95), either(0.05, 0.95));
+    let prn = usize::from(sighting.satellite);
+    if uniform() < 24.0 / 32_700.0 {
+        slips[prn] += slip;
+    }
+    let bias = if prn % 8 < 3 && (t + 7_000.0) % 43_200.0 < 900.0 { 10.0 } else { 0.0 };
+    let code = bias + if uniform() < 0.02 { code } else { 0.0 };
+    let phase = slips[prn] + if uniform() < 0.01 { phase } else { 0.0 };
+    lengthen(sighting, code, phase);
+}
+
+/// A sine of half a metre and a step of a metre are followed where the process noise is far below both: motion
+/// is not taken for outliers. Beside the receiver at rest, as that has errors of its own.
+#[test]
+fn motion_is_followed() {
+    let Some(recording) = read(ESBC) else { return };
+    let local = Geodetic::from_ecef(&Vector3::from(ESBC.truth)).enu_from_ecef().transpose();
+    let sine =
+        |t: f64| local * Vector3::new(0.5 * (t / 300.0 * std::f64::consts::TAU).sin(), 0.0, 0.0);
+    let step = |t: f64| local * Vector3::new(0.6, 0.6, 0.53) * f64::from(u8::from(t > 43_200.0));
+    for process_noise in [1e-4, 1e-2, 100.0] {
+        let config = Config::new(Motion::Kinematic { process_noise });
+        let follow = |away: &dyn Fn(f64) -> Vector3<f64>| {
+            ESBC.follow(&recording, config, Corrections::ALL, away, |_, _| {})
+        };
+        let still = follow(&|_| Vector3::zeros());
+        for (what, away) in [("sine", &sine as &dyn Fn(f64) -> Vector3<f64>), ("step", &step)] {
+            let moved = follow(away);
+            let late = still.iter().zip(&moved).filter(|(still, _)| still.t >= 3600.0);
+            let missed: Vec<f64> = late
+                .map(|(still, moved)| (moved.position - still.position - away(still.t)).norm())
+                .collect();
+            let missed = 1e3 * rms(&missed);
+            println!("{what}, {process_noise} m²/s: followed within {missed:.1} mm");
+            assert!(missed <= 30.0, "{what} at {process_noise} m²/s: {missed} mm");
+        }
+    }
+}
+
+/// What each correction is worth in the position at the end of a static day, mm. The receiver's clock and
+/// the wet delay take up most of the signal's delay in the Earth's gravity.
+#[test]
+fn every_correction_matters() {
+    for (station, correction, least) in [
+        (ESBC, Correction::SolidTide, 25.0),
+        (ESBC, Correction::Relativity, 1_000.0),
+        (ESBC, Correction::Sagnac, 1_000.0),
+        (ESBC, Correction::Troposphere, 10.0),
+        (ESBC, Correction::WindUp, 10.0),
+        (ESBC, Correction::SatelliteAntenna, 30.0),
+        (ESBC, Correction::ReceiverAntenna, 30.0),
+        (ESBC, Correction::Shapiro, 0.1),
+        (ACOR, Correction::OceanLoading, 3.0),
+    ] {
+        let Some(recording) = read(station) else { return };
+        let config = Config::new(Motion::Static);
+        let still = |_| Vector3::zeros();
+        let run = |corrections| station.follow(&recording, config, corrections, still, |_, _| {});
+        let (with, without) = (run(Corrections::ALL), run(Corrections::ALL.without(correction)));
+        let late = with.iter().zip(&without).filter(|(with, _)| with.t >= 3600.0);
+        let moved: Vec<f64> =
+            late.map(|(with, without)| (with.position - without.position).norm()).collect();
+        let moved = 1e3 * rms(&moved);
+        let [_, rms, _] = measures(&format!("without {correction:?}"), &station.compare(&without));
+        println!("  moves the position by {moved:.1} mm");
+        assert!(moved >= least, "{correction:?}: {moved} mm");
+        if correction == Correction::SolidTide {
+            let [_, usual, _] = measures("with", &station.compare(&with));
+            assert!(rms - usual > 25.0, "the tides cost more than 25 mm");
+        }
+    }
+}
