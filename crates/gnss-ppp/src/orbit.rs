@@ -7,6 +7,8 @@ use nalgebra::Vector3;
 /// How many samples a polynomial goes through: degree 10 follows a GPS orbit sampled every 15
 /// minutes to millimetres.
 const POINTS: usize = 11;
+/// How far outside of the samples the polynomial is followed, s.
+const BEYOND: f64 = 1.0;
 
 /// One sample of a precise orbit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,16 +51,16 @@ pub struct Orbit<'a> {
 }
 
 impl Orbit<'_> {
-    /// The state at `time` by the polynomial through the 11 nearest samples; none outside of the
-    /// samples, or where one of the 11 is missing.
+    /// The state at `time` by the polynomial through the 11 nearest samples; none where one of the 11 is
+    /// missing, or farther than a second outside of the samples: what is received at the time of the
+    /// first one was sent before it.
     pub fn at(&self, time: GpsTime) -> Option<OrbitState> {
         let second = time.since(self.reference);
-        let after = self.samples.partition_point(|sample| sample.second <= second);
-        let first = after.checked_sub(1)?;
-        // The last sample itself is still inside.
-        if after == self.samples.len() && self.samples.get(first)?.second < second {
+        let (first, last) = (self.samples.first()?.second, self.samples.last()?.second);
+        if !(first - BEYOND..=last + BEYOND).contains(&second) {
             return None;
         }
+        let after = self.samples.partition_point(|sample| sample.second <= second);
         let start =
             after.saturating_sub(POINTS / 2 + 1).min(self.samples.len().checked_sub(POINTS)?);
         let window = self.samples.get(start..)?.first_chunk::<POINTS>()?;
@@ -87,12 +89,13 @@ fn through(samples: &[OrbitSample; POINTS], place: f64) -> (Vector3<f64>, Vector
     let mut position = Vector3::zeros();
     let mut velocity = Vector3::zeros();
     let (mut sum, mut slope) = (0.0, 0.0);
-    // Positions are taken from the one in the middle, for the digits.
-    let origin = samples[POINTS / 2].position;
+    // Positions are taken from the nearest one: beside it, where its share is without bounds, all digits count.
+    let nearest = (place + 0.5).clamp(0.0, POINTS as f64 - 1.0) as usize;
+    let origin = samples.get(nearest).map_or_else(Vector3::zeros, |sample| sample.position);
     for (index, (sample, weight)) in samples.iter().zip(WEIGHTS).enumerate() {
         let distance = place - index as f64;
-        // On a sample the formula is 0/0; a nanostep beside it, it is not, and no digit is lost.
-        let distance = if distance.abs() < 1e-9 { 1e-9 } else { distance };
+        // On a sample the formula is 0/0; an attostep beside it, it is not.
+        let distance = if distance.abs() < 1e-18 { 1e-18 } else { distance };
         let share = weight / distance;
         let relative = sample.position - origin;
         sum += share;
@@ -160,8 +163,8 @@ mod tests {
         let at = |samples: &[OrbitSample], second| {
             Orbit { reference: REFERENCE, samples }.at(REFERENCE.plus(second)).is_some()
         };
-        assert!(!at(&samples, -0.1) && at(&samples, 0.0) && at(&samples, 86_400.0));
-        assert!(!at(&samples, 86_400.1) && !at(&samples, f64::NAN) && !at(&samples[..10], 900.0));
+        assert!(!at(&samples, -1.1) && at(&samples, -0.9) && at(&samples, 86_400.9));
+        assert!(!at(&samples, 86_401.1) && !at(&samples, f64::NAN) && !at(&samples[..10], 900.0));
         samples.remove(50);
         assert!(!at(&samples, 45_000.0) && at(&samples, 80_000.0));
     }
