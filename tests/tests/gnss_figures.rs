@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 
 use host_sim::systems::gnss::follow::{Followed, follow};
 use host_sim::systems::gnss::options::{FilterKind, PROCESS_NOISE};
-use host_sim::systems::gnss::recording::{Files, Recording};
 use kestirim_gnss_ppp::Corrections;
-use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteReport};
+use kestirim_ppp_filter::{Config, Motion, SatelliteReport};
 use kestirim_robust_kalman::Reason;
+use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 use plotters::coord::Shift;
@@ -53,83 +53,27 @@ fn name(filter: FilterKind) -> &'static str {
     }
 }
 
-/// A station-day: its files, where it is, and how far its orbits reach.
-struct Station {
-    observations: &'static str,
-    orbits: &'static [&'static str],
-    clocks: &'static [&'static str],
-    antennas: &'static str,
-    ocean_loading: Option<&'static str>,
-    truth: [f64; 3],
-    until: Option<f64>,
+/// What filters make of a station's day, with what became of each observation.
+fn follow_all(station: &Station, folder: &Path, filters: &[FilterKind], motion: Motion) -> Days {
+    let recording = station.read(folder);
+    let receiver = recording.receiver(Corrections::ALL);
+    let epochs = recording.epochs(Some(station.until));
+    let day = |&filter: &FilterKind| {
+        let config = Config { estimator: filter.estimator(motion, false), ..Config::new(motion) };
+        (filter, follow(&recording, epochs, &receiver, config, true, || ()))
+    };
+    filters.par_iter().map(day).collect()
 }
 
-const ESBC: Station = Station {
-    observations: "esbc2020177/esbc_gps.rnx.gz",
-    orbits: &["esbc2020177/grg176_gps.sp3.gz", "esbc2020177/grg177_gps.sp3.gz"],
-    clocks: &["esbc2020177/grg177_gps.clk.gz"],
-    antennas: "esbc2020177/esbc.atx.gz",
-    ocean_loading: None,
-    truth: [3_582_104.764_5, 532_590.179_0, 5_232_755.145_5],
-    until: Some(85_500.0),
-};
-
-/// The same with faults.
-const INJECTED: Station =
-    Station { observations: "esbc2020177_injected/esbc_gps_CPSB0.rnx.gz", ..ESBC };
-
-const ACOR: Station = Station {
-    observations: "igs2008148/acor_gps.rnx.gz",
-    orbits: &[
-        "igs2008148/igs14811.sp3.gz",
-        "igs2008148/igs14812.sp3.gz",
-        "igs2008148/igs14813.sp3.gz",
-    ],
-    clocks: &[],
-    antennas: "igs2008148/igs05_trim.atx.gz",
-    ocean_loading: Some("igs2008148/subset.blq"),
-    truth: [4_594_489.675_1, -678_367.693_5, 4_357_066.166_7],
-    until: None,
-};
-
-impl Station {
-    fn read(&self, folder: &Path) -> Result<Recording, host_sim::Error> {
-        let all = |names: &[&str]| names.iter().map(|name| folder.join(name)).collect();
-        let (orbits, clocks): (Vec<PathBuf>, Vec<PathBuf>) = (all(self.orbits), all(self.clocks));
-        let loading = self.ocean_loading.map(|name| folder.join(name));
-        let files = Files {
-            observations: &folder.join(self.observations),
-            orbits: &orbits,
-            clocks: &clocks,
-            antennas: &folder.join(self.antennas),
-            ocean_loading: loading.as_deref(),
-        };
-        Recording::read(&files, Corrections::ALL)
-    }
-
-    /// What filters make of the day, with what became of each observation.
-    fn follow(&self, folder: &Path, filters: &[FilterKind], motion: Motion) -> Days {
-        let recording = self.read(folder)?;
-        let receiver = recording.receiver(Corrections::ALL);
-        let day = |&filter: &FilterKind| {
-            let estimator: Estimator = filter.estimator(motion, false);
-            let config = Config { estimator, ..Config::new(motion) };
-            let epochs = recording.epochs(self.until);
-            (filter, follow(&recording, epochs, &receiver, config, true, || ()))
-        };
-        Ok(filters.par_iter().map(day).collect())
-    }
-
-    /// 3-D errors over the hours, thinned out: each epoch of the first hour, then one in twenty.
-    fn errors(&self, followed: &Followed) -> Vec<(f64, f64)> {
-        let truth = Vector3::from(self.truth);
-        let fixes = followed.fixes.iter().enumerate();
-        let wanted = fixes.filter(|(epoch, _)| *epoch < 120 || epoch % 20 == 0);
-        wanted.map(|(_, fix)| (fix.t / 3600.0, (fix.position - truth).norm())).collect()
-    }
+/// 3-D errors over the hours, thinned out: each epoch of the first hour, then one in twenty.
+fn errors(station: &Station, followed: &Followed) -> Vec<(f64, f64)> {
+    let truth = Vector3::from(station.truth);
+    let fixes = followed.fixes.iter().enumerate();
+    let wanted = fixes.filter(|(epoch, _)| *epoch < 120 || epoch % 20 == 0);
+    wanted.map(|(_, fix)| (fix.t / 3600.0, (fix.position - truth).norm())).collect()
 }
 
-type Days = Result<Vec<(FilterKind, Followed)>, Box<dyn Error>>;
+type Days = Vec<(FilterKind, Followed)>;
 
 fn file(name: &str) -> Result<PathBuf, std::io::Error> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/figures");
@@ -201,7 +145,7 @@ fn residuals() -> Done {
     let path = file("gnss-residuals.svg")?;
     let root = SVGBackend::new(&path, (720, 640)).into_drawing_area();
     root.fill(&WHITE)?;
-    let days = INJECTED.follow(&folder, &FilterKind::ALL, Motion::Static)?;
+    let days = follow_all(&ESBC_INJECTED, &folder, &FilterKind::ALL, Motion::Static);
     for (area, (filter, followed)) in root.split_evenly((3, 2)).iter().zip(&days) {
         let codes = followed.residuals.iter().enumerate();
         let codes: Vec<_> = codes
@@ -249,13 +193,13 @@ fn standing() -> Done {
     let body = legend(&root, &FilterKind::ALL)?;
     let stations = [
         (&ESBC, "ESBC, clocks every 30 s"),
-        (&INJECTED, "the same with faults"),
+        (&ESBC_INJECTED, "the same with faults"),
         (&ACOR, "ACOR, clocks every 15 min"),
     ];
     for (area, (station, title)) in body.split_evenly((3, 1)).iter().zip(stations) {
-        let days = station.follow(&folder, &FilterKind::ALL, Motion::Static)?;
+        let days = follow_all(station, &folder, &FilterKind::ALL, Motion::Static);
         let lines: Vec<Line> =
-            days.iter().map(|(filter, day)| (*filter, station.errors(day))).collect();
+            days.iter().map(|(filter, day)| (*filter, errors(station, day))).collect();
         panel(area, title, 1e-3..1e1, &lines)?;
     }
     root.present()?;
@@ -276,9 +220,10 @@ fn moving() -> Done {
         (1e-4, "1e-4 m²/s: the epochs hold together"),
     ];
     for (area, (process_noise, title)) in body.split_evenly((2, 1)).iter().zip(noises) {
-        let days = INJECTED.follow(&folder, &FILTERS, Motion::Kinematic { process_noise })?;
+        let motion = Motion::Kinematic { process_noise };
+        let days = follow_all(&ESBC_INJECTED, &folder, &FILTERS, motion);
         let lines: Vec<Line> =
-            days.iter().map(|(filter, day)| (*filter, INJECTED.errors(day))).collect();
+            days.iter().map(|(filter, day)| (*filter, errors(&ESBC_INJECTED, day))).collect();
         panel(area, title, 1e-3..1e2, &lines)?;
     }
     root.present()?;
