@@ -50,7 +50,7 @@ impl Clock<'_> {
         }
         let next = self.samples.get(after)?;
         let interval = next.second - before.second;
-        if !(interval <= self.longest_gap) {
+        if interval > self.longest_gap || interval.is_nan() {
             return None;
         }
         let elapsed = second - before.second;

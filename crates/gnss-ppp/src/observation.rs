@@ -28,7 +28,7 @@ pub struct SatelliteState {
 /// What a receiver should observe of a satellite.
 ///
 /// P = range + c·dt + m·Z and L = P + `wind_up` + ambiguity with the receiver's clock c·dt, the wet zenith delay
-/// Z and its mapping m (the card's P_IF and L_IF), all in m.
+/// Z and its mapping m (the paper's 1 and 2), all in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// Distance between the phase centres with all that delays the signal but the receiver's clock,

@@ -103,11 +103,12 @@ impl Arc {
     ) -> Option<Slip> {
         let jump = geometry_free(phase) - self.geometry_free;
         let spread = limits.deviations * libm::sqrt(self.geometry_free_variance);
-        let slip = if !(time.since(self.last) <= limits.gap) {
+        let away = time.since(self.last);
+        let slip = if away > limits.gap || away.is_nan() {
             Some(Slip::Gap)
         } else if lock_lost && limits.loss_of_lock {
             Some(Slip::LossOfLock)
-        } else if !(jump.abs() <= spread.max(limits.geometry_free)) {
+        } else if jump.abs() > spread.max(limits.geometry_free) || jump.is_nan() {
             Some(Slip::GeometryFree)
         } else {
             None

@@ -69,7 +69,7 @@ impl<const N: usize> Running<N> {
     /// Lets time pass.
     pub(crate) fn advance(&mut self, time: GpsTime, config: &Config) -> Result<(), Error> {
         let elapsed = time.since(self.time);
-        if !(elapsed > 0.0) {
+        if elapsed <= 0.0 || elapsed.is_nan() {
             return Err(Error::TimeNotAdvancing);
         }
         (self.time, self.interval) = (time, Some(elapsed));
@@ -189,13 +189,13 @@ impl<const N: usize> Running<N> {
             let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
             let expected = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up);
             let Some(expected) = expected else { continue };
-            let below = !(expected.direction.elevation >= config.elevation_mask);
+            let above = expected.direction.elevation >= config.elevation_mask;
             let twice =
                 lines.iter().any(|(_, line): &(_, Line)| line.satellite == sighting.satellite);
-            if below && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
+            if !above && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
                 *place = None;
             }
-            if below || twice || !sighting.is_finite() {
+            if !above || twice || !sighting.is_finite() {
                 continue;
             }
             let Some(state) = known.or_else(|| self.free(sightings)) else { continue };
