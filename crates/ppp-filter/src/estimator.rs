@@ -44,9 +44,12 @@ impl Estimator {
 
     /// The default, of our own design: the worst observation first, judged by variances that are
     /// believed, as any scale that an epoch's residuals give is inflated by the outliers it is to find
-    /// or, where few satellites are in view, shrunk by chance. Between samples of their product,
-    /// clocks are believed as far as each satellite's has proved good. A phase that jumps and stays away
-    /// has slipped; one that drifts has not.
+    /// or, where few satellites are in view, shrunk by chance. A phase that jumps and stays away has
+    /// slipped; one that drifts has not.
+    ///
+    /// What may drift is learnt for each satellite: how good its clock is between samples of its product
+    /// and, where the receiver moves, how noisy its phase is. (A receiver at rest averages that noise, and
+    /// needs its low satellites to tell height from troposphere.)
     ///
     /// A receiver that moves is asked first whether its prediction holds: a step that all satellites
     /// show is motion. Each of its epochs has to find its own outliers, so the thresholds are nearer.
@@ -61,7 +64,7 @@ impl Estimator {
                     floor: 1e-6,
                     ..Adaptive::new(POSITION)
                 };
-                (3.0, 6.0, Some(adaptive))
+                (2.5, 6.0, Some(adaptive))
             }
         };
         let robust = Robust {

@@ -1,7 +1,7 @@
 //! One satellite's two observations, linearised.
 
 use crate::states::{CLOCK, COMMON, WET};
-use crate::{Config, Sighting, Slipped};
+use crate::{Config, Motion, Sighting, Slipped};
 use kestirim_gnss_ppp::{Expected, Site, ionosphere_free, ionosphere_free_phase};
 use nalgebra::{SVector, Vector3};
 
@@ -22,6 +22,8 @@ pub(crate) struct Line {
     pub(crate) code_variance: f64,
     pub(crate) phase_variance: f64,
     pub(crate) clock_variance: f64,
+    /// By what the phase's own variance is multiplied.
+    pub(crate) phase_noise: f64,
 }
 
 impl Line {
@@ -44,9 +46,18 @@ impl Line {
             code_variance: config.code.variance(sine) + clock,
             phase_variance: config.phase.variance(sine),
             clock_variance: clock,
+            phase_noise: 1.0,
         };
         line.compare(sighting);
         line
+    }
+
+    /// The variances of a satellite of which a `noise` is known.
+    pub(crate) fn learn(&mut self, noise: f64, motion: Motion) {
+        self.clock_variance *= noise;
+        if matches!(motion, Motion::Kinematic { .. }) {
+            self.phase_noise = noise;
+        }
     }
 
     /// Expects the same observations at another place.

@@ -102,7 +102,7 @@ impl<const N: usize> Running<N> {
         }
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
-        self.listen(&lines, &decisions);
+        self.listen(&lines, &decisions, config);
         Ok(self.solution(&site, &lines, &decisions, config))
     }
 
@@ -152,7 +152,7 @@ impl<const N: usize> Running<N> {
                 Measurement {
                     row,
                     innovation: phase,
-                    variance: line.phase_variance + line.clock_variance,
+                    variance: line.phase_variance * line.phase_noise + line.clock_variance,
                 },
             ]
         });
@@ -166,12 +166,12 @@ impl<const N: usize> Running<N> {
     }
 
     /// Remembers how the phases behaved. What all of them show at once is none's own noise.
-    fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>) {
+    fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>, config: &Config) {
         let common = median(decisions, |[_, phase]| phase.standardised * phase.standardised);
         let common = (common / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
-                channel.watch.listen(phase, line.phase_variance, line.clock_variance, common);
+                channel.watch.listen(phase, line, common, config.motion);
             }
         }
     }
@@ -204,7 +204,7 @@ impl<const N: usize> Running<N> {
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
             {
-                line.clock_variance *= channel.watch.clock_noise();
+                line.learn(channel.watch.noise(), config.motion);
             }
             if lines.push((sighting, line)).is_err() {
                 break;

@@ -1,10 +1,12 @@
 //! What a filter knows of the errors of one satellite's phase.
 
+use crate::Motion;
+use crate::line::Line;
 use kestirim_robust_kalman::{Decision, Reason};
 
 /// Over how many epochs the noise is averaged.
 const MEMORY: f64 = 30.0;
-/// By how much a clock may be worse or better than it should be, in variances.
+/// By how much a clock may be worse or better than it should be, or a phase worse, in variances.
 const LARGEST: f64 = 9.0;
 /// What a single phase may say about the noise at most, in variances: outliers are not noise.
 const LOUDEST: f64 = 9.0;
@@ -21,8 +23,8 @@ const ENDURANCE: u8 = 10;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Watch {
-    /// The variance of its interpolated clock, in what it should be: a caesium clock wanders ten
-    /// times as far as a rubidium clock.
+    /// Its variance in what it should be: of a receiver at rest that of its interpolated clock alone,
+    /// as a caesium clock wanders ten times as far as a rubidium clock; of one that moves, all of it.
     noise: f64,
     /// Its residual when it last had a say, m.
     residual: f64,
@@ -35,8 +37,8 @@ pub(crate) struct Watch {
 impl Watch {
     pub(crate) const NEW: Self = Self { noise: 1.0, residual: 0.0, unheard: 0, jumped: false };
 
-    /// By what the variance of its interpolated clock is multiplied.
-    pub(crate) fn clock_noise(&self) -> f64 {
+    /// By what a variance is multiplied.
+    pub(crate) fn noise(&self) -> f64 {
         self.noise
     }
 
@@ -57,9 +59,16 @@ impl Watch {
         *self = Self { noise: self.noise, ..Self::NEW };
     }
 
-    /// Remembers what became of the phase of an epoch, to whose variance its `own` noise and that of
-    /// its `clock` contributed, where the squares of all residuals are `common` times too large.
-    pub(crate) fn listen(&mut self, phase: &Decision<f64>, own: f64, clock: f64, common: f64) {
+    /// Remembers what became of the phase of an epoch, where the squares of all residuals are `common`
+    /// times too large.
+    pub(crate) fn listen(
+        &mut self,
+        phase: &Decision<f64>,
+        line: &Line,
+        common: f64,
+        motion: Motion,
+    ) {
+        let (own, clock) = (line.phase_variance, line.clock_variance);
         if phase.weight > UNHEARD {
             (self.unheard, self.jumped, self.residual) = (0, false, phase.residual);
         } else {
@@ -72,9 +81,12 @@ impl Watch {
         }
         if !matches!(phase.reason, Reason::NoRedundancy | Reason::TooFew) {
             let square = (phase.standardised * phase.standardised / common).min(LOUDEST);
-            let share = clock / (own + clock);
+            let (share, least) = match motion {
+                Motion::Static => (clock / (own + clock), 1.0 / LARGEST),
+                Motion::Kinematic { .. } => (1.0, 1.0),
+            };
             self.noise *= 1.0 + share * (square - 1.0) / MEMORY;
-            self.noise = self.noise.clamp(1.0 / LARGEST, LARGEST);
+            self.noise = self.noise.clamp(least, LARGEST);
         }
     }
 }

@@ -136,6 +136,6 @@ mod tests {
         }
         // Each satellite rises once or twice a day; an arc broken by low elevation comes beside it.
         assert!(slips < count / 100, "{slips} of {count}");
-        assert!((0.005..0.05).contains(&largest), "{largest}");
+        assert!((0.005..0.1).contains(&largest), "{largest}");
     }
 }
