@@ -31,7 +31,7 @@ pub const ESBC: Station = Station {
     clocks: &["esbc2020177/grg177_gps.clk.gz"],
     antennas: "esbc2020177/esbc.atx.gz",
     ocean_loading: None,
-    truth: [3_582_104.7645, 532_590.1790, 5_232_755.1455],
+    truth: [3_582_104.764_5, 532_590.179_0, 5_232_755.145_5],
     until: 85_500.0,
 };
 
@@ -50,14 +50,14 @@ pub const ACOR: Station = Station {
     clocks: &[],
     antennas: "igs2008148/igs05_trim.atx.gz",
     ocean_loading: Some("igs2008148/subset.blq"),
-    truth: [4_594_489.6751, -678_367.6935, 4_357_066.1667],
+    truth: [4_594_489.675_1, -678_367.693_5, 4_357_066.166_7],
     until: 86_400.0,
 };
 
 /// Toulouse, the same day.
 pub const TLSE: Station = Station {
     observations: "igs2008148/tlse_gps.rnx.gz",
-    truth: [4_627_851.7946, 119_640.0868, 4_372_993.5917],
+    truth: [4_627_851.794_6, 119_640.086_8, 4_372_993.591_7],
     ..ACOR
 };
 

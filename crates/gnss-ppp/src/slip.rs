@@ -114,9 +114,7 @@ impl Arc {
             None
         };
         if slip.is_some() {
-            let variance = self.geometry_free_variance;
-            *self = Self::begin(time, phase, code);
-            self.geometry_free_variance = variance;
+            self.restart(time, phase, code);
             return slip;
         }
         self.last = time;
@@ -128,9 +126,19 @@ impl Arc {
         None
     }
 
+    /// A new arc of the same satellite: what is known of its ionosphere stays.
+    pub fn restart(&mut self, time: GpsTime, phase: [f64; 2], code: [f64; 2]) {
+        let variance = self.geometry_free_variance;
+        *self = Self::begin(time, phase, code);
+        self.geometry_free_variance = variance;
+    }
+
     /// The wide lane is `jump` beside its mean.
     fn widen(&mut self, jump: f64, share: f64, limits: &SlipLimits) {
         let spread = limits.deviations * libm::sqrt(self.wide_lane_variance);
+        if jump.is_nan() {
+            return;
+        }
         if jump.abs() <= spread.max(limits.melbourne_wuebbena) {
             self.off = 0;
             self.wide_lane += share * jump;

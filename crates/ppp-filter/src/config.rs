@@ -41,7 +41,7 @@ impl Deviation {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
-    /// Whether the receiver moves.
+    /// Whether the receiver moves. The default `estimator` is made for it: change both.
     pub motion: Motion,
     /// Lowest elevation of a satellite, rad.
     pub elevation_mask: f64,
@@ -66,6 +66,28 @@ pub struct Config {
 }
 
 impl Config {
+    /// Whether the filter can work with it.
+    pub(crate) fn is_valid(&self) -> bool {
+        let motion = match self.motion {
+            Motion::Static => 0.0,
+            Motion::Kinematic { process_noise } => process_noise,
+        };
+        let Deviation { zenith: phase, slant: phase_slant } = self.phase;
+        let Deviation { zenith: code, slant: code_slant } = self.code;
+        let positive = [phase, code, self.wet_delay];
+        let rest = [
+            motion,
+            phase_slant,
+            code_slant,
+            self.clock_walk,
+            self.wet_delay_walk,
+            self.correlation_time,
+        ];
+        self.elevation_mask.is_finite()
+            && positive.iter().all(|&value| value > 0.0 && value.is_finite())
+            && rest.iter().all(|&value| value >= 0.0 && value.is_finite())
+    }
+
     /// What the interpolation of a satellite's clock adds to the variance of an observation, m².
     pub(crate) fn clock_variance(&self, state: &SatelliteState) -> f64 {
         let SatelliteState { clock_interval: interval, clock_distance: distance, .. } = *state;

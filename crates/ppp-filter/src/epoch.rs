@@ -11,7 +11,7 @@ pub struct Sighting<'a> {
     pub code: [f64; 2],
     /// Carrier phases on L1 and L2, cycles.
     pub phase: [f64; 2],
-    /// Whether the receiver says that it lost lock since the epoch before.
+    /// Whether the receiver says that it lost lock since the last epoch that had a solution.
     pub lock_lost: bool,
     /// The satellite when it sent what was received.
     pub state: SatelliteState,

@@ -13,9 +13,10 @@ pub enum Error {
     PoorGeometry,
     /// The epoch is not later than the one before.
     TimeNotAdvancing,
-    /// So many measurements contradict the others that no position is left.
+    /// The position moves on with each look at the observations: they contradict each other.
     Contradictory,
-    /// The estimator's settings are no settings: see [`Robust`](kestirim_robust_kalman::Robust).
+    /// A setting is negative or not finite: see [`Config`](crate::Config) and
+    /// [`Robust`](kestirim_robust_kalman::Robust).
     InvalidConfiguration,
     /// A number is not finite.
     NotFinite,
@@ -28,7 +29,7 @@ impl fmt::Display for Error {
             Self::PoorGeometry => "the satellites' geometry fixes no position",
             Self::TimeNotAdvancing => "the epoch is not later than the one before",
             Self::Contradictory => "the measurements contradict each other",
-            Self::InvalidConfiguration => "the estimator's settings are not valid",
+            Self::InvalidConfiguration => "the settings are not valid",
             Self::NotFinite => "a number is not finite",
         })
     }

@@ -11,8 +11,8 @@ pub(crate) const POSITION: Block = Block::new(0, 3);
 pub struct Estimator {
     /// How an epoch's observations are weighted.
     pub robust: Robust<f64>,
-    /// After how many epochs without a say of its phase a satellite's ambiguity is taken for
-    /// another one; none: never.
+    /// After how many epochs without a say of its phase a satellite's ambiguity is taken for another
+    /// one. Without patience phases are not watched at all: no slip by the wide lane, no noise learnt.
     pub patience: Option<u8>,
 }
 

@@ -35,6 +35,9 @@ impl<const N: usize> PppFilter<N> {
         receiver: &Receiver<'_>,
         sightings: &[Sighting<'_>],
     ) -> Result<Solution<N>, Error> {
+        if !self.config.is_valid() {
+            return Err(Error::InvalidConfiguration);
+        }
         let mut next = match self.running {
             Some(mut running) => {
                 running.advance(time, &self.config)?;

@@ -5,7 +5,7 @@ use crate::collected::collected;
 use crate::line::{Line, Row};
 use crate::start::CodePosition;
 use crate::states::{CLOCK, COMMON, WET};
-use crate::watch::Watch;
+use crate::watch::{Watch, is_judged};
 use crate::{Config, Error, Motion, Sighting, Slipped, Solution};
 use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
@@ -39,7 +39,7 @@ pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 pub(crate) struct Running<const N: usize> {
     pub(crate) estimate: Gaussian<f64, N>,
     pub(crate) time: GpsTime,
-    /// Since the epoch before, s.
+    /// The shortest time between two epochs so far, s.
     pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
@@ -72,7 +72,8 @@ impl<const N: usize> Running<N> {
         if elapsed <= 0.0 || elapsed.is_nan() {
             return Err(Error::TimeNotAdvancing);
         }
-        (self.time, self.interval) = (time, Some(elapsed));
+        self.time = time;
+        self.interval = Some(self.interval.map_or(elapsed, |interval| interval.min(elapsed)));
         if let Motion::Kinematic { process_noise } = config.motion {
             for coordinate in 0..3 {
                 self.estimate.add_variance_at(coordinate, process_noise * elapsed)?;
@@ -167,8 +168,9 @@ impl<const N: usize> Running<N> {
 
     /// Remembers how the phases behaved. What all of them show at once is none's own noise.
     fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>, config: &Config) {
-        let common = median(decisions, |[_, phase]| phase.standardised * phase.standardised);
-        let common = (common / MEDIAN_OF_SQUARES).max(1.0);
+        let judged = decisions.iter().map(|[_, phase]| phase).filter(|phase| is_judged(phase));
+        let squares: Vec<f64, N> = collected(judged.map(|it| it.standardised * it.standardised));
+        let common = (median(&squares, |square| *square) / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
                 channel.watch.listen(phase, line, common, config.motion);
@@ -185,17 +187,18 @@ impl<const N: usize> Running<N> {
     ) -> Lines<'a, 'b, N> {
         let mut lines = Vec::new();
         for sighting in sightings {
+            if lines.iter().any(|(_, line): &(_, Line)| line.satellite == sighting.satellite) {
+                continue;
+            }
             let known = self.find(sighting.satellite);
             let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
             let expected = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up);
             let Some(expected) = expected else { continue };
             let above = expected.direction.elevation >= config.elevation_mask;
-            let twice =
-                lines.iter().any(|(_, line): &(_, Line)| line.satellite == sighting.satellite);
             if !above && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
                 *place = None;
             }
-            if !above || twice || !sighting.is_finite() {
+            if !above || !sighting.is_finite() {
                 continue;
             }
             let Some(state) = known.or_else(|| self.free(sightings)) else { continue };
@@ -241,6 +244,7 @@ impl<const N: usize> Running<N> {
             channel.watch.contradicts(patience).then_some(Slipped::Contradicted)
         });
         if slipped.is_some() {
+            channel.arc.restart(time, phase, code);
             channel.watch.begin();
         }
         slipped

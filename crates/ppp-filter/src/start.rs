@@ -30,9 +30,10 @@ const LARGEST_RESIDUAL: f64 = 15.0;
 /// Least squares on the ionosphere-free codes, begun at the Earth's centre; the worst code is
 /// dropped while its residual is not believable and five others remain.
 pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, Error> {
+    let sightings = sightings.get(..32).unwrap_or(sightings);
     // A satellite that is there twice counts once; from no place are more than 32 seen.
     let mut dropped = 0_u32;
-    for (index, sighting) in sightings.iter().take(32).enumerate() {
+    for (index, sighting) in sightings.iter().enumerate() {
         let before = sightings.get(..index).unwrap_or(&[]);
         if before.iter().any(|other| other.satellite == sighting.satellite) {
             dropped |= 1 << index;
@@ -50,7 +51,10 @@ pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, 
                 Some((index, misfit.abs()))
             })
             .max_by(|a, b| a.1.total_cmp(&b.1));
-        let remaining = sightings.len().saturating_sub(dropped.count_ones() as usize);
+        let known = |(index, sighting): (usize, &Sighting<'_>)| {
+            used(index) && compare(sighting, &solution).is_some()
+        };
+        let remaining = sightings.iter().enumerate().filter(|&it| known(it)).count();
         match worst {
             Some((index, misfit)) if misfit > LARGEST_RESIDUAL && remaining > 5 && index < 32 => {
                 dropped |= 1 << index;
@@ -113,5 +117,5 @@ fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vec
         - SPEED_OF_LIGHT * clock
         + troposphere;
     let misfit = ionosphere_free(sighting.code) - computed;
-    misfit.is_finite().then_some((misfit, sight))
+    (misfit + sight.sum()).is_finite().then_some((misfit, sight))
 }

@@ -6,7 +6,8 @@ use kestirim_robust_kalman::{Decision, Reason};
 
 /// Over how many epochs the noise is averaged.
 const MEMORY: f64 = 30.0;
-/// By how much a clock may be worse or better than it should be, or a phase worse, in variances.
+/// By how much a clock may be worse or better than it should be, or a moving receiver's phase worse, in
+/// variances.
 const LARGEST: f64 = 9.0;
 /// What a single phase may say about the noise at most, in variances: outliers are not noise.
 const LOUDEST: f64 = 9.0;
@@ -45,8 +46,8 @@ impl Watch {
     /// Whether the ambiguity must be another one: the phase jumped and stays where it is for
     /// `patience` epochs.
     pub(crate) fn contradicts(&self, patience: u8) -> bool {
-        let long = self.unheard >= patience.saturating_mul(ENDURANCE);
-        long || (self.jumped && self.unheard >= patience)
+        let patience = if self.jumped { patience } else { patience.saturating_mul(ENDURANCE) };
+        self.unheard > 0 && self.unheard >= patience
     }
 
     /// Whether the phase had no say in the last epoch.
@@ -68,7 +69,7 @@ impl Watch {
         common: f64,
         motion: Motion,
     ) {
-        let (own, clock) = (line.phase_variance, line.clock_variance);
+        let (own, clock) = (line.phase_variance * line.phase_noise, line.clock_variance);
         if phase.weight > UNHEARD {
             (self.unheard, self.jumped, self.residual) = (0, false, phase.residual);
         } else {
@@ -79,7 +80,7 @@ impl Watch {
             }
             self.unheard = self.unheard.saturating_add(1);
         }
-        if !matches!(phase.reason, Reason::NoRedundancy | Reason::TooFew) {
+        if is_judged(phase) {
             let square = (phase.standardised * phase.standardised / common).min(LOUDEST);
             let (share, least) = match motion {
                 Motion::Static => (clock / (own + clock), 1.0 / LARGEST),
@@ -89,4 +90,9 @@ impl Watch {
             self.noise = self.noise.clamp(least, LARGEST);
         }
     }
+}
+
+/// Whether the others said anything about a phase.
+pub(crate) fn is_judged(phase: &Decision<f64>) -> bool {
+    !matches!(phase.reason, Reason::NoRedundancy | Reason::TooFew)
 }

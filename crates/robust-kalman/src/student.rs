@@ -5,7 +5,7 @@ const MOST_FREEDOM: usize = 1000;
 /// From the left of a concave function Newton's steps never pass the root; a dozen are usual.
 const MOST_STEPS: usize = 60;
 
-/// t of P(|t| > `alpha`-quantile) = `alpha`: the two-sided threshold of Student's distribution with
+/// t with P(|T| > t) = `alpha`: the two-sided threshold of Student's distribution with
 /// `freedom` ≥ 1 degrees of freedom. 0 where `alpha` is not below 1, the largest number where it is not
 /// positive.
 ///

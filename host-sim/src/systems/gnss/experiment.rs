@@ -70,6 +70,8 @@ fn cases() -> Vec<Case> {
         case(STATIC, "RKF by the letter", standing, printed(igg3), None),
         case(STATIC, "IKF by the letter", standing, printed(iterative), None),
         case(KINEMATIC, "plain (GKF)", moving, plain, None),
+        case(KINEMATIC, "IGG III (RKF)", moving, igg3, None),
+        case(KINEMATIC, "t-test (SKF)", moving, t_test, None),
         case(KINEMATIC, "iterative IGG III (IKF)", moving, iterative, moving_ikf),
         case(KINEMATIC, "adaptive (UKF)", moving, adaptive, moving_ukf),
         case(KINEMATIC, "default", moving, Estimator::guarded(moving), None),

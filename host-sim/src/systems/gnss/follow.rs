@@ -136,23 +136,30 @@ pub fn follow(
     let mut filter = PppFilter::<STATES>::new(config);
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
     let mut sightings: Vec<Sighting<'_>> = Vec::new();
+    // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
+    let mut lost = [false; 256];
     // Tells which satellites stand below the mask, and nothing else.
     let mut about = recording.approximate_position().map(Vector3::from);
     for epoch in epochs {
         let t = recording.seconds(epoch);
         let mut unused = Unused { observed: epoch.satellites.len(), ..Unused::default() };
         sightings.clear();
+        if epoch.power_failure {
+            lost.fill(true);
+        }
         for observed in &epoch.satellites {
+            let lost = &mut lost[usize::from(observed.prn)];
+            *lost |= observed.loss_of_lock.contains(&true);
             match recording.products().sighting(epoch.time, observed) {
-                Ok(mut sighting) => {
-                    sighting.lock_lost |= epoch.power_failure;
-                    sightings.push(sighting);
-                }
+                Ok(sighting) => sightings.push(Sighting { lock_lost: *lost, ..sighting }),
                 Err(reason) => followed.miss(observed.prn, reason, &mut unused),
             }
         }
         match filter.process(epoch.time, receiver, &sightings) {
             Ok(solution) => {
+                for report in &solution.satellites {
+                    lost[usize::from(report.satellite)] = false;
+                }
                 about = Some(solution.position);
                 unused.below_mask = sightings.len().saturating_sub(solution.satellites.len());
                 followed.take(t, &solution, with_residuals);
