@@ -35,16 +35,6 @@ impl<'a> Site<'a> {
     /// The surroundings of a marker at `position` (ECEF, m, free of tides).
     pub fn new(receiver: &Receiver<'a>, position: &Vector3<f64>, time: GpsTime) -> Self {
         let bodies = Bodies::at(time, receiver.ut1_minus_gps);
-        Self::with_bodies(receiver, position, time, bodies)
-    }
-
-    /// The same where Sun and Moon are known already.
-    pub fn with_bodies(
-        receiver: &Receiver<'a>,
-        position: &Vector3<f64>,
-        time: GpsTime,
-        bodies: Bodies,
-    ) -> Self {
         let place = Geodetic::from_ecef(position);
         let enu_from_ecef = place.enu_from_ecef();
         let mut local = Vector3::from(receiver.eccentricity);
@@ -68,18 +58,8 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// The place on the ellipsoid.
-    pub const fn place(&self) -> &Geodetic {
-        &self.place
-    }
-
     /// The rotation from ECEF to east, north, up.
     pub const fn enu_from_ecef(&self) -> &Matrix3<f64> {
         &self.enu_from_ecef
-    }
-
-    /// Sun and Moon.
-    pub const fn bodies(&self) -> Bodies {
-        self.bodies
     }
 }

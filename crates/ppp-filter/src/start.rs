@@ -40,23 +40,14 @@ pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, 
         }
     }
     loop {
-        let used = |index: usize| dropped & (1_u32.checked_shl(index as u32).unwrap_or(0)) == 0;
+        let used = |index: usize| dropped & (1 << index) == 0;
         let solution = least_squares(sightings, used)?;
-        let worst = sightings
-            .iter()
-            .enumerate()
-            .filter(|&(index, _)| used(index))
-            .filter_map(|(index, sighting)| {
-                let (misfit, _) = compare(sighting, &solution)?;
-                Some((index, misfit.abs()))
-            })
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        let known = |(index, sighting): (usize, &Sighting<'_>)| {
-            used(index) && compare(sighting, &solution).is_some()
+        let misfits = || {
+            let known = sightings.iter().enumerate().filter(|&(index, _)| used(index));
+            known.filter_map(|(index, it)| Some((index, compare(it, &solution)?.0.abs())))
         };
-        let remaining = sightings.iter().enumerate().filter(|&it| known(it)).count();
-        match worst {
-            Some((index, misfit)) if misfit > LARGEST_RESIDUAL && remaining > 5 && index < 32 => {
+        match misfits().max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((index, misfit)) if misfit > LARGEST_RESIDUAL && misfits().count() > 5 => {
                 dropped |= 1 << index;
             }
             _ => return Ok(solution),
