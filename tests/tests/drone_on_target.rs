@@ -3,18 +3,14 @@
 //! On a machine without the tools these tests say SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
-use std::f64::consts::TAU;
-
 use anyhow::{Context, Result};
-use host_sim::random::{normal, stream};
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
 use kestirim_particle_filter::{Particles, Region, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_tests::firmware::{
-    CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target,
-};
 use kestirim_user_locator::{PrintedLocator, PrintedSettings};
-use rand_core::{Rng, SeedableRng};
+use rand_core::SeedableRng;
+use target_bench::streams::{Encode, Records, circle};
+use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
 
 /// Bit for bit the same arithmetic; the numbers are told with the 24 bits of an `f32`, in micrometres (m).
 const SAME: f64 = 0.5e-6;
@@ -23,37 +19,10 @@ const SAME: f64 = 0.5e-6;
 /// as no particle has an offspring more or less for it.
 const NEARLY_SAME: f64 = 1e-3;
 
-/// Where the user is, m.
-const USER: [f64; 2] = [1400.0, 700.0];
-/// How high the drone flies, m.
-const HEIGHT: f64 = 500.0;
 const WAVELENGTH: f64 = 0.15;
 
 fn channel<T: Scalar>() -> Channel<T> {
     Channel::new(&Environment::urban(), T::from_f64(WAVELENGTH)).expect("a channel")
-}
-
-/// Drone x, y, h (m) and path loss (dB).
-type Records = Vec<[f32; 4]>;
-
-/// Two rounds about the middle of the city.
-fn circle() -> Records {
-    let mut rng = stream(4, 0);
-    let channel = channel::<f64>();
-    let record = |step: u32| {
-        let angle = TAU * f64::from(step) / 12.0;
-        let place = [1000.0 + 667.0 * angle.cos(), 1000.0 + 667.0 * angle.sin()];
-        let distance = (USER[0] - place[0]).hypot(USER[1] - place[1]);
-        let expected = channel.path_loss(distance, HEIGHT).expect("a distance");
-        let seen = rng.next_u32() as f64 / 2_f64.powi(32) < expected.line_of_sight_probability;
-        let loss = if seen {
-            expected.line_of_sight_mean + normal(&mut rng, expected.line_of_sight_sigma)
-        } else {
-            expected.obstructed_mean + normal(&mut rng, expected.obstructed_sigma)
-        };
-        [place[0], place[1], HEIGHT, loss].map(|number| number as f32)
-    };
-    (0..24).map(record).collect()
 }
 
 /// Mean and spread of the cloud after each step, as the image computes them.
@@ -102,13 +71,7 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Resu
 fn check<const L: usize>(target: &'static Target, budgets: [f64; 2]) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
     let records = circle();
-    let stream: Vec<u8> = records
-        .iter()
-        .flat_map(|record| {
-            let numbers = record.iter().flat_map(|number| number.to_le_bytes());
-            1_000_000_u32.to_le_bytes().into_iter().chain(numbers).collect::<Vec<u8>>()
-        })
-        .collect();
+    let stream = records.encode();
     let cases = [
         ("locator-f32", estimates::<f32, L>(&records)),
         ("locator-fixed", estimates::<Q16_16, L>(&records)),

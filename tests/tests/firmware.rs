@@ -4,15 +4,14 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead.
 
 use anyhow::Result;
-use kestirim_tests::firmware::{Images, Profile, Row, Sample, Target, encode};
-
-const PROFILES: [Profile; 2] = [Profile::Speed, Profile::Size];
+use target_bench::streams::{Encode, Sample};
+use target_bench::{Images, Profile, Row, Target};
 
 /// Every test on every target, under the target's name.
 macro_rules! on {
     ($($name:ident => $target:ident: $($test:ident)*;)*) => {$(
         mod $name {
-            use kestirim_tests::firmware::$target;
+            use target_bench::$target;
             $(
                 #[test]
                 fn $test() -> anyhow::Result<()> {
@@ -35,7 +34,7 @@ on! {
 }
 
 fn known_code_costs_what_it_must(target: &'static Target) -> Result<()> {
-    for profile in PROFILES {
+    for profile in Profile::ALL {
         let Some(images) = Images::of(target, profile)? else { return Ok(()) };
         let output = images.run("self-check", &[])?;
         let instructions = |name| -> Result<u64> {
@@ -64,7 +63,7 @@ fn the_stack_is_seen(target: &'static Target) -> Result<()> {
 
 fn counts_repeat(target: &'static Target) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
-    let stream = encode(&there_and_back());
+    let stream = there_and_back().encode();
     assert_eq!(images.run("integrator", &stream)?, images.run("integrator", &stream)?);
     Ok(())
 }
@@ -82,7 +81,7 @@ fn a_step_too_long_to_count_fails(target: &'static Target) -> Result<()> {
 fn a_stream_becomes_a_path(target: &'static Target) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
     let samples = there_and_back();
-    let output = images.run("integrator", &encode(&samples))?;
+    let output = images.run("integrator", &samples.encode())?;
     assert_eq!(output.numbers("samples")?, [samples.len() as i64]);
 
     let told: Vec<_> = output.positions()?.iter().map(|told| (told.time_us, told.metres)).collect();
@@ -97,16 +96,16 @@ fn a_stream_becomes_a_path(target: &'static Target) -> Result<()> {
 
 fn a_broken_stream_fails(target: &'static Target) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
-    let stream = encode(&there_and_back());
+    let stream = there_and_back().encode();
     let failure = images.run("integrator", &stream[..100]).expect_err("100 is no multiple of 28");
     assert!(failure.to_string().contains("cut in the middle"), "{failure}");
     Ok(())
 }
 
 fn the_harness_cannot_panic(target: &'static Target) -> Result<()> {
-    for profile in PROFILES {
+    for profile in Profile::ALL {
         let Some(images) = Images::of(target, profile)? else { return Ok(()) };
-        images.run("empty", &encode(&there_and_back()))?;
+        images.run("empty", &there_and_back().encode())?;
         let elf = images.elf("empty")?;
         assert_eq!((elf.panic_symbols(), elf.double_symbols()), (vec![], vec![]));
         assert_eq!(elf.ram_bytes, 0);

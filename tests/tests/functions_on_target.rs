@@ -1,7 +1,7 @@
 //! What the elementary functions cost on emulated boards. With `--nocapture` the table is printed.
 
 use anyhow::{Context, Result};
-use kestirim_tests::firmware::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Target};
+use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Target};
 
 /// The most a function in fixed point may cost on a Cortex-M0, in instructions.
 const BUDGETS: [(&str, f64); 4] = [("sin", 210.0), ("atan2", 600.0), ("exp", 250.0), ("ln", 250.0)];

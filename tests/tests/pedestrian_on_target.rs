@@ -4,36 +4,11 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result};
-use host_sim::random::stream;
-use host_sim::systems::pedestrian::scenario::Scenario;
-use host_sim::systems::pedestrian::sensor;
 use kestirim_pedestrian::{Config, Ekf, ImuSample, Lite, Navigator, Tracker};
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_tests::firmware::{
-    CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Sample, Target, encode,
-};
 use nalgebra::SVector;
-
-/// A walk of the paper's route with a Razor at 100 Hz, as its driver delivers it.
-fn walk() -> Vec<Sample> {
-    let mut rng = stream(7, 0);
-    let rate_hz = 100.0;
-    let ideal = Scenario::draw(&mut rng).ideal_imu(rate_hz);
-    let measured = sensor::measure(&mut rng, &ideal, rate_hz);
-    let mut last_us = 0;
-    measured
-        .iter()
-        .map(|sample| {
-            let elapsed_us = (sample.time_us - last_us) as u32;
-            last_us = sample.time_us;
-            Sample {
-                elapsed_us,
-                specific_force: sample.specific_force.map(|value| value as f32),
-                angular_rate: sample.angular_rate.map(|value| value as f32),
-            }
-        })
-        .collect()
-}
+use target_bench::streams::{Encode, Sample, walk};
+use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
 
 /// The walk on the host: time (µs) and position (m) after every 50 samples and the last, and the length (m).
 fn on_host<T: Scalar, N: Navigator<T>>(samples: &[Sample]) -> (Vec<(i64, [f64; 3])>, f64) {
@@ -71,7 +46,7 @@ fn check<T: Scalar, N: Navigator<T>>(
 ) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
     let samples = walk();
-    let output = images.run(image, &encode(&samples))?;
+    let output = images.run(image, &samples.encode())?;
     println!("{}", Row::of(&images, image, &output)?);
 
     let (expected, _) = on_host::<T, N>(&samples);

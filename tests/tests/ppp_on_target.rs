@@ -5,9 +5,9 @@
 
 use anyhow::{Context, Result, ensure};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteReport};
-use kestirim_tests::firmware::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
 use kestirim_tests::ppp::{EPOCHS, Epoch, Epochs, Filter, OUTLIERS, receiver, station};
 use nalgebra::Vector3;
+use target_bench::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
 
 /// Static variables, filter and stack at most, bytes.
 const MEMORY: u64 = 64 << 10;

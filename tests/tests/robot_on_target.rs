@@ -3,51 +3,22 @@
 //! On a machine without the tools these tests say SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
-use std::f64::consts::TAU;
-use std::path::Path;
-
 use anyhow::{Context, Result};
-use host_sim::random::{normal, stream};
 use kestirim_adaptive_kalman::{
     AdaptiveKalman, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise,
 };
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_tests::firmware::{
-    CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target,
-};
 use kestirim_uwb_ranging::expected_range;
 use kestirim_uwb_tracker::{Anchor, Config, RangeSample, Tracker};
 use nalgebra::{SMatrix, SVector};
+use target_bench::streams::{ANCHORS, Common, Encode, PLACES, Ranges, ellipse};
+use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
 
 /// Bit for bit the same arithmetic; positions are told to the micrometre (m).
 const SAME: f64 = 3e-6;
 /// Without an FPU the norm of an `f32` may differ in its last bit (m).
 const NEARLY_SAME: f64 = 2e-4;
-
-/// The common scenario by which filters are compared, beside the repository; else the same without its
-/// noise, for which there is no reference.
-fn common_scenario() -> (Vec<[f32; 4]>, Option<Vec<[f64; 4]>>) {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/facts/ekf4-ranges4.json");
-    let required = std::env::var("KESTIRIM_REQUIRE_DATA").is_ok_and(|value| value == "1");
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        assert!(!required, "KESTIRIM_REQUIRE_DATA=1, but {} is absent", file.display());
-        let place = |step: u32| {
-            let angle = TAU * f64::from(step) / 100.0;
-            [5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin()]
-        };
-        let ranges = |[x, y]: [f64; 2]| ANCHORS.map(|[a, b]| (x - a).hypot(y - b) as f32);
-        return ((1..=100).map(place).map(ranges).collect(), None);
-    };
-    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    let rows = |name: &str| -> Vec<[f64; 4]> {
-        serde_json::from_value(json[name].clone()).expect("rows of four numbers")
-    };
-    let ranges = rows("ranges").into_iter().map(|row| row.map(|range| range as f32)).collect();
-    (ranges, Some(rows("reference_states_f64")))
-}
-
-const ANCHORS: [[f64; 2]; 4] = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]];
 
 fn anchors<T: Scalar>() -> [SVector<T, 3>; 4] {
     ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64)))
@@ -132,63 +103,12 @@ fn printed<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
     ranges.iter().map(step).collect()
 }
 
-#[test]
-fn the_common_scenario_has_its_reference_states() {
-    let (ranges, Some(reference)) = common_scenario() else { return };
-    let ranges: Vec<_> = ranges.iter().map(|row| row.map(f64::from)).collect();
-    // The ranges are kept in single precision: 10⁻⁶ m.
-    for (states, most) in
-        [(ekf::<f64>(&ranges), 2e-6), (ekf::<f32>(&ranges), 2e-5), (ekf::<Q12_20>(&ranges), 2e-3)]
-    {
-        for (ours, theirs) in states.iter().zip(&reference) {
-            for (ours, theirs) in ours.iter().zip(theirs) {
-                assert!((ours - theirs).abs() < most, "{ours} or {theirs}");
-            }
-        }
-    }
+/// The ranges as an image reads them.
+fn received(common: &Common) -> Vec<[f64; 4]> {
+    common.ranges.iter().map(|row| row.map(|range| f64::from(range as f32))).collect()
 }
 
-/// A tag on an ellipse among the anchors of the images, ranges in epochs of 0.1 s: noise of 5 cm, reflections and
-/// wild values.
-fn ellipse(count: usize) -> Vec<(u32, usize, f32)> {
-    let mut rng = stream(3, 0);
-    let mut samples = Vec::new();
-    for epoch in 0..300_u32 {
-        let angle = 0.03 * f64::from(epoch);
-        let tag = [5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin(), 1.0];
-        for (anchor, place) in PLACES.iter().enumerate().take(count) {
-            let squares: f64 = place.iter().zip(tag).map(|(a, b)| (a - b).powi(2)).sum();
-            let kind = normal(&mut rng, 1.0).abs();
-            let excess = if kind > 2.5 {
-                10.0
-            } else if kind > 1.9 {
-                kind
-            } else {
-                0.0
-            };
-            let range = squares.sqrt() + normal(&mut rng, 0.05) + excess;
-            let elapsed_us = if anchor == 0 { 100_000 } else { 0 };
-            samples.push((elapsed_us, anchor, range as f32));
-        }
-    }
-    samples
-}
-
-/// Where the images have their anchors, m.
-const PLACES: [[f64; 3]; 8] = [
-    [0.0, 0.0, 2.5],
-    [10.0, 0.0, 2.0],
-    [10.0, 8.0, 2.5],
-    [0.0, 8.0, 2.0],
-    [5.0, 0.0, 0.5],
-    [10.0, 4.0, 0.2],
-    [5.0, 8.0, 0.5],
-    [0.0, 4.0, 0.2],
-];
-
-fn tracked<T: Scalar, const D: usize, const N: usize, const A: usize>(
-    samples: &[(u32, usize, f32)],
-) -> Steps {
+fn tracked<T: Scalar, const D: usize, const N: usize, const A: usize>(samples: &Ranges) -> Steps {
     let anchors: Vec<_> = PLACES[..A]
         .iter()
         .map(|place| Anchor { position: SVector::from(place.map(T::from_f64)), bias: T::ZERO })
@@ -253,16 +173,11 @@ fn check(target: &'static Target, budgets: Budgets) -> Result<()> {
 }
 
 fn check_four_ranges(images: &Images, budgets: Budgets) -> Result<()> {
-    let (ranges, _) = common_scenario();
-    let mut stream = Vec::new();
-    for row in &ranges {
-        stream.extend(100_000_u32.to_le_bytes());
-        stream.extend(row.iter().flat_map(|range| range.to_le_bytes()));
-    }
-    let ranges: Vec<_> = ranges.iter().map(|row| row.map(f64::from)).collect();
+    let common = Common::read()?;
+    let (ranges, stream) = (received(&common), common.encode());
     let cases = [
         ("ekf4-ranges4-f32", ekf::<f32>(&ranges), budgets.ekf[0]),
-        ("ekf4-ranges4-fixed", ekf::<Q12_20>(&ranges), budgets.ekf[1]),
+        ("ekf4-ranges4-q12-20", ekf::<Q12_20>(&ranges), budgets.ekf[1]),
         ("aekf4-ranges4-f32", aekf::<f32>(&ranges), budgets.aekf[0]),
         ("aekf4-ranges4-fixed", aekf::<Q12_20>(&ranges), f64::INFINITY),
         ("aekf4-printed-f32", printed::<f32>(&ranges), budgets.aekf[1]),
@@ -277,12 +192,6 @@ fn check_four_ranges(images: &Images, budgets: Budgets) -> Result<()> {
 
 fn check_trackers(images: &Images, budgets: Budgets) -> Result<()> {
     let (four, eight) = (ellipse(4), ellipse(8));
-    let encode = |samples: &[(u32, usize, f32)]| {
-        let words = samples.iter().flat_map(|&(elapsed_us, anchor, range)| {
-            [elapsed_us.to_le_bytes(), (anchor as u32).to_le_bytes(), range.to_le_bytes()]
-        });
-        words.flatten().collect::<Vec<u8>>()
-    };
     let cases = [
         ("uwb-tracker-4-f32", &four, tracked::<f32, 2, 4, 4>(&four), budgets.update[0]),
         ("uwb-tracker-4-fixed", &four, tracked::<Q12_20, 2, 4, 4>(&four), f64::INFINITY),
@@ -292,7 +201,7 @@ fn check_trackers(images: &Images, budgets: Budgets) -> Result<()> {
         ("uwb-tracker-space-fixed", &eight, tracked::<Q12_20, 3, 6, 8>(&eight), f64::INFINITY),
     ];
     for (image, samples, host, budget) in cases {
-        let output = agree(images, image, &encode(samples), &host)?;
+        let output = agree(images, image, &samples.encode(), &host)?;
         for class in ["update", "predict", "rejected", "start"] {
             if let Some(cost) = output.cost("step", class)? {
                 println!("    {class}: {:.0} ({} to {})", cost.mean(), cost.min, cost.max);

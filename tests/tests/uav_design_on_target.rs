@@ -5,8 +5,8 @@
 
 use anyhow::{Context, Result};
 use kestirim_tests::design;
-use kestirim_tests::firmware::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
 use nalgebra::SMatrix;
+use target_bench::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
 
 /// What a design may cost at most: its name, millions of instructions, bytes of stack.
 const BUDGETS: [(&str, u64, i64); 3] =

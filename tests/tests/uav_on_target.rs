@@ -4,31 +4,11 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result};
-use host_sim::random::{normal, stream};
 use kestirim_luenberger::Predictor;
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_tests::firmware::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target};
-use kestirim_tests::uav;
 use nalgebra::SVector;
-
-/// Samples of a flight: elevator (rad), throttle, pitch rate (rad/s), airspeed (m/s), pitch (rad).
-type Flight = Vec<[f32; 5]>;
-
-/// A thousand samples with noise on inputs and outputs.
-fn fly(interval: f64) -> Flight {
-    let plant = uav::plant(interval);
-    let mut rng = stream(6, 0);
-    let mut state = SVector::from([0.0, 0.0, 40.0, 0.53]);
-    let moment = |_| {
-        let outputs = plant.c * state;
-        let measured = [0.0087, 0.5, 0.0087].map(|sigma| normal(&mut rng, sigma));
-        let [rate, airspeed, pitch] = (outputs + SVector::from(measured)).data.0[0];
-        let noise = SVector::from([0.0087, 0.02].map(|sigma| normal(&mut rng, sigma)));
-        state = plant.a * state + plant.b * (SVector::from([0.025, 0.155]) + noise);
-        [0.025, 0.155, rate, airspeed, pitch].map(|number| number as f32)
-    };
-    (0..1000).map(moment).collect()
-}
+use target_bench::streams::{Encode, Flight, fly};
+use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target, uav};
 
 /// The bits of the estimate after every fifty samples, as the image computes it.
 fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
@@ -45,12 +25,7 @@ fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
 
 /// Runs an image, compares its states with the host's, and answers with the instructions of the longest step.
 fn agree(images: &Images, image: &str, flight: &Flight, host: &[[i64; 4]]) -> Result<u64> {
-    let sample = |numbers: &[f32; 5]| -> Vec<u8> {
-        let numbers = numbers.iter().flat_map(|number| number.to_le_bytes());
-        1_000_u32.to_le_bytes().into_iter().chain(numbers).collect()
-    };
-    let stream: Vec<u8> = flight.iter().flat_map(sample).collect();
-    let output = images.run(image, &stream)?;
+    let output = images.run(image, &flight.encode())?;
     println!("{}", Row::of(images, image, &output)?);
     assert_eq!(output.rows::<4>("state")?, host, "{image}: the very bits");
     let elf = images.elf(image)?;
@@ -66,7 +41,7 @@ fn costs(target: &'static Target) -> Result<Option<[u64; 2]>> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(None) };
     let mut longest = [0; 2];
     for (interval, suffix) in [(0.01, ""), (0.001, "-1khz")] {
-        let flight = fly(interval);
+        let flight = fly(&uav::plant(interval));
         let cases = [
             ("f32", estimates::<f32>(&flight, interval)),
             ("fixed", estimates::<Q16_16>(&flight, interval)),

@@ -5,6 +5,7 @@
 
 #![no_std]
 
+pub mod attitude;
 pub mod design;
 pub mod four_ranges;
 pub mod observer;

@@ -8,8 +8,8 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 use wait_timeout::ChildExt;
 
-use super::output::Output;
-use super::target::{ICOUNT, Target};
+use crate::output::Output;
+use crate::target::{ICOUNT, Target};
 
 /// An image that runs longer hangs.
 const PATIENCE: Duration = Duration::from_secs(120);

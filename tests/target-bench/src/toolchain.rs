@@ -11,7 +11,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-use super::target::Target;
+use crate::target::Target;
 
 /// What of our own environment a build may see. Anything else, above all the variables that cargo
 /// and rustup set for this very process, would make the images depend on how the tests were started.
@@ -29,7 +29,7 @@ const ENVIRONMENT: [&str; 8] = [
 /// A toolchain that can build for one target.
 #[derive(Debug)]
 pub(crate) struct Toolchain {
-    target: &'static Target,
+    pub(crate) target: &'static Target,
     sysroot: PathBuf,
     builds_core: bool,
     linker: Option<&'static str>,
@@ -68,8 +68,16 @@ impl Toolchain {
         })
     }
 
-    /// Builds all images in one go and answers with the directory they are in.
-    pub(crate) fn build(&self, profile: &str) -> Result<PathBuf> {
+    /// What compiles: counts of two compilers, or with another optimisation of `core`, do not compare.
+    pub(crate) fn version(&self) -> Result<String> {
+        let answer = Command::new(self.sysroot.join("bin/rustc")).arg("--version").output()?;
+        let version = String::from_utf8(answer.stdout)?;
+        let core = if self.builds_core { "core built from source" } else { "core as shipped" };
+        Ok(format!("{}, {core}", version.trim_end()))
+    }
+
+    /// Builds the images of these packages in one go and answers with the directory they are in.
+    pub(crate) fn build(&self, packages: &[&str], profile: &str) -> Result<PathBuf> {
         let triple = self.target.triple;
         let output = target_directory();
         let mut cargo = Command::new(self.sysroot.join("bin/cargo"));
@@ -79,7 +87,8 @@ impl Toolchain {
             .env("RUSTC", self.sysroot.join("bin/rustc"))
             .env("CARGO_TARGET_DIR", &output)
             .current_dir(workspace())
-            .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple]);
+            .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple])
+            .args(packages.iter().flat_map(|package| ["-p", package]));
         if self.builds_core {
             cargo
                 .env("RUSTC_BOOTSTRAP", "1")
@@ -119,7 +128,7 @@ fn has_rust_lld(rustlib: &Path) -> bool {
 
 /// The workspace of the images.
 fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("firmware")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware")
 }
 
 /// Where the images are built: beside what this process was built with, which cargo marks with a tag.

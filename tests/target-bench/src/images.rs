@@ -6,16 +6,19 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::{Result, bail};
+use anyhow::{Error, Result, bail};
 
-use super::elf::Elf;
-use super::output::Output;
-use super::qemu;
-use super::target::Target;
-use super::toolchain::{Toolchain, is_installed};
+use crate::elf::Elf;
+use crate::output::Output;
+use crate::qemu;
+use crate::target::Target;
+use crate::toolchain::{Toolchain, is_installed};
 
 /// Set to 1, a missing tool is a failure instead of a reason to skip: CI cannot skip unseen.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
+
+/// The packages of images with our workloads and with the peers', built in one go.
+const DEFAULT: [&str; 2] = ["images", "peers"];
 
 /// What the compiler optimises for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,6 +30,9 @@ pub enum Profile {
 }
 
 impl Profile {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Speed, Self::Size];
+
     /// The optimisation level as tables name it.
     pub fn opt(self) -> &'static str {
         match self {
@@ -50,6 +56,8 @@ pub struct Images {
     pub target: &'static Target,
     /// How they are optimised.
     pub profile: Profile,
+    /// What compiled them: counts of different compilers do not compare.
+    pub compiler: String,
     directory: PathBuf,
 }
 
@@ -62,38 +70,64 @@ impl Images {
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        static BUILT: Mutex<BTreeMap<(&str, Profile), Option<Images>>> =
-            Mutex::new(BTreeMap::new());
-        // Locked while building: whoever comes second waits for the images instead of building, too.
-        let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(images) = built.get(&(target.triple, profile)) {
-            return Ok(images.clone());
-        }
-        let images = Self::build(target, profile)?;
-        built.insert((target.triple, profile), images.clone());
-        Ok(images)
+        Self::of_packages(&DEFAULT, target, profile)
     }
 
-    fn build(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        let toolchain = if is_installed(target.qemu) {
-            Toolchain::find(target)
-        } else {
-            Err(format!("{} is not installed: run .ci/install-target-tools", target.qemu))
-        };
-        match toolchain {
-            Ok(toolchain) => {
-                let directory = toolchain.build(profile.name())?;
-                Ok(Some(Self { target, profile, directory }))
-            }
+    /// The same for one package of the workspace of images.
+    ///
+    /// # Errors
+    /// As [`Images::of`].
+    pub fn of_package(
+        package: &'static str,
+        target: &'static Target,
+        profile: Profile,
+    ) -> Result<Option<Self>> {
+        Self::of_packages(&[package], target, profile)
+    }
+
+    /// The same as [`Images::of`] for who cannot do without.
+    ///
+    /// # Errors
+    /// The images do not build, or a tool is missing.
+    pub fn needed(target: &'static Target, profile: Profile) -> Result<Self> {
+        Self::build(&toolchain(target).map_err(Error::msg)?, &DEFAULT, profile)
+    }
+
+    fn of_packages(
+        packages: &[&'static str],
+        target: &'static Target,
+        profile: Profile,
+    ) -> Result<Option<Self>> {
+        type Key = (Vec<&'static str>, &'static str, Profile);
+        static BUILT: Mutex<BTreeMap<Key, Option<Images>>> = Mutex::new(BTreeMap::new());
+        // Locked while building: whoever comes second waits for the images instead of building, too.
+        let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = (packages.to_vec(), target.triple, profile);
+        if let Some(images) = built.get(&key) {
+            return Ok(images.clone());
+        }
+        let images = match toolchain(target) {
+            Ok(toolchain) => Some(Self::build(&toolchain, packages, profile)?),
             Err(why) if env::var(REQUIRE).is_ok_and(|value| value == "1") => {
                 bail!("{REQUIRE}=1, but {why}")
             }
             Err(why) => {
                 // Not `eprintln!`, which the test runner swallows when the test passes.
                 writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
-                Ok(None)
+                None
             }
-        }
+        };
+        built.insert(key, images.clone());
+        Ok(images)
+    }
+
+    fn build(toolchain: &Toolchain, packages: &[&str], profile: Profile) -> Result<Self> {
+        Ok(Self {
+            target: toolchain.target,
+            profile,
+            compiler: toolchain.version()?,
+            directory: toolchain.build(packages, profile.name())?,
+        })
     }
 
     /// Runs an image, with a stream of samples (see [`super::encode`]) for it to read, until it ends.
@@ -111,5 +145,14 @@ impl Images {
     /// There is no such image.
     pub fn elf(&self, image: &str) -> Result<Elf> {
         Elf::read(&self.directory.join(image))
+    }
+}
+
+/// A toolchain for the target, or what is missing.
+fn toolchain(target: &'static Target) -> Result<Toolchain, String> {
+    if is_installed(target.qemu) {
+        Toolchain::find(target)
+    } else {
+        Err(format!("{} is not installed: run .ci/install-target-tools", target.qemu))
     }
 }

@@ -35,3 +35,6 @@ pub static RV32IMC: Target = Target {
     qemu: "qemu-system-riscv32",
     machine: &["-machine", "virt", "-bios", "none"],
 };
+
+/// All of them.
+pub static TARGETS: [&Target; 3] = [&CORTEX_M0, &CORTEX_M4F, &RV32IMC];

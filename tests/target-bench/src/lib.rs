@@ -1,7 +1,8 @@
-//! Builds the images of `tests/firmware` and runs them under QEMU.
+//! What the estimators cost on bare metal: builds the images of `tests/firmware`, runs them under QEMU,
+//! and makes rows of a table of what they tell.
 //!
 //! ```no_run
-//! use kestirim_tests::firmware::{CORTEX_M0, Images, Profile, Row};
+//! use target_bench::{CORTEX_M0, Images, Profile, Row};
 //!
 //! # fn main() -> anyhow::Result<()> {
 //! let Some(images) = Images::of(&CORTEX_M0, Profile::Speed)? else { return Ok(()) }; // skipped
@@ -11,18 +12,22 @@
 //! # }
 //! ```
 
+pub mod baseline;
 mod elf;
 mod images;
 mod output;
 mod qemu;
 mod row;
-mod stream;
+pub mod streams;
+pub mod table;
 mod target;
 mod toolchain;
+#[path = "../../firmware/images/src/uav.rs"]
+pub mod uav;
+pub mod workloads;
 
 pub use elf::Elf;
 pub use images::{Images, Profile};
 pub use output::{Cost, Output, Position};
 pub use row::Row;
-pub use stream::{Sample, encode};
-pub use target::{CORTEX_M0, CORTEX_M4F, RV32IMC, Target};
+pub use target::{CORTEX_M0, CORTEX_M4F, RV32IMC, TARGETS, Target};

@@ -1,0 +1,50 @@
+//! Measures every estimator on every emulated board and prints the table.
+
+use std::collections::BTreeMap;
+
+use anyhow::Result;
+use clap::Parser;
+use host_sim::output::{print, progress};
+use serde::Serialize;
+use target_bench::baseline::Baseline;
+use target_bench::{Images, Profile, Row, TARGETS, table, workloads};
+
+/// What every estimator costs on a Cortex-M0, a Cortex-M4F and an RV32IMC, under QEMU: instructions a
+/// step, flash, RAM and stack, beside other crates' filters on the same scenario.
+#[derive(Parser)]
+#[command(version)]
+struct Options {
+    /// One JSON object on standard output instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Keep the numbers as the baseline that the tests compare with
+    #[arg(long)]
+    keep: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    rows: Vec<Row>,
+}
+
+fn main() -> Result<()> {
+    let options = Options::parse();
+    let mut compilers = BTreeMap::new();
+    let mut rows = Vec::new();
+    let bar = progress(2 * TARGETS.len() as u64, "targets");
+    for target in TARGETS {
+        for profile in Profile::ALL {
+            let images = Images::needed(target, profile)?;
+            rows.extend(workloads::measure(&images)?);
+            compilers.insert(target.triple.to_owned(), images.compiler);
+            bar.inc(1);
+        }
+    }
+    bar.finish_and_clear();
+    if options.keep {
+        Baseline { compilers, rows: rows.clone() }.keep()?;
+    }
+    let text =
+        if options.json { serde_json::to_string(&Report { rows })? } else { table::of(&rows) };
+    Ok(print(&text)?)
+}

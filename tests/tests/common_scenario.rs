@@ -1,0 +1,102 @@
+//! The common scenario by which filters are compared: a tag walks an ellipse among four anchors and is
+//! tracked with position and velocity from four ranges every 0.1 s.
+
+use anyhow::Result;
+use host_sim::random::{normal, stream};
+use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
+use kestirim_scalar::{Q8_24, Q12_20, Q16_16, Scalar};
+use kestirim_uwb_ranging::expected_range;
+use nalgebra::SVector;
+use target_bench::streams::{ANCHORS, Common};
+
+/// An extended Kalman filter of the scenario, for ranges with this standard deviation (m).
+struct Filter<T: Scalar> {
+    anchors: [SVector<T, 3>; 4],
+    motion: ConstantVelocity<T, 2>,
+    variance: T,
+    estimate: Gaussian<T, 4>,
+}
+
+impl<T: Scalar> Filter<T> {
+    fn new(sigma: f64) -> Self {
+        let mean = SVector::from([5.0, 4.0, 0.0, 0.0].map(T::from_f64));
+        Self {
+            anchors: ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64))),
+            motion: ConstantVelocity::new(T::from_f64(0.1), T::from_f64(0.25)),
+            variance: T::from_f64(sigma * sigma),
+            estimate: Gaussian::new(mean, Covariance::from_variances(&[T::ONE; 4])),
+        }
+    }
+
+    fn step(&mut self, ranges: &[f64; 4]) -> [f64; 4] {
+        self.estimate.advance(&self.motion).expect("a finite state");
+        for (anchor, &measured) in self.anchors.iter().zip(ranges) {
+            let [x, y, ..] = self.estimate.mean.data.0[0];
+            let range = expected_range(&SVector::from([x, y]), T::ZERO, anchor);
+            let row = SparseRow::new([(0, range.direction[0]), (1, range.direction[1])]);
+            let innovation = T::from_f64(measured) - range.distance;
+            self.estimate.update(&row, innovation, self.variance).expect("a finite range");
+        }
+        self.estimate.mean.data.0[0].map(T::to_f64)
+    }
+}
+
+/// How far the positions are from the reference at most, m.
+fn apart<T: Scalar>(ranges: &[[f64; 4]], reference: &[[f64; 4]]) -> f64 {
+    let mut filter = Filter::<T>::new(0.1);
+    let distance = |(ranges, theirs): (&[f64; 4], &[f64; 4])| {
+        let ours = filter.step(ranges);
+        (ours[0] - theirs[0]).hypot(ours[1] - theirs[1])
+    };
+    ranges.iter().zip(reference).map(distance).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_reference_is_met() -> Result<()> {
+    let common = Common::read()?;
+    let Some(reference) = common.reference else { return Ok(()) };
+    let most = [
+        ("f64", apart::<f64>(&common.ranges, &reference.states), 1e-9),
+        ("f32", apart::<f32>(&common.ranges, &reference.states), 2e-5),
+        ("q8.24", apart::<Q8_24>(&common.ranges, &reference.states), 0.5e-3),
+        ("q12.20", apart::<Q12_20>(&common.ranges, &reference.states), 0.5e-3),
+        ("q16.16", apart::<Q16_16>(&common.ranges, &reference.states), 0.5e-3),
+    ];
+    for (scalar, apart, _) in most {
+        println!("{scalar}: at most {:.2e} m from the reference in double precision", apart);
+    }
+    for (scalar, apart, most) in most {
+        assert!(apart <= most, "{scalar}: {apart} m");
+    }
+    Ok(())
+}
+
+/// Root mean square error of the position over so many steps, m.
+fn rmse<T: Scalar>(sigma: f64, steps: u32) -> f64 {
+    let mut rng = stream(7, 0);
+    let mut filter = Filter::<T>::new(sigma);
+    let mut square = |step: u32| {
+        let angle = 0.04 * f64::from(step);
+        let [x, y] = [5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin()];
+        let ranges = ANCHORS.map(|[a, b]| (x - a).hypot(y - b) + normal(&mut rng, sigma));
+        let [px, py, ..] = filter.step(&ranges);
+        (px - x).powi(2) + (py - y).powi(2)
+    };
+    ((1..=steps).map(&mut square).sum::<f64>() / f64::from(steps)).sqrt()
+}
+
+#[test]
+fn fixed_point_is_as_accurate_over_a_hundred_thousand_steps() {
+    for sigma in [0.01, 0.03, 0.1, 0.3] {
+        let reference = rmse::<f64>(sigma, 100_000);
+        let loss = |rmse: f64| rmse / reference - 1.0;
+        let [single, wide, fine] =
+            [rmse::<f32>, rmse::<Q12_20>, rmse::<Q8_24>].map(|rmse| loss(rmse(sigma, 100_000)));
+        let coarse = loss(rmse::<Q16_16>(sigma, 100_000));
+        println!(
+            "σ = {sigma} m: f64 {reference:.5} m; f32 {single:+.1e}, q8.24 {fine:+.1e}, q12.20 {wide:+.1e}, q16.16 {coarse:+.1e}"
+        );
+        assert!(wide < 0.005, "σ = {sigma} m: Q12.20 loses {wide}");
+        assert!(single < 0.005, "σ = {sigma} m: f32 loses {single}");
+    }
+}
