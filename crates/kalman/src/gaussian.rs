@@ -1,3 +1,4 @@
+use crate::innovation::Weights;
 use crate::{Covariance, Error, Innovation, Linear, Observation, Process, SparseRow, Weighed};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
@@ -134,8 +135,11 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         innovation: T,
         variance: T,
     ) -> Result<Innovation<T>, Error> {
-        let weighed = self.weigh(row, innovation, variance)?;
-        self.correct(&weighed)
+        let row = row.entries();
+        self.covers(row)?;
+        let cross = self.cross_covariance(row);
+        let weights = Weights::new(innovation, spread(row, &cross), variance)?;
+        self.take_in(&weights, &cross)
     }
 
     /// Weighs a measurement as [`Gaussian::update`] would, and changes nothing.
@@ -164,24 +168,10 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         innovation: T,
         variance: T,
     ) -> Result<Weighed<T, N>, Error> {
-        if row.iter().any(|&(index, _)| index >= N) {
-            return Err(Error::IndexOutOfRange);
-        }
-        let mut cross = [T::ZERO; N];
-        for (i, cross) in cross.iter_mut().enumerate() {
-            let mut sum = T::accumulator();
-            for &(index, value) in row {
-                sum = T::mac(sum, value, self.covariance.get(index, i).unwrap_or(T::ZERO));
-            }
-            *cross = T::finish(sum);
-        }
-        let mut spread = T::accumulator();
-        for &(index, value) in row {
-            if let Some(&cross) = cross.get(index) {
-                spread = T::mac(spread, value, cross);
-            }
-        }
-        Weighed::new(innovation, T::finish(spread), variance, cross)
+        self.covers(row)?;
+        let cross = self.cross_covariance(row);
+        let weights = Weights::new(innovation, spread(row, &cross), variance)?;
+        Ok(Weighed { weights, cross })
     }
 
     /// Takes in a measurement that was weighed against this very estimate.
@@ -190,9 +180,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline(always)]
     pub fn correct(&mut self, weighed: &Weighed<T, N>) -> Result<Innovation<T>, Error> {
-        let gain = self.move_mean(weighed)?;
-        self.covariance.downdate(&gain, weighed.cross_covariance());
-        Ok(weighed.report())
+        self.take_in(&weighed.weights, &weighed.cross)
     }
 
     /// A scalar measurement of state `I` itself: [`Gaussian::update`] with a unit row.
@@ -213,27 +201,73 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         for (i, cross) in cross.iter_mut().enumerate() {
             *cross = self.covariance.at(I, i);
         }
-        let weighed = Weighed::new(innovation, cross[I], variance, cross)?;
-        let gain = self.move_mean(&weighed)?;
+        let weights = Weights::new(innovation, cross[I], variance)?;
+        let mut gain = [T::ZERO; N];
+        self.move_mean(&weights, &cross, &mut gain)?;
         self.covariance.downdate_beside::<I>(&gain, &cross);
-        self.covariance.scale_component(I, weighed.by_variance(variance));
-        Ok(weighed.report())
+        self.covariance.scale_component(I, weights.by_variance(variance));
+        Ok(weights.report())
     }
 
-    /// x ← x + k ν, and the gain k.
+    /// Whether the state has all that a row names.
     #[inline(always)]
-    fn move_mean(&mut self, weighed: &Weighed<T, N>) -> Result<[T; N], Error> {
+    fn covers(&self, row: &[(usize, T)]) -> Result<(), Error> {
+        if row.iter().all(|&(index, _)| index < N) { Ok(()) } else { Err(Error::IndexOutOfRange) }
+    }
+
+    /// P hᵀ of a row that the state covers.
+    #[inline(always)]
+    fn cross_covariance(&self, row: &[(usize, T)]) -> [T; N] {
+        let mut cross = [T::ZERO; N];
+        for (i, cross) in cross.iter_mut().enumerate() {
+            let mut sum = T::accumulator();
+            for &(index, value) in row {
+                sum = T::mac(sum, value, self.covariance.known(index, i));
+            }
+            *cross = T::finish(sum);
+        }
+        cross
+    }
+
+    /// x ← x + k ν, P ← P − k h P.
+    #[inline(always)]
+    fn take_in(&mut self, weights: &Weights<T>, cross: &[T; N]) -> Result<Innovation<T>, Error> {
         let mut gain = [T::ZERO; N];
+        self.move_mean(weights, cross, &mut gain)?;
+        self.covariance.downdate(&gain, cross);
+        Ok(weights.report())
+    }
+
+    /// x ← x + k ν, and the gain k. (By reference: in a `Result` it would be copied about.)
+    #[inline(always)]
+    fn move_mean(
+        &mut self,
+        weights: &Weights<T>,
+        cross: &[T; N],
+        gain: &mut [T; N],
+    ) -> Result<(), Error> {
         let mut mean = self.mean.data.0[0];
         for i in 0..N {
-            gain[i] = weighed.by_variance(weighed.cross_covariance()[i]);
-            mean[i] += gain[i] * weighed.innovation();
+            gain[i] = weights.by_variance(cross[i]);
+            mean[i] += gain[i] * weights.innovation;
         }
         // A gain that is not finite makes its mean not finite, even where the innovation is zero.
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
         self.mean.data.0[0] = mean;
-        Ok(gain)
+        Ok(())
     }
+}
+
+/// h P hᵀ, from P hᵀ.
+#[inline(always)]
+fn spread<T: Scalar, const N: usize>(row: &[(usize, T)], cross: &[T; N]) -> T {
+    let mut spread = T::accumulator();
+    for &(index, value) in row {
+        if let Some(&cross) = cross.get(index) {
+            spread = T::mac(spread, value, cross);
+        }
+    }
+    T::finish(spread)
 }

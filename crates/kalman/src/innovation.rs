@@ -14,73 +14,100 @@ pub struct Innovation<T> {
     pub nis: T,
 }
 
-/// A measurement weighed against an estimate that it has not changed yet.
-///
-/// Gates and robust weights look at it, may change its noise, and take it in with
-/// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
+/// The numbers by which a measurement is weighed, without the vectors: they fit into registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighed<T: Scalar, const N: usize> {
-    innovation: T,
+pub(crate) struct Weights<T: Scalar> {
+    pub(crate) innovation: T,
     /// h P hᵀ.
     spread: T,
     /// R.
     noise: T,
-    /// P hᵀ.
-    cross: [T; N],
     /// S, by which everything is divided.
     divisor: T::Divisor,
 }
 
-impl<T: Scalar, const N: usize> Weighed<T, N> {
+impl<T: Scalar> Weights<T> {
     #[inline(always)]
-    pub(crate) fn new(innovation: T, spread: T, noise: T, cross: [T; N]) -> Result<Self, Error> {
+    pub(crate) fn new(innovation: T, spread: T, noise: T) -> Result<Self, Error> {
         if !innovation.is_finite() {
             return Err(Error::NotFinite);
         }
         // Rounding can leave h P hᵀ a trifle below zero.
         let spread = spread.max(T::ZERO);
         let divisor = checked_divisor(spread, noise)?;
-        Ok(Self { innovation, spread, noise, cross, divisor })
+        Ok(Self { innovation, spread, noise, divisor })
     }
 
+    #[inline(always)]
+    pub(crate) fn variance(&self) -> T {
+        self.spread + self.noise
+    }
+
+    #[inline(always)]
+    pub(crate) fn by_variance(&self, value: T) -> T {
+        value.divided_by(self.divisor)
+    }
+
+    #[inline(always)]
+    pub(crate) fn report(&self) -> Innovation<T> {
+        Innovation {
+            innovation: self.innovation,
+            variance: self.variance(),
+            nis: self.by_variance(self.innovation) * self.innovation,
+        }
+    }
+}
+
+/// A measurement weighed against an estimate that it has not changed yet.
+///
+/// Gates and robust weights look at it, may change its noise, and take it in with
+/// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weighed<T: Scalar, const N: usize> {
+    pub(crate) weights: Weights<T>,
+    /// P hᵀ.
+    pub(crate) cross: [T; N],
+}
+
+impl<T: Scalar, const N: usize> Weighed<T, N> {
     /// The same measurement with another noise variance R.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::NotPositive`].
     #[inline(always)]
     pub fn with_noise(self, noise: T) -> Result<Self, Error> {
-        let divisor = checked_divisor(self.spread, noise)?;
-        Ok(Self { noise, divisor, ..self })
+        let divisor = checked_divisor(self.weights.spread, noise)?;
+        Ok(Self { weights: Weights { noise, divisor, ..self.weights }, ..self })
     }
 
     /// ν = z − h(x).
     #[inline(always)]
     pub fn innovation(&self) -> T {
-        self.innovation
+        self.weights.innovation
     }
 
     /// h P hᵀ: how uncertain the expectation is.
     #[inline(always)]
     pub fn spread(&self) -> T {
-        self.spread
+        self.weights.spread
     }
 
     /// R: how uncertain the measurement is.
     #[inline(always)]
     pub fn noise(&self) -> T {
-        self.noise
+        self.weights.noise
     }
 
     /// S = h P hᵀ + R.
     #[inline(always)]
     pub fn variance(&self) -> T {
-        self.spread + self.noise
+        self.weights.variance()
     }
 
     /// `value / S`, by the division that all quotients share.
     #[inline(always)]
     pub fn by_variance(&self, value: T) -> T {
-        value.divided_by(self.divisor)
+        self.weights.by_variance(value)
     }
 
     /// P hᵀ, from which the gain P hᵀ/S is made.
@@ -92,25 +119,21 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
     /// Whether ν² > γ·S, that is NIS > γ, however large ν is.
     #[inline(always)]
     pub fn exceeds(&self, gamma: T) -> bool {
-        let square = T::mac(T::accumulator(), self.innovation, self.innovation);
+        let square = T::mac(T::accumulator(), self.innovation(), self.innovation());
         T::finish(T::mac(square, -gamma, self.variance())) > T::ZERO
     }
 
     /// The same measurement against a·P.
     #[inline(always)]
     pub(crate) fn scaled(&self, a: T) -> Result<Self, Error> {
-        let cross = self.cross.map(|cross| a * cross);
-        Self::new(self.innovation, a * self.spread, self.noise, cross)
+        let weights = Weights::new(self.innovation(), a * self.spread(), self.noise())?;
+        Ok(Self { weights, cross: self.cross.map(|cross| a * cross) })
     }
 
     /// ν, S and NIS as they are before the update.
     #[inline(always)]
     pub fn report(&self) -> Innovation<T> {
-        Innovation {
-            innovation: self.innovation,
-            variance: self.variance(),
-            nis: self.by_variance(self.innovation) * self.innovation,
-        }
+        self.weights.report()
     }
 }
 

@@ -1,0 +1,131 @@
+//! What the estimators cost on bare metal: the bars of the common scenario, beside the peers, and against
+//! the baseline that is kept.
+//!
+//! On a machine without the tools these tests say SKIPPED and pass; with
+//! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. `cargo run --release -p target-bench` prints the table.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::sync::OnceLock;
+
+use anyhow::{Context, Result};
+use target_bench::baseline::Baseline;
+use target_bench::streams::{Common, Encode};
+use target_bench::{
+    CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, TARGETS, Target, workloads,
+};
+
+/// Everything that was measured, and by what compilers; `None` without the tools.
+type Measured = Option<(Vec<Row>, BTreeMap<String, String>)>;
+
+fn measure() -> Result<Measured> {
+    let (mut rows, mut compilers) = (Vec::new(), BTreeMap::new());
+    for target in TARGETS {
+        for profile in Profile::ALL {
+            let Some(images) = Images::of(target, profile)? else { return Ok(None) };
+            rows.extend(workloads::measure(&images)?);
+            compilers.insert(target.triple.to_owned(), images.compiler);
+        }
+    }
+    Ok(Some((rows, compilers)))
+}
+
+fn measured() -> &'static Measured {
+    static MEASURED: OnceLock<Measured> = OnceLock::new();
+    MEASURED.get_or_init(|| measure().expect("every image runs"))
+}
+
+/// The row of a workload.
+fn row<'a>(
+    rows: &'a [Row],
+    name: &str,
+    scalar: &str,
+    target: &Target,
+    profile: Profile,
+) -> &'a Row {
+    let key = [name, scalar, target.triple, profile.opt()];
+    rows.iter().find(|row| row.key() == key).expect("it was measured")
+}
+
+#[test]
+fn nothing_costs_more_than_it_did() -> Result<()> {
+    let Some((rows, compilers)) = measured() else { return Ok(()) };
+    let baseline = Baseline::kept()?;
+    if &baseline.compilers != compilers {
+        // Not `eprintln!`, which the test runner swallows when the test passes.
+        writeln!(
+            io::stderr(),
+            "SKIPPED: the baseline is of {:?}, not of {compilers:?}; \
+             `cargo run --release -p target-bench -- --keep` on the last good commit makes one",
+            baseline.compilers
+        )?;
+        return Ok(());
+    }
+    assert_eq!(baseline.complaints(rows), Vec::<String>::new());
+    Ok(())
+}
+
+#[test]
+fn estimators_link_neither_panics_nor_doubles_nor_static_memory() {
+    let Some((rows, _)) = measured() else { return };
+    for row in rows.iter().filter(|row| !row.name.starts_with("peer-")) {
+        assert_eq!((row.panic_symbols, row.ram_bytes), (0, 0), "{row}");
+        assert!(row.scalar == "f64" || row.double_symbols == 0, "{row}");
+    }
+}
+
+#[test]
+fn the_common_scenario_is_within_its_bars() {
+    let Some((rows, _)) = measured() else { return };
+    let ours = |scalar, target, profile| row(rows, "ekf4-ranges4", scalar, target, profile);
+
+    assert!(ours("f32", &CORTEX_M4F, Profile::Speed).instructions_mean <= 720.0);
+    assert!(ours("f32", &CORTEX_M0, Profile::Speed).instructions_mean <= 56_000.0);
+    for scalar in ["q8.24", "q12.20", "q16.16"] {
+        let fixed = ours(scalar, &CORTEX_M0, Profile::Speed);
+        assert!(fixed.instructions_mean <= 18_500.0, "{fixed}");
+        assert!(fixed.jitter() <= 0.01, "{fixed}");
+        assert!(ours(scalar, &RV32IMC, Profile::Speed).instructions_mean <= 6_900.0);
+        let small = ours(scalar, &CORTEX_M0, Profile::Size);
+        assert!(small.flash_bytes <= 5_000 && small.stack_bytes <= 380, "{small}");
+    }
+    let small = ours("f32", &CORTEX_M4F, Profile::Size);
+    assert!(small.instructions_mean <= 3_300.0, "{small}");
+    assert!(small.flash_bytes <= 2_300 && small.stack_bytes <= 260, "{small}");
+}
+
+#[test]
+fn peers_take_almost_twice_as_long() {
+    let Some((rows, _)) = measured() else { return };
+    let ours = row(rows, "ekf4-ranges4", "f32", &CORTEX_M4F, Profile::Speed).instructions_mean;
+    for peer in ["peer-adskalman", "peer-kfilter", "peer-minikalman"] {
+        let theirs = row(rows, peer, "f32", &CORTEX_M4F, Profile::Speed).instructions_mean;
+        println!("{peer}: {theirs:.0} instructions, {:.2} of ours", theirs / ours);
+        assert!(theirs >= 1.9 * ours, "{peer}: {theirs} instructions, ours {ours}");
+    }
+}
+
+/// Otherwise their cost would say nothing.
+#[test]
+fn peers_find_the_same_states() -> Result<()> {
+    let common = Common::read()?;
+    let Some(reference) = &common.reference else { return Ok(()) };
+    let Some(images) = Images::of(&CORTEX_M4F, Profile::Speed)? else { return Ok(()) };
+    let peers = [
+        ("peer-adskalman-f32", 1e-4),
+        ("peer-kfilter-f32", 1e-4),
+        ("peer-minikalman-f32", 1e-4),
+        // They round each product.
+        ("peer-minikalman-fixed", 0.05),
+    ];
+    for (peer, tolerance) in peers {
+        for told in images.run(peer, &common.encode())?.positions()? {
+            let step = (told.time_us / 100_000 - 1) as usize;
+            let [x, y, ..] = reference.states.get(step).context("a step of the scenario")?;
+            let [px, py, _] = told.metres;
+            let apart = (px - x).hypot(py - y);
+            assert!(apart <= tolerance, "{peer} after step {step}: {apart} m");
+        }
+    }
+    Ok(())
+}
