@@ -1,8 +1,6 @@
-//! Links every image with the linker script of its target's run-time crate.
+//! Links every binary without a linker script: it is not to run, and no board would hold it.
 
 fn main() {
-    println!("cargo::rustc-link-arg-bins=-Tlink.x");
-    // Sections need no page alignment on a bare machine; without it the image stays small.
-    println!("cargo::rustc-link-arg-bins=--nmagic");
+    println!("cargo::rustc-link-arg-bins=--entry=main");
     println!("cargo::rerun-if-changed=build.rs");
 }

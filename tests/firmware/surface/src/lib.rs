@@ -8,10 +8,28 @@
 #![no_std]
 
 use core::hint::black_box;
+use core::panic::PanicInfo;
 
 use kestirim_scalar::Scalar;
 use nalgebra::SMatrix;
 use rand_core::{Infallible, TryRng};
+
+/// Makes a program of `$run`, a `fn()`.
+#[macro_export]
+macro_rules! image {
+    ($run:path) => {
+        #[allow(unsafe_code)] // The symbol is claimed once: a program has one `main`.
+        #[unsafe(export_name = "main")]
+        extern "C" fn main() {
+            $run();
+        }
+    };
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo) -> ! {
+    loop {}
+}
 
 /// A value, of which the optimiser forgets whatever it knew.
 #[inline(always)]

@@ -8,8 +8,7 @@ use kestirim_adaptive_kalman::{
 };
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Q12_20, Scalar};
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers};
+use surface::{any, call_each, image, keep, matrix, number, numbers};
 
 fn covariance<T: Scalar, const N: usize>() -> Covariance<T, N> {
     any(Covariance::from_variances(&numbers()))

@@ -8,8 +8,7 @@ use kestirim_air_to_ground::{
     Propagation, Rotor,
 };
 use kestirim_scalar::{Q16_16, Scalar};
-use support::image;
-use surface::{any, call_each, keep, number, numbers, slice};
+use surface::{any, call_each, image, keep, number, numbers, slice};
 
 fn environment<T: Scalar>() -> Environment<T> {
     let way = || Propagation { excess_loss: number(), sigma: number(), sigma_decay: number() };

@@ -5,8 +5,7 @@
 
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Q12_20, Scalar};
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers};
+use surface::{any, call_each, image, keep, matrix, number, numbers};
 
 fn orientations<T: Scalar>() {
     keep::<Orientation<T>>(Orientation::identity());

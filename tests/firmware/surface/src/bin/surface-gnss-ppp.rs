@@ -11,8 +11,7 @@ use kestirim_gnss_ppp::{
     wind_up, zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers, option, slice};
+use surface::{any, call_each, image, keep, matrix, number, numbers, option, slice};
 
 fn time() -> GpsTime {
     any(GpsTime::new(any(1), number()))

@@ -8,8 +8,7 @@ use kestirim_kalman::{
     Process, SparseRow, SteadyState, Weighed, steady_state,
 };
 use kestirim_scalar::{Q12_20, Scalar};
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers, option, slice};
+use surface::{any, call_each, image, keep, matrix, number, numbers, option, slice};
 
 fn estimate<T: Scalar, const N: usize>() -> Gaussian<T, N> {
     any(Gaussian::new(matrix(), Covariance::from_variances(&numbers())))

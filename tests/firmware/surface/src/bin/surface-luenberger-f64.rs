@@ -4,8 +4,7 @@
 #![no_main]
 
 use kestirim_luenberger::{CurrentGains, DisturbanceGains, Plant, PredictorGains, ReducedGains};
-use support::image;
-use surface::{any, call_each, keep, matrix};
+use surface::{any, call_each, image, keep, matrix};
 
 fn full<const N: usize, const M: usize, const P: usize, const D: usize>() {
     let plant = any(Plant::<N, M, P> { a: matrix(), b: matrix(), c: matrix() });
@@ -21,7 +20,12 @@ fn reduced<const N: usize, const M: usize, const P: usize, const R: usize>() {
 }
 
 fn run() {
-    call_each([full::<4, 2, 3, 1>, full::<9, 3, 5, 2>, reduced::<4, 2, 2, 2>, reduced::<9, 3, 2, 7>]);
+    call_each([
+        full::<4, 2, 3, 1>,
+        full::<9, 3, 5, 2>,
+        reduced::<4, 2, 2, 2>,
+        reduced::<9, 3, 2, 7>,
+    ]);
 }
 
 image!(run);

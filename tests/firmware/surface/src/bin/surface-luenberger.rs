@@ -10,8 +10,7 @@ use kestirim_luenberger::{
 };
 use kestirim_scalar::{Q16_16, Scalar};
 use nalgebra::{ArrayStorage, SMatrix};
-use support::image;
-use surface::{any, call_each, keep, matrix};
+use surface::{any, call_each, image, keep, matrix};
 
 const fn filled<const R: usize, const C: usize>() -> SMatrix<f64, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[0.5; R]; C]))

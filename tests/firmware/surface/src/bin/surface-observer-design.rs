@@ -5,11 +5,10 @@
 
 use kestirim_observer_design::{
     Complex, Placement, Response, StateSpace, controllability, discrete_noise, eigenvalues,
-    error_covariance, hidden_modes, lyapunov, observability, place, riccati, singular_values, tustin,
-    zero_order_hold,
+    error_covariance, hidden_modes, lyapunov, observability, place, riccati, singular_values,
+    tustin, zero_order_hold,
 };
-use support::image;
-use surface::{any, call_each, keep, matrix, number};
+use surface::{any, call_each, image, keep, matrix, number};
 
 fn complex() -> Complex<f64> {
     Complex { re: number(), im: number() }

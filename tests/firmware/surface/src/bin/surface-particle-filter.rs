@@ -7,8 +7,7 @@ use kestirim_particle_filter::{
     Moments, Particles, PointMass, Region, Resampler, Start, kld_count, offspring,
 };
 use kestirim_scalar::{Q16_16, Scalar};
-use support::image;
-use surface::{AnyRng, any, call_each, keep, number, numbers, slice, slice_mut};
+use surface::{AnyRng, any, call_each, image, keep, number, numbers, slice, slice_mut};
 
 fn resampler() -> Resampler {
     any(Resampler::Residual)

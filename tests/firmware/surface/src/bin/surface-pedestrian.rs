@@ -8,12 +8,11 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Magnitude, Motion, MovingVariance, Shoe, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, SensorClass, Step, Tracker,
-    ZeroVelocity, Alignment,
+    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, SensorClass, Step, Tracker,
+    ZeroVelocity,
 };
 use kestirim_scalar::{Q12_20, Scalar};
-use support::image;
-use surface::{any, call_each, keep, matrix, number, slice, slice_mut};
+use surface::{any, call_each, image, keep, matrix, number, slice, slice_mut};
 
 fn config<T: Scalar>() -> Config<T> {
     let config = any(<Config<T> as Default>::default());
@@ -44,12 +43,8 @@ fn detectors<T: Scalar>() {
 fn navigates<T: Scalar, N: Navigator<T>>() {
     let start = any(Orientation::identity());
     let mut navigator = any(<N as Navigator<T>>::start(any(SensorClass::Consumer), start));
-    let step = any(Step {
-        interval: number(),
-        force_g: matrix(),
-        angular_rate: matrix(),
-        turn: matrix(),
-    });
+    let step =
+        any(Step { interval: number(), force_g: matrix(), angular_rate: matrix(), turn: matrix() });
     Navigator::propagate(any(&mut navigator), &step, any(true));
     let (velocity, landing) = (matrix(), any(true));
     let zero = any(ZeroVelocity { velocity, unrest: number(), interval: number(), landing });

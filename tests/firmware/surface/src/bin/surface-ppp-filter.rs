@@ -9,8 +9,7 @@ use kestirim_gnss_ppp::{
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Motion, PppFilter, Sighting, Solution, states,
 };
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers, slice};
+use surface::{any, call_each, image, keep, matrix, number, numbers, slice};
 
 fn motion() -> Motion {
     any(Motion::Kinematic { process_noise: number() })

@@ -5,12 +5,11 @@
 
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_robust_kalman::{
-    Adaptive, Block, Decision, Descent, Discrepancy, Error, Measurement, Order, Reweighting, Robust,
-    Scale, Weight, jump, student_quantile,
+    Adaptive, Block, Decision, Descent, Discrepancy, Error, Measurement, Order, Reweighting,
+    Robust, Scale, Weight, jump, student_quantile,
 };
 use kestirim_scalar::{Q12_20, Scalar};
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers, slice, slice_mut};
+use surface::{any, call_each, image, keep, matrix, number, numbers, slice, slice_mut};
 
 fn block() -> Block {
     any(Block::new(any(1), any(1)))
@@ -61,8 +60,7 @@ fn weights<T: Scalar>() {
 }
 
 fn updates<T: Scalar, const N: usize, const K: usize, const M: usize>() {
-    let mut estimate =
-        any(Gaussian::<T, N>::new(matrix(), Covariance::from_variances(&numbers())));
+    let mut estimate = any(Gaussian::<T, N>::new(matrix(), Covariance::from_variances(&numbers())));
     let row = any(SparseRow::new([(any(1), number()); K]));
     let measurement = any(Measurement::new(&row, number(), number()));
     let other = any(Measurement { row: slice(row.entries()), ..measurement });

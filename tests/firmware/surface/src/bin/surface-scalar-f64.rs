@@ -4,8 +4,7 @@
 #![no_main]
 
 use kestirim_scalar::{Fixed, Q8_24, Q12_20, Q16_16, Scalar};
-use support::image;
-use surface::{any, call_each, keep, number, numbers, slice};
+use surface::{any, call_each, image, keep, number, numbers, slice};
 
 fn conversions<T: Scalar>() {
     keep::<T>(Scalar::from_f64(any(1.0)));

@@ -8,8 +8,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use kestirim_scalar::{Fixed, Q8_24, Q12_20, Q16_16, Scalar};
 use num_traits::{One, Zero};
-use support::image;
-use surface::{any, call_each, keep, number, numbers, slice};
+use surface::{any, call_each, image, keep, number, numbers, slice};
 
 fn functions<T: Scalar>() {
     keep::<T>(Scalar::from_f32(any(1.0)));

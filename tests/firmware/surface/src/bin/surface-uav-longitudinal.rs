@@ -7,8 +7,7 @@ use kestirim_uav_longitudinal::{
     Airframe, Descriptor, LateralDerivatives, LongitudinalDerivatives, Stall, SteadyFlight, Trim,
     aerosonde, airspeed_and_pitch, full_state, navion, rate_airspeed_and_pitch, thesis_like,
 };
-use support::image;
-use surface::{any, call_each, keep, matrix, number};
+use surface::{any, call_each, image, keep, matrix, number};
 
 fn plants() {
     keep(aerosonde());

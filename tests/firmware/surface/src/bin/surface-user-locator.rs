@@ -12,8 +12,7 @@ use kestirim_user_locator::{
     Beacon, BeaconEstimate, Error, Height, Locator, Motion, Orbit, PrintedLocator, PrintedSettings,
     TrackEstimate, Tracker,
 };
-use support::image;
-use surface::{AnyRng, any, call_each, keep, number, numbers, option};
+use surface::{AnyRng, any, call_each, image, keep, number, numbers, option};
 
 fn region<T: Scalar, const D: usize>() -> Option<Region<T, D>> {
     any(Region::new(numbers(), numbers()).ok())

@@ -9,8 +9,7 @@ use kestirim_uwb_ranging::{
     Observation, Quartiles, Room, SingleSided, Solver, Ticks, Timestamp, Trilateration,
     dilution_of_precision, expected_range, survey,
 };
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers, option, slice};
+use surface::{any, call_each, image, keep, matrix, number, numbers, option, slice};
 
 fn timestamp() -> Timestamp {
     any(Timestamp::new(any(1)))
@@ -46,12 +45,8 @@ fn exchanges<T: Scalar>() {
     let single = any(SingleSided::new(t(), t(), t(), t()));
     keep::<T>(SingleSided::distance(&single, offset));
     keep(DoubleSided::new(t(), t(), t(), t(), t(), t()));
-    let double = any(DoubleSided {
-        round1: ticks(),
-        reply1: ticks(),
-        round2: ticks(),
-        reply2: ticks(),
-    });
+    let double =
+        any(DoubleSided { round1: ticks(), reply1: ticks(), round2: ticks(), reply2: ticks() });
     keep(DoubleSided::asymmetric::<T>(&double));
     keep::<T>(DoubleSided::symmetric(&double));
     keep(DoubleSided::clock_offset(&double));

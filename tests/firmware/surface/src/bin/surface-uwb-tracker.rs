@@ -8,8 +8,7 @@ use kestirim_uwb_ranging::Room;
 use kestirim_uwb_tracker::{
     Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Tracker,
 };
-use support::image;
-use surface::{any, call_each, keep, matrix, number, numbers, option, slice};
+use surface::{any, call_each, image, keep, matrix, number, numbers, option, slice};
 
 fn configs<T: Scalar>() {
     keep::<Config<T>>(Config::calibrated(number()));
