@@ -110,8 +110,11 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
             if best.is_some_and(|best| best.2 >= pair.2) { best } else { Some(pair) }
         });
         let (i, j, length) = longest.ok_or(Error::TooFewRanges)?;
-        places[i] = Some(Place::zeros());
-        places[j] = Some(Place::from([length, T::ZERO]));
+        for (anchor, place) in [(i, Place::zeros()), (j, Place::from([length, T::ZERO]))] {
+            if let Some(open) = places.get_mut(anchor) {
+                *open = Some(place);
+            }
+        }
         for _ in 2..A {
             let is_placed = |other: usize| places.get(other).is_some_and(Option::is_some);
             let neighbours = |anchor: usize| {
@@ -122,7 +125,9 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
             let next = open.max_by_key(|&anchor| neighbours(anchor));
             let next = next.ok_or(Error::TooFewRanges)?;
             let place = self.best_crossing(next, &places).ok_or(Error::TooFewRanges)?;
-            places[next] = Some(place);
+            if let Some(open) = places.get_mut(next) {
+                *open = Some(place);
+            }
         }
         let mut all = [Place::zeros(); A];
         for (place, found) in all.iter_mut().zip(places) {

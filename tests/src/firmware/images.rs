@@ -62,19 +62,32 @@ impl Images {
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        static BUILT: Mutex<BTreeMap<(&str, Profile), Option<Images>>> =
-            Mutex::new(BTreeMap::new());
+        Self::of_package("images", target, profile)
+    }
+
+    /// The same of another package of the images' workspace.
+    ///
+    /// # Errors
+    /// As [`Images::of`].
+    pub fn of_package(
+        package: &'static str,
+        target: &'static Target,
+        profile: Profile,
+    ) -> Result<Option<Self>> {
+        type Key = (&'static str, &'static str, Profile);
+        static BUILT: Mutex<BTreeMap<Key, Option<Images>>> = Mutex::new(BTreeMap::new());
         // Locked while building: whoever comes second waits for the images instead of building, too.
         let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(images) = built.get(&(target.triple, profile)) {
+        let key = (package, target.triple, profile);
+        if let Some(images) = built.get(&key) {
             return Ok(images.clone());
         }
-        let images = Self::build(target, profile)?;
-        built.insert((target.triple, profile), images.clone());
+        let images = Self::build(package, target, profile)?;
+        built.insert(key, images.clone());
         Ok(images)
     }
 
-    fn build(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
+    fn build(package: &str, target: &'static Target, profile: Profile) -> Result<Option<Self>> {
         let toolchain = if is_installed(target.qemu) {
             Toolchain::find(target)
         } else {
@@ -82,7 +95,7 @@ impl Images {
         };
         match toolchain {
             Ok(toolchain) => {
-                let directory = toolchain.build(profile.name())?;
+                let directory = toolchain.build(package, profile.name())?;
                 Ok(Some(Self { target, profile, directory }))
             }
             Err(why) if env::var(REQUIRE).is_ok_and(|value| value == "1") => {

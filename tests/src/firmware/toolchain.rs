@@ -68,8 +68,8 @@ impl Toolchain {
         })
     }
 
-    /// Builds all images in one go and answers with the directory they are in.
-    pub(crate) fn build(&self, profile: &str) -> Result<PathBuf> {
+    /// Builds all images of a package in one go and answers with the directory they are in.
+    pub(crate) fn build(&self, package: &str, profile: &str) -> Result<PathBuf> {
         let triple = self.target.triple;
         let output = target_directory();
         let mut cargo = Command::new(self.sysroot.join("bin/cargo"));
@@ -79,7 +79,8 @@ impl Toolchain {
             .env("RUSTC", self.sysroot.join("bin/rustc"))
             .env("CARGO_TARGET_DIR", &output)
             .current_dir(workspace())
-            .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple]);
+            .args(["build", "--locked", "--package", package, "--bins"])
+            .args(["--profile", profile, "--target", triple]);
         if self.builds_core {
             cargo
                 .env("RUSTC_BOOTSTRAP", "1")
