@@ -17,9 +17,9 @@ const NOT_ASKED_FOR: [&str; 4] = ["Debug", "Display", "Error", "Format"];
 /// Macros by which crates define items: this test does not see what they expand to.
 const MACROS: [(&str, &str); 4] = [
     ("impl_scalar_for_float", "the functions of `Scalar`, which the trait asks for"),
-    ("impl_assign", "the assigning operators of `Fixed`, called in surface-scalar.rs"),
-    ("impl_assign_operators", "operators of a type that is not public"),
-    ("impl_interop", "conversions from and to the crate `fixed`, for one that asks for them"),
+    ("impl_assign", "the assigning operators of `Fixed`, called by `scalar.rs`"),
+    ("assign", "the same of a type that is not public"),
+    ("impl_conversions", "from and to the crate `fixed`, whose bits they copy"),
 ];
 
 /// A function that must be called.
@@ -191,12 +191,13 @@ impl Offer {
 }
 
 impl Calls {
-    /// The programs of a crate.
+    /// What is called of a crate.
     fn of(name: &str) -> Result<Self> {
-        let directory = workspace().join("tests/firmware/surface/src/bin");
+        let directory = workspace().join("tests/firmware/surface/src");
+        let name = name.replace('-', "_");
         let mut calls = Self::default();
-        calls.visit_file(&parsed(&directory.join(format!("surface-{name}.rs")))?);
-        let in_doubles = directory.join(format!("surface-{name}-f64.rs"));
+        calls.visit_file(&parsed(&directory.join(format!("{name}.rs")))?);
+        let in_doubles = directory.join(format!("{name}_f64.rs"));
         if in_doubles.is_file() {
             calls.visit_file(&parsed(&in_doubles)?);
         }

@@ -1,13 +1,13 @@
-//! What the other binaries must not be: it can panic, and computes in double precision.
+//! What the other programs must not be: it can panic, and computes in double precision.
 
 #![no_std]
 #![no_main]
 
-use surface::{any, image, keep, numbers};
+use surface::values::{keep, numbers, whole};
 
 fn run() {
     let values = numbers::<f64, 4>();
-    keep(values[any(1)] * values[0]);
+    keep(values[whole::<usize>()] * values[0]);
 }
 
-image!(run);
+surface::image!(run);
