@@ -37,6 +37,7 @@ struct Wanted {
 struct Offer {
     exported: BTreeSet<String>,
     wanted: BTreeSet<Wanted>,
+    private_traits: BTreeSet<String>,
     macros: BTreeSet<String>,
 }
 
@@ -101,6 +102,8 @@ impl Offer {
         for file in sources(&directory)? {
             offer.take(&parsed(&file)?.items);
         }
+        let private = &offer.private_traits;
+        offer.wanted.retain(|wanted| !wanted.by.as_ref().is_some_and(|by| private.contains(by)));
         Ok(offer)
     }
 
@@ -160,6 +163,7 @@ impl Offer {
                         }
                     }
                 }
+                Item::Trait(item) => drop(self.private_traits.insert(item.ident.to_string())),
                 Item::Impl(item) => self.take_impl(item),
                 Item::Mod(item) if !is_for_tests(&item.attrs) => {
                     let inner = item.content.as_ref().map(|(_, items)| items.as_slice());

@@ -6,7 +6,7 @@ use kestirim_adaptive_kalman::{
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Q12_20, Scalar};
 
-use super::values::{any, call_each, keep, matrix, number, numbers, try_on, whole};
+use super::values::{any, call_each, keep, matrix, number, numbers, rounds, try_on, whole};
 
 fn covariance<T: Scalar, const N: usize>() -> Covariance<T, N> {
     any(Covariance::from_variances(&numbers()))
@@ -44,11 +44,13 @@ fn filters<T: Scalar, const D: usize, const N: usize, const M: usize>() {
     ));
     let motion = any(ConstantVelocity::<T, D>::new(number(), number()));
     let row = any(SparseRow::new([(any(0), number()), (whole(), number())]));
-    try_on(&mut filter, |filter| AdaptiveKalman::predict(filter, &motion));
-    try_on(&mut filter, |filter| AdaptiveKalman::update(filter, whole(), &row, number()));
-    try_on(&mut filter, |filter| {
-        AdaptiveKalman::update_without_learning(filter, whole(), &row, number())
-    });
+    for _ in 0..rounds() {
+        try_on(&mut filter, |filter| AdaptiveKalman::predict(filter, &motion));
+        try_on(&mut filter, |filter| AdaptiveKalman::update(filter, whole(), &row, number()));
+        try_on(&mut filter, |filter| {
+            AdaptiveKalman::update_without_learning(filter, whole(), &row, number())
+        });
+    }
     keep(AdaptiveKalman::estimate(&filter));
     keep(AdaptiveKalman::process_noise(&filter));
     keep(AdaptiveKalman::measurement_noise(&filter));

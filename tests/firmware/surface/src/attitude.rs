@@ -3,7 +3,7 @@
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Q12_20, Scalar};
 
-use super::values::{any, call_each, keep, matrix, maybe, number, numbers, try_on};
+use super::values::{any, call_each, keep, matrix, maybe, number, numbers, rounds, try_on};
 
 fn orientations<T: Scalar>() {
     keep::<Orientation<T>>(Orientation::identity());
@@ -23,9 +23,11 @@ fn references<T: Scalar>() {
     let gains = any(<Gains<T> as Default>::default());
     let gains = any(Gains { tilt: number(), bias: number(), ..gains });
     let mut ahrs = any(Ahrs::new(any(Orientation::identity()), matrix(), gains));
-    let force = maybe(matrix());
-    try_on(&mut ahrs, |ahrs| Ahrs::update(ahrs, &matrix(), force.as_ref(), number()));
-    Ahrs::turn_in_earth(any(&mut ahrs), &matrix());
+    for _ in 0..rounds() {
+        let force = maybe(matrix());
+        try_on(&mut ahrs, |ahrs| Ahrs::update(ahrs, &matrix(), force.as_ref(), number()));
+        Ahrs::turn_in_earth(any(&mut ahrs), &matrix());
+    }
     keep(Ahrs::orientation(&ahrs));
     keep(Ahrs::gyro_bias(&ahrs));
 }

@@ -10,7 +10,8 @@ use kestirim_gnss_ppp::{
 use nalgebra::Vector3;
 
 use super::values::{
-    any, call_each, keep, matrix, maybe, number, numbers, one_of, option, slice, whole, yes_or_no,
+    any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice, whole,
+    yes_or_no,
 };
 
 fn time() -> GpsTime {
@@ -122,7 +123,9 @@ fn signals() {
     keep(ionosphere_free_phase(numbers()));
     let mut arc = any(Arc::begin(time(), numbers(), numbers()));
     let limits = any(<SlipLimits as Default>::default());
-    keep(Arc::observe(any(&mut arc), time(), numbers(), numbers(), yes_or_no(), &limits));
+    for _ in 0..rounds() {
+        keep(Arc::observe(any(&mut arc), time(), numbers(), numbers(), yes_or_no(), &limits));
+    }
     Arc::restart(any(&mut arc), time(), numbers(), numbers());
     keep(Arc::is_suspicious(&arc));
     keep(Arc::last(&arc));

@@ -7,7 +7,7 @@ use kestirim_kalman::{
 use kestirim_scalar::{Q12_20, Scalar};
 
 use super::values::{
-    any, call_each, keep, matrix, maybe, number, numbers, option, slice, try_on, whole,
+    any, call_each, keep, matrix, maybe, number, numbers, option, rounds, slice, try_on, whole,
 };
 
 fn estimate<T: Scalar, const N: usize>() -> Gaussian<T, N> {
@@ -86,8 +86,10 @@ fn weights<T: Scalar, const N: usize>(state: &mut Gaussian<T, N>, weighed: Weigh
     let mut gate = any(Gate::new(number(), whole()));
     keep(Gate::gamma(&gate));
     keep(Gate::rejected(&gate));
-    keep(Gate::judge(any(&mut gate), &weighed));
-    try_on(&mut gate, |gate| Gate::correct(gate, any(state), &weighed));
+    for _ in 0..rounds() {
+        keep(Gate::judge(any(&mut gate), &weighed));
+        try_on(&mut gate, |gate| Gate::correct(gate, any(state), &weighed));
+    }
     keep(Weighed::with_noise(weighed, number()));
 }
 

@@ -6,7 +6,7 @@ use kestirim_particle_filter::{
 use kestirim_scalar::{Q16_16, Scalar};
 
 use super::values::{
-    AnyRng, any, call_each, keep, number, numbers, one_of, slice, slice_mut, try_on, whole,
+    AnyRng, any, call_each, keep, number, numbers, one_of, rounds, slice, slice_mut, try_on, whole,
 };
 
 fn resampler() -> Resampler {
@@ -87,14 +87,18 @@ fn particles<T: Scalar, const D: usize, const N: usize>() {
 
 fn steps<T: Scalar, const D: usize, const N: usize>() {
     let mut cloud = any(Particles::<T, D, N>::all_at(&numbers()));
-    Particles::predict::<2, _>(any(&mut cloud), moved, &mut AnyRng);
-    Particles::jitter(any(&mut cloud), &numbers(), &mut AnyRng);
-    try_on(&mut cloud, |cloud| Particles::update(cloud, weight));
-    try_on(&mut cloud, |cloud| Particles::resample(cloud, resampler(), &mut AnyRng));
-    try_on(&mut cloud, |cloud| Particles::resample_to(cloud, whole(), resampler(), &mut AnyRng));
-    try_on(&mut cloud, |cloud| Particles::regularise(cloud, number(), &mut AnyRng));
-    try_on(&mut cloud, |cloud| Particles::metropolis(cloud, number(), weight, &mut AnyRng));
-    try_on(&mut cloud, |cloud| Particles::occupied_bins(cloud, &numbers()));
+    for _ in 0..rounds() {
+        Particles::predict::<2, _>(any(&mut cloud), moved, &mut AnyRng);
+        Particles::jitter(any(&mut cloud), &numbers(), &mut AnyRng);
+        try_on(&mut cloud, |cloud| Particles::update(cloud, weight));
+        try_on(&mut cloud, |cloud| Particles::resample(cloud, resampler(), &mut AnyRng));
+        try_on(&mut cloud, |cloud| {
+            Particles::resample_to(cloud, whole(), resampler(), &mut AnyRng)
+        });
+        try_on(&mut cloud, |cloud| Particles::regularise(cloud, number(), &mut AnyRng));
+        try_on(&mut cloud, |cloud| Particles::metropolis(cloud, number(), weight, &mut AnyRng));
+        try_on(&mut cloud, |cloud| Particles::occupied_bins(cloud, &numbers()));
+    }
 }
 
 fn points<T: Scalar, const D: usize, const N: usize>() {

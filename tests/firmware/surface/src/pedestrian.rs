@@ -13,7 +13,8 @@ use kestirim_pedestrian::{
 use kestirim_scalar::{Q12_20, Scalar};
 
 use super::values::{
-    any, call_each, keep, matrix, number, one_of, slice, slice_mut, try_on, whole, yes_or_no,
+    any, call_each, keep, matrix, number, one_of, rounds, slice, slice_mut, try_on, whole,
+    yes_or_no,
 };
 
 fn config<T: Scalar>() -> Config<T> {
@@ -26,9 +27,11 @@ fn sample<T: Scalar>() -> ImuSample<T> {
     any(ImuSample { time_us: whole(), specific_force, angular_rate })
 }
 
-fn shows<T: Scalar, D: StanceDetector<T> + Debug>(detector: D) {
-    let motion = any(Motion { time_us: whole(), force_g: matrix(), angular_rate: matrix() });
-    keep(StanceDetector::update(&mut any(detector), &motion));
+fn shows<T: Scalar, D: StanceDetector<T> + Debug>(mut detector: D) {
+    for _ in 0..rounds() {
+        let motion = any(Motion { time_us: whole(), force_g: matrix(), angular_rate: matrix() });
+        keep(StanceDetector::update(any(&mut detector), &motion));
+    }
 }
 
 fn detectors<T: Scalar>() {
@@ -50,10 +53,12 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
     ));
     let step =
         any(Step { interval: number(), force_g: matrix(), angular_rate: matrix(), turn: matrix() });
-    Navigator::propagate(any(&mut navigator), &step, yes_or_no());
-    let (velocity, landing) = (matrix(), yes_or_no());
-    let zero = any(ZeroVelocity { velocity, unrest: number(), interval: number(), landing });
-    Navigator::zero_velocity(any(&mut navigator), &zero);
+    for _ in 0..rounds() {
+        Navigator::propagate(any(&mut navigator), &step, yes_or_no());
+        let (velocity, landing) = (matrix(), yes_or_no());
+        let zero = any(ZeroVelocity { velocity, unrest: number(), interval: number(), landing });
+        Navigator::zero_velocity(any(&mut navigator), &zero);
+    }
     keep(Navigator::position(&navigator));
     keep(Navigator::velocity(&navigator));
     keep(Navigator::orientation(&navigator));
@@ -73,7 +78,9 @@ fn tracks<T: Scalar, N: Navigator<T> + Debug>() {
 fn track<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug>(
     mut tracker: Tracker<T, N, D>,
 ) {
-    try_on(&mut tracker, |tracker| Tracker::update(tracker, &sample()));
+    for _ in 0..rounds() {
+        try_on(&mut tracker, |tracker| Tracker::update(tracker, &sample()));
+    }
     keep(Tracker::finish(any(&mut tracker)));
     keep(Tracker::path_length(&tracker));
     keep(Tracker::warnings(&tracker));
@@ -88,7 +95,9 @@ fn looks_back<T: Scalar, N: Navigator<T> + Debug>() {
     let samples = slice(&samples);
     let tracker = OfflineTracker::<T, N>::new(config(), samples, slice_mut(&mut unrest));
     let Ok(mut tracker) = any(tracker) else { return };
-    keep(<OfflineTracker<'_, T, N> as Iterator>::next(any(&mut tracker)));
+    for _ in 0..rounds() {
+        keep(<OfflineTracker<'_, T, N> as Iterator>::next(any(&mut tracker)));
+    }
     keep(OfflineTracker::finish(any(&mut tracker)));
     keep(OfflineTracker::path_length(&tracker));
     keep(OfflineTracker::warnings(&tracker));

@@ -8,7 +8,8 @@ use kestirim_ppp_filter::{
 };
 
 use super::values::{
-    any, call_each, keep, matrix, maybe, number, numbers, one_of, slice, whole, yes_or_no,
+    any, call_each, keep, matrix, maybe, number, numbers, one_of, rounds, slice, try_on, whole,
+    yes_or_no,
 };
 
 fn motion() -> Motion {
@@ -68,12 +69,16 @@ fn filters<const N: usize>() {
     let (satellite, code, phase, lock_lost) = (whole(), numbers(), numbers(), yes_or_no());
     let sighting = Sighting { satellite, code, phase, lock_lost, state, antenna };
     let sightings = any([sighting; 4]);
-    let time = any(GpsTime::new(whole(), number()));
     let mut filter = any(PppFilter::<N>::new(config()));
     keep(PppFilter::config(&filter));
-    let solution = PppFilter::process(any(&mut filter), time, &receiver, slice(&sightings));
-    let Ok(solution) = any(solution) else { return };
-    keep(Solution::deviations_enu(&solution));
+    for _ in 0..rounds() {
+        let time = any(GpsTime::new(whole(), number()));
+        try_on(&mut filter, |filter| {
+            let solution = any(PppFilter::process(filter, time, &receiver, slice(&sightings))?);
+            keep(Solution::deviations_enu(&solution));
+            Ok::<_, Error>(())
+        });
+    }
 }
 
 /// Calls it all.

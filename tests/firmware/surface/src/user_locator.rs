@@ -13,7 +13,8 @@ use kestirim_user_locator::{
 };
 
 use super::values::{
-    AnyRng, any, call_each, keep, maybe, number, numbers, one_of, option, try_on, whole, yes_or_no,
+    AnyRng, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, try_on, whole,
+    yes_or_no,
 };
 
 fn region<T: Scalar, const D: usize>() -> Option<Region<T, D>> {
@@ -41,7 +42,9 @@ fn locates<
     keep(Locator::<T, L, M, D, C>::new(channel, &region));
     let locator = Locator::<T, L, M, D, C>::with_count(whole(), channel, &region);
     let mut locator = any(locator).ok()?;
-    try_on(&mut locator, |locator| Locator::measure(locator, &measurement));
+    for _ in 0..rounds() {
+        try_on(&mut locator, |locator| Locator::measure(locator, &measurement));
+    }
     keep(Locator::moments(&locator));
     keep(Locator::posterior(&locator));
     keep(Locator::log_posterior(&locator, &numbers()));
@@ -68,7 +71,9 @@ fn prints<T: Scalar, const L: usize>(channel: Channel<T>) -> Option<()> {
     let (count, rng) = (whole(), &mut AnyRng);
     let printed = PrintedLocator::<T, L>::with_count(count, channel, &region, settings, rng);
     let mut printed = any(printed).ok()?;
-    try_on(&mut printed, |printed| PrintedLocator::measure(printed, &measurement, rng));
+    for _ in 0..rounds() {
+        try_on(&mut printed, |printed| PrintedLocator::measure(printed, &measurement, rng));
+    }
     keep(PrintedLocator::moments(&printed));
     keep(PrintedLocator::particles(&printed));
     Some(())
@@ -80,7 +85,9 @@ fn finds<T: Scalar, const M: usize, const L: usize>() -> Option<()> {
         mean: number(),
         sigma: number(),
     }))));
-    try_on(&mut beacon, |beacon| Beacon::measure(beacon, &measurement));
+    for _ in 0..rounds() {
+        try_on(&mut beacon, |beacon| Beacon::measure(beacon, &measurement));
+    }
     let inside = |place: [T; 2]| {
         keep(place);
         yes_or_no()
@@ -106,8 +113,10 @@ fn tracks<T: Scalar, C: Likelihood<T> + Copy + Debug, const L: usize>(channel: C
     keep(Tracker::<T, L, C>::new(channel, motion(), &region, rng));
     let tracker = Tracker::<T, L, C>::with_count(whole(), channel, motion(), &region, rng);
     let mut tracker = any(tracker).ok()?;
-    try_on(&mut tracker, |tracker| Tracker::predict(tracker, number(), rng));
-    try_on(&mut tracker, |tracker| Tracker::measure(tracker, &measurement, rng));
+    for _ in 0..rounds() {
+        try_on(&mut tracker, |tracker| Tracker::predict(tracker, number(), rng));
+        try_on(&mut tracker, |tracker| Tracker::measure(tracker, &measurement, rng));
+    }
     keep(Tracker::estimate(&tracker));
     keep(Tracker::moments(&tracker));
     keep(Tracker::particles(&tracker));

@@ -8,7 +8,8 @@ use kestirim_uwb_ranging::{
 };
 
 use super::values::{
-    any, call_each, keep, matrix, maybe, number, numbers, one_of, option, slice, try_on, whole,
+    any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice, try_on,
+    whole,
 };
 
 fn timestamp() -> Timestamp {
@@ -60,7 +61,9 @@ fn biases<T: Scalar>() {
     levels::<T, 2>();
     levels::<T, 9>();
     let mut quartiles = any(Quartiles::<T>::within(number(), number()));
-    Quartiles::add(any(&mut quartiles), number());
+    for _ in 0..rounds() {
+        Quartiles::add(any(&mut quartiles), number());
+    }
     keep(Quartiles::count(&quartiles));
     keep(Quartiles::median(&quartiles));
     keep(Quartiles::deviation(&quartiles));
@@ -97,15 +100,17 @@ fn anchors<T: Scalar, const A: usize>() {
     keep(survey::<T, A>(&any([[option(); A]; A]), &numbers()));
     let Ok(mut calibration) = any(Calibration::<T, A>::new([matrix(); A])) else { return };
     let medians = any([option(); A]);
-    try_on(&mut calibration, |calibration| {
-        Calibration::add_known(calibration, &matrix(), &medians)
-    });
-    try_on(&mut calibration, |calibration| {
-        Calibration::add_unknown::<2>(calibration, number(), &medians)
-    });
-    try_on(&mut calibration, |calibration| {
-        Calibration::add_unknown::<3>(calibration, number(), &medians)
-    });
+    for _ in 0..rounds() {
+        try_on(&mut calibration, |calibration| {
+            Calibration::add_known(calibration, &matrix(), &medians)
+        });
+        try_on(&mut calibration, |calibration| {
+            Calibration::add_unknown::<2>(calibration, number(), &medians)
+        });
+        try_on(&mut calibration, |calibration| {
+            Calibration::add_unknown::<3>(calibration, number(), &medians)
+        });
+    }
     keep(Calibration::biases(&calibration));
 }
 

@@ -7,7 +7,7 @@ use kestirim_uwb_tracker::{
 };
 
 use super::values::{
-    any, call_each, keep, matrix, maybe, number, numbers, option, slice, try_on, whole,
+    any, call_each, keep, matrix, maybe, number, numbers, option, rounds, slice, try_on, whole,
 };
 
 fn configs<T: Scalar>() {
@@ -35,14 +35,17 @@ fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
     let tracker = Tracker::<T, D, N, A>::new(config(), slice(&anchors));
     let Ok(mut tracker) = any(tracker) else { return };
-    let range = any(RangeSample { time_us: whole(), anchor: whole(), range: number() });
-    try_on(&mut tracker, |tracker| Tracker::range(tracker, &range));
-    let push = maybe(numbers());
-    let inertial = any(InertialSample { time_us: whole(), acceleration: matrix(), push });
-    try_on(&mut tracker, |tracker| Tracker::inertial(tracker, &inertial));
-    let odometry = any(OdometrySample { time_us: whole(), speed: number(), turn_rate: number() });
-    try_on(&mut tracker, |tracker| Tracker::odometry(tracker, &odometry));
-    try_on(&mut tracker, |tracker| Tracker::set_height(tracker, number()));
+    for _ in 0..rounds() {
+        let range = any(RangeSample { time_us: whole(), anchor: whole(), range: number() });
+        try_on(&mut tracker, |tracker| Tracker::range(tracker, &range));
+        let push = maybe(numbers());
+        let inertial = any(InertialSample { time_us: whole(), acceleration: matrix(), push });
+        try_on(&mut tracker, |tracker| Tracker::inertial(tracker, &inertial));
+        let odometry =
+            any(OdometrySample { time_us: whole(), speed: number(), turn_rate: number() });
+        try_on(&mut tracker, |tracker| Tracker::odometry(tracker, &odometry));
+        try_on(&mut tracker, |tracker| Tracker::set_height(tracker, number()));
+    }
     keep(Tracker::position(&tracker));
     keep(Tracker::velocity(&tracker));
     keep(Tracker::estimate(&tracker));

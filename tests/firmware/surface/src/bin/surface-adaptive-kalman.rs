@@ -1,3 +1,5 @@
+//! Everything of `kestirim-adaptive-kalman`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-air-to-ground`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-attitude`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-gnss-ppp`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-kalman`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! The double precision of `kestirim-luenberger`, linked.
+
 #![no_std]
 #![no_main]
 

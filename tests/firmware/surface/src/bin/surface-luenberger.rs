@@ -1,3 +1,5 @@
+//! Everything of `kestirim-luenberger`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-observer-design`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-particle-filter`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-pedestrian`, linked.
+
 #![no_std]
 #![no_main]
 

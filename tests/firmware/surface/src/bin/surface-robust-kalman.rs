@@ -1,3 +1,5 @@
+//! Everything of `kestirim-robust-kalman`, linked.
+
 #![no_std]
 #![no_main]
 

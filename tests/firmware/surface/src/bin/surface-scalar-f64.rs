@@ -1,3 +1,5 @@
+//! The double precision of `kestirim-scalar`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-scalar`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-uav-longitudinal`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-user-locator`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-uwb-ranging`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -1,3 +1,5 @@
+//! Everything of `kestirim-uwb-tracker`, linked.
+
 #![no_std]
 #![no_main]
 

@@ -76,6 +76,11 @@ pub fn whole<I: Whole>() -> I {
     })
 }
 
+/// How often a step is taken.
+pub fn rounds() -> u32 {
+    below(30) as u32
+}
+
 /// Any of them.
 pub fn one_of<T: Copy, const N: usize>(choices: [T; N]) -> T {
     choices[below(N as u64) as usize]

@@ -12,9 +12,9 @@ use nalgebra::SMatrix;
 use rand_core::{Infallible, TryRng};
 
 #[cfg(not(target_os = "none"))]
-pub use drawn::{maybe, number, one_of, slice, slice_mut, start_from, try_on, whole};
+pub use drawn::{maybe, number, one_of, rounds, slice, slice_mut, start_from, try_on, whole};
 #[cfg(target_os = "none")]
-pub use opaque::{maybe, number, one_of, slice, slice_mut, try_on, whole};
+pub use opaque::{maybe, number, one_of, rounds, slice, slice_mut, try_on, whole};
 
 /// A value, of which the optimiser forgets whatever it knew.
 #[inline(always)]

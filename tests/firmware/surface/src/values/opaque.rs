@@ -19,6 +19,12 @@ pub fn whole<I: Whole>() -> I {
     black_box(I::of_bits(1))
 }
 
+/// How often a step is taken.
+#[inline(always)]
+pub fn rounds() -> u32 {
+    black_box(1)
+}
+
 /// Any of them.
 #[inline(always)]
 pub fn one_of<T: Copy, const N: usize>(choices: [T; N]) -> T {
