@@ -188,9 +188,10 @@ impl<T: Scalar> FreeSpace<T> {
         };
         // From a wide kernel, which all measurements reach, to the true one.
         let mut level = prior;
-        for widening in [1e3, 16.0, 4.0, 1.0, 1.0, 1.0] {
+        let [widest, wider, wide] = [T::from_f64(1e3), T::from_f64(16.0), T::from_f64(4.0)];
+        for widening in [widest, wider, wide, T::ONE, T::ONE, T::ONE] {
             // Never narrower than expected of open ground, or what is far from the level would not be reached.
-            let wide = width.max(T::from_f64(FREEDOM)) * T::from_f64(widening);
+            let wide = width.max(T::from_f64(FREEDOM)) * widening;
             let (mut sum, mut weights) = (T::ZERO, T::ZERO);
             for suggested in sight.levels(antennas) {
                 let error = (suggested - level) * T::from_f64(0.1);

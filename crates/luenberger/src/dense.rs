@@ -53,7 +53,7 @@ pub(crate) const fn negative<const R: usize, const C: usize>(a: &Dense<R, C>) ->
     negative
 }
 
-/// The rows and columns of A with these indices.
+/// The rows and columns of A with these indices; zero where there is no such one.
 pub(crate) const fn part<const N: usize, const M: usize, const R: usize, const C: usize>(
     a: &Dense<N, M>,
     rows: &[usize; R],
@@ -64,7 +64,9 @@ pub(crate) const fn part<const N: usize, const M: usize, const R: usize, const C
     while column < C {
         let mut row = 0;
         while row < R {
-            part[column][row] = a[columns[column]][rows[row]];
+            if columns[column] < M && rows[row] < N {
+                part[column][row] = a[columns[column]][rows[row]];
+            }
             row += 1;
         }
         column += 1;

@@ -73,7 +73,7 @@ const fn others<const N: usize, const P: usize, const R: usize>(
     }
     let mut others = [0; R];
     let (mut state, mut count) = (0, 0);
-    while state < N {
+    while state < N && count < R {
         if !is_measured[state] {
             others[count] = state;
             count += 1;

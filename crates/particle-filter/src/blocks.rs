@@ -84,8 +84,11 @@ where
 #[inline(always)]
 pub(crate) fn gather<T: Scalar, const D: usize>(block: &[&[T; BLOCK]; D], index: usize) -> [T; D] {
     let mut point = [T::ZERO; D];
-    for axis in 0..D {
-        point[axis] = block[axis][index];
+    for (coordinate, axis) in point.iter_mut().zip(block) {
+        // Always there, which the compiler does not see everywhere.
+        if let Some(&value) = axis.get(index) {
+            *coordinate = value;
+        }
     }
     point
 }

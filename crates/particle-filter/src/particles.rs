@@ -201,19 +201,25 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         mean(&self.weights, &Mapped { points: &self.states, of }, first)
     }
 
+    /// The state of a particle; zeros where there is none.
     #[inline(always)]
     pub(crate) fn at(&self, index: usize) -> [T; D] {
         let mut state = [T::ZERO; D];
-        for axis in 0..D {
-            state[axis] = self.states[axis][index];
+        for (coordinate, axis) in state.iter_mut().zip(&self.states) {
+            if let Some(&value) = axis.get(index) {
+                *coordinate = value;
+            }
         }
         state
     }
 
+    /// Moves a particle, if there is one.
     #[inline(always)]
     pub(crate) fn put(&mut self, index: usize, state: &[T; D]) {
-        for axis in 0..D {
-            self.states[axis][index] = state[axis];
+        for (axis, &coordinate) in self.states.iter_mut().zip(state) {
+            if let Some(value) = axis.get_mut(index) {
+                *value = coordinate;
+            }
         }
     }
 }

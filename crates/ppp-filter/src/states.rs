@@ -10,5 +10,5 @@ pub(crate) const COMMON: usize = 5;
 
 /// How many states a [`PppFilter`](crate::PppFilter) for so many satellites at a time has.
 pub const fn states(satellites: usize) -> usize {
-    COMMON + satellites
+    COMMON.saturating_add(satellites)
 }

@@ -126,16 +126,15 @@ impl LateralDerivatives {
     pub fn descriptor(&self) -> Descriptor {
         let mut e = SMatrix::identity();
         e[(0, 0)] = self.airspeed;
-        let mut a = SMatrix::zeros();
-        let mut b = SMatrix::zeros();
         // The bank angle's row is kinematics: the forces' rows are the others.
-        for (row, force) in [0, 2, 3].into_iter().zip(0..3) {
-            a[(row, 0)] = self.sideslip[force];
-            a[(row, 2)] = self.roll_rate[force];
-            a[(row, 3)] = self.yaw_rate[force];
-            b[(row, 0)] = self.aileron[force];
-            b[(row, 1)] = self.rudder[force];
-        }
+        let of_forces = |[y, l, n]: [f64; 3]| [y, 0.0, l, n];
+        let mut a = SMatrix::from([
+            of_forces(self.sideslip),
+            [0.0; 4],
+            of_forces(self.roll_rate),
+            of_forces(self.yaw_rate),
+        ]);
+        let b = SMatrix::from([self.aileron, self.rudder].map(of_forces));
         a[(0, 1)] = self.gravity * cos(self.pitch_angle);
         a[(0, 3)] -= self.airspeed;
         a[(1, 2)] = cos(self.climb_angle) / cos(self.pitch_angle);

@@ -214,5 +214,9 @@ struct Forces {
 }
 
 fn variables(state: &SVector<f64, 4>, input: &SVector<f64, 2>) -> [Dual; 6] {
-    from_fn(|i| Dual::variable(if i < 4 { state[i] } else { input[i - 4] }, i))
+    let [alpha, rate, airspeed, pitch] = state.data.0[0];
+    let [elevator, throttle] = input.data.0[0];
+    let mut index = 0..;
+    [alpha, rate, airspeed, pitch, elevator, throttle]
+        .map(|value| Dual::variable(value, index.next().unwrap_or_default()))
 }

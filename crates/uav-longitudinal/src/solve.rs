@@ -12,36 +12,46 @@ pub(crate) fn solve<const N: usize, const M: usize>(
     if a.iter().chain(b.iter()).any(|number| !number.is_finite()) {
         return Err(Error::NotFinite);
     }
-    let mut size = [0.0_f64; N];
+    let (left, right) = (&mut a.data.0, &mut b.data.0);
+    let size = left.map(|column| column.iter().fold(0.0, |most: f64, x| most.max(libm::fabs(*x))));
     for column in 0..N {
-        size[column] = a.column(column).iter().fold(0.0, |most, x| most.max(libm::fabs(*x)));
-    }
-    for column in 0..N {
-        let mut pivot = column;
+        let (mut pivot, mut largest) = (column, libm::fabs(left[column][column]));
         for row in column + 1..N {
-            if libm::fabs(a[(row, column)]) > libm::fabs(a[(pivot, column)]) {
-                pivot = row;
+            if libm::fabs(left[column][row]) > largest {
+                (pivot, largest) = (row, libm::fabs(left[column][row]));
             }
         }
-        if libm::fabs(a[(pivot, column)]) <= N as f64 * f64::EPSILON * size[column] {
+        if largest <= N as f64 * f64::EPSILON * size[column] {
             return Err(Error::Singular);
         }
-        a.swap_rows(column, pivot);
-        b.swap_rows(column, pivot);
+        swap_rows(left, column, pivot);
+        swap_rows(right, column, pivot);
         for row in 0..N {
             if row == column {
                 continue;
             }
-            let factor = a[(row, column)] / a[(column, column)];
+            let factor = left[column][row] / left[column][column];
             for k in column..N {
-                let above = a[(column, k)];
-                a[(row, k)] -= factor * above;
+                left[k][row] -= factor * left[k][column];
             }
             for k in 0..M {
-                let above = b[(column, k)];
-                b[(row, k)] -= factor * above;
+                right[k][row] -= factor * right[k][column];
             }
         }
     }
-    Ok(SMatrix::from_fn(|row, k| b[(row, k)] / a[(row, row)]))
+    for column in right {
+        for row in 0..N {
+            column[row] /= left[row][row];
+        }
+    }
+    Ok(b)
+}
+
+/// Swaps two rows of a matrix that is stored by columns, if both exist.
+fn swap_rows<const N: usize, const M: usize>(columns: &mut [[f64; N]; M], i: usize, j: usize) {
+    for column in columns {
+        if i < N && j < N {
+            column.swap(i, j);
+        }
+    }
 }

@@ -110,8 +110,11 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
             if best.is_some_and(|best| best.2 >= pair.2) { best } else { Some(pair) }
         });
         let (i, j, length) = longest.ok_or(Error::TooFewRanges)?;
-        places[i] = Some(Place::zeros());
-        places[j] = Some(Place::from([length, T::ZERO]));
+        for (anchor, place) in [(i, Place::zeros()), (j, Place::from([length, T::ZERO]))] {
+            if let Some(open) = places.get_mut(anchor) {
+                *open = Some(place);
+            }
+        }
         for _ in 2..A {
             let is_placed = |other: usize| places.get(other).is_some_and(Option::is_some);
             let neighbours = |anchor: usize| {
@@ -122,7 +125,9 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
             let next = open.max_by_key(|&anchor| neighbours(anchor));
             let next = next.ok_or(Error::TooFewRanges)?;
             let place = self.best_crossing(next, &places).ok_or(Error::TooFewRanges)?;
-            places[next] = Some(place);
+            if let Some(open) = places.get_mut(next) {
+                *open = Some(place);
+            }
         }
         let mut all = [Place::zeros(); A];
         for (place, found) in all.iter_mut().zip(places) {
@@ -181,43 +186,46 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
             }
         }
         self.pairs().fold(T::ZERO, |sum, (i, j, distance)| {
-            let error = T::norm(&(places[i] - places[j]).data.0[0]) - distance;
+            let (Some(a), Some(b)) = (places.get(i), places.get(j)) else { return sum };
+            let error = T::norm(&(a - b).data.0[0]) - distance;
             sum + error * error
         })
     }
 
     /// Reflects an anchor in the line that its neighbours lie along; false if it has too few.
     fn mirror(&self, places: &mut [Place<T>; A], anchor: usize) -> bool {
-        let near = || (0..A).filter(|&other| self.between(anchor, other).is_some());
+        let is_near = |other: usize| self.between(anchor, other).is_some();
+        let near = || places.iter().enumerate().filter(|(other, _)| is_near(*other));
         let count = near().count();
         if count < 2 {
             return false;
         }
         let share = T::from_micro(count.min(2000) as i32 * 1_000_000).recip();
-        let centre = near().fold(Place::zeros(), |sum, other| sum + places[other] * share);
+        let centre = near().fold(Place::zeros(), |sum, (_, place)| sum + place * share);
         let (mut xx, mut xy, mut yy) = (T::ZERO, T::ZERO, T::ZERO);
-        for other in near() {
-            let [x, y] = (places[other] - centre).data.0[0];
+        for (_, place) in near() {
+            let [x, y] = (place - centre).data.0[0];
             xx += x * x * share;
             xy += x * y * share;
             yy += y * y * share;
         }
         let (sin, cos) = ((xy + xy).atan2(xx - yy) * T::HALF).sin_cos();
         let line = Place::from([cos, sin]);
-        let offset = places[anchor] - centre;
+        let Some(place) = places.get_mut(anchor) else { return false };
+        let offset = *place - centre;
         let along = T::dot(&offset.data.0[0], &line.data.0[0]);
-        places[anchor] = centre + line * (along + along) - offset;
+        *place = centre + line * (along + along) - offset;
         true
     }
 }
 
 /// Whether two shapes differ: by the distances within them, which no gauge changes.
 fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bool {
-    (0..A).any(|i| {
-        (0..i).any(|j| {
-            let apart = |places: &[Place<T>; A]| T::norm(&(places[i] - places[j]).data.0[0]);
-            (apart(a) - apart(b)).abs() > T::from_f64(DIFFERENT)
-        })
+    let apart = |one: &Place<T>, other: &Place<T>| T::norm(&(one - other).data.0[0]);
+    let mut places = a.iter().zip(b).enumerate();
+    places.any(|(i, (a_i, b_i))| {
+        let mut before = a.iter().zip(b).take(i);
+        before.any(|(a_j, b_j)| (apart(a_i, a_j) - apart(b_i, b_j)).abs() > T::from_f64(DIFFERENT))
     })
 }
 

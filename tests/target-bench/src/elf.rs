@@ -55,6 +55,11 @@ impl Elf {
         self.symbols_that(is_of_doubles)
     }
 
+    /// The parts of a memory allocator that are linked: none if nothing in the image uses a heap.
+    pub fn heap_symbols(&self) -> Vec<&str> {
+        self.symbols_that(is_of_heap)
+    }
+
     fn symbols_that(&self, are_meant: fn(&str) -> bool) -> Vec<&str> {
         self.symbols.iter().map(String::as_str).filter(|name| are_meant(name)).collect()
     }
@@ -63,6 +68,15 @@ impl Elf {
 fn is_of_panics(name: &str) -> bool {
     ["panicking", "unwrap_failed", "expect_failed"].iter().any(|part| name.contains(part))
         || name.split_once("slice_").is_some_and(|(_, rest)| rest.contains("fail"))
+}
+
+/// `__rust_alloc` and its like, `alloc::alloc::GlobalAlloc`, or the C library's.
+fn is_of_heap(name: &str) -> bool {
+    ["__rust_", "__rg_", "__rdl_"]
+        .iter()
+        .any(|prefix| name.split_once(prefix).is_some_and(|(_, rest)| rest.contains("alloc")))
+        || name.contains("GlobalAlloc")
+        || ["malloc", "calloc", "realloc", "free"].contains(&name)
 }
 
 /// `__aeabi_dadd`, `__aeabi_f2d` and so on of the Arm run-time ABI, or `__adddf3`, `__truncdfsf2` …
@@ -96,6 +110,14 @@ mod tests {
         }
         for name in ["__aeabi_fmul", "__aeabi_uldivmod", "__mulsf3", "__udivdi3", "main"] {
             assert!(!is_of_doubles(name), "{name}");
+        }
+        for name in
+            ["_RNvCs5yb_7___rustc12___rust_alloc", "__rg_dealloc", "__rust_realloc", "malloc"]
+        {
+            assert!(is_of_heap(name), "{name}");
+        }
+        for name in ["__rust_start_panic", "main", "_RNvCs5yb_5alloc_free"] {
+            assert!(!is_of_heap(name), "{name}");
         }
     }
 }

@@ -1,0 +1,6 @@
+//! Everything of `kestirim-attitude`, linked.
+
+#![no_std]
+#![no_main]
+
+surface::image!(surface::attitude::run);

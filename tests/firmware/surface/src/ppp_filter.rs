@@ -1,0 +1,87 @@
+//! Everything of `kestirim-ppp-filter`.
+
+use kestirim_gnss_ppp::{
+    Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
+};
+use kestirim_ppp_filter::{
+    Config, Deviation, Error, Estimator, Motion, PppFilter, Sighting, Solution, states,
+};
+
+use super::values::{
+    any, call_each, keep, matrix, maybe, number, numbers, one_of, rounds, slice, try_on, whole,
+    yes_or_no,
+};
+
+fn motion() -> Motion {
+    one_of([Motion::Static, Motion::Kinematic { process_noise: number() }])
+}
+
+fn estimators() {
+    keep(Estimator::plain());
+    keep(Estimator::igg3());
+    keep(Estimator::t_test());
+    keep(Estimator::iterative_igg3());
+    keep(Estimator::adaptive());
+    keep(Estimator::guarded(motion()));
+    keep(states(whole()));
+    keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
+    keep::<Error>(From::from(any(kestirim_robust_kalman::Error::InvalidBlock)));
+}
+
+/// Any configuration.
+fn config() -> Config {
+    let deviation = || any(Deviation { zenith: number(), slant: number() });
+    any(Config {
+        elevation_mask: number(),
+        phase: deviation(),
+        code: deviation(),
+        clock_walk: number(),
+        wet_delay: number(),
+        wet_delay_walk: number(),
+        slips: any(SlipLimits::default()),
+        correlation_time: number(),
+        estimator: any(Estimator::guarded(motion())),
+        ..Config::new(motion())
+    })
+}
+
+fn filters<const N: usize>() {
+    let (mean, by_azimuth) = (numbers::<f64, 4>(), numbers::<f64, 4>());
+    let (mean, by_azimuth) = (slice(&mean), slice(&by_azimuth));
+    let (offset, first, step) = (numbers(), number(), number());
+    let pattern = Pattern { offset, first, step, mean, azimuth_step: number(), by_azimuth };
+    let antenna = maybe([pattern; 2]);
+    let ocean = any(OceanLoading { amplitude: [numbers(); 3], lag: [numbers(); 3] });
+    let receiver = any(Receiver {
+        antenna,
+        eccentricity: numbers(),
+        ocean_loading: maybe(&ocean),
+        ut1_minus_gps: number(),
+        corrections: any(Corrections::ALL),
+    });
+    let state = any(SatelliteState {
+        position: matrix(),
+        velocity: matrix(),
+        clock: number(),
+        clock_interval: number(),
+        clock_distance: number(),
+    });
+    let (satellite, code, phase, lock_lost) = (whole(), numbers(), numbers(), yes_or_no());
+    let sighting = Sighting { satellite, code, phase, lock_lost, state, antenna };
+    let sightings = any([sighting; 4]);
+    let mut filter = any(PppFilter::<N>::new(config()));
+    keep(PppFilter::config(&filter));
+    for _ in 0..rounds() {
+        let time = any(GpsTime::new(whole(), number()));
+        try_on(&mut filter, |filter| {
+            let solution = any(PppFilter::process(filter, time, &receiver, slice(&sightings))?);
+            keep(Solution::deviations_enu(&solution));
+            Ok::<_, Error>(())
+        });
+    }
+}
+
+/// Calls it all.
+pub fn run() {
+    call_each([estimators, filters::<{ states(10) }>, filters::<9>]);
+}

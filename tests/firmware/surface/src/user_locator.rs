@@ -1,0 +1,158 @@
+//! Everything of `kestirim-user-locator`.
+
+use core::fmt::Debug;
+
+use kestirim_air_to_ground::{
+    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement,
+};
+use kestirim_particle_filter::{Region, Resampler};
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_user_locator::{
+    Beacon, BeaconEstimate, Error, Height, Locator, Motion, Orbit, PrintedLocator, PrintedSettings,
+    TrackEstimate, Tracker,
+};
+
+use super::values::{
+    AnyRng, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, try_on, whole,
+    yes_or_no,
+};
+
+fn region<T: Scalar, const D: usize>() -> Option<Region<T, D>> {
+    any(Region::new(numbers(), numbers()).ok())
+}
+
+fn measurement<T: Scalar>() -> Option<Measurement<T>> {
+    any(Measurement::new(numbers(), number(), number()).ok())
+}
+
+fn channel<T: Scalar>() -> Option<Channel<T>> {
+    any(Channel::new(&any(Environment::urban()), number()).ok())
+}
+
+fn locates<
+    T: Scalar,
+    C: Likelihood<T> + Copy + Debug,
+    const L: usize,
+    const M: usize,
+    const D: usize,
+>(
+    channel: C,
+) -> Option<()> {
+    let (region, measurement) = (region()?, measurement()?);
+    keep(Locator::<T, L, M, D, C>::new(channel, &region));
+    let locator = Locator::<T, L, M, D, C>::with_count(whole(), channel, &region);
+    let mut locator = any(locator).ok()?;
+    for _ in 0..rounds() {
+        try_on(&mut locator, |locator| Locator::measure(locator, &measurement));
+    }
+    keep(Locator::moments(&locator));
+    keep(Locator::posterior(&locator));
+    keep(Locator::log_posterior(&locator, &numbers()));
+    keep(Locator::credible(&locator, &numbers(), number()));
+    Some(())
+}
+
+fn locators<T: Scalar, const L: usize, const M: usize, const D: usize>() {
+    let Some(channel) = channel::<T>() else { return };
+    keep(locates::<T, _, L, M, D>(channel));
+    let Ok(doubted) = any(Contaminated::new(channel, number())) else { return };
+    keep(locates::<T, _, L, M, D>(doubted));
+    keep(prints::<T, L>(channel));
+}
+
+fn prints<T: Scalar, const L: usize>(channel: Channel<T>) -> Option<()> {
+    let (region, measurement) = (region()?, measurement()?);
+    let settings = any(PrintedSettings::thesis());
+    let settings = any(PrintedSettings {
+        resampler: one_of([Resampler::Multinomial, Resampler::Systematic]),
+        ..settings
+    });
+    keep(PrintedLocator::<T, L>::new(channel, &region, settings, &mut AnyRng));
+    let (count, rng) = (whole(), &mut AnyRng);
+    let printed = PrintedLocator::<T, L>::with_count(count, channel, &region, settings, rng);
+    let mut printed = any(printed).ok()?;
+    for _ in 0..rounds() {
+        try_on(&mut printed, |printed| PrintedLocator::measure(printed, &measurement, rng));
+    }
+    keep(PrintedLocator::moments(&printed));
+    keep(PrintedLocator::particles(&printed));
+    Some(())
+}
+
+fn finds<T: Scalar, const M: usize, const L: usize>() -> Option<()> {
+    let (region, measurement) = (region()?, measurement()?);
+    let mut beacon = any(Beacon::<T, M>::new(FreeSpace::new(maybe(LevelPrior {
+        mean: number(),
+        sigma: number(),
+    }))));
+    for _ in 0..rounds() {
+        try_on(&mut beacon, |beacon| Beacon::measure(beacon, &measurement));
+    }
+    let inside = |place: [T; 2]| {
+        keep(place);
+        yes_or_no()
+    };
+    let estimate = any(Beacon::estimate::<L>(&beacon, &region, inside)).ok()?;
+    keep(BeaconEstimate::moments(&estimate));
+    keep(Beacon::credible(&beacon, &estimate, numbers(), number()));
+    Some(())
+}
+
+fn beacons<T: Scalar, const M: usize, const L: usize>() {
+    keep(finds::<T, M, L>());
+}
+
+fn motion<T: Scalar>() -> Motion<T> {
+    keep::<Motion<T>>(Motion::people());
+    let motion = any(Motion::people_measured_to(number()));
+    any(Motion { speed: number(), least_evidence: option(), ..motion })
+}
+
+fn tracks<T: Scalar, C: Likelihood<T> + Copy + Debug, const L: usize>(channel: C) -> Option<()> {
+    let (region, measurement, rng) = (region()?, measurement()?, &mut AnyRng);
+    keep(Tracker::<T, L, C>::new(channel, motion(), &region, rng));
+    let tracker = Tracker::<T, L, C>::with_count(whole(), channel, motion(), &region, rng);
+    let mut tracker = any(tracker).ok()?;
+    for _ in 0..rounds() {
+        try_on(&mut tracker, |tracker| Tracker::predict(tracker, number(), rng));
+        try_on(&mut tracker, |tracker| Tracker::measure(tracker, &measurement, rng));
+    }
+    keep(Tracker::estimate(&tracker));
+    keep(Tracker::moments(&tracker));
+    keep(Tracker::particles(&tracker));
+    Some(())
+}
+
+fn trackers<T: Scalar, const L: usize>() {
+    let Some(channel) = channel::<T>() else { return };
+    keep(tracks::<T, _, L>(channel));
+    let Ok(doubted) = any(Contaminated::new(channel, number())) else { return };
+    keep(tracks::<T, _, L>(doubted));
+}
+
+fn orbits<T: Scalar>() {
+    let mut orbit =
+        any(Orbit::new(one_of([Height::Fixed(number()), Height::Between(number(), number())])));
+    let (place, velocity, spread) = (numbers::<T, 2>(), numbers(), number());
+    let estimate = any(TrackEstimate { place, velocity, spread });
+    keep(Orbit::next(any(&mut orbit), &estimate, number()));
+    keep::<Error>(From::from(any(kestirim_air_to_ground::Error::NotFinite)));
+    keep::<Error>(From::from(any(kestirim_particle_filter::Error::NotFinite)));
+}
+
+fn all_of<T: Scalar>() {
+    call_each([
+        locators::<T, 64, 8, 2>,
+        locators::<T, 9, 3, 3>,
+        beacons::<T, 16, 64>,
+        beacons::<T, 3, 9>,
+        trackers::<T, 64>,
+        trackers::<T, 9>,
+        orbits::<T>,
+    ]);
+}
+
+/// Calls it all.
+pub fn run() {
+    call_each([all_of::<f32>, all_of::<Q16_16>]);
+}

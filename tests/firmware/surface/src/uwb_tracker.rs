@@ -1,0 +1,69 @@
+//! Everything of `kestirim-uwb-tracker`.
+
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_uwb_ranging::Room;
+use kestirim_uwb_tracker::{
+    Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Tracker,
+};
+
+use super::values::{
+    any, call_each, keep, matrix, maybe, number, numbers, option, rounds, slice, try_on, whole,
+};
+
+fn configs<T: Scalar>() {
+    keep::<Config<T>>(Config::calibrated(number()));
+    keep::<Config<T>>(Config::uncalibrated(number()));
+    keep::<Config<T>>(Config::plain(number()));
+    keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
+}
+
+/// Any configuration.
+fn config<T: Scalar>() -> Config<T> {
+    let config = any(Config::calibrated(number()));
+    any(Config {
+        range_sigma: number(),
+        gate: option(),
+        acceleration_density: number(),
+        decay_time: option(),
+        common_bias_sigma: number(),
+        room: maybe(Room { low: numbers(), high: numbers() }),
+        ..config
+    })
+}
+
+fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
+    let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
+    let tracker = Tracker::<T, D, N, A>::new(config(), slice(&anchors));
+    let Ok(mut tracker) = any(tracker) else { return };
+    for _ in 0..rounds() {
+        let range = any(RangeSample { time_us: whole(), anchor: whole(), range: number() });
+        try_on(&mut tracker, |tracker| Tracker::range(tracker, &range));
+        let push = maybe(numbers());
+        let inertial = any(InertialSample { time_us: whole(), acceleration: matrix(), push });
+        try_on(&mut tracker, |tracker| Tracker::inertial(tracker, &inertial));
+        let odometry =
+            any(OdometrySample { time_us: whole(), speed: number(), turn_rate: number() });
+        try_on(&mut tracker, |tracker| Tracker::odometry(tracker, &odometry));
+        try_on(&mut tracker, |tracker| Tracker::set_height(tracker, number()));
+    }
+    keep(Tracker::position(&tracker));
+    keep(Tracker::velocity(&tracker));
+    keep(Tracker::estimate(&tracker));
+    keep(Tracker::range_sigma(&tracker, whole()));
+    keep(Tracker::health(&tracker, whole()));
+}
+
+fn all_of<T: Scalar>() {
+    call_each([
+        configs::<T>,
+        tracks::<T, 2, 4, 4>,
+        tracks::<T, 2, 5, 9>,
+        tracks::<T, 3, 6, 4>,
+        tracks::<T, 3, 7, 9>,
+    ]);
+}
+
+/// Calls it all.
+pub fn run() {
+    call_each([all_of::<f32>, all_of::<Q12_20>]);
+}
