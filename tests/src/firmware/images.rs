@@ -75,25 +75,8 @@ impl Images {
     }
 
     fn build(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        let toolchain = if is_installed(target.qemu) {
-            Toolchain::find(target)
-        } else {
-            Err(format!("{} is not installed: run .ci/install-target-tools", target.qemu))
-        };
-        match toolchain {
-            Ok(toolchain) => {
-                let directory = toolchain.build(profile.name())?;
-                Ok(Some(Self { target, profile, directory }))
-            }
-            Err(why) if env::var(REQUIRE).is_ok_and(|value| value == "1") => {
-                bail!("{REQUIRE}=1, but {why}")
-            }
-            Err(why) => {
-                // Not `eprintln!`, which the test runner swallows when the test passes.
-                writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
-                Ok(None)
-            }
-        }
+        let Some(directory) = build(target, None, profile)? else { return Ok(None) };
+        Ok(Some(Self { target, profile, directory }))
     }
 
     /// Runs an image, with a stream of samples (see [`super::encode`]) for it to read, until it ends.
@@ -111,5 +94,30 @@ impl Images {
     /// There is no such image.
     pub fn elf(&self, image: &str) -> Result<Elf> {
         Elf::read(&self.directory.join(image))
+    }
+}
+
+/// Builds all images, or an application, and answers with the directory they are in; `None` on a machine
+/// without the tools, which is said.
+pub(crate) fn build(
+    target: &'static Target,
+    package: Option<&str>,
+    profile: Profile,
+) -> Result<Option<PathBuf>> {
+    let toolchain = if is_installed(target.qemu) {
+        Toolchain::find(target)
+    } else {
+        Err(format!("{} is not installed: run .ci/install-target-tools", target.qemu))
+    };
+    match toolchain {
+        Ok(toolchain) => toolchain.build(package, profile.name()).map(Some),
+        Err(why) if env::var(REQUIRE).is_ok_and(|value| value == "1") => {
+            bail!("{REQUIRE}=1, but {why}")
+        }
+        Err(why) => {
+            // Not `eprintln!`, which the test runner swallows when the test passes.
+            writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
+            Ok(None)
+        }
     }
 }

@@ -68,8 +68,8 @@ impl Toolchain {
         })
     }
 
-    /// Builds all images in one go and answers with the directory they are in.
-    pub(crate) fn build(&self, profile: &str) -> Result<PathBuf> {
+    /// Builds all images in one go, or an application, and answers with the directory they are in.
+    pub(crate) fn build(&self, package: Option<&str>, profile: &str) -> Result<PathBuf> {
         let triple = self.target.triple;
         let output = target_directory();
         let mut cargo = Command::new(self.sysroot.join("bin/cargo"));
@@ -80,6 +80,9 @@ impl Toolchain {
             .env("CARGO_TARGET_DIR", &output)
             .current_dir(workspace())
             .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple]);
+        if let Some(package) = package {
+            cargo.args(["--package", package]);
+        }
         if self.builds_core {
             cargo
                 .env("RUSTC_BOOTSTRAP", "1")

@@ -1,0 +1,54 @@
+//! What an image holds, and what its log means.
+
+use std::collections::BTreeSet;
+
+use anyhow::{Context, Result, ensure};
+use defmt_decoder::{DecodeError, Table};
+use object::{Object, ObjectSection};
+
+/// Lines of the log, `LEVEL text`.
+pub fn log(elf: &[u8], console: &[u8]) -> Result<Vec<String>> {
+    let table = Table::parse(elf)?.context("the image logs")?;
+    let mut decoder = table.new_stream_decoder();
+    decoder.received(console);
+    let mut lines = Vec::new();
+    loop {
+        match decoder.decode() {
+            Ok(frame) => {
+                let level = frame.level().map_or("", |level| level.as_str());
+                lines.push(format!("{level} {}", frame.display_message()));
+            }
+            Err(DecodeError::UnexpectedEof) => return Ok(lines),
+            Err(DecodeError::Malformed) => ensure!(false, "the log is torn"),
+        }
+    }
+}
+
+/// Bytes of code, constants and initial values.
+pub fn flash_bytes(elf: &[u8]) -> Result<u64> {
+    let file = object::File::parse(elf)?;
+    let loaded = file.segments().map(|segment| object::ObjectSegment::file_range(&segment).1);
+    Ok(loaded.sum())
+}
+
+/// The crates and directories in which something can panic: the panic handler tells the place, so its file is
+/// among the constants of the image.
+pub fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
+    let file = object::File::parse(elf)?;
+    let constants = file.section_by_name(".rodata").context("there are constants")?.data()?;
+    let texts = constants.split(|&byte| !(b' '..=b'~').contains(&byte));
+    let mut places = BTreeSet::new();
+    for text in texts.filter_map(|text| str::from_utf8(text).ok()) {
+        for end in text.match_indices(".rs").map(|(at, found)| at + found.len()) {
+            places.insert(origin(&text[..end]));
+        }
+    }
+    Ok(places)
+}
+
+/// The crate of a registry's file, without its version; the path of any other.
+fn origin(path: &str) -> String {
+    let Some((_, inside)) = path.split_once("/registry/src/") else { return path.to_owned() };
+    let package = inside.split('/').nth(1).unwrap_or(inside);
+    package.rsplit_once('-').map_or(package, |(name, _)| name).to_owned()
+}
