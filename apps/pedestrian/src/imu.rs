@@ -93,7 +93,8 @@ impl<I2C: I2c> Imu<I2C> {
             .gyro_temp_data_rate(GyroTempDataRate::DlpfConf(Dlpf::_3))
             // 1 kHz divided by ten.
             .sample_rate_divisor(9);
-        let driver = Mpu9250::imu(i2c.reverse(), &mut Milliseconds(delay), &mut config)?;
+        let mut driver = Mpu9250::imu(i2c.reverse(), &mut Milliseconds(delay), &mut config)?;
+        driver.enable_interrupts(InterruptEnable::RAW_RDY_EN)?;
         Ok(Self { driver })
     }
 

@@ -20,7 +20,8 @@ const MACHINE: &str = "lm3s6965evb";
 /// The names under which application and host meet in the emulator's working directory.
 const STREAM: &str = "stream.bin";
 const CARD: &str = "card.img";
-const CONSOLE: &str = "console.bin";
+const LOG: &str = "log.bin";
+const CONSOLE: &str = "console.txt";
 const TELEMETRY: &str = "telemetry.bin";
 const ERRORS: &str = "errors.txt";
 
@@ -37,7 +38,7 @@ pub struct Run {
     /// What it sent over the first serial port.
     pub telemetry: Vec<u8>,
     /// Its log, as `defmt` encodes it.
-    pub console: Vec<u8>,
+    pub log: Vec<u8>,
     /// The SD card, if it had one.
     pub card: Option<Vec<u8>>,
 }
@@ -83,7 +84,9 @@ impl App {
             .arg(&self.image)
             .current_dir(directory.path())
             .stdin(Stdio::null())
-            .stdout(Stdio::null())
+            // The emulator hands on what is written to the semihosting host's standard output; its own
+            // console gets what is written to none, which is how an application ends that panicked.
+            .stdout(File::create(file(LOG))?)
             .stderr(File::create(file(ERRORS))?)
             .spawn()
             .with_context(|| format!("cannot start {}", self.target.qemu))?;
@@ -92,17 +95,17 @@ impl App {
             qemu.kill()?;
             qemu.wait()?;
         }
-        let console = fs::read(file(CONSOLE)).unwrap_or_default();
+        let log = fs::read(file(LOG))?;
         if status.is_some_and(|status| status.success()) {
             let card = card.map(|_| fs::read(file(CARD))).transpose()?;
-            return Ok(Run { telemetry: fs::read(file(TELEMETRY))?, console, card });
+            return Ok(Run { telemetry: fs::read(file(TELEMETRY))?, log, card });
         }
         let why =
             status.map_or("was still running".into(), |status| format!("ended with {status}"));
         bail!(
-            "{} {why}; it told:\n{}\n{}",
+            "{} {why}; it told:\n{}{}and logged {log:x?}",
             self.image.display(),
-            String::from_utf8_lossy(&console),
+            fs::read_to_string(file(CONSOLE)).unwrap_or_default(),
             fs::read_to_string(file(ERRORS)).unwrap_or_default()
         );
     }

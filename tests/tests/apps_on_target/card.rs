@@ -12,7 +12,7 @@ const BLOCKS: usize = 1 << 15;
 const START: usize = 2048;
 
 /// A card with one empty FAT16 partition.
-pub fn blank() -> Result<Vec<u8>> {
+pub(crate) fn blank() -> Result<Vec<u8>> {
     let mut card = vec![0; BLOCKS * BLOCK];
     let (table, partition) = card.split_at_mut(START * BLOCK);
     table[446 + 4] = 0x0E;
@@ -24,7 +24,7 @@ pub fn blank() -> Result<Vec<u8>> {
 }
 
 /// A file in the root directory of the partition.
-pub fn file(card: &mut [u8], name: &str) -> Result<Vec<u8>> {
+pub(crate) fn file(card: &mut [u8], name: &str) -> Result<Vec<u8>> {
     let partition = Cursor::new(&mut card[START * BLOCK..]);
     let volume = FileSystem::new(partition, FsOptions::new())?;
     let mut bytes = Vec::new();

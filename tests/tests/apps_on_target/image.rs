@@ -7,10 +7,10 @@ use defmt_decoder::{DecodeError, Table};
 use object::{Object, ObjectSection};
 
 /// Lines of the log, `LEVEL text`.
-pub fn log(elf: &[u8], console: &[u8]) -> Result<Vec<String>> {
+pub(crate) fn log(elf: &[u8], logged: &[u8]) -> Result<Vec<String>> {
     let table = Table::parse(elf)?.context("the image logs")?;
     let mut decoder = table.new_stream_decoder();
-    decoder.received(console);
+    decoder.received(logged);
     let mut lines = Vec::new();
     loop {
         match decoder.decode() {
@@ -25,7 +25,7 @@ pub fn log(elf: &[u8], console: &[u8]) -> Result<Vec<String>> {
 }
 
 /// Bytes of code, constants and initial values.
-pub fn flash_bytes(elf: &[u8]) -> Result<u64> {
+pub(crate) fn flash_bytes(elf: &[u8]) -> Result<u64> {
     let file = object::File::parse(elf)?;
     let loaded = file.segments().map(|segment| object::ObjectSegment::file_range(&segment).1);
     Ok(loaded.sum())
@@ -33,7 +33,7 @@ pub fn flash_bytes(elf: &[u8]) -> Result<u64> {
 
 /// The crates and directories in which something can panic: the panic handler tells the place, so its file is
 /// among the constants of the image.
-pub fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
+pub(crate) fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
     let file = object::File::parse(elf)?;
     let constants = file.section_by_name(".rodata").context("there are constants")?.data()?;
     let texts = constants.split(|&byte| !(b' '..=b'~').contains(&byte));

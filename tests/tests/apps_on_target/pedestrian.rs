@@ -134,7 +134,7 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     check_log::<T>(card::file(&mut written, "WALK.TXT")?, &sent, path)?;
 
     let elf = app.elf()?;
-    let lines = image::log(&elf, &run.console)?;
+    let lines = image::log(&elf, &run.log)?;
     let count = |text: &str| lines.iter().filter(|line| line.starts_with(text)).count();
     let strides = expected.iter().filter(|told| matches!(told, Message::Footprint(_))).count();
     // The last stride is complete only when the walk is over.

@@ -3,7 +3,7 @@
 use kestirim_telemetry::{Message, Receiver};
 
 /// All messages, in their order; panics if anything was lost or damaged.
-pub fn messages(bytes: &[u8]) -> Vec<Message> {
+pub(crate) fn messages(bytes: &[u8]) -> Vec<Message> {
     let mut receiver = Receiver::new();
     let frames: Vec<_> = receiver.frames(bytes).collect();
     let counts = receiver.counts();

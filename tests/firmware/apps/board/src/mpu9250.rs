@@ -9,6 +9,7 @@ use crate::i2c::{Device, Registers, steps};
 
 const GYRO_CONFIG: usize = 0x1B;
 const ACCEL_CONFIG: usize = 0x1C;
+const INT_ENABLE: usize = 0x38;
 const INT_STATUS: usize = 0x3A;
 const ACCEL_XOUT_H: usize = 0x3B;
 const GYRO_XOUT_H: usize = 0x43;
@@ -41,7 +42,8 @@ impl<'a> Mpu9250<'a> {
             let bytes = values.map(|value| steps(value, step).to_be_bytes());
             self.registers.set(first, bytes.as_flattened());
         }
-        self.registers.set(INT_STATUS, &[RAW_DATA_READY]);
+        let ready = self.registers.get(INT_ENABLE) & RAW_DATA_READY;
+        self.registers.set(INT_STATUS, &[ready]);
     }
 
     fn range(&self, register: usize) -> f32 {
