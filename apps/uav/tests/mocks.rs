@@ -21,7 +21,8 @@ fn read(register: u8, values: &[u8]) -> [Transaction; 2] {
 
 /// What sets the inertial sensor up, if it says that it is `who`.
 fn setup(who: u8) -> Vec<Transaction> {
-    let mut transactions = read(0x00, &[who]).to_vec();
+    let mut transactions = vec![write(0x07, 0)];
+    transactions.extend(read(0x00, &[who]));
     if who == 0xA0 {
         transactions.extend([write(0x07, 0), write(0x3F, 0x20)]); // reset
         transactions.extend([write(0x07, 0), write(0x3E, 0), write(0x3F, 0)]); // normal power
@@ -138,7 +139,7 @@ fn an_input_that_is_no_number_is_refused() {
 
 #[test]
 fn a_second_of_steps_ends_with_the_health() {
-    let readings = [inertial(); 100].concat();
+    let readings = vec![inertial(); 100].concat();
     let tube = vec![airspeed(); 100].concat();
     let (_, sent, _) = run(&readings, &tube, &[TRIM; 100]);
     let health = Health { time_us: 990_000, accepted: 100, rejected: 0, failed: 0 };

@@ -8,3 +8,4 @@ mod card;
 mod image;
 mod pedestrian;
 mod telemetry;
+mod uav;
