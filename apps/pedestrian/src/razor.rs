@@ -5,7 +5,7 @@ use core::fmt::{Result, Write};
 use crate::Counts;
 
 /// The longest line.
-pub(crate) const LONGEST: usize = 96;
+pub(crate) const LONGEST: usize = 80;
 
 /// Writes a line, with what the sensor resolves: 0.0001 g and 0.01 °/s.
 pub(crate) fn line(text: &mut impl Write, time_us: u64, counts: &Counts) -> Result {
@@ -30,4 +30,27 @@ fn decimal(text: &mut impl Write, number: i32, scale: u32, decimals: usize) -> R
     let sign = if number < 0 { "-" } else { "" };
     let (whole, part) = (number.unsigned_abs() / scale, number.unsigned_abs() % scale);
     write!(text, " {sign}{whole}.{part:0decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use heapless::String;
+
+    #[test]
+    fn every_count_is_written_to_half_a_decimal() {
+        for count in i16::MIN..=i16::MAX {
+            let mut text = String::<LONGEST>::new();
+            line(&mut text, u64::MAX, &Counts { accel: [count; 3], gyro: [count; 3] }).unwrap();
+            let mut fields = text.split_ascii_whitespace().map(|field| field.parse::<f64>());
+            fields.next();
+            let (unit, mut field) = (f64::from(count) / 2048.0, || fields.next().unwrap().unwrap());
+            for _ in 0..3 {
+                assert!((field() - unit).abs() <= 0.5e-4 + 1e-9, "{text}");
+            }
+            for _ in 0..3 {
+                assert!((field() - unit * 125.0).abs() <= 0.5e-2 + 1e-9, "{text}");
+            }
+        }
+    }
 }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 use wait_timeout::ChildExt;
 
+use super::elf::Elf;
 use super::images::{Profile, build};
 use super::target::Target;
 
@@ -53,12 +54,25 @@ impl App {
         Ok(directory.map(|directory| Self { target, image: directory.join(package) }))
     }
 
+    /// What it runs on.
+    pub fn target(&self) -> &'static Target {
+        self.target
+    }
+
     /// The bytes of the image's file.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn elf(&self) -> Result<Vec<u8>> {
+    pub fn file(&self) -> Result<Vec<u8>> {
         fs::read(&self.image).with_context(|| format!("cannot read {}", self.image.display()))
+    }
+
+    /// Opens the file of the image.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn elf(&self) -> Result<Elf> {
+        Elf::read(&self.image)
     }
 
     /// Runs the application, with a recording for its sensors to play and a card in its slot, until it ends.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use anyhow::{Context, Result, ensure};
 use defmt_decoder::{DecodeError, Table};
+use kestirim_tests::firmware::App;
 use object::{Object, ObjectSection};
 
 /// Lines of the log, `LEVEL text`.
@@ -24,16 +25,25 @@ pub(crate) fn log(elf: &[u8], logged: &[u8]) -> Result<Vec<String>> {
     }
 }
 
-/// Bytes of code, constants and initial values.
-pub(crate) fn flash_bytes(elf: &[u8]) -> Result<u64> {
-    let file = object::File::parse(elf)?;
-    let loaded = file.segments().map(|segment| object::ObjectSegment::file_range(&segment).1);
-    Ok(loaded.sum())
+/// Checks what is linked into an application's image, and says how large it is.
+pub(crate) fn check(name: &str, app: &App) -> Result<()> {
+    let elf = app.elf()?;
+    assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{name} has no double precision");
+    let places = panicking(&app.file()?)?;
+    let ours: Vec<&String> = places.iter().filter(|place| place.ends_with(".rs")).collect();
+    assert_eq!(ours, Vec::<&String>::new(), "only foreign crates can panic");
+    println!(
+        "{name} on {}: {} bytes of flash, {} of static RAM; can panic: {places:?}",
+        app.target().triple,
+        elf.flash_bytes,
+        elf.ram_bytes
+    );
+    Ok(())
 }
 
 /// The crates and directories in which something can panic: the panic handler tells the place, so its file is
 /// among the constants of the image.
-pub(crate) fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
+fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
     let file = object::File::parse(elf)?;
     let constants = file.section_by_name(".rodata").context("there are constants")?.data()?;
     let texts = constants.split(|&byte| !(b' '..=b'~').contains(&byte));
@@ -46,8 +56,11 @@ pub(crate) fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
     Ok(places)
 }
 
-/// The crate of a registry's file, without its version; the path of any other.
+/// The crate of a registry's or the standard library's file, without its version; the path of any other.
 fn origin(path: &str) -> String {
+    if path.contains("/library/core/") {
+        return "core".to_owned();
+    }
     let Some((_, inside)) = path.split_once("/registry/src/") else { return path.to_owned() };
     let package = inside.split('/').nth(1).unwrap_or(inside);
     package.rsplit_once('-').map_or(package, |(name, _)| name).to_owned()

@@ -133,8 +133,7 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     let mut written = run.card.context("the card")?;
     check_log::<T>(card::file(&mut written, "WALK.TXT")?, &sent, path)?;
 
-    let elf = app.elf()?;
-    let lines = image::log(&elf, &run.log)?;
+    let lines = image::log(&app.file()?, &run.log)?;
     let count = |text: &str| lines.iter().filter(|line| line.starts_with(text)).count();
     let strides = expected.iter().filter(|told| matches!(told, Message::Footprint(_))).count();
     // The last stride is complete only when the walk is over.
@@ -144,18 +143,7 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     assert!(last.starts_with(&format!("info Summary {{ accepted: {accepted}, ")), "{last}");
     assert_eq!(count("info "), lines.len(), "nothing went wrong: {lines:#?}");
 
-    let own: Vec<String> =
-        image::panicking(&elf)?.into_iter().filter(|place| place.contains(".rs")).collect();
-    assert_eq!(own, Vec::<String>::new(), "only foreign crates can panic");
-    println!(
-        "pedestrian-firmware on {}: {} bytes of flash, {} samples, {} bytes of telemetry, can panic: {:?}",
-        target.triple,
-        image::flash_bytes(&elf)?,
-        walk.len(),
-        run.telemetry.len(),
-        image::panicking(&elf)?
-    );
-    Ok(())
+    image::check("pedestrian-firmware", &app)
 }
 
 #[test]

@@ -110,27 +110,16 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     check_measurements(&measured, &flight);
     assert_eq!(states, on_host::<T>(&measured), "the very bits");
     let error = angle_of_attack_error(&states, &flight);
-    assert!(error < 0.01, "the angle of attack is {error} rad off");
+    assert!(error < 0.002, "the angle of attack is {error} rad off");
     let expected = Health { time_us: 10_000_000, accepted: 1_000, rejected: 0, failed: 0 };
     assert_eq!((health.len(), health.last()), (10, Some(&expected)));
 
-    let elf = app.elf()?;
-    let lines = image::log(&elf, &run.log)?;
+    let lines = image::log(&app.file()?, &run.log)?;
     assert_eq!(lines.len(), 2, "{lines:#?}");
     assert!(lines[0].starts_with("info observing from ["), "{}", lines[0]);
     assert!(lines[1].starts_with("info landed at ["), "{}", lines[1]);
 
-    let places = image::panicking(&elf)?;
-    let own: Vec<&String> = places.iter().filter(|place| place.contains(".rs")).collect();
-    assert_eq!(own, Vec::<&String>::new(), "only foreign crates can panic");
-    println!(
-        "uav-firmware on {}: {} bytes of flash, {} bytes of telemetry, angle of attack {error:.4} rad off, \
-         can panic: {places:?}",
-        target.triple,
-        image::flash_bytes(&elf)?,
-        run.telemetry.len(),
-    );
-    Ok(())
+    image::check("uav-firmware", &app)
 }
 
 #[test]
