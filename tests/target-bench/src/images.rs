@@ -136,7 +136,7 @@ impl Images {
     /// There is no such image, it tells a failure (a panic, a fault, a step that could not be
     /// measured), or it does not end.
     pub fn run(&self, image: &str, stream: &[u8]) -> Result<Output> {
-        qemu::run(self.target, &self.directory.join(image), stream)
+        qemu::run(self.target, &self.file(image), stream)
     }
 
     /// Opens the file of an image.
@@ -144,7 +144,11 @@ impl Images {
     /// # Errors
     /// There is no such image.
     pub fn elf(&self, image: &str) -> Result<Elf> {
-        Elf::read(&self.directory.join(image))
+        Elf::read(&self.file(image))
+    }
+
+    pub(crate) fn file(&self, image: &str) -> PathBuf {
+        self.directory.join(image)
     }
 }
 

@@ -12,6 +12,7 @@
 //! # }
 //! ```
 
+mod app;
 pub mod baseline;
 mod elf;
 mod images;
@@ -26,6 +27,7 @@ mod toolchain;
 pub mod uav;
 pub mod workloads;
 
+pub use app::{App, Run};
 pub use elf::Elf;
 pub use images::{Images, Profile};
 pub use output::{Cost, Output, Position};

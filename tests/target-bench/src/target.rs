@@ -7,6 +7,8 @@ pub struct Target {
     pub triple: &'static str,
     /// The emulator's program.
     pub(crate) qemu: &'static str,
+    /// The processor, as the emulator names it.
+    pub(crate) cpu: &'static str,
     /// The emulator's arguments that choose the machine.
     pub(crate) machine: &'static [&'static str],
 }
@@ -19,6 +21,7 @@ pub(crate) const ICOUNT: &str = "shift=8,sleep=off";
 pub static CORTEX_M0: Target = Target {
     triple: "thumbv6m-none-eabi",
     qemu: "qemu-system-arm",
+    cpu: "cortex-m0",
     machine: &["-machine", "microbit"],
 };
 
@@ -26,6 +29,7 @@ pub static CORTEX_M0: Target = Target {
 pub static CORTEX_M4F: Target = Target {
     triple: "thumbv7em-none-eabihf",
     qemu: "qemu-system-arm",
+    cpu: "cortex-m4",
     machine: &["-machine", "mps2-an386"],
 };
 
@@ -33,6 +37,7 @@ pub static CORTEX_M4F: Target = Target {
 pub static RV32IMC: Target = Target {
     triple: "riscv32imc-unknown-none-elf",
     qemu: "qemu-system-riscv32",
+    cpu: "rv32",
     machine: &["-machine", "virt", "-bios", "none"],
 };
 

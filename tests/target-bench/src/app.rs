@@ -1,0 +1,124 @@
+//! Builds an application of `tests/firmware/apps` and runs it.
+
+use std::fs::{self, File};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use wait_timeout::ChildExt;
+
+use crate::elf::Elf;
+use crate::images::{Images, Profile};
+use crate::target::Target;
+
+/// An application that runs longer hangs.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The machine of all applications: serial ports, and a serial bus with an SD card.
+const MACHINE: &str = "lm3s6965evb";
+
+/// The names under which application and host meet in the emulator's working directory.
+const STREAM: &str = "stream.bin";
+const CARD: &str = "card.img";
+const LOG: &str = "log.bin";
+const CONSOLE: &str = "console.txt";
+const TELEMETRY: &str = "telemetry.bin";
+const ERRORS: &str = "errors.txt";
+
+/// An application, built for one target.
+#[derive(Clone, Debug)]
+pub struct App {
+    target: &'static Target,
+    image: PathBuf,
+}
+
+/// What an application left behind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// It ended well.
+    pub success: bool,
+    /// What it told outside its log: why it could not go on.
+    pub console: String,
+    /// What it sent over the first serial port.
+    pub telemetry: Vec<u8>,
+    /// Its log, as `defmt` encodes it.
+    pub log: Vec<u8>,
+    /// The SD card, if it had one.
+    pub card: Option<Vec<u8>>,
+}
+
+impl App {
+    /// Builds an application; `None` on a machine without the tools, which is said.
+    ///
+    /// # Errors
+    /// It does not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
+    pub fn of(target: &'static Target, package: &'static str) -> Result<Option<Self>> {
+        let images = Images::of_package(package, target, Profile::Speed)?;
+        Ok(images.map(|images| Self { target, image: images.file(package) }))
+    }
+
+    /// What it runs on.
+    pub fn target(&self) -> &'static Target {
+        self.target
+    }
+
+    /// The bytes of the image's file.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn file(&self) -> Result<Vec<u8>> {
+        fs::read(&self.image).with_context(|| format!("cannot read {}", self.image.display()))
+    }
+
+    /// Opens the file of the image.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn elf(&self) -> Result<Elf> {
+        Elf::read(&self.image)
+    }
+
+    /// Runs the application, with a recording for its sensors to play and a card in its slot, until it ends.
+    ///
+    /// # Errors
+    /// It does not end, or leaves no files.
+    pub fn run(&self, stream: &[u8], card: Option<&[u8]>) -> Result<Run> {
+        let directory = tempfile::tempdir()?;
+        let file = |name| directory.path().join(name);
+        fs::write(file(STREAM), stream)?;
+        let mut qemu = Command::new(self.target.qemu);
+        qemu.args(["-machine", MACHINE, "-cpu", self.target.cpu]);
+        if let Some(card) = card {
+            fs::write(file(CARD), card)?;
+            qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);
+        }
+        let mut qemu = qemu
+            .args(["-icount", "shift=0,sleep=off", "-display", "none", "-monitor", "none"])
+            .args(["-serial", &format!("file:{TELEMETRY}")])
+            .args(["-chardev", &format!("file,id=host,path={CONSOLE}")])
+            .args(["-semihosting-config", "enable=on,target=native,chardev=host"])
+            .arg("-kernel")
+            .arg(&self.image)
+            .current_dir(directory.path())
+            .stdin(Stdio::null())
+            // The emulator hands on what is written to the semihosting host's standard output; its own
+            // console gets what is written to none, which is how an application ends that panicked.
+            .stdout(File::create(file(LOG))?)
+            .stderr(File::create(file(ERRORS))?)
+            .spawn()
+            .with_context(|| format!("cannot start {}", self.target.qemu))?;
+        let Some(status) = qemu.wait_timeout(PATIENCE)? else {
+            qemu.kill()?;
+            qemu.wait()?;
+            bail!("{} was still running", self.image.display());
+        };
+        Ok(Run {
+            success: status.success(),
+            console: fs::read_to_string(file(CONSOLE))? + &fs::read_to_string(file(ERRORS))?,
+            log: fs::read(file(LOG))?,
+            telemetry: fs::read(file(TELEMETRY))?,
+            card: card.map(|_| fs::read(file(CARD))).transpose()?,
+        })
+    }
+}
