@@ -1,0 +1,24 @@
+//! A robot among four ultra-wideband anchors, as one would write it: a DW1000 asks the anchors one after
+//! the other, a BNO055 feels whether the robot stands, the tracker computes in fixed point, and frames of
+//! telemetry tell a host where it is.
+//!
+//! Everything is behind traits of `embedded-hal` 1.0 and `embedded-io`; a board's program is
+//! `robot-esp32c3` beside this crate, `robot-virt` the same under an emulator. [`Robot::step`] is the
+//! loop's body; the room is in [`SITES`].
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod imu;
+mod line;
+pub mod message;
+mod radio;
+mod robot;
+mod room;
+
+pub use imu::{Imu, ImuError};
+pub use radio::{Radio, RadioError, Tag};
+pub use robot::{Error, Robot};
+pub use room::{HEIGHT, SITES, Site, TAG};
+
+/// The number of a processor without a floating-point unit: 20 bits after the point.
+pub type Number = kestirim_scalar::Q12_20;
