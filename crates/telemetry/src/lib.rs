@@ -1,0 +1,14 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod error;
+mod frame;
+mod message;
+mod receiver;
+
+pub use error::Error;
+pub use frame::{CAPACITY, VERSION, encode};
+pub use message::{
+    Flight, Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range, State,
+};
+pub use receiver::{Counts, Frame, Frames, Receiver};

@@ -1,0 +1,123 @@
+use postcard::experimental::max_size::MaxSize;
+use serde::{Deserialize, Serialize};
+
+/// Declares the kinds of messages: all are plain data.
+macro_rules! messages {
+    ($($(#[$attribute:meta])* $name:ident { $($(#[$note:meta])* $field:ident: $type:ty,)* })*) => {
+        /// What a frame carries.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[non_exhaustive]
+        pub enum Message {
+            $($(#[$attribute])* $name($name),)*
+        }
+
+        $(
+            $(#[$attribute])*
+            #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
+            #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+            pub struct $name {
+                $($(#[$note])* pub $field: $type,)*
+            }
+
+            impl From<$name> for Message {
+                fn from(message: $name) -> Self {
+                    Self::$name(message)
+                }
+            }
+        )*
+    };
+}
+
+// The order is part of the format: a new kind goes to the end.
+messages! {
+    /// A sample of an inertial sensor, in its own axes.
+    Imu {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// m/s²; at rest +1 g upwards.
+        specific_force: [f32; 3],
+        /// rad/s.
+        angular_rate: [f32; 3],
+    }
+
+    /// A distance to an anchor.
+    Range {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// Which anchor.
+        anchor: u16,
+        /// m.
+        range: f32,
+    }
+
+    /// A path loss between a drone and a user.
+    PathLoss {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// Where the drone was (m, east, north, up).
+        place: [f32; 3],
+        /// dB.
+        loss: f32,
+    }
+
+    /// What an aeroplane was told and what it measured.
+    Flight {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// Elevator (rad) and throttle.
+        inputs: [f32; 2],
+        /// Pitch rate (rad/s), airspeed (m/s) and pitch (rad).
+        outputs: [f32; 3],
+    }
+
+    /// An estimated place near the start or in a room.
+    Position {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// m, in the estimator's local frame, z up.
+        position: [f32; 3],
+        /// Standard deviation of a horizontal component (m), where the estimator knows it.
+        sigma: Option<f32>,
+    }
+
+    /// An estimated place on earth.
+    GlobalPosition {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// m, earth-centred and earth-fixed.
+        position: [f64; 3],
+        /// Standard deviation of a component (m), where the estimator knows it.
+        sigma: Option<f32>,
+    }
+
+    /// The state of an aeroplane's longitudinal motion, as its observer estimates it.
+    State {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// Angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch (rad).
+        state: [f32; 4],
+    }
+
+    /// A stride of the instrumented foot: where it came to stand.
+    Footprint {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// m, in the tracker's earth frame, z up.
+        position: [f32; 3],
+        /// Horizontal distance from the footprint before (m).
+        length: f32,
+    }
+
+    /// How the sender is doing, counted since it began.
+    Health {
+        /// When (µs, the sender's clock).
+        time_us: u64,
+        /// Measurements that were taken in.
+        accepted: u32,
+        /// Measurements that the estimator refused.
+        rejected: u32,
+        /// Readings that a driver did not deliver.
+        failed: u32,
+    }
+}
