@@ -44,7 +44,9 @@ impl Anchors {
     pub(crate) fn hear(&mut self, frame: &Frame, departure: u64) -> Option<(Frame, u64)> {
         let content = frame.bytes.get(..frame.length.checked_sub(CHECKSUM)?)?;
         let (header, payload) = content.split_first_chunk::<HEADER>()?;
-        let anchor = SITES.iter().position(|site| *header == heading(header[2], site.address, TAG.address))?;
+        let anchor = SITES
+            .iter()
+            .position(|site| *header == heading(header[2], site.address, TAG.address))?;
         let (question, exchange) = Question::decode(payload)?;
         if !self.range.is_finite() {
             return None;
@@ -86,12 +88,26 @@ fn clock(anchor: usize, now: u64) -> Timestamp {
     let drift = DRIFT.get(anchor).copied().unwrap_or_default();
     let gained = i128::from(now) * i128::from(drift) / 1_000_000_000;
     // No two were turned on at the same time.
-    Timestamp::new(now.wrapping_add_signed(gained as i64).wrapping_add(anchor as u64 * 0x31_4159_2653))
+    Timestamp::new(
+        now.wrapping_add_signed(gained as i64).wrapping_add(anchor as u64 * 0x31_4159_2653),
+    )
 }
 
 fn heading(number: u8, to: u16, from: u16) -> [u8; HEADER] {
     let [control, version] = CONTROL;
     let [network_low, network] = TAG.network.to_le_bytes();
     let ([to_low, to], [from_low, from]) = (to.to_le_bytes(), from.to_le_bytes());
-    [control, version, number, network_low, network, to_low, to, network_low, network, from_low, from]
+    [
+        control,
+        version,
+        number,
+        network_low,
+        network,
+        to_low,
+        to,
+        network_low,
+        network,
+        from_low,
+        from,
+    ]
 }

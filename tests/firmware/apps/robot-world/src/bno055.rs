@@ -68,7 +68,11 @@ impl ErrorType for I2cBus<'_> {
 }
 
 impl I2c for I2cBus<'_> {
-    fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+    fn transaction(
+        &mut self,
+        address: u8,
+        operations: &mut [Operation<'_>],
+    ) -> Result<(), ErrorKind> {
         self.0.with(|state| {
             if address != ADDRESS || state.now < state.imu.ready {
                 return Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address));

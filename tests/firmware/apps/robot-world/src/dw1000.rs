@@ -74,7 +74,13 @@ pub(crate) struct Dw1000 {
 
 impl Dw1000 {
     pub(crate) const fn new() -> Self {
-        Self { registers: [[0; 128]; 64], lde_loaded: false, listens: None, sent: None, coming: None }
+        Self {
+            registers: [[0; 128]; 64],
+            lde_loaded: false,
+            listens: None,
+            sent: None,
+            coming: None,
+        }
     }
 
     /// Reads registers.
@@ -85,14 +91,22 @@ impl Dw1000 {
             _ => {}
         }
         let (row, column) = place(file, sub);
-        let register = self.registers.get(row).and_then(|row| row.get(column..)).unwrap_or_default();
+        let register =
+            self.registers.get(row).and_then(|row| row.get(column..)).unwrap_or_default();
         for (byte, value) in bytes.iter_mut().zip(register) {
             *byte = *value;
         }
     }
 
     /// Writes registers.
-    pub(crate) fn write(&mut self, file: u8, sub: u16, bytes: &[u8], now: u64, anchors: &mut Anchors) {
+    pub(crate) fn write(
+        &mut self,
+        file: u8,
+        sub: u16,
+        bytes: &[u8],
+        now: u64,
+        anchors: &mut Anchors,
+    ) {
         match file {
             SYS_STATUS => {
                 let mut status = self.get(SYS_STATUS, 0);
@@ -135,7 +149,8 @@ impl Dw1000 {
         let settings = self.get(TX_FCTRL, 0);
         let mut frame = Frame { bytes: [0; 127], length: (settings & 0x7f) as usize };
         self.read(TX_BUFFER, 0, &mut frame.bytes, now);
-        let understood = settings & RATE == ANCHORS_RATE && self.get(CHAN_CTRL, 0) == ANCHORS_CHANNEL;
+        let understood =
+            settings & RATE == ANCHORS_RATE && self.get(CHAN_CTRL, 0) == ANCHORS_CHANNEL;
         let departure = raw + u64::from(TAG.transmit_delay);
         self.coming = None;
         if understood && let Some((frame, arrival)) = anchors.hear(&frame, departure) {

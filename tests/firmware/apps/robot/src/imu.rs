@@ -42,7 +42,8 @@ impl<I: I2c> Imu<I> {
     pub fn acceleration(&mut self) -> Result<Vector3<Number>, ImuError> {
         let raw = self.driver.accel_data_fixed().map_err(why)?;
         // 1 cm/s² a count, from the chip to the tracker without floating point.
-        Ok(Vector3::new(raw.x, raw.y, raw.z).map(|count| Number::from_micro(i32::from(count) * 10_000)))
+        Ok(Vector3::new(raw.x, raw.y, raw.z)
+            .map(|count| Number::from_micro(i32::from(count) * 10_000)))
     }
 }
 

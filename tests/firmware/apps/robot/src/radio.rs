@@ -62,7 +62,8 @@ impl<B: SpiBus, CS: OutputPin, D: DelayNs> Radio<B, CS, D> {
     /// [`RadioError::Lost`].
     pub fn new(bus: B, chip_select: CS, mut delay: D, tag: &Tag) -> Result<Self, RadioError> {
         let driver = DW1000::new(bus.reverse(), chip_select.reverse_cell());
-        let mut driver = driver.init(&mut Milliseconds(&mut delay)).map_err(|_| RadioError::Lost)?;
+        let mut driver =
+            driver.init(&mut Milliseconds(&mut delay)).map_err(|_| RadioError::Lost)?;
         driver
             .set_antenna_delay(tag.receive_delay, tag.transmit_delay)
             .and_then(|()| driver.set_address(PanId(tag.network), ShortAddress(tag.address)))
