@@ -3,5 +3,6 @@
 fn main() {
     println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
     println!("cargo::rustc-link-arg-bins=-Tlinkall.x");
+    println!("cargo::rustc-env=DEFMT_LOG=info");
     println!("cargo::rerun-if-changed=build.rs");
 }
