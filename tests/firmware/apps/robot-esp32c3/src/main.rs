@@ -11,7 +11,7 @@
 #![no_std]
 #![no_main]
 
-use defmt::{error, info};
+use defmt::{error, info, warn};
 use esp_hal::delay::Delay;
 use esp_hal::gpio::{DriveMode, Level, Output, OutputConfig};
 use esp_hal::i2c::master::{Config as I2cConfig, I2c};
@@ -21,7 +21,7 @@ use esp_hal::time::{Duration, Instant, Rate};
 use esp_hal::uart::{Config as UartConfig, UartTx};
 use esp_hal::{Config, main};
 use esp_println as _;
-use robot::{Imu, Radio, Robot, TAG};
+use robot_app::{Imu, Radio, Robot, TAG};
 
 esp_bootloader_esp_idf::esp_app_desc!();
 
@@ -33,9 +33,9 @@ const TURN: Duration = Duration::from_millis(25);
 enum Failure {
     /// A bus or the serial line does not take its settings.
     Settings,
-    Radio(robot::RadioError),
-    Imu(robot::ImuError),
-    Robot(robot::Error),
+    Radio(robot_app::RadioError),
+    Imu(robot_app::ImuError),
+    Robot(robot_app::Error),
 }
 
 #[main]
@@ -77,7 +77,13 @@ fn run() -> Result<core::convert::Infallible, Failure> {
     info!("on its way");
     let mut turn = Instant::now();
     loop {
-        robot.step(turn.duration_since_epoch().as_micros()).map_err(Failure::Robot)?;
+        let step = robot.step(turn.duration_since_epoch().as_micros()).map_err(Failure::Robot)?;
+        if let Err(error) = step.range {
+            warn!("anchor {}: {}", step.anchor, error);
+        }
+        if let Err(error) = step.acceleration {
+            warn!("{}", error);
+        }
         turn += TURN;
         while Instant::now() < turn {}
     }

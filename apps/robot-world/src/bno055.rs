@@ -16,6 +16,7 @@ const RESET: u8 = 0x20;
 const STARTS_IN_US: u64 = 650_000;
 
 /// The chip.
+#[derive(Debug)]
 pub(crate) struct Bno055 {
     /// cm/s².
     pub(crate) acceleration: [i16; 3],
@@ -61,6 +62,7 @@ impl Bno055 {
 }
 
 /// The I²C bus that the chip is on.
+#[derive(Debug)]
 pub struct I2cBus<'a>(pub &'a World);
 
 impl ErrorType for I2cBus<'_> {

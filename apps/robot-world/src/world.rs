@@ -30,8 +30,10 @@ pub struct Sample {
 }
 
 /// A robot's surroundings: the devices on its buses, the anchors in the air.
+#[derive(Debug)]
 pub struct World(RefCell<State>);
 
+#[derive(Debug)]
 pub(crate) struct State {
     /// The radio's counter, not wrapped: the time of everything here.
     pub(crate) now: u64,

@@ -9,7 +9,8 @@ use nalgebra::Vector3;
 use crate::Number;
 
 /// Why there is no acceleration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ImuError {
     /// The bus failed, or nobody answered.
@@ -30,8 +31,8 @@ impl<I: I2c> Imu<I> {
     /// Any [`ImuError`].
     pub fn new(bus: I, delay: &mut impl DelayNs) -> Result<Self, ImuError> {
         let mut driver = Bno055::new(bus);
-        driver.init(delay).map_err(why)?;
-        driver.set_mode(BNO055OperationMode::ACC_ONLY, delay).map_err(why)?;
+        driver.init(delay).map_err(|error| why(&error))?;
+        driver.set_mode(BNO055OperationMode::ACC_ONLY, delay).map_err(|error| why(&error))?;
         Ok(Self { driver })
     }
 
@@ -40,14 +41,14 @@ impl<I: I2c> Imu<I> {
     /// # Errors
     /// Any [`ImuError`].
     pub fn acceleration(&mut self) -> Result<Vector3<Number>, ImuError> {
-        let raw = self.driver.accel_data_fixed().map_err(why)?;
+        let raw = self.driver.accel_data_fixed().map_err(|error| why(&error))?;
         // 1 cm/s² a count, from the chip to the tracker without floating point.
         Ok(Vector3::new(raw.x, raw.y, raw.z)
             .map(|count| Number::from_micro(i32::from(count) * 10_000)))
     }
 }
 
-fn why<E>(error: Error<E>) -> ImuError {
+fn why<E>(error: &Error<E>) -> ImuError {
     match error {
         Error::I2c(_) => ImuError::Bus,
         _ => ImuError::NotABno055,

@@ -15,9 +15,11 @@ const SELECT_US: u64 = 5;
 /// The bus.
 ///
 /// It plays whole transactions: the driver hands each register over in one piece, its header first.
+#[derive(Debug)]
 pub struct Spi<'a>(pub &'a World);
 
 /// The chip select. The bus knows by itself where a transaction begins.
+#[derive(Debug)]
 pub struct ChipSelect<'a>(pub &'a World);
 
 /// What the first bytes of a transaction say.

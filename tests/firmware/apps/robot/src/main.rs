@@ -10,7 +10,8 @@ use core::panic::PanicInfo;
 
 use defmt_semihosting as _;
 use riscv as _;
-use robot::{Imu, ImuError, Radio, RadioError, Robot, TAG};
+use kestirim_uwb_tracker::Outcome;
+use robot_app::{Imu, ImuError, Radio, RadioError, Robot, Step, TAG};
 use robot_world::{ChipSelect, I2cBus, Spi, World};
 use semihosting::process;
 
@@ -23,7 +24,7 @@ enum Failure {
     NoStream,
     Radio(RadioError),
     Imu(ImuError),
-    Robot(robot::Error),
+    Robot(robot_app::Error),
 }
 
 #[riscv_rt::entry]
@@ -45,9 +46,20 @@ fn run() -> Result<(), Failure> {
     let mut robot = Robot::new(radio, imu, Uart).map_err(Failure::Robot)?;
     for sample in Stream::open().ok_or(Failure::NoStream)? {
         world.advance(&sample);
-        robot.step(sample.time_us).map_err(Failure::Robot)?;
+        log(&robot.step(sample.time_us).map_err(Failure::Robot)?);
     }
     Ok(())
+}
+
+fn log(step: &Step) {
+    match step.range {
+        Ok(Outcome::Started) => defmt::info!("{}", step),
+        Ok(_) => {}
+        Err(error) => defmt::warn!("anchor {}: {}", step.anchor, error),
+    }
+    if let Err(error) = step.acceleration {
+        defmt::warn!("{}", error);
+    }
 }
 
 #[panic_handler]

@@ -2,21 +2,8 @@
 
 use embedded_io::{ErrorType, Write};
 use kestirim_telemetry::{Message, Receiver};
-use robot::{Imu, Radio, Robot, TAG};
+use robot_app::{Imu, Radio, Robot, TAG};
 use robot_world::{ChipSelect, I2cBus, Sample, Spi, World};
-
-/// Without a logger, logging functions do not link.
-#[defmt::global_logger]
-struct Silence;
-
-#[allow(unsafe_code)] // The trait asks for it; nothing is done.
-unsafe impl defmt::Logger for Silence {
-    fn acquire() {}
-    unsafe fn flush() {}
-    unsafe fn release() {}
-    unsafe fn write(_: &[u8]) {}
-}
-defmt::timestamp!("");
 
 #[derive(Default)]
 struct Told(Vec<u8>);

@@ -1,6 +1,6 @@
 //! A DW1000 as its user manual describes the registers that ranging needs.
 
-use robot::TAG;
+use robot_app::TAG;
 
 use crate::anchors::{Anchors, Frame};
 use crate::world::ticks;
@@ -35,11 +35,11 @@ const RXENAB: u32 = 1 << 8;
 const SENT: u32 = 0xf << 4; // TXFRB, TXPRS, TXPHS, TXFRS
 const RECEIVED: u32 = 0b110_1111 << 8; // RXPRD, RXSFDD, LDEDONE, RXPHD; RXDFR, RXFCG
 const LDEDONE: u32 = 1 << 10;
-/// SYS_CFG: frames for others are dropped.
+/// `SYS_CFG`: frames for others are dropped.
 const FFEN: u32 = 1;
-/// CHAN_CTRL: channel 5 both ways, PRF 16 MHz, preamble code 4 both ways.
+/// `CHAN_CTRL`: channel 5 both ways, PRF 16 MHz, preamble code 4 both ways.
 const ANCHORS_CHANNEL: u32 = 5 | 5 << 4 | 1 << 18 | 4 << 22 | 4 << 27;
-/// TX_FCTRL: 6.8 Mbit/s, PRF 16 MHz, 128 symbols.
+/// `TX_FCTRL`: 6.8 Mbit/s, PRF 16 MHz, 128 symbols.
 const ANCHORS_RATE: u32 = 2 << 13 | 1 << 16 | 1 << 18 | 1 << 20;
 const RATE: u32 = 0b11 << 13 | 0b1111 << 16 | 0b11 << 20;
 
@@ -54,6 +54,7 @@ const PREAMBLE_US: u64 = 140;
 const FRAME_US: u64 = 60;
 
 /// A frame that is still to come, or coming.
+#[derive(Debug)]
 struct Coming {
     frame: Frame,
     /// When its mark is at the antenna.
@@ -61,6 +62,7 @@ struct Coming {
 }
 
 /// The chip.
+#[derive(Debug)]
 pub(crate) struct Dw1000 {
     /// A row a register file; those above 0x2f that no chip has are the pages of the LDE.
     registers: [[u8; 128]; 64],

@@ -18,7 +18,8 @@ const QUESTIONS: u32 = 200;
 const PAUSE_US: u32 = 50;
 
 /// Why there is no range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RadioError {
     /// The chip did not send, or nobody answered.
@@ -107,7 +108,8 @@ impl<B: SpiBus, CS: OutputPin, D: DelayNs> Radio<B, CS, D> {
         let mut sending = driver
             .send(&payload, Some(address(self.network, anchor)), SendTime::Now, config)
             .map_err(|_| RadioError::Lost)?;
-        let sent = patiently(&mut self.delay, || sending.wait_transmit().map_err(|e| e.map(why)));
+        let sent =
+            patiently(&mut self.delay, || sending.wait_transmit().map_err(|e| e.map(|e| why(&e))));
         self.driver = sending.finish_sending().ok();
         sent.map(|time| Timestamp::new(time.value()))
     }
@@ -120,7 +122,7 @@ impl<B: SpiBus, CS: OutputPin, D: DelayNs> Radio<B, CS, D> {
         let received = patiently(&mut self.delay, || {
             // As long as a frame can be.
             let mut buffer = [0; 127];
-            let message = receiving.wait_receive(&mut buffer).map_err(|e| e.map(why))?;
+            let message = receiving.wait_receive(&mut buffer).map_err(|e| e.map(|e| why(&e)))?;
             let time = Timestamp::new(message.rx_time.value());
             match Answer::decode(message.frame.payload) {
                 Some((answer, number))
@@ -140,7 +142,7 @@ const fn address(network: u16, short: u16) -> Address {
     Address::Short(PanId(network), ShortAddress(short))
 }
 
-fn why<S, CS>(error: dw1000::Error<S, CS>) -> RadioError
+fn why<S, CS>(error: &dw1000::Error<S, CS>) -> RadioError
 where
     S: embedded_hal_02::blocking::spi::Transfer<u8> + embedded_hal_02::blocking::spi::Write<u8>,
     CS: embedded_hal_02::digital::v2::OutputPin,

@@ -1,7 +1,7 @@
 //! The other side of two-way ranging: four anchors, each with a clock and antenna of its own.
 
-use robot::message::{Answer, Question, Report};
-use robot::{SITES, TAG};
+use robot_app::message::{Answer, Question, Report};
+use robot_app::{SITES, TAG};
 
 use kestirim_uwb_ranging::{METRES_PER_TICK, Timestamp};
 
@@ -18,7 +18,7 @@ const CHECKSUM: usize = 2;
 const CONTROL: [u8; 2] = [0x01, 0x98];
 
 /// A frame in the air.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) bytes: [u8; 127],
     /// With the checksum.
@@ -26,6 +26,7 @@ pub(crate) struct Frame {
 }
 
 /// The anchors and their part of the exchange that is going on.
+#[derive(Debug)]
 pub(crate) struct Anchors {
     /// To the anchor that is asked, m.
     pub(crate) range: f32,
