@@ -11,6 +11,7 @@
 //! # }
 //! ```
 
+mod app;
 mod elf;
 mod images;
 mod output;
@@ -20,6 +21,7 @@ mod stream;
 mod target;
 mod toolchain;
 
+pub use app::{App, Run};
 pub use elf::Elf;
 pub use images::{Images, Profile};
 pub use output::{Cost, Output, Position};

@@ -5,6 +5,8 @@ mod error;
 mod frame;
 mod message;
 mod receiver;
+#[cfg(feature = "embedded-io")]
+mod transmitter;
 
 pub use error::Error;
 pub use frame::{CAPACITY, VERSION, encode};
@@ -12,3 +14,5 @@ pub use message::{
     Flight, Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range, State,
 };
 pub use receiver::{Counts, Frame, Frames, Receiver};
+#[cfg(feature = "embedded-io")]
+pub use transmitter::Transmitter;

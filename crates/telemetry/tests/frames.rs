@@ -196,3 +196,17 @@ proptest! {
         prop_assert_eq!((frames.len(), counts.received), (0, 0));
     }
 }
+
+#[cfg(feature = "embedded-io")]
+#[test]
+fn a_transmitter_numbers_its_frames() {
+    let mut bytes = [0; 3 * CAPACITY];
+    let mut transmitter = kestirim_telemetry::Transmitter::new(&mut bytes[..]);
+    for number in 0..3 {
+        transmitter.send(health(number)).expect("the slice is long enough");
+    }
+    let unused = transmitter.release().len();
+    let (frames, counts) = receive(&bytes[..bytes.len() - unused], 10);
+    assert_eq!(frames.iter().map(|frame| frame.sequence).collect::<Vec<_>>(), [0, 1, 2]);
+    assert_eq!((counts.received, counts.lost), (3, 0));
+}

@@ -75,25 +75,8 @@ impl Images {
     }
 
     fn build(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        let toolchain = if is_installed(target.qemu) {
-            Toolchain::find(target)
-        } else {
-            Err(format!("{} is not installed: run .ci/install-target-tools", target.qemu))
-        };
-        match toolchain {
-            Ok(toolchain) => {
-                let directory = toolchain.build(profile.name())?;
-                Ok(Some(Self { target, profile, directory }))
-            }
-            Err(why) if env::var(REQUIRE).is_ok_and(|value| value == "1") => {
-                bail!("{REQUIRE}=1, but {why}")
-            }
-            Err(why) => {
-                // Not `eprintln!`, which the test runner swallows when the test passes.
-                writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
-                Ok(None)
-            }
-        }
+        let Some(directory) = build(target, None, profile)? else { return Ok(None) };
+        Ok(Some(Self { target, profile, directory }))
     }
 
     /// Runs an image, with a stream of samples (see [`super::encode`]) for it to read, until it ends.
@@ -112,4 +95,45 @@ impl Images {
     pub fn elf(&self, image: &str) -> Result<Elf> {
         Elf::read(&self.directory.join(image))
     }
+}
+
+/// Builds all images, or an application, and answers with the directory they are in; `None` on a machine
+/// without the tools, which is said.
+pub(crate) fn build(
+    target: &'static Target,
+    package: Option<&str>,
+    profile: Profile,
+) -> Result<Option<PathBuf>> {
+    if is_installed(target.qemu) {
+        return with_toolchain(target, |toolchain| toolchain.build(package, profile.name()));
+    }
+    skip(target, &format!("{} is not installed: run .ci/install-target-tools", target.qemu))
+}
+
+/// Builds an application that is a workspace of its own, likewise; it needs no emulator.
+pub(crate) fn build_apart(
+    target: &'static Target,
+    package: &str,
+    profile: Profile,
+) -> Result<Option<PathBuf>> {
+    with_toolchain(target, |toolchain| toolchain.build_apart(package, profile.name()))
+}
+
+fn with_toolchain(
+    target: &'static Target,
+    build: impl Fn(&Toolchain) -> Result<PathBuf>,
+) -> Result<Option<PathBuf>> {
+    match Toolchain::find(target) {
+        Ok(toolchain) => build(&toolchain).map(Some),
+        Err(why) => skip(target, &why),
+    }
+}
+
+fn skip(target: &'static Target, why: &str) -> Result<Option<PathBuf>> {
+    if env::var(REQUIRE).is_ok_and(|value| value == "1") {
+        bail!("{REQUIRE}=1, but {why}")
+    }
+    // Not `eprintln!`, which the test runner swallows when the test passes.
+    writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
+    Ok(None)
 }

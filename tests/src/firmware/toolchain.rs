@@ -68,8 +68,22 @@ impl Toolchain {
         })
     }
 
-    /// Builds all images in one go and answers with the directory they are in.
-    pub(crate) fn build(&self, profile: &str) -> Result<PathBuf> {
+    /// Builds all images in one go, or an application, and answers with the directory they are in.
+    pub(crate) fn build(&self, package: Option<&str>, profile: &str) -> Result<PathBuf> {
+        self.build_in(&workspace(), package, profile)
+    }
+
+    /// Builds an application that is a workspace of its own.
+    pub(crate) fn build_apart(&self, package: &str, profile: &str) -> Result<PathBuf> {
+        self.build_in(&workspace().join("apps").join(package), Some(package), profile)
+    }
+
+    fn build_in(
+        &self,
+        workspace: &Path,
+        package: Option<&str>,
+        profile: &str,
+    ) -> Result<PathBuf> {
         let triple = self.target.triple;
         let output = target_directory();
         let mut cargo = Command::new(self.sysroot.join("bin/cargo"));
@@ -78,8 +92,11 @@ impl Toolchain {
             .envs(ENVIRONMENT.iter().filter_map(|&name| Some((name, env::var_os(name)?))))
             .env("RUSTC", self.sysroot.join("bin/rustc"))
             .env("CARGO_TARGET_DIR", &output)
-            .current_dir(workspace())
+            .current_dir(workspace)
             .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple]);
+        if let Some(package) = package {
+            cargo.args(["--package", package]);
+        }
         if self.builds_core {
             cargo
                 .env("RUSTC_BOOTSTRAP", "1")

@@ -63,7 +63,10 @@ fn log(step: &Step) {
 }
 
 #[panic_handler]
-fn panic(_: &PanicInfo<'_>) -> ! {
+fn panic(info: &PanicInfo<'_>) -> ! {
+    if let Some(place) = info.location() {
+        defmt::error!("panicked in {=str}, line {=u32}", place.file(), place.line());
+    }
     process::exit(2)
 }
 

@@ -1,0 +1,172 @@
+use embedded_hal::delay::DelayNs;
+use embedded_hal::i2c::I2c;
+use embedded_io::Write;
+use kestirim_pedestrian::{Config, EkfTracker, Error as Refusal, Estimate, ImuSample, Stride};
+use kestirim_scalar::Scalar;
+use kestirim_telemetry::{Footprint, Health, Position, Transmitter};
+use nalgebra::SVector;
+
+use crate::log::Log;
+use crate::{Counts, Error, Imu, SensorError};
+
+/// A position is sent every so many samples, ten times a second.
+const SAMPLES_A_POSITION: u32 = 10;
+
+/// The [`Error`] of an application with these peripherals.
+type Failure<I2C, F, P> = Error<
+    SensorError<<I2C as embedded_hal::i2c::ErrorType>::Error>,
+    <F as embedded_io::ErrorType>::Error,
+    <P as embedded_io::ErrorType>::Error,
+>;
+
+/// What happened with a sample that somebody may want to know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Event {
+    /// The foot has come to stand: where (m, earth: z up, from the start).
+    Stance([f32; 3]),
+    /// The foot has left a stance that a stride had led to: its horizontal length (m).
+    Stride(f32),
+    /// The tracker refused the sample.
+    Refused(Refusal),
+}
+
+/// A walk, when it is over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Summary {
+    /// Samples that were taken in.
+    pub accepted: u32,
+    /// Samples that the tracker refused.
+    pub rejected: u32,
+    /// Readings that the sensor's driver did not deliver.
+    pub failed: u32,
+    /// The horizontal path from stance to stance (m).
+    pub path: f32,
+}
+
+/// The application: `T` is the tracker's scalar, `F` the file of the log, `P` the port for telemetry.
+pub struct App<T: Scalar, I2C, F, P> {
+    imu: Imu<I2C>,
+    tracker: EkfTracker<T>,
+    log: Log<F>,
+    line: Transmitter<P>,
+    standing: bool,
+    position: [f32; 3],
+    time_us: u64,
+    accepted: u32,
+    rejected: u32,
+    failed: u32,
+}
+
+impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
+    /// Sets the sensor up.
+    ///
+    /// # Errors
+    /// [`Error::Sensor`].
+    pub fn new(
+        i2c: I2C,
+        delay: &mut impl DelayNs,
+        file: F,
+        port: P,
+    ) -> Result<Self, Failure<I2C, F, P>> {
+        Ok(Self {
+            imu: Imu::new(i2c, delay).map_err(Error::Sensor)?,
+            tracker: EkfTracker::new(Config::default()),
+            log: Log::new(file),
+            line: Transmitter::new(port),
+            standing: false,
+            position: [0.0; 3],
+            time_us: 0,
+            accepted: 0,
+            rejected: 0,
+            failed: 0,
+        })
+    }
+
+    /// Takes the sample that the sensor has ready, if any. It was taken at `time_us` (µs, any clock that does
+    /// not go backwards).
+    ///
+    /// # Errors
+    /// [`Error`]: a part of the hardware failed. The others have done their work, and the next call goes on.
+    pub fn poll(&mut self, time_us: u64) -> Result<Option<Event>, Failure<I2C, F, P>> {
+        let counts = match self.imu.read() {
+            Ok(Some(counts)) => counts,
+            Ok(None) => return Ok(None),
+            Err(error) => {
+                self.failed = self.failed.saturating_add(1);
+                return Err(Error::Sensor(error));
+            }
+        };
+        self.time_us = time_us;
+        let logged = self.log.add(time_us, &counts).map_err(Error::Log);
+        let (event, sent) = match self.track(time_us, &counts) {
+            Ok(estimate) => (self.event(&estimate), self.tell(&counts, estimate.stride)),
+            Err(refusal) => {
+                self.rejected = self.rejected.saturating_add(1);
+                (Some(Event::Refused(refusal)), Ok(()))
+            }
+        };
+        logged.and(sent.map_err(Error::Port)).map(|()| event)
+    }
+
+    /// Ends the walk: completes the log, and sends the last position and how many samples there were.
+    ///
+    /// # Errors
+    /// [`Error`]; the other part has done its work.
+    pub fn finish(&mut self) -> Result<Summary, Failure<I2C, F, P>> {
+        let closed = self.log.close().map_err(Error::Log);
+        let stride = self.tracker.finish();
+        let Self { time_us, position, accepted, rejected, failed, .. } = *self;
+        let health = Health { time_us, accepted, rejected, failed };
+        let sent = self
+            .tell_stride(stride)
+            .and_then(|()| self.line.send(Position { time_us, position, sigma: None }))
+            .and_then(|()| self.line.send(health));
+        closed.and(sent.map_err(Error::Port))?;
+        Ok(Summary { accepted, rejected, failed, path: self.tracker.path_length().to_f32() })
+    }
+
+    fn track(&mut self, time_us: u64, counts: &Counts) -> Result<Estimate<T>, Refusal> {
+        let estimate = self.tracker.update(&ImuSample {
+            time_us,
+            specific_force: SVector::from(counts.specific_force().map(T::from_f32)),
+            angular_rate: SVector::from(counts.angular_rate().map(T::from_f32)),
+        })?;
+        self.accepted = self.accepted.saturating_add(1);
+        self.position = metres(&estimate.position);
+        Ok(estimate)
+    }
+
+    fn event(&mut self, estimate: &Estimate<T>) -> Option<Event> {
+        let stood = core::mem::replace(&mut self.standing, estimate.stance);
+        match &estimate.stride {
+            Some(stride) => Some(Event::Stride(stride.length.to_f32())),
+            None => (estimate.stance && !stood).then_some(Event::Stance(self.position)),
+        }
+    }
+
+    fn tell(&mut self, counts: &Counts, stride: Option<Stride<T>>) -> Result<(), P::Error> {
+        let Self { time_us, position, .. } = *self;
+        self.line.send(kestirim_telemetry::Imu {
+            time_us,
+            specific_force: counts.specific_force(),
+            angular_rate: counts.angular_rate(),
+        })?;
+        if self.accepted.is_multiple_of(SAMPLES_A_POSITION) {
+            self.line.send(Position { time_us, position, sigma: None })?;
+        }
+        self.tell_stride(stride)
+    }
+
+    fn tell_stride(&mut self, stride: Option<Stride<T>>) -> Result<(), P::Error> {
+        let Some(Stride { time_us, position, length, .. }) = stride else { return Ok(()) };
+        let (position, length) = (metres(&position), length.to_f32());
+        self.line.send(Footprint { time_us, position, length })
+    }
+}
+
+fn metres<T: Scalar>(position: &SVector<T, 3>) -> [f32; 3] {
+    position.data.0[0].map(T::to_f32)
+}

@@ -1,0 +1,29 @@
+use core::fmt;
+
+use crate::SensorError;
+
+/// What a part of the hardware did not do: `B` is the error of the inertial sensor's bus, `P` the serial
+/// port's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error<B, P> {
+    /// A sensor cannot be read, or is not the one that is expected.
+    Sensor(SensorError<B>),
+    /// The observer does not take its gains.
+    Observer(kestirim_luenberger::Error),
+    /// The telemetry was not sent.
+    Port(P),
+}
+
+impl<B, P> fmt::Display for Error<B, P> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Sensor(_) => "a sensor cannot be read",
+            Self::Observer(_) => "the observer does not take its gains",
+            Self::Port(_) => "telemetry cannot be sent",
+        })
+    }
+}
+
+impl<B: fmt::Debug, P: fmt::Debug> core::error::Error for Error<B, P> {}

@@ -1,0 +1,40 @@
+//! What stands for an application's hardware under QEMU, behind the traits of `embedded-hal` 1.0.
+//!
+//! The machine is `lm3s6965evb`, with a Cortex-M0 or a Cortex-M4F in the place of its Cortex-M3. It has what
+//! an application needs and QEMU emulates: serial ports ([`Uart`]), and a serial bus with an SD card
+//! ([`Spi`], [`CardSelect`]). It has no sensors; those are played here, register by register, from a
+//! [`Recording`] ([`Mpu9250`], [`Bno055`], [`Ms4525do`]).
+//!
+//! `defmt` writes to the semihosting console. All `unsafe` code of the applications is in `registers.rs`
+//! and `system.rs`.
+
+#![no_std]
+
+mod bno055;
+mod delay;
+mod i2c;
+mod mpu9250;
+mod ms4525do;
+mod pin;
+mod recording;
+mod registers;
+mod spi;
+mod system;
+mod tape;
+mod uart;
+
+// Critical sections and the log are found by their symbols.
+use cortex_m as _;
+use defmt_semihosting as _;
+
+pub use bno055::Bno055;
+pub use delay::Delay;
+pub use i2c::{NoAcknowledge, Only};
+pub use mpu9250::Mpu9250;
+pub use ms4525do::Ms4525do;
+pub use pin::CardSelect;
+pub use recording::Recording;
+pub use spi::Spi;
+pub use system::{exit, fail};
+pub use tape::{Port, Tape};
+pub use uart::Uart;

@@ -1,0 +1,132 @@
+//! Builds an application of `tests/firmware/apps` and runs it.
+
+use std::fs::{self, File};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use wait_timeout::ChildExt;
+
+use super::elf::Elf;
+use super::images::{Profile, build, build_apart};
+use super::target::Target;
+
+/// An application that runs longer hangs.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The names under which application and host meet in the emulator's working directory.
+const STREAM: &str = "stream.bin";
+const CARD: &str = "card.img";
+const LOG: &str = "log.bin";
+const CONSOLE: &str = "console.txt";
+const TELEMETRY: &str = "telemetry.bin";
+const ERRORS: &str = "errors.txt";
+
+/// An application, built for one target.
+#[derive(Clone, Debug)]
+pub struct App {
+    target: &'static Target,
+    image: PathBuf,
+}
+
+/// What an application left behind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// What it sent over the first serial port.
+    pub telemetry: Vec<u8>,
+    /// Its log, as `defmt` encodes it.
+    pub log: Vec<u8>,
+    /// The SD card, if it had one.
+    pub card: Option<Vec<u8>>,
+}
+
+impl App {
+    /// Builds an application; `None` on a machine without the tools, which is said.
+    ///
+    /// # Errors
+    /// It does not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
+    pub fn of(target: &'static Target, package: &str) -> Result<Option<Self>> {
+        let directory = build(target, Some(package), Profile::Speed)?;
+        Ok(directory.map(|directory| Self { target, image: directory.join(package) }))
+    }
+
+    /// Builds an application that has a workspace of its own, for a board that nobody emulates.
+    ///
+    /// # Errors
+    /// As [`App::of`].
+    pub fn apart(target: &'static Target, package: &str) -> Result<Option<Self>> {
+        let directory = build_apart(target, package, Profile::Speed)?;
+        Ok(directory.map(|directory| Self { target, image: directory.join(package) }))
+    }
+
+    /// What it runs on.
+    pub fn target(&self) -> &'static Target {
+        self.target
+    }
+
+    /// The bytes of the image's file.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn file(&self) -> Result<Vec<u8>> {
+        fs::read(&self.image).with_context(|| format!("cannot read {}", self.image.display()))
+    }
+
+    /// Opens the file of the image.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn elf(&self) -> Result<Elf> {
+        Elf::read(&self.image)
+    }
+
+    /// Runs the application, with a recording for its sensors to play and a card in its slot, until it ends.
+    ///
+    /// # Errors
+    /// It tells a failure (a panic, a fault, hardware that it cannot do without), or it does not end.
+    pub fn run(&self, stream: &[u8], card: Option<&[u8]>) -> Result<Run> {
+        let directory = tempfile::tempdir()?;
+        let file = |name| directory.path().join(name);
+        fs::write(file(STREAM), stream)?;
+        let mut qemu = Command::new(self.target.qemu);
+        qemu.args(self.target.board);
+        if let Some(card) = card {
+            fs::write(file(CARD), card)?;
+            qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);
+        }
+        let mut qemu = qemu
+            .args(["-icount", "shift=0,sleep=off", "-display", "none", "-monitor", "none"])
+            .args(["-serial", &format!("file:{TELEMETRY}")])
+            .args(["-chardev", &format!("file,id=host,path={CONSOLE}")])
+            .args(["-semihosting-config", "enable=on,target=native,chardev=host"])
+            .arg("-kernel")
+            .arg(&self.image)
+            .current_dir(directory.path())
+            .stdin(Stdio::null())
+            // The emulator hands on what is written to the semihosting host's standard output; its own
+            // console gets what is written to none, which is how an application ends that panicked.
+            .stdout(File::create(file(LOG))?)
+            .stderr(File::create(file(ERRORS))?)
+            .spawn()
+            .with_context(|| format!("cannot start {}", self.target.qemu))?;
+        let status = qemu.wait_timeout(PATIENCE)?;
+        if status.is_none() {
+            qemu.kill()?;
+            qemu.wait()?;
+        }
+        let log = fs::read(file(LOG))?;
+        if status.is_some_and(|status| status.success()) {
+            let card = card.map(|_| fs::read(file(CARD))).transpose()?;
+            return Ok(Run { telemetry: fs::read(file(TELEMETRY))?, log, card });
+        }
+        let why =
+            status.map_or("was still running".into(), |status| format!("ended with {status}"));
+        bail!(
+            "{} {why}; it told:\n{}{}and logged {log:x?}",
+            self.image.display(),
+            fs::read_to_string(file(CONSOLE)).unwrap_or_default(),
+            fs::read_to_string(file(ERRORS)).unwrap_or_default()
+        );
+    }
+}

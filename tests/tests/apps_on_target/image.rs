@@ -1,0 +1,73 @@
+//! What an image holds, and what its log means.
+
+use std::collections::BTreeSet;
+
+use anyhow::{Context, Result, ensure};
+use defmt_decoder::{DecodeError, Table};
+use kestirim_tests::firmware::App;
+use object::{Object, ObjectSection};
+
+/// Lines of the log, `LEVEL text`.
+pub(crate) fn log(elf: &[u8], logged: &[u8]) -> Result<Vec<String>> {
+    let table = Table::parse(elf)?.context("the image logs")?;
+    let mut decoder = table.new_stream_decoder();
+    decoder.received(logged);
+    let mut lines = Vec::new();
+    loop {
+        match decoder.decode() {
+            Ok(frame) => {
+                let level = frame.level().map_or("", |level| level.as_str());
+                lines.push(format!("{level} {}", frame.display_message()));
+            }
+            Err(DecodeError::UnexpectedEof) => return Ok(lines),
+            Err(DecodeError::Malformed) => ensure!(false, "the log is torn"),
+        }
+    }
+}
+
+/// Checks what is linked into an application's image, and says how large it is.
+pub(crate) fn check(name: &str, app: &App) -> Result<()> {
+    let elf = app.elf()?;
+    assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{name} has no double precision");
+    check_panics(name, app)
+}
+
+/// Checks that nothing of ours can panic, and says how large an application's image is.
+pub(crate) fn check_panics(name: &str, app: &App) -> Result<()> {
+    let elf = app.elf()?;
+    let places = panicking(&app.file()?)?;
+    let ours: Vec<&String> = places.iter().filter(|place| place.ends_with(".rs")).collect();
+    assert_eq!(ours, Vec::<&String>::new(), "only foreign crates can panic");
+    println!(
+        "{name} on {}: {} bytes of flash, {} of static RAM; can panic: {places:?}",
+        app.target().triple,
+        elf.flash_bytes,
+        elf.ram_bytes
+    );
+    Ok(())
+}
+
+/// The crates and directories in which something can panic: the panic handler tells the place, so its file is
+/// among the constants of the image.
+fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
+    let file = object::File::parse(elf)?;
+    let constants = file.section_by_name(".rodata").context("there are constants")?.data()?;
+    let texts = constants.split(|&byte| !(b' '..=b'~').contains(&byte));
+    let mut places = BTreeSet::new();
+    for text in texts.filter_map(|text| str::from_utf8(text).ok()) {
+        for end in text.match_indices(".rs").map(|(at, found)| at + found.len()) {
+            places.insert(origin(&text[..end]));
+        }
+    }
+    Ok(places)
+}
+
+/// The crate of a registry's or the standard library's file, without its version; the path of any other.
+fn origin(path: &str) -> String {
+    if path.contains("/library/core/") {
+        return "core".to_owned();
+    }
+    let Some((_, inside)) = path.split_once("/registry/src/") else { return path.to_owned() };
+    let package = inside.split('/').nth(1).unwrap_or(inside);
+    package.rsplit_once('-').map_or(package, |(name, _)| name).to_owned()
+}
