@@ -18,5 +18,5 @@ pub use beacon::Beacon;
 pub use error::Error;
 pub use gps::Degree;
 
-/// Particles: 14 kB.
-pub const PARTICLES: usize = 500;
+/// Particles: 5.6 kB, of 32 kB of RAM.
+pub const PARTICLES: usize = 200;

@@ -52,7 +52,7 @@ impl Anchors {
         if !self.range.is_finite() {
             return None;
         }
-        let flight = (f64::from(self.range) / METRES_PER_TICK + 0.5) as u64;
+        let flight = (self.range * const { (1.0 / METRES_PER_TICK) as f32 } + 0.5) as u64;
         let site = SITES.get(anchor)?;
         // Of what neither side takes off, a third is on the way in.
         let late_in = i64::from(site.antenna.ticks()) / 3;

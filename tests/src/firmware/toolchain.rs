@@ -78,12 +78,7 @@ impl Toolchain {
         self.build_in(&workspace().join("apps").join(package), Some(package), profile)
     }
 
-    fn build_in(
-        &self,
-        workspace: &Path,
-        package: Option<&str>,
-        profile: &str,
-    ) -> Result<PathBuf> {
+    fn build_in(&self, workspace: &Path, package: Option<&str>, profile: &str) -> Result<PathBuf> {
         let triple = self.target.triple;
         let output = target_directory();
         let mut cargo = Command::new(self.sysroot.join("bin/cargo"));

@@ -96,7 +96,8 @@ fn encode(flight: &[Second]) -> Vec<u8> {
         let longitude = angle(ORIGIN[1] + east / degree[0], 3);
         let altitude = up + f64::from(GROUND);
         let time = format!("{:02}{:02}{:02}.00", 10, number / 60, number % 60);
-        let fix = format!("GPGGA,{time},{latitude},N,{longitude},E,1,10,0.8,{altitude:.1},M,36.0,M,,");
+        let fix =
+            format!("GPGGA,{time},{latitude},N,{longitude},E,1,10,0.8,{altitude:.1},M,36.0,M,,");
         let course = format!("GPRMC,{time},A,{latitude},N,{longitude},E,20.0,90.0,250620,,,A");
         // Damaged, then whole in two pieces, and one that is of no interest.
         record(700_000, GPS, &sentence(&fix).replacen('1', "7", 1));
@@ -106,7 +107,8 @@ fn encode(flight: &[Second]) -> Vec<u8> {
         record(50_000, GPS, &format!("{rest}{}", sentence(&course)));
         record(100_000, RADIO, "+RCV=99,3,a,b,-60,10\r\n");
         let level = second.loss.map(|loss| (f64::from(LEVEL) - loss).round());
-        let heard = level.map_or(String::new(), |level| format!("+RCV={USER},5,HE,LO,{level},8\r\n"));
+        let heard =
+            level.map_or(String::new(), |level| format!("+RCV={USER},5,HE,LO,{level},8\r\n"));
         record(100_000, RADIO, &heard);
     }
     tape
@@ -140,14 +142,15 @@ fn on_host(measured: &[PathLoss]) -> Vec<Position> {
 
 /// What was measured is the flight, in the steps of both modules.
 fn check_measurements(told: &[PathLoss], flight: &[Second]) {
-    let heard = (1_u64..).zip(flight).filter_map(|(number, second)| {
-        Some((number * 1_000_000, second.place, second.loss?))
-    });
+    let heard = (1_u64..)
+        .zip(flight)
+        .filter_map(|(number, second)| Some((number * 1_000_000, second.place, second.loss?)));
     assert_eq!(told.len(), heard.clone().count());
     for (told, (time_us, place, loss)) in told.iter().zip(heard) {
         assert_eq!(told.time_us, time_us);
         let axes = told.place.iter().zip(place);
-        let apart = axes.map(|(&ours, theirs)| (f64::from(ours) - theirs).abs()).fold(0.0, f64::max);
+        let apart =
+            axes.map(|(&ours, theirs)| (f64::from(ours) - theirs).abs()).fold(0.0, f64::max);
         assert!(apart < PLACE_STEP + 0.05, "{told:?} is {apart} m off {place:?}");
         assert!((f64::from(told.loss) - loss).abs() < LEVEL_STEP, "{told:?} of {loss}");
     }

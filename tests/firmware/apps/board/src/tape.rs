@@ -15,7 +15,7 @@ use crate::system::fail;
 
 const FILE: &core::ffi::CStr = c"stream.bin";
 /// Bytes that a port holds until somebody reads them; those that come then are lost, as on any port.
-const CAPACITY: usize = 2048;
+const CAPACITY: usize = 512;
 
 /// A recording of `N` ports, and the only clock there is.
 pub struct Tape<const N: usize> {
