@@ -42,7 +42,7 @@ mod tests {
         for count in i16::MIN..=i16::MAX {
             let mut text = String::<LONGEST>::new();
             line(&mut text, u64::MAX, &Counts { accel: [count; 3], gyro: [count; 3] }).unwrap();
-            let mut fields = text.split_ascii_whitespace().map(|field| field.parse::<f64>());
+            let mut fields = text.split_ascii_whitespace().map(str::parse::<f64>);
             fields.next();
             let (unit, mut field) = (f64::from(count) / 2048.0, || fields.next().unwrap().unwrap());
             for _ in 0..3 {

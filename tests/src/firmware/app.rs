@@ -33,6 +33,10 @@ pub struct App {
 /// What an application left behind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
+    /// It ended well.
+    pub success: bool,
+    /// What it told outside its log: why it could not go on.
+    pub console: String,
     /// What it sent over the first serial port.
     pub telemetry: Vec<u8>,
     /// Its log, as `defmt` encodes it.
@@ -84,7 +88,7 @@ impl App {
     /// Runs the application, with a recording for its sensors to play and a card in its slot, until it ends.
     ///
     /// # Errors
-    /// It tells a failure (a panic, a fault, hardware that it cannot do without), or it does not end.
+    /// It does not end, or leaves no files.
     pub fn run(&self, stream: &[u8], card: Option<&[u8]>) -> Result<Run> {
         let directory = tempfile::tempdir()?;
         let file = |name| directory.path().join(name);
@@ -110,23 +114,17 @@ impl App {
             .stderr(File::create(file(ERRORS))?)
             .spawn()
             .with_context(|| format!("cannot start {}", self.target.qemu))?;
-        let status = qemu.wait_timeout(PATIENCE)?;
-        if status.is_none() {
+        let Some(status) = qemu.wait_timeout(PATIENCE)? else {
             qemu.kill()?;
             qemu.wait()?;
-        }
-        let log = fs::read(file(LOG))?;
-        if status.is_some_and(|status| status.success()) {
-            let card = card.map(|_| fs::read(file(CARD))).transpose()?;
-            return Ok(Run { telemetry: fs::read(file(TELEMETRY))?, log, card });
-        }
-        let why =
-            status.map_or("was still running".into(), |status| format!("ended with {status}"));
-        bail!(
-            "{} {why}; it told:\n{}{}and logged {log:x?}",
-            self.image.display(),
-            fs::read_to_string(file(CONSOLE)).unwrap_or_default(),
-            fs::read_to_string(file(ERRORS)).unwrap_or_default()
-        );
+            bail!("{} was still running", self.image.display());
+        };
+        Ok(Run {
+            success: status.success(),
+            console: fs::read_to_string(file(CONSOLE))? + &fs::read_to_string(file(ERRORS))?,
+            log: fs::read(file(LOG))?,
+            telemetry: fs::read(file(TELEMETRY))?,
+            card: card.map(|_| fs::read(file(CARD))).transpose()?,
+        })
     }
 }

@@ -114,6 +114,8 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     let Some(app) = App::of(target, "pedestrian-firmware")? else { return Ok(()) };
     let walk = walk();
     let run = app.run(&encode(&walk), Some(&card::blank()?))?;
+    let lines = image::log(&app, &run)?;
+    ensure!(run.success, "{}{lines:#?}", run.console);
 
     let messages = telemetry::messages(&run.telemetry);
     let (health, rest) = messages.split_last().context("something was sent")?;
@@ -133,7 +135,6 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     let mut written = run.card.context("the card")?;
     check_log::<T>(card::file(&mut written, "WALK.TXT")?, &sent, path)?;
 
-    let lines = image::log(&app.file()?, &run.log)?;
     let count = |text: &str| lines.iter().filter(|line| line.starts_with(text)).count();
     let strides = expected.iter().filter(|told| matches!(told, Message::Footprint(_))).count();
     // The last stride is complete only when the walk is over.
@@ -154,4 +155,14 @@ fn cortex_m0() -> Result<()> {
 #[test]
 fn cortex_m4f() -> Result<()> {
     check::<f32>(&CORTEX_M4F)
+}
+
+#[test]
+fn without_a_card_it_says_so() -> Result<()> {
+    let Some(app) = App::of(&CORTEX_M4F, "pedestrian-firmware")? else { return Ok(()) };
+    let run = app.run(&encode(&walk()), None)?;
+    assert!(!run.success);
+    let lines = image::log(&app, &run)?;
+    assert_eq!(lines, ["error Log(DeviceError(CardNotFound))"]);
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! The aeroplane's observer: a BNO055 and a Pitot tube, the state as telemetry.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use host_sim::random::{normal, stream};
 use kestirim_luenberger::Predictor;
 use kestirim_scalar::{Q16_16, Scalar};
@@ -97,6 +97,8 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     let Some(app) = App::of(target, "uav-firmware")? else { return Ok(()) };
     let flight = fly();
     let run = app.run(&encode(&flight), None)?;
+    let lines = image::log(&app, &run)?;
+    ensure!(run.success, "{}{lines:#?}", run.console);
 
     let (mut measured, mut states, mut health) = (Vec::new(), Vec::new(), Vec::new());
     for message in telemetry::messages(&run.telemetry) {
@@ -114,7 +116,6 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     let expected = Health { time_us: 10_000_000, accepted: 1_000, rejected: 0, failed: 0 };
     assert_eq!((health.len(), health.last()), (10, Some(&expected)));
 
-    let lines = image::log(&app.file()?, &run.log)?;
     assert_eq!(lines.len(), 2, "{lines:#?}");
     assert!(lines[0].starts_with("info observing from ["), "{}", lines[0]);
     assert!(lines[1].starts_with("info landed at ["), "{}", lines[1]);

@@ -1,4 +1,4 @@
-//! The serial ports: Arm's PL011.
+//! The first serial port: Arm's PL011.
 
 use core::convert::Infallible;
 
@@ -6,11 +6,13 @@ use embedded_io::{ErrorType, Write};
 
 use crate::registers::Register;
 
+const BASE: usize = 0x4000_C000;
+const DATA: Register = Register::at(BASE);
+const FLAGS: Register = Register::at(BASE + 0x18);
+const CONTROL: Register = Register::at(BASE + 0x30);
+
 /// A serial port. QEMU knows no baud rate.
-pub struct Uart {
-    data: Register,
-    flags: Register,
-}
+pub struct Uart(());
 
 impl Uart {
     const TRANSMIT_FULL: u32 = 1 << 5;
@@ -20,17 +22,8 @@ impl Uart {
 
     /// Turns on the first port, which QEMU's first `-serial` is connected to.
     pub fn first() -> Self {
-        Self::at::<0x4000_C000>()
-    }
-
-    /// Turns on the second port, which QEMU's second `-serial` is connected to.
-    pub fn second() -> Self {
-        Self::at::<0x4000_D000>()
-    }
-
-    fn at<const BASE: usize>() -> Self {
-        const { Register::at(BASE + 0x30) }.write(Self::ENABLE);
-        Self { data: const { Register::at(BASE) }, flags: const { Register::at(BASE + 0x18) } }
+        CONTROL.write(Self::ENABLE);
+        Self(())
     }
 }
 
@@ -41,14 +34,14 @@ impl ErrorType for Uart {
 impl Write for Uart {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         for &byte in bytes {
-            while self.flags.read() & Self::TRANSMIT_FULL != 0 {}
-            self.data.write(byte.into());
+            while FLAGS.read() & Self::TRANSMIT_FULL != 0 {}
+            DATA.write(byte.into());
         }
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> Result<(), Infallible> {
-        while self.flags.read() & Self::TRANSMIT_EMPTY == 0 {}
+        while FLAGS.read() & Self::TRANSMIT_EMPTY == 0 {}
         Ok(())
     }
 }
