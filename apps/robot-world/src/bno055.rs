@@ -75,7 +75,7 @@ impl I2c for I2cBus<'_> {
         address: u8,
         operations: &mut [Operation<'_>],
     ) -> Result<(), ErrorKind> {
-        self.0.with(|state| {
+        let done = self.0.with(|state| {
             if address != ADDRESS || state.now < state.imu.ready {
                 return Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address));
             }
@@ -86,6 +86,7 @@ impl I2c for I2cBus<'_> {
                 }
             }
             Ok(())
-        })
+        });
+        done.unwrap_or(Err(ErrorKind::Other))
     }
 }

@@ -63,8 +63,9 @@ impl World {
         });
     }
 
-    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> T {
-        act(&mut self.0.borrow_mut())
+    /// None if a device used another while it is used, which none does.
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> Option<T> {
+        self.0.try_borrow_mut().ok().map(|mut state| act(&mut state))
     }
 }
 

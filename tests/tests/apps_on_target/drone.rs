@@ -173,6 +173,7 @@ fn cortex_m4f() -> Result<()> {
     let Some(app) = App::of(&CORTEX_M4F, "drone-firmware")? else { return Ok(()) };
     let flight = fly();
     let run = app.run(&encode(&flight), None)?;
+    ensure!(run.success, "{}", run.console);
 
     let (mut losses, mut path, mut health) = (Vec::new(), Vec::new(), None);
     for message in telemetry::messages(&run.telemetry) {
@@ -202,7 +203,7 @@ fn cortex_m4f() -> Result<()> {
     let counts = health.map(|health| (health.accepted as usize, health.rejected, health.failed));
     assert_eq!(counts, Some((losses.len(), 0, 1)));
 
-    let lines = image::log(&app.file()?, &run.log)?;
+    let lines = image::log(&app, &run)?;
     assert_eq!(lines, ["warn NoFix"]);
     println!("{} path losses, the user found within {error:.0} m", losses.len());
     image::check_panics("drone-firmware", &app)

@@ -88,6 +88,7 @@ fn rv32imc() -> Result<()> {
     let Some(app) = App::of(&RV32IMC, "robot-firmware")? else { return Ok(()) };
     let ride = ride();
     let run = app.run(&encode(&ride), None)?;
+    ensure!(run.success, "{}", run.console);
 
     let messages = telemetry::messages(&run.telemetry);
     let (mut ranges, mut path, mut health) = (Vec::new(), Vec::new(), None);
@@ -135,7 +136,7 @@ fn rv32imc() -> Result<()> {
     let health = health.context("health was told")?;
     assert_eq!((health.accepted as usize, health.failed), (measured.len() - 4, silent));
 
-    let lines = image::log(&app.file()?, &run.log)?;
+    let lines = image::log(&app, &run)?;
     let count = |text: &str| lines.iter().filter(|line| line.starts_with(text)).count();
     assert_eq!(count("info Step { anchor: 3, range: Ok(Started)"), 1, "{lines:#?}");
     assert_eq!(count("warn "), silent as usize, "{lines:#?}");

@@ -49,13 +49,14 @@ impl<const N: usize> Tape<N> {
         let [elapsed @ .., p, q, c, d] = head;
         self.time_us.set(self.time_us.get() + u64::from(u32::from_le_bytes(elapsed)));
         let Some(port) = self.ports.get(usize::from(u16::from_le_bytes([p, q]))) else { fail() };
+        let Ok(mut port) = port.try_borrow_mut() else { fail() };
         for _ in 0..u16::from_le_bytes([c, d]) {
             let mut byte = [0];
             if !self.fill(&mut byte) {
                 fail();
             }
             let [byte] = byte;
-            let _ = port.borrow_mut().push_back(byte);
+            let _ = port.push_back(byte);
         }
         true
     }
@@ -67,7 +68,8 @@ impl<const N: usize> Tape<N> {
 
     /// `false` at the end.
     fn fill(&self, bytes: &mut [u8]) -> bool {
-        match self.file.borrow_mut().read(bytes) {
+        let Ok(mut file) = self.file.try_borrow_mut() else { fail() };
+        match file.read(bytes) {
             Ok(0) => false,
             Ok(count) if count == bytes.len() => true,
             _ => fail(),
@@ -81,14 +83,14 @@ impl ErrorType for Port<'_> {
 
 impl ReadReady for Port<'_> {
     fn read_ready(&mut self) -> Result<bool, Infallible> {
-        Ok(!self.0.borrow().is_empty())
+        Ok(self.0.try_borrow().is_ok_and(|port| !port.is_empty()))
     }
 }
 
 impl Read for Port<'_> {
     /// Nothing, where real hardware would wait for the first byte: only who asks [`ReadReady`] gets on.
     fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
-        let mut port = self.0.borrow_mut();
+        let Ok(mut port) = self.0.try_borrow_mut() else { return Ok(0) };
         let mut count = 0;
         for byte in bytes {
             let Some(next) = port.pop_front() else { break };

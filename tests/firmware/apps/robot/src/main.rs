@@ -9,8 +9,8 @@ mod uart;
 use core::panic::PanicInfo;
 
 use defmt_semihosting as _;
-use riscv as _;
 use kestirim_uwb_tracker::Outcome;
+use riscv as _;
 use robot_app::{Imu, ImuError, Radio, RadioError, Robot, Step, TAG};
 use robot_world::{ChipSelect, I2cBus, Spi, World};
 use semihosting::process;
