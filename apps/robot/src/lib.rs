@@ -2,8 +2,8 @@
 //! the other, a BNO055 feels whether the robot stands, the tracker computes in fixed point, and frames of
 //! telemetry tell a host where it is.
 //!
-//! Everything is behind traits of `embedded-hal` 1.0 and `embedded-io`; a board's program is
-//! `robot-esp32c3` beside this crate, `robot` the same under an emulator. [`Robot::step`] is the
+//! Everything is behind traits of `embedded-hal` 1.0 and `embedded-io`. Its programs are `robot-esp32c3`, for
+//! the silicon, and `robot-firmware`, for QEMU, where `robot-world` plays the devices. [`Robot::step`] is the
 //! loop's body; the room is in [`SITES`].
 #![no_std]
 #![allow(missing_debug_implementations, reason = "drivers have none")]

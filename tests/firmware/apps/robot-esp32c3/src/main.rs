@@ -84,7 +84,8 @@ fn run() -> Result<core::convert::Infallible, Failure> {
         if let Err(error) = step.acceleration {
             warn!("{}", error);
         }
-        turn += TURN;
+        // A step that took longer than its turn puts all others off.
+        turn = (turn + TURN).max(Instant::now());
         while Instant::now() < turn {}
     }
 }
