@@ -9,14 +9,11 @@ use anyhow::{Context, Result, bail};
 use wait_timeout::ChildExt;
 
 use crate::elf::Elf;
-use crate::images::{Images, Profile};
+use crate::images::{Images, Profile, build_apart};
 use crate::target::Target;
 
 /// An application that runs longer hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// The machine of all applications: serial ports, and a serial bus with an SD card.
-const MACHINE: &str = "lm3s6965evb";
 
 /// The names under which application and host meet in the emulator's working directory.
 const STREAM: &str = "stream.bin";
@@ -58,6 +55,15 @@ impl App {
         Ok(images.map(|images| Self { target, image: images.file(package) }))
     }
 
+    /// Builds an application that has a workspace of its own, for a board that nobody emulates.
+    ///
+    /// # Errors
+    /// As [`App::of`].
+    pub fn apart(target: &'static Target, package: &str) -> Result<Option<Self>> {
+        let directory = build_apart(target, package, Profile::Speed)?;
+        Ok(directory.map(|directory| Self { target, image: directory.join(package) }))
+    }
+
     /// What it runs on.
     pub fn target(&self) -> &'static Target {
         self.target
@@ -88,7 +94,7 @@ impl App {
         let file = |name| directory.path().join(name);
         fs::write(file(STREAM), stream)?;
         let mut qemu = Command::new(self.target.qemu);
-        qemu.args(["-machine", MACHINE, "-cpu", self.target.cpu]);
+        qemu.args(self.target.board);
         if let Some(card) = card {
             fs::write(file(CARD), card)?;
             qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);

@@ -108,14 +108,7 @@ impl Images {
         }
         let images = match toolchain(target) {
             Ok(toolchain) => Some(Self::build(&toolchain, packages, profile)?),
-            Err(why) if env::var(REQUIRE).is_ok_and(|value| value == "1") => {
-                bail!("{REQUIRE}=1, but {why}")
-            }
-            Err(why) => {
-                // Not `eprintln!`, which the test runner swallows when the test passes.
-                writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
-                None
-            }
+            Err(why) => skip(target, &why)?,
         };
         built.insert(key, images.clone());
         Ok(images)
@@ -159,4 +152,27 @@ fn toolchain(target: &'static Target) -> Result<Toolchain, String> {
     } else {
         Err(format!("{} is not installed: run .ci/install-target-tools", target.qemu))
     }
+}
+
+/// Builds an application that is a workspace of its own, for which nobody needs an emulator, and answers with
+/// the directory it is in; `None` on a machine without the tools, which is said.
+pub(crate) fn build_apart(
+    target: &'static Target,
+    package: &str,
+    profile: Profile,
+) -> Result<Option<PathBuf>> {
+    match Toolchain::find(target) {
+        Ok(toolchain) => toolchain.build_apart(package, profile.name()).map(Some),
+        Err(why) => skip(target, &why),
+    }
+}
+
+/// Says that there are no tools; an error where there must be.
+fn skip<T>(target: &Target, why: &str) -> Result<Option<T>> {
+    if env::var(REQUIRE).is_ok_and(|value| value == "1") {
+        bail!("{REQUIRE}=1, but {why}");
+    }
+    // Not `eprintln!`, which the test runner swallows when the test passes.
+    writeln!(io::stderr(), "SKIPPED: tests on {}: {why}", target.triple)?;
+    Ok(None)
 }

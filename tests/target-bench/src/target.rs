@@ -7,10 +7,10 @@ pub struct Target {
     pub triple: &'static str,
     /// The emulator's program.
     pub(crate) qemu: &'static str,
-    /// The processor, as the emulator names it.
-    pub(crate) cpu: &'static str,
     /// The emulator's arguments that choose the machine.
     pub(crate) machine: &'static [&'static str],
+    /// The same for applications, which need serial ports.
+    pub(crate) board: &'static [&'static str],
 }
 
 /// Every instruction takes 2⁸ ns of virtual time: the images count instructions by a clock. The images
@@ -21,24 +21,24 @@ pub(crate) const ICOUNT: &str = "shift=8,sleep=off";
 pub static CORTEX_M0: Target = Target {
     triple: "thumbv6m-none-eabi",
     qemu: "qemu-system-arm",
-    cpu: "cortex-m0",
     machine: &["-machine", "microbit"],
+    board: &["-machine", "lm3s6965evb", "-cpu", "cortex-m0"],
 };
 
 /// Arm MPS2 with application note 386: 25 MHz, a single-precision floating-point unit.
 pub static CORTEX_M4F: Target = Target {
     triple: "thumbv7em-none-eabihf",
     qemu: "qemu-system-arm",
-    cpu: "cortex-m4",
     machine: &["-machine", "mps2-an386"],
+    board: &["-machine", "lm3s6965evb", "-cpu", "cortex-m4"],
 };
 
 /// QEMU's own RISC-V machine, with the instruction set of an ESP32-C3.
 pub static RV32IMC: Target = Target {
     triple: "riscv32imc-unknown-none-elf",
     qemu: "qemu-system-riscv32",
-    cpu: "rv32",
     machine: &["-machine", "virt", "-bios", "none"],
+    board: &["-machine", "virt", "-bios", "none"],
 };
 
 /// All of them.

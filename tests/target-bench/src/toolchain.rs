@@ -78,6 +78,15 @@ impl Toolchain {
 
     /// Builds the images of these packages in one go and answers with the directory they are in.
     pub(crate) fn build(&self, packages: &[&str], profile: &str) -> Result<PathBuf> {
+        self.build_in(&workspace(), packages, profile)
+    }
+
+    /// Builds an application that is a workspace of its own.
+    pub(crate) fn build_apart(&self, package: &str, profile: &str) -> Result<PathBuf> {
+        self.build_in(&workspace().join("apps").join(package), &[package], profile)
+    }
+
+    fn build_in(&self, workspace: &Path, packages: &[&str], profile: &str) -> Result<PathBuf> {
         let triple = self.target.triple;
         let output = target_directory();
         let mut cargo = Command::new(self.sysroot.join("bin/cargo"));
@@ -86,7 +95,7 @@ impl Toolchain {
             .envs(ENVIRONMENT.iter().filter_map(|&name| Some((name, env::var_os(name)?))))
             .env("RUSTC", self.sysroot.join("bin/rustc"))
             .env("CARGO_TARGET_DIR", &output)
-            .current_dir(workspace())
+            .current_dir(workspace)
             .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple])
             .args(packages.iter().flat_map(|package| ["-p", package]));
         if self.builds_core {

@@ -5,7 +5,10 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print sizes.
 
 mod card;
+mod drone;
+mod esp32c3;
 mod image;
 mod pedestrian;
+mod robot;
 mod telemetry;
 mod uav;

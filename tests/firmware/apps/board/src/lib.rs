@@ -20,6 +20,7 @@ mod recording;
 mod registers;
 mod spi;
 mod system;
+mod tape;
 mod uart;
 
 // Critical sections and the log are found by their symbols.
@@ -35,4 +36,5 @@ pub use pin::CardSelect;
 pub use recording::Recording;
 pub use spi::Spi;
 pub use system::{exit, fail};
+pub use tape::{Port, Tape};
 pub use uart::Uart;

@@ -1,0 +1,26 @@
+/// Why the application cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error {
+    /// The satellite receiver's port failed.
+    Gps,
+    /// The radio's port failed.
+    Radio,
+    /// The telemetry's port failed.
+    Telemetry,
+    /// The source of randomness failed.
+    Entropy,
+    /// The site's numbers make no sense.
+    Site(kestirim_user_locator::Error),
+}
+
+impl Error {
+    pub(crate) fn channel(error: kestirim_air_to_ground::Error) -> Self {
+        Self::Site(error.into())
+    }
+
+    pub(crate) fn filter(error: kestirim_particle_filter::Error) -> Self {
+        Self::Site(error.into())
+    }
+}

@@ -1,0 +1,45 @@
+//! Lines of text from a serial port.
+
+use embedded_io::{Read, ReadReady};
+use heapless::Vec;
+
+/// The longest line that either module sends, and more.
+const LONGEST: usize = 300;
+
+/// A port, and the line that is arriving.
+#[derive(Debug)]
+pub(crate) struct Lines<P> {
+    port: P,
+    line: Vec<u8, LONGEST>,
+    overlong: bool,
+}
+
+impl<P: Read + ReadReady> Lines<P> {
+    pub(crate) const fn new(port: P) -> Self {
+        Self { port, line: Vec::new(), overlong: false }
+    }
+
+    /// Reads what has arrived up to the first line that `read` makes something of; waits for nothing.
+    pub(crate) fn find<T>(
+        &mut self,
+        read: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, P::Error> {
+        let mut byte = [0];
+        while self.port.read_ready()? && self.port.read(&mut byte)? > 0 {
+            if byte != *b"\n" {
+                self.overlong |= self.line.extend_from_slice(&byte).is_err();
+                continue;
+            }
+            let found = match str::from_utf8(&self.line) {
+                Ok(text) if !self.overlong => read(text.trim_ascii()),
+                _ => None,
+            };
+            self.line.clear();
+            self.overlong = false;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,82 @@
+//! Time, and what happens in it.
+
+use core::cell::RefCell;
+
+use embedded_hal::delay::DelayNs;
+
+use crate::anchors::Anchors;
+use crate::bno055::Bno055;
+use crate::dw1000::Dw1000;
+
+/// Ticks of the radio's counter in 10 µs: 15.65 ps each.
+const TICKS_IN_10_US: u64 = 638_976;
+/// Where the counter is when a stream begins: it wraps 2 ms later, in the middle of an exchange.
+const BEGIN: u64 = (1 << 40) - 2 * 100 * TICKS_IN_10_US;
+
+/// Ticks of an interval in µs.
+pub(crate) const fn ticks(us: u64) -> u64 {
+    us * TICKS_IN_10_US / 10
+}
+
+/// What the devices measure from one tick of the robot's clock to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// µs since the start of the stream.
+    pub time_us: u64,
+    /// To the anchor whose turn it is, m; not a number if it is silent.
+    pub range: f32,
+    /// In the body's axes, cm/s².
+    pub acceleration: [i16; 3],
+}
+
+/// A robot's surroundings: the devices on its buses, the anchors in the air.
+#[derive(Debug)]
+pub struct World(RefCell<State>);
+
+#[derive(Debug)]
+pub(crate) struct State {
+    /// The radio's counter, not wrapped: the time of everything here.
+    pub(crate) now: u64,
+    pub(crate) radio: Dw1000,
+    pub(crate) imu: Bno055,
+    pub(crate) anchors: Anchors,
+}
+
+impl World {
+    /// Just after power-on.
+    pub const fn new() -> Self {
+        Self(RefCell::new(State {
+            now: 0,
+            radio: Dw1000::new(),
+            imu: Bno055::new(),
+            anchors: Anchors::new(),
+        }))
+    }
+
+    /// Moves on to a sample's time, if that is still to come, and lets the devices measure it.
+    /// A stream begins 17 s after power-on.
+    pub fn advance(&self, sample: &Sample) {
+        self.with(|state| {
+            state.now = state.now.max(BEGIN + ticks(sample.time_us));
+            state.anchors.range = sample.range;
+            state.imu.acceleration = sample.acceleration;
+        });
+    }
+
+    /// None if a device used another while it is used, which none does.
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> Option<T> {
+        self.0.try_borrow_mut().ok().map(|mut state| act(&mut state))
+    }
+}
+
+impl Default for World {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl DelayNs for &World {
+    fn delay_ns(&mut self, ns: u32) {
+        self.with(|state| state.now += ticks(u64::from(ns)).div_ceil(1000));
+    }
+}

@@ -1,0 +1,134 @@
+//! The loop's body: one anchor after the other.
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::i2c::I2c;
+use embedded_hal::spi::SpiBus;
+use embedded_io::Write;
+use kestirim_scalar::Scalar;
+use kestirim_telemetry::{Health, Message, Position, Range, Transmitter};
+use kestirim_uwb_tracker::{CalibratedPlaneTracker, Config, InertialSample, Outcome, RangeSample};
+
+use crate::room::{HEIGHT, SITES, Site, metres};
+use crate::{AccelerationError, Error, Imu, Number, Radio, RadioError, RangeError};
+
+/// What a step brought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Step {
+    /// Which anchor was asked.
+    pub anchor: usize,
+    /// What became of its range.
+    pub range: Result<Outcome, RangeError>,
+    /// What became of the acceleration, without which the robot still finds its way.
+    pub acceleration: Result<(), AccelerationError>,
+}
+
+/// A robot that knows where it is, and tells.
+pub struct Robot<B: SpiBus, CS: OutputPin, D, I, W> {
+    radio: Radio<B, CS, D>,
+    imu: Imu<I>,
+    telemetry: Transmitter<W>,
+    tracker: CalibratedPlaneTracker<Number, { SITES.len() }>,
+    /// Whose turn it is.
+    anchor: usize,
+    /// Exchanges and readings that failed.
+    failed: u32,
+}
+
+impl<B, CS, D, I, W> Robot<B, CS, D, I, W>
+where
+    B: SpiBus,
+    CS: OutputPin,
+    D: DelayNs,
+    I: I2c,
+    W: Write,
+{
+    /// A robot with these devices, somewhere in [the room](SITES).
+    ///
+    /// # Errors
+    /// [`Error::Room`].
+    pub fn new(radio: Radio<B, CS, D>, imu: Imu<I>, telemetry: W) -> Result<Self, Error> {
+        let config = Config::calibrated(metres(HEIGHT));
+        let tracker = CalibratedPlaneTracker::new(config, &SITES.each_ref().map(Site::anchor))
+            .map_err(Error::Room)?;
+        let telemetry = Transmitter::new(telemetry);
+        Ok(Self { radio, imu, telemetry, tracker, anchor: 0, failed: 0 })
+    }
+
+    /// Takes in the acceleration and the range to the next anchor, and tells what became of them.
+    /// `time_us` never goes back (µs since any moment).
+    ///
+    /// # Errors
+    /// [`Error::Radio`] or [`Error::Telemetry`]. Silent anchors and samples that do not fit are told and
+    /// counted, and the next step goes on.
+    pub fn step(&mut self, time_us: u64) -> Result<Step, Error> {
+        let acceleration = self.feel(time_us);
+        let anchor = self.anchor;
+        let range = match SITES.get(anchor) {
+            Some(site) => self.range(time_us, anchor, site)?,
+            None => Err(RangeError::Refused(kestirim_uwb_tracker::Error::NoSuchAnchor)),
+        };
+        let failed = [
+            matches!(acceleration, Err(AccelerationError::Imu(_))),
+            matches!(range, Err(RangeError::Radio(_) | RangeError::Exchange(_))),
+        ];
+        self.failed += failed.map(u32::from).iter().sum::<u32>();
+        if range.is_ok() {
+            self.tell_position(time_us)?;
+        }
+        self.anchor += 1;
+        if self.anchor >= SITES.len() {
+            self.anchor = 0;
+            self.tell_health(time_us)?;
+        }
+        Ok(Step { anchor, range, acceleration })
+    }
+
+    /// Lets the tracker feel whether the robot stands.
+    fn feel(&mut self, time_us: u64) -> Result<(), AccelerationError> {
+        let acceleration = self.imu.acceleration().map_err(AccelerationError::Imu)?;
+        let sample = InertialSample { time_us, acceleration, push: None };
+        self.tracker.inertial(&sample).map_err(AccelerationError::Refused)
+    }
+
+    fn range(
+        &mut self,
+        time_us: u64,
+        anchor: usize,
+        site: &Site,
+    ) -> Result<Result<Outcome, RangeError>, Error> {
+        let exchange = match self.radio.exchange(site.address) {
+            Ok(exchange) => exchange,
+            Err(RadioError::Lost) => return Err(Error::Radio),
+            Err(error) => return Ok(Err(RangeError::Radio(error))),
+        };
+        let range = match exchange.asymmetric::<Number>() {
+            Ok(distance) => distance - site.excess(),
+            Err(error) => return Ok(Err(RangeError::Exchange(error))),
+        };
+        self.send(Range { time_us, anchor: anchor as u16, range: range.to_f32() })?;
+        let report = self.tracker.range(&RangeSample { time_us, anchor, range });
+        Ok(report.map(|report| report.outcome).map_err(RangeError::Refused))
+    }
+
+    fn tell_position(&mut self, time_us: u64) -> Result<(), Error> {
+        let Some(position) = self.tracker.position() else { return Ok(()) };
+        let position = [position.x, position.y, metres(HEIGHT)].map(Scalar::to_f32);
+        // That of both components together is known.
+        let sigma = self.tracker.health(time_us).position_sigma;
+        let sigma = sigma.map(|sigma| sigma.to_f32() * core::f32::consts::FRAC_1_SQRT_2);
+        self.send(Position { time_us, position, sigma })
+    }
+
+    /// After every round.
+    fn tell_health(&mut self, time_us: u64) -> Result<(), Error> {
+        let health = self.tracker.health(time_us);
+        let (accepted, rejected, failed) = (health.taken, health.rejected, self.failed);
+        self.send(Health { time_us, accepted, rejected, failed })
+    }
+
+    fn send(&mut self, message: impl Into<Message>) -> Result<(), Error> {
+        self.telemetry.send(message).map_err(|_| Error::Telemetry)
+    }
+}
