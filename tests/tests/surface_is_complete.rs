@@ -151,10 +151,8 @@ impl Offer {
     fn take(&mut self, items: &[Item]) {
         for item in items {
             match item {
-                Item::Fn(item) if is_public(&item.vis) => {
-                    if self.exported.contains(&item.sig.ident.to_string()) {
-                        self.want("", &item.sig.ident, None);
-                    }
+                Item::Fn(item) if self.exported.contains(&item.sig.ident.to_string()) => {
+                    self.want("", &item.sig.ident, None);
                 }
                 Item::Trait(item) if self.exported.contains(&item.ident.to_string()) => {
                     for function in &item.items {

@@ -38,7 +38,7 @@ fn is_wild() -> bool {
 
 /// Any number.
 pub fn number<T: Scalar>() -> T {
-    let fraction = bits() as f64 / 2.0_f64.powi(64);
+    let fraction = f64::from(bits() as u32) / f64::from(u32::MAX);
     if !is_wild() {
         return match below(8) {
             0 => T::ZERO,
@@ -103,6 +103,9 @@ pub fn slice_mut<T>(values: &mut [T]) -> &mut [T] {
 }
 
 /// A step that may be refused; then the state is as it was.
+///
+/// # Panics
+/// It is not.
 pub fn try_on<S: Debug, R, E: Debug>(state: &mut S, step: impl FnOnce(&mut S) -> Result<R, E>) {
     let before = format!("{state:?}");
     if let Err(error) = step(state) {
