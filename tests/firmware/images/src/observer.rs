@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use support::{Class, Meter, fail, line, line_of_text};
 
 use crate::four_ranges::Named;
-use crate::stream::{Flight, Stream};
+use crate::stream::{Flight, Stream, open};
 use crate::uav::{START, gains};
 
 /// A state is told every so many samples.
@@ -43,7 +43,7 @@ fn run<T: Named>(name: &str, gains: &PredictorGains<4, 2, 3>) {
     line("object_bytes", &[size_of_val(&observer) as i64]);
     let mut meter = Meter::new();
     let mut samples = 0_u32;
-    for (_, Flight { inputs, outputs }) in Stream::<Flight>::open() {
+    for (_, Flight { inputs, outputs }) in Stream::<Flight>::of(&open()) {
         let inputs = SVector::from(inputs.map(T::from_f32));
         let outputs = SVector::from(outputs.map(T::from_f32));
         meter.measure(|| match observer.step(&inputs, &outputs) {

@@ -3,7 +3,7 @@
 
 use support::{Class, Meter, line, line_of_text};
 
-use crate::stream::{Record, Stream};
+use crate::stream::{Record, Stream, open};
 
 /// A tracker of any kind and scalar, as the replay sees it.
 pub trait Tracker: Default {
@@ -42,7 +42,7 @@ pub fn run<T: Tracker>() {
     let mut meter = Meter::new();
     let mut samples = 0_u32;
     let mut time_us = 0;
-    for (recorded_us, record) in Stream::<T::Record>::open() {
+    for (recorded_us, record) in Stream::<T::Record>::of(&open()) {
         let input = T::input(&record);
         meter.measure(|| tracker.step(&input));
         samples += 1;

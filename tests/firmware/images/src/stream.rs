@@ -7,8 +7,9 @@
 
 use core::marker::PhantomData;
 
+use semihosting::fd::{AsFd, BorrowedFd};
 use semihosting::fs::File;
-use semihosting::io::Read;
+use semihosting::sys::arm_compat::sys_read_orig;
 use support::fail;
 
 const FILE: &core::ffi::CStr = c"stream.bin";
@@ -127,32 +128,40 @@ impl Record for Flight {
     }
 }
 
+/// Opens the file of a stream; fails the image if there is none.
+pub fn open() -> File {
+    match File::open(FILE) {
+        Ok(file) => file,
+        Err(_) => fail("no stream.bin"),
+    }
+}
+
 /// The open stream: an iterator over its records and their times.
-pub struct Stream<R> {
-    file: File,
+pub struct Stream<'a, R> {
+    /// Not the file: borrowing from that asserts, at every record, that it is open.
+    file: BorrowedFd<'a>,
     time_us: u64,
     record: PhantomData<R>,
 }
 
-impl<R: Record> Stream<R> {
-    /// Opens the stream; fails the image if there is none.
-    pub fn open() -> Self {
-        match File::open(FILE) {
-            Ok(file) => Self { file, time_us: 0, record: PhantomData },
-            Err(_) => fail("no stream.bin"),
-        }
+impl<'a, R: Record> Stream<'a, R> {
+    /// The records of [`open`]'s file.
+    #[inline(always)] // Where the file was just opened, the assertion is none.
+    pub fn of(file: &'a File) -> Self {
+        Self { file: file.as_fd(), time_us: 0, record: PhantomData }
     }
 }
 
-impl<R: Record> Iterator for Stream<R> {
+impl<R: Record> Iterator for Stream<'_, R> {
     type Item = (u64, R);
 
     fn next(&mut self) -> Option<(u64, R)> {
         let mut bytes = [0; MOST_WORDS * WORD];
         let bytes = bytes.get_mut(..R::WORDS * WORD)?;
-        match self.file.read(bytes) {
-            Ok(0) => return None,
-            Ok(count) if count == bytes.len() => {}
+        // Tells how many bytes are missing.
+        match sys_read_orig(self.file, bytes) {
+            Ok(0) => {}
+            Ok(missing) if missing == bytes.len() => return None,
             _ => fail("stream.bin is cut in the middle of a record"),
         }
         let (words, _) = bytes.as_chunks();

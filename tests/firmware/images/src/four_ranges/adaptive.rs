@@ -82,7 +82,8 @@ impl<T: Scalar> Default for Printed<T> {
         let (q, r) = ([T::from_f64(3e-5); 4], [T::from_f64(0.1); 4]);
         let scenario = Scenario::default();
         let mut start = scenario.estimate();
-        start.covariance = Covariance::from_variances(&[1e-4, 1e-4, 0.0, 0.0].map(T::from_f64));
+        let position = T::from_f64(1e-4);
+        start.covariance = Covariance::from_variances(&[position, position, T::ZERO, T::ZERO]);
         let filter = PrintedAdaptiveKalman::new(
             start,
             Covariance::from_variances(&q),
