@@ -184,3 +184,87 @@ fn append<T, const N: usize>(samples: &mut Vec<T, N>, sample: T, second: impl Fn
     // There is room now.
     let _ = samples.push(sample);
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::format;
+
+    const MIDDAY: GpsTime = GpsTime::new_in_day(59_025, 43_200.0);
+
+    /// Positions every 15 minutes from 10:45 on, and clocks about midday.
+    fn products(samples: u32) -> Products {
+        let mut products = Products::new();
+        let mut read = |line: &str| assert_eq!(products.read(line), Ok(()), "{line}");
+        read("#cP2020  6 25 10 45  0.00000000      11 ORBIT IGS14 FIT  ME");
+        for sample in 0..samples {
+            let (hour, minute) = (10 + (45 + 15 * sample) / 60, (45 + 15 * sample) % 60);
+            read(&format!("*  2020  6 25 {hour:2} {minute:2}  0.00000000"));
+            let (sine, cosine) = (0.13 * f64::from(sample)).sin_cos();
+            let [x, y] = [26_560.0 * cosine, 26_560.0 * sine];
+            read(&format!("PG05{x:14.6}{y:14.6}   1000.000000 999999.999999"));
+            read("PG06      0.000000      0.000000      0.000000 999999.999999");
+            read(&format!("PG07{x:14.6}{y:14.6}   1000.000000 999999.999999                  M"));
+        }
+        read("AS G05  2020 06 25 11 59 30.000000  2    0.100000000000E-04  0.640687583086E-11");
+        read("AS G05  2020 06 25 12 00  0.000000  1    0.200000000000D-04");
+        read("AS G06  2020 06 25 12 00  0.000000  1    0.999999999999E+00");
+        read("AR HERE 2020 06 25 12 00  0.000000  1    0.159438015248E-04");
+        products
+    }
+
+    fn observed(satellite: u8) -> Observed {
+        let (code, phase) = ([Some(20_986e3); 2], [Some(1e8); 2]);
+        Observed { satellite, code, phase, lock_ms: [Observed::LONGEST_LOCK; 2] }
+    }
+
+    #[test]
+    fn a_satellite_is_where_it_sent() {
+        let sighting = products(11).sighting(MIDDAY, &observed(5), true).expect("a sighting");
+        let state = sighting.state;
+        assert!(sighting.lock_lost && (state.position.norm() - 26_578_817.0).abs() < 10.0);
+        assert!((state.clock - 2e-5).abs() < 1e-7 && state.clock_interval == 30.0);
+        // 11 samples stay when more come, and those that came already say nothing.
+        let mut products = products(13);
+        let again = "PG05      1.000000      1.000000      1.000000";
+        assert_eq!((products.read(again), products.satellites[4].orbit.len()), (Ok(()), 11));
+        let later = products.sighting(MIDDAY, &observed(5), false).expect("a sighting").state;
+        assert!((later.position - state.position).norm() < 0.1);
+    }
+
+    #[test]
+    fn what_is_missing_is_told() {
+        let products = products(11);
+        let refused = |time, observed| products.sighting(time, &observed, false).err();
+        let incomplete = Observed { phase: [Some(1e8), None], ..observed(5) };
+        assert_eq!(refused(MIDDAY, incomplete), Some(Unusable::Incomplete));
+        assert_eq!(refused(MIDDAY.plus(60.0), observed(5)), Some(Unusable::NoClock));
+        assert_eq!(refused(MIDDAY.plus(9_000.0), observed(5)), Some(Unusable::NoOrbit));
+        for unknown in [0, 6, 7, 32, 33, 255] {
+            assert_eq!(refused(MIDDAY, observed(unknown)), Some(Unusable::NoOrbit), "{unknown}");
+        }
+        assert_eq!(
+            Products::new().sighting(MIDDAY, &observed(5), false).err(),
+            Some(Unusable::NoOrbit)
+        );
+    }
+
+    #[test]
+    fn damaged_lines_are_told() {
+        let mut products = products(1);
+        for line in [
+            "",
+            "PG05  10000.000000",
+            "PG05  10000.0x0000      0.000000      0.000000",
+            "PG33  10000.000000      0.000000      0.000000",
+            "AS G05  2020 06 25 12 00",
+            "AS G05  2020 06 25 12 00  0.000000  1    0.1E",
+            "*  2020  6 25",
+            // After a time that cannot be read.
+            "PG05  10000.000000      0.000000      0.000000",
+        ] {
+            assert_eq!(products.read(line), Err(Malformed), "{line}");
+        }
+    }
+}
