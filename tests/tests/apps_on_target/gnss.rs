@@ -98,7 +98,7 @@ fn check_faults(solutions: &[Solution<STATES>]) -> Result<()> {
 
 #[test]
 fn cortex_m4f() -> Result<()> {
-    let Some(app) = App::of(&CORTEX_M4F, "gnss-firmware")? else { return Ok(()) };
+    let Some(app) = App::of_machine(&CORTEX_M4F, "gnss-firmware")? else { return Ok(()) };
     let epochs = observe();
     let run = app.run(&encode(&epochs), None)?;
     ensure!(run.success, "{}", run.console);

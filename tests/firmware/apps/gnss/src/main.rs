@@ -3,7 +3,7 @@
 #![no_std]
 #![no_main]
 
-use board::{Tape, Uart};
+use board::{CmsdkUart, Tape};
 use cortex_m_rt::entry;
 use gnss_app::{App, Epoch, Error};
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
@@ -24,7 +24,7 @@ fn main() -> ! {
 
 fn receive(tape: &Tape<PORTS>) -> Result<(), Error> {
     let [receiver, modem] = tape.ports();
-    let mut app = App::new(receiver, modem, Uart::first());
+    let mut app = App::new(receiver, modem, CmsdkUart::first());
     while tape.wait() {
         while let Some(epoch) = app.poll(tape.time_us())? {
             log(&epoch);
