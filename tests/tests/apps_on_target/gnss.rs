@@ -41,7 +41,6 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 code: sighting.code.map(Some),
                 phase: sighting.phase.map(Some),
                 loss_of_lock: [false, sighting.lock_lost],
-                ..rinex_obs::Observed::default()
             };
             let sighting = products.sighting(epoch.time(), &observed).expect("there are products");
             Sighting { antenna: site::satellite_antenna(), ..sighting }

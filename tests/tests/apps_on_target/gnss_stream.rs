@@ -106,21 +106,20 @@ fn calendar(second_of_day: f64) -> [u32; 3] {
 
 /// An SP3 file.
 pub(crate) fn orbits() -> String {
-    let mut text = "#cP2020  6 25 10 45  0.00000000      11 ORBIT IGS14 FIT  ME\n\
-                    %c G  cc GPS ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc\n"
-        .to_owned();
-    for sample in 0..ORBIT.0 {
+    let header = "#cP2020  6 25 10 45  0.00000000      11 ORBIT IGS14 FIT  ME\n\
+                  %c G  cc GPS ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc\n";
+    let epoch = |sample| {
         let from_midday = ORBIT.1 * f64::from(sample - ORBIT.0 / 2);
         let [hour, minute, second] = calendar(43_200.0 + from_midday);
-        text += &format!("*  2020  6 25 {hour:2} {minute:2} {second:2}.00000000\n");
-        for satellite in 0..SATELLITES {
+        let position = |satellite| {
             let state = in_orbit(satellite, INTERVAL + from_midday);
             let [x, y, z] = (state.position / 1e3).data.0[0];
-            let number = satellite + 1;
-            text += &format!("PG{number:02}{x:14.6}{y:14.6}{z:14.6} 999999.999999\n");
-        }
-    }
-    text + "EOF\n"
+            format!("PG{:02}{x:14.6}{y:14.6}{z:14.6} 999999.999999\n", satellite + 1)
+        };
+        format!("*  2020  6 25 {hour:2} {minute:2} {second:2}.00000000\n")
+            + &(0..SATELLITES).map(position).collect::<String>()
+    };
+    header.to_owned() + &(0..ORBIT.0).map(epoch).collect::<String>() + "EOF\n"
 }
 
 /// A RINEX clock file's header.
