@@ -27,6 +27,7 @@ const ERRORS: &str = "errors.txt";
 #[derive(Clone, Debug)]
 pub struct App {
     target: &'static Target,
+    board: &'static [&'static str],
     image: PathBuf,
 }
 
@@ -52,7 +53,15 @@ impl App {
     /// It does not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, package: &'static str) -> Result<Option<Self>> {
         let images = Images::of_package(package, target, Profile::Speed)?;
-        Ok(images.map(|images| Self { target, image: images.file(package) }))
+        Ok(images.map(|images| Self { target, board: target.board, image: images.file(package) }))
+    }
+
+    /// The same for an application that runs on the machine of the images, which has more memory.
+    ///
+    /// # Errors
+    /// As [`App::of`].
+    pub fn of_machine(target: &'static Target, package: &'static str) -> Result<Option<Self>> {
+        Ok(Self::of(target, package)?.map(|app| Self { board: target.machine, ..app }))
     }
 
     /// Builds an application that has a workspace of its own, for a board that nobody emulates.
@@ -61,7 +70,8 @@ impl App {
     /// As [`App::of`].
     pub fn apart(target: &'static Target, package: &str) -> Result<Option<Self>> {
         let directory = build_apart(target, package, Profile::Speed)?;
-        Ok(directory.map(|directory| Self { target, image: directory.join(package) }))
+        let image = directory.map(|directory| directory.join(package));
+        Ok(image.map(|image| Self { target, board: target.board, image }))
     }
 
     /// What it runs on.
@@ -94,7 +104,7 @@ impl App {
         let file = |name| directory.path().join(name);
         fs::write(file(STREAM), stream)?;
         let mut qemu = Command::new(self.target.qemu);
-        qemu.args(self.target.board);
+        qemu.args(self.board);
         if let Some(card) = card {
             fs::write(file(CARD), card)?;
             qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);

@@ -7,6 +7,8 @@
 mod card;
 mod drone;
 mod esp32c3;
+mod gnss;
+mod gnss_stream;
 mod image;
 mod pedestrian;
 mod robot;

@@ -24,11 +24,11 @@ const WRONG_CODE: (usize, f64) = (6, 15.0);
 const WRONG_PHASE: (usize, f64) = (1, 0.5);
 
 /// From an epoch to the next, s.
-const INTERVAL: f64 = 30.0;
+pub const INTERVAL: f64 = 30.0;
 /// Midday of 25 June 2020, but for the first epoch.
-const START: GpsTime = GpsTime::new_in_day(59_025, 43_200.0 - INTERVAL);
+pub const START: GpsTime = GpsTime::new_in_day(59_025, 43_200.0 - INTERVAL);
 /// How far the receiver's clock is ahead in the first epoch, m, and what it gains an epoch.
-const CLOCK: [f64; 2] = [812.5, 3.25];
+pub const CLOCK: [f64; 2] = [812.5, 3.25];
 /// Zenith delay of the water vapour, m.
 const WET_DELAY: f64 = 0.14;
 /// Delay of L1 in the ionosphere at the zenith, m.
@@ -200,8 +200,8 @@ fn sending(satellite: usize, station: &Vector3<f64>, elapsed: f64) -> SatelliteS
     SatelliteState { clock_interval: INTERVAL, clock_distance: flight, ..state }
 }
 
-/// A satellite on its ellipse, whose perigee is at the ascending node.
-fn in_orbit(satellite: usize, elapsed: f64) -> SatelliteState {
+/// A satellite on its ellipse, whose perigee is at the ascending node, `elapsed` seconds after the start.
+pub fn in_orbit(satellite: usize, elapsed: f64) -> SatelliteState {
     let (axis, eccentricity, [tilt_cosine, tilt_sine]) = ORBIT;
     let [node, argument] = PLACES.get(satellite).copied().unwrap_or_default();
     let motion = libm::sqrt(EARTH_GRAVITY / axis) / axis;

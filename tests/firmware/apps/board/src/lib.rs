@@ -5,12 +5,16 @@
 //! ([`Spi`], [`CardSelect`]). It has no sensors; those are played here, register by register, from a
 //! [`Recording`] ([`Mpu9250`], [`Bno055`], [`Ms4525do`]).
 //!
+//! An application that needs more memory takes the machine `mps2-an386` (the feature of that name), of which there is
+//! a serial port ([`CmsdkUart`]).
+//!
 //! `defmt` writes to the semihosting console. All `unsafe` code of the applications is in `registers.rs`
 //! and `system.rs`.
 
 #![no_std]
 
 mod bno055;
+mod cmsdk_uart;
 mod delay;
 mod i2c;
 mod mpu9250;
@@ -28,6 +32,7 @@ use cortex_m as _;
 use defmt_semihosting as _;
 
 pub use bno055::Bno055;
+pub use cmsdk_uart::CmsdkUart;
 pub use delay::Delay;
 pub use i2c::{NoAcknowledge, Only};
 pub use mpu9250::Mpu9250;
