@@ -179,7 +179,7 @@ fn check_four_ranges(images: &Images, budgets: Budgets) -> Result<()> {
         ("ekf4-ranges4-f32", ekf::<f32>(&ranges), budgets.ekf[0]),
         ("ekf4-ranges4-q12-20", ekf::<Q12_20>(&ranges), budgets.ekf[1]),
         ("aekf4-ranges4-f32", aekf::<f32>(&ranges), budgets.aekf[0]),
-        ("aekf4-ranges4-fixed", aekf::<Q12_20>(&ranges), f64::INFINITY),
+        ("aekf4-ranges4-q12-20", aekf::<Q12_20>(&ranges), f64::INFINITY),
         ("aekf4-printed-f32", printed::<f32>(&ranges), budgets.aekf[1]),
     ];
     for (image, host, budget) in cases {

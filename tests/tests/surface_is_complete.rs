@@ -1,5 +1,6 @@
 //! The programs of `panic_free.rs` call everything: each public function, method and trait of each crate, as the
-//! sources have them, is called by its path (`Gaussian::update(…)`) in the crate's program.
+//! sources have them, is called by its path (`Gaussian::update(…)`) in the crate's program; a trait's function by its
+//! type's path, or by the trait's in a program that names the type.
 //!
 //! What derives provide (`Clone`, `PartialEq`, serde, defmt) is not asked for: it has no code of ours.
 
@@ -15,11 +16,12 @@ use syn::{Attribute, ImplItem, Item, TraitItem, Type, UseTree, Visibility};
 const NOT_ASKED_FOR: [&str; 4] = ["Debug", "Display", "Error", "Format"];
 
 /// Macros by which crates define items: this test does not see what they expand to.
-const MACROS: [(&str, &str); 4] = [
+const MACROS: [(&str, &str); 5] = [
     ("impl_scalar_for_float", "the functions of `Scalar`, which the trait asks for"),
     ("impl_assign", "the assigning operators of `Fixed`, called by `scalar.rs`"),
     ("assign", "the same of a type that is not public"),
     ("impl_conversions", "from and to the crate `fixed`, whose bits they copy"),
+    ("messages", "plain data, and its `From`s"),
 ];
 
 /// A function that must be called.

@@ -31,8 +31,9 @@ fn measure() -> Result<Measured> {
 }
 
 fn measured() -> &'static Measured {
-    static MEASURED: OnceLock<Measured> = OnceLock::new();
-    MEASURED.get_or_init(|| measure().expect("every image runs"))
+    static MEASURED: OnceLock<Result<Measured, String>> = OnceLock::new();
+    let measured = MEASURED.get_or_init(|| measure().map_err(|error| format!("{error:?}")));
+    measured.as_ref().expect("every image runs")
 }
 
 /// The row of a workload.
@@ -50,6 +51,9 @@ fn row<'a>(
 #[test]
 fn nothing_costs_more_than_it_did() -> Result<()> {
     let Some((rows, compilers)) = measured() else { return Ok(()) };
+    if Common::read()?.reference.is_none() {
+        return Ok(()); // Other ranges cost other amounts; that they are absent has been said.
+    }
     let baseline = Baseline::kept()?;
     if &baseline.compilers != compilers {
         // Not `eprintln!`, which the test runner swallows when the test passes.
@@ -94,14 +98,29 @@ fn the_common_scenario_is_within_its_bars() {
     assert!(small.flash_bytes <= 2_300 && small.stack_bytes <= 260, "{small}");
 }
 
+/// Everywhere more; almost twice as many in single precision at opt-level 3.
 #[test]
-fn peers_take_almost_twice_as_long() {
+fn peers_take_more_instructions() {
     let Some((rows, _)) = measured() else { return };
-    let ours = row(rows, "ekf4-ranges4", "f32", &CORTEX_M4F, Profile::Speed).instructions_mean;
-    for peer in ["peer-adskalman", "peer-kfilter", "peer-minikalman"] {
-        let theirs = row(rows, peer, "f32", &CORTEX_M4F, Profile::Speed).instructions_mean;
-        println!("{peer}: {theirs:.0} instructions, {:.2} of ours", theirs / ours);
-        assert!(theirs >= 1.9 * ours, "{peer}: {theirs} instructions, ours {ours}");
+    let peers = [
+        ("peer-adskalman", "f32"),
+        ("peer-kfilter", "f32"),
+        ("peer-minikalman", "f32"),
+        ("peer-minikalman", "q16.16"),
+    ];
+    for target in TARGETS {
+        for profile in Profile::ALL {
+            for (peer, scalar) in peers {
+                let instructions =
+                    |name| row(rows, name, scalar, target, profile).instructions_mean;
+                let (theirs, ours) = (instructions(peer), instructions("ekf4-ranges4"));
+                let ratio = theirs / ours;
+                let what = format!("{peer} {scalar} on {} at {}", target.triple, profile.opt());
+                println!("{what}: {theirs:.0} instructions, {ratio:.2} times ours");
+                let fast_floats = (scalar, profile) == ("f32", Profile::Speed);
+                assert!(ratio >= if fast_floats { 1.9 } else { 1.0 }, "{what}: {ratio} times ours");
+            }
+        }
     }
 }
 
@@ -116,10 +135,12 @@ fn peers_find_the_same_states() -> Result<()> {
         ("peer-kfilter-f32", 1e-4),
         ("peer-minikalman-f32", 1e-4),
         // They round each product.
-        ("peer-minikalman-fixed", 0.05),
+        ("peer-minikalman-q16-16", 0.05),
     ];
     for (peer, tolerance) in peers {
-        for told in images.run(peer, &common.encode())?.positions()? {
+        let told = images.run(peer, &common.encode())?.positions()?;
+        assert_eq!(told.len(), 2, "a position every fifty steps");
+        for told in told {
             let step = (told.time_us / 100_000 - 1) as usize;
             let [x, y, ..] = reference.states.get(step).context("a step of the scenario")?;
             let [px, py, _] = told.metres;

@@ -136,7 +136,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         variance: T,
     ) -> Result<Innovation<T>, Error> {
         let row = row.entries();
-        self.covers(row)?;
+        Self::covers(row)?;
         let cross = self.cross_covariance(row);
         let weights = Weights::new(innovation, spread(row, &cross), variance)?;
         self.take_in(&weights, &cross)
@@ -168,7 +168,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         innovation: T,
         variance: T,
     ) -> Result<Weighed<T, N>, Error> {
-        self.covers(row)?;
+        Self::covers(row)?;
         let cross = self.cross_covariance(row);
         let weights = Weights::new(innovation, spread(row, &cross), variance)?;
         Ok(Weighed { weights, cross })
@@ -211,7 +211,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
 
     /// Whether the state has all that a row names.
     #[inline(always)]
-    fn covers(&self, row: &[(usize, T)]) -> Result<(), Error> {
+    fn covers(row: &[(usize, T)]) -> Result<(), Error> {
         if row.iter().all(|&(index, _)| index < N) { Ok(()) } else { Err(Error::IndexOutOfRange) }
     }
 

@@ -123,7 +123,7 @@ impl Images {
         })
     }
 
-    /// Runs an image, with a stream of samples (see [`super::encode`]) for it to read, until it ends.
+    /// Runs an image, with a stream of samples (see [`crate::streams::Encode`]) for it to read, until it ends.
     ///
     /// # Errors
     /// There is no such image, it tells a failure (a panic, a fault, a step that could not be

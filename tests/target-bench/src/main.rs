@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Parser;
 use host_sim::output::{print, progress};
 use serde::Serialize;
 use target_bench::baseline::Baseline;
+use target_bench::streams::Common;
 use target_bench::{Images, Profile, Row, TARGETS, table, workloads};
 
 /// What every estimator costs on a Cortex-M0, a Cortex-M4F and an RV32IMC, under QEMU: instructions a
@@ -29,6 +30,12 @@ struct Report {
 
 fn main() -> Result<()> {
     let options = Options::parse();
+    if options.keep {
+        ensure!(
+            Common::read()?.reference.is_some(),
+            "a baseline is of the common scenario with its noise"
+        );
+    }
     let mut compilers = BTreeMap::new();
     let mut rows = Vec::new();
     let bar = progress(2 * TARGETS.len() as u64, "targets");

@@ -18,12 +18,12 @@ const COMMON: [&str; 13] = [
     "peer-adskalman-f32",
     "peer-kfilter-f32",
     "peer-minikalman-f32",
-    "peer-minikalman-fixed",
+    "peer-minikalman-q16-16",
     "aekf4-ranges4-f32",
-    "aekf4-ranges4-fixed",
+    "aekf4-ranges4-q12-20",
     "aekf4-printed-f32",
     "robust4-ranges4-f32",
-    "robust4-ranges4-fixed",
+    "robust4-ranges4-q12-20",
 ];
 const FOUR_ANCHORS: [&str; 2] = ["uwb-tracker-4-f32", "uwb-tracker-4-fixed"];
 const EIGHT_ANCHORS: [&str; 4] = [

@@ -55,8 +55,11 @@ fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
     let texts = constants.split(|&byte| !(b' '..=b'~').contains(&byte));
     let mut places = BTreeSet::new();
     for text in texts.filter_map(|text| str::from_utf8(text).ok()) {
+        // Constants lie side by side: a path begins where the one before ends.
+        let mut begin = 0;
         for end in text.match_indices(".rs").map(|(at, found)| at + found.len()) {
-            places.insert(origin(&text[..end]));
+            places.insert(origin(&text[begin..end]));
+            begin = end;
         }
     }
     Ok(places)

@@ -21,7 +21,7 @@ pub enum Event {
     Located(TrackEstimate<f32>),
     /// The user was heard, but nobody knows where the drone was.
     NoFix,
-    /// The filter refused a measurement, and is as it was.
+    /// The filter refused a measurement; it has only moved on in time.
     Refused(kestirim_user_locator::Error),
 }
 

@@ -1,3 +1,5 @@
+use core::fmt;
+
 /// Why the application cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -24,3 +26,17 @@ impl Error {
         Self::Site(error.into())
     }
 }
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Gps => "the satellite receiver's port failed",
+            Self::Radio => "the radio's port failed",
+            Self::Telemetry => "telemetry cannot be sent",
+            Self::Entropy => "the source of randomness failed",
+            Self::Site(_) => "the site's numbers make no sense",
+        })
+    }
+}
+
+impl core::error::Error for Error {}

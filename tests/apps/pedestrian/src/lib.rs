@@ -2,7 +2,7 @@
 //! sends samples, positions and footprints as telemetry.
 //!
 //! [`App`] is the application of any board whose peripherals have the traits of `embedded-hal` 1.0: an I²C
-//! bus, a file and a serial port. `main.rs` is that of one board.
+//! bus, a file and a serial port. `tests/firmware/apps/pedestrian` is that of one board.
 
 #![no_std]
 #![expect(missing_debug_implementations, reason = "the driver of the sensor has none")]

@@ -6,7 +6,7 @@
 //! the silicon, and `robot-firmware`, for QEMU, where `robot-world` plays the devices. [`Robot::step`] is the
 //! loop's body; the room is in [`SITES`].
 #![no_std]
-#![allow(missing_debug_implementations, reason = "drivers have none")]
+#![expect(missing_debug_implementations, reason = "drivers have none")]
 
 mod error;
 mod imu;

@@ -73,7 +73,7 @@ where
             matches!(acceleration, Err(AccelerationError::Imu(_))),
             matches!(range, Err(RangeError::Radio(_) | RangeError::Exchange(_))),
         ];
-        self.failed += failed.map(u32::from).iter().sum::<u32>();
+        self.failed = self.failed.saturating_add(failed.map(u32::from).iter().sum());
         if range.is_ok() {
             self.tell_position(time_us)?;
         }

@@ -24,6 +24,7 @@ pub mod ppp_filter;
 pub mod robust_kalman;
 pub mod scalar;
 pub mod scalar_f64;
+pub mod telemetry;
 pub mod uav_longitudinal;
 pub mod user_locator;
 pub mod uwb_ranging;

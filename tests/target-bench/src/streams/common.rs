@@ -1,5 +1,6 @@
 //! The common scenario by which filters are compared.
 
+use std::io::{self, Write};
 use std::path::Path;
 use std::{env, fs};
 
@@ -41,7 +42,7 @@ struct File {
 
 impl Common {
     /// Reads the scenario, which stands beside the repository. Where it is absent, ranges without noise
-    /// along the same path take its place: costs hardly differ, and there is no reference.
+    /// along the same path take its place; there is no reference then, and costs that depend on outliers differ.
     ///
     /// # Errors
     /// The file is not as expected, or it is absent and `KESTIRIM_REQUIRE_DATA` is 1.
@@ -51,6 +52,8 @@ impl Common {
         let Ok(text) = fs::read_to_string(&file) else {
             let required = env::var(REQUIRE).is_ok_and(|value| value == "1");
             ensure!(!required, "{REQUIRE}=1, but {} is absent", file.display());
+            // Not `eprintln!`, which the test runner swallows when the test passes.
+            writeln!(io::stderr(), "SKIPPED: {} is absent, its noise is left out", file.display())?;
             return Ok(Self { ranges: without_noise(), reference: None });
         };
         let File { ranges, truth, reference_states_f64: states } =

@@ -25,6 +25,9 @@ impl Encode for Records {
 }
 
 /// Two rounds about the middle of the city.
+///
+/// # Panics
+/// The channel's constants make no sense.
 pub fn circle() -> Vec<[f32; 4]> {
     let mut rng = stream(4, 0);
     let channel = Channel::<f64>::new(&Environment::urban(), WAVELENGTH).expect("a channel");

@@ -8,7 +8,7 @@
 //! An application that needs more memory takes the machine `mps2-an386` (the feature of that name), of which there is
 //! a serial port ([`CmsdkUart`]).
 //!
-//! `defmt` writes to the semihosting console. All `unsafe` code of the applications is in `registers.rs`
+//! `defmt` writes to the semihosting console. All `unsafe` code of the applications on Arm is in `registers.rs`
 //! and `system.rs`.
 
 #![no_std]
