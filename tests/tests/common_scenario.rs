@@ -63,7 +63,7 @@ fn the_reference_is_met() -> Result<()> {
         ("q16.16", apart::<Q16_16>(&common.ranges, &reference.states), 5e-3),
     ];
     for (scalar, apart, _) in most {
-        println!("{scalar}: at most {:.2e} m from the reference in double precision", apart);
+        println!("{scalar}: at most {apart:.2e} m from the reference in double precision");
     }
     for (scalar, apart, most) in most {
         assert!(apart <= most, "{scalar}: {apart} m");
