@@ -3,47 +3,13 @@
 
 use anyhow::Result;
 use host_sim::random::{normal, stream};
-use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Q8_24, Q12_20, Q16_16, Scalar};
-use kestirim_uwb_ranging::expected_range;
-use nalgebra::SVector;
+use kestirim_tests::common_scenario::Ekf;
 use target_bench::streams::{ANCHORS, Common};
-
-/// An extended Kalman filter of the scenario, for ranges with this standard deviation (m).
-struct Filter<T: Scalar> {
-    anchors: [SVector<T, 3>; 4],
-    motion: ConstantVelocity<T, 2>,
-    variance: T,
-    estimate: Gaussian<T, 4>,
-}
-
-impl<T: Scalar> Filter<T> {
-    fn new(sigma: f64) -> Self {
-        let mean = SVector::from([5.0, 4.0, 0.0, 0.0].map(T::from_f64));
-        Self {
-            anchors: ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64))),
-            motion: ConstantVelocity::new(T::from_f64(0.1), T::from_f64(0.25)),
-            variance: T::from_f64(sigma * sigma),
-            estimate: Gaussian::new(mean, Covariance::from_variances(&[T::ONE; 4])),
-        }
-    }
-
-    fn step(&mut self, ranges: &[f64; 4]) -> [f64; 4] {
-        self.estimate.advance(&self.motion).expect("a finite state");
-        for (anchor, &measured) in self.anchors.iter().zip(ranges) {
-            let [x, y, ..] = self.estimate.mean.data.0[0];
-            let range = expected_range(&SVector::from([x, y]), T::ZERO, anchor);
-            let row = SparseRow::new([(0, range.direction[0]), (1, range.direction[1])]);
-            let innovation = T::from_f64(measured) - range.distance;
-            self.estimate.update(&row, innovation, self.variance).expect("a finite range");
-        }
-        self.estimate.mean.data.0[0].map(T::to_f64)
-    }
-}
 
 /// How far the positions are from the reference at most, m.
 fn apart<T: Scalar>(ranges: &[[f64; 4]], reference: &[[f64; 4]]) -> f64 {
-    let mut filter = Filter::<T>::new(0.1);
+    let mut filter = Ekf::<T>::new(0.1);
     let distance = |(ranges, theirs): (&[f64; 4], &[f64; 4])| {
         let ours = filter.step(ranges);
         (ours[0] - theirs[0]).hypot(ours[1] - theirs[1])
@@ -74,7 +40,7 @@ fn the_reference_is_met() -> Result<()> {
 /// Root mean square error of the position over so many steps, m.
 fn rmse<T: Scalar>(sigma: f64, steps: u32) -> f64 {
     let mut rng = stream(7, 0);
-    let mut filter = Filter::<T>::new(sigma);
+    let mut filter = Ekf::<T>::new(sigma);
     let mut square = |step: u32| {
         let angle = 0.04 * f64::from(step);
         let [x, y] = [5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin()];

@@ -7,12 +7,12 @@ use anyhow::{Context, Result};
 use kestirim_adaptive_kalman::{
     AdaptiveKalman, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise,
 };
-use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
+use kestirim_kalman::Covariance;
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_uwb_ranging::expected_range;
+use kestirim_tests::common_scenario::{Ekf, anchors, expected, motion, start};
 use kestirim_uwb_tracker::{Anchor, Config, RangeSample, Tracker};
 use nalgebra::{SMatrix, SVector};
-use target_bench::streams::{ANCHORS, Common, Encode, PLACES, Ranges, ellipse};
+use target_bench::streams::{Common, Encode, PLACES, Ranges, ellipse};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
 
 /// Bit for bit the same arithmetic; positions are told to the micrometre (m).
@@ -20,41 +20,12 @@ const SAME: f64 = 3e-6;
 /// Without an FPU the norm of an `f32` may differ in its last bit (m).
 const NEARLY_SAME: f64 = 2e-4;
 
-fn anchors<T: Scalar>() -> [SVector<T, 3>; 4] {
-    ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64)))
-}
-
-fn start<T: Scalar>() -> Gaussian<T, 4> {
-    let mean = SVector::from([5.0, 4.0, 0.0, 0.0].map(T::from_f64));
-    Gaussian::new(mean, Covariance::from_variances(&[T::ONE; 4]))
-}
-
-fn motion<T: Scalar>(density: f64) -> ConstantVelocity<T, 2> {
-    ConstantVelocity::new(T::from_f64(0.1), T::from_f64(density))
-}
-
-/// The row and the expectation of a range.
-fn expected<T: Scalar>(mean: &SVector<T, 4>, anchor: &SVector<T, 3>) -> (SparseRow<T, 2>, T) {
-    let place = SVector::from([mean[0], mean[1]]);
-    let range = expected_range(&place, T::ZERO, anchor);
-    (SparseRow::new([(0, range.direction[0]), (1, range.direction[1])]), range.distance)
-}
-
 /// The states after each step, as the image computes them.
 type Steps = Vec<[f64; 4]>;
 
 fn ekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
-    let mut estimate = start::<T>();
-    let step = |row: &[f64; 4]| {
-        estimate.advance(&motion(0.25)).expect("a finite state");
-        for (anchor, &range) in anchors::<T>().iter().zip(row) {
-            let (row, distance) = expected(&estimate.mean, anchor);
-            let innovation = T::from_f64(range) - distance;
-            estimate.update(&row, innovation, T::from_f64(0.01)).expect("a finite range");
-        }
-        estimate.mean.map(T::to_f64).data.0[0]
-    };
-    ranges.iter().map(step).collect()
+    let mut filter = Ekf::<T>::new(0.1);
+    ranges.iter().map(|ranges| filter.step(ranges)).collect()
 }
 
 fn aekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {

@@ -2,26 +2,18 @@
 
 use std::fs::{self, File};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
-use wait_timeout::ChildExt;
 
 use crate::elf::Elf;
 use crate::images::{Images, Profile, build_apart};
+use crate::qemu::{ERRORS, OUTPUT, STREAM, emulate};
 use crate::target::Target;
 
-/// An application that runs longer hangs.
-const PATIENCE: Duration = Duration::from_secs(120);
-
 /// The names under which application and host meet in the emulator's working directory.
-const STREAM: &str = "stream.bin";
 const CARD: &str = "card.img";
 const LOG: &str = "log.bin";
-const CONSOLE: &str = "console.txt";
 const TELEMETRY: &str = "telemetry.bin";
-const ERRORS: &str = "errors.txt";
 
 /// An application, built for one target.
 #[derive(Clone, Debug)]
@@ -103,35 +95,27 @@ impl App {
         let directory = tempfile::tempdir()?;
         let file = |name| directory.path().join(name);
         fs::write(file(STREAM), stream)?;
-        let mut qemu = Command::new(self.target.qemu);
-        qemu.args(self.board);
         if let Some(card) = card {
             fs::write(file(CARD), card)?;
-            qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);
         }
-        let mut qemu = qemu
-            .args(["-icount", "shift=0,sleep=off", "-display", "none", "-monitor", "none"])
-            .args(["-serial", &format!("file:{TELEMETRY}")])
-            .args(["-chardev", &format!("file,id=host,path={CONSOLE}")])
-            .args(["-semihosting-config", "enable=on,target=native,chardev=host"])
-            .arg("-kernel")
-            .arg(&self.image)
-            .current_dir(directory.path())
-            .stdin(Stdio::null())
-            // The emulator hands on what is written to the semihosting host's standard output; its own
-            // console gets what is written to none, which is how an application ends that panicked.
-            .stdout(File::create(file(LOG))?)
-            .stderr(File::create(file(ERRORS))?)
-            .spawn()
-            .with_context(|| format!("cannot start {}", self.target.qemu))?;
-        let Some(status) = qemu.wait_timeout(PATIENCE)? else {
-            qemu.kill()?;
-            qemu.wait()?;
+        // The emulator hands on what is written to the semihosting host's standard output; its own
+        // console gets what is written to none, which is how an application ends that panicked.
+        let log = File::create(file(LOG))?;
+        let status = emulate(self.target, &self.image, directory.path(), |qemu| {
+            qemu.args(self.board)
+                .args(["-icount", "shift=0,sleep=off"])
+                .args(["-serial", &format!("file:{TELEMETRY}")])
+                .stdout(log);
+            if card.is_some() {
+                qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);
+            }
+        })?;
+        let Some(status) = status else {
             bail!("{} was still running", self.image.display());
         };
         Ok(Run {
             success: status.success(),
-            console: fs::read_to_string(file(CONSOLE))? + &fs::read_to_string(file(ERRORS))?,
+            console: fs::read_to_string(file(OUTPUT))? + &fs::read_to_string(file(ERRORS))?,
             log: fs::read(file(LOG))?,
             telemetry: fs::read(file(TELEMETRY))?,
             card: card.map(|_| fs::read(file(CARD))).transpose()?,

@@ -2,12 +2,16 @@
 //! made by its own model of observations, with noise and two outliers. The host's tests read this very file.
 
 use kestirim_gnss_ppp::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
-use kestirim_gnss_ppp::{
-    Corrections, FREQUENCY, Geodetic, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState,
-    Site, WAVELENGTH,
-};
+use kestirim_gnss_ppp::{FREQUENCY, Geodetic, GpsTime, SatelliteState, Site, WAVELENGTH};
 use kestirim_ppp_filter::{PppFilter, Sighting, states};
 use nalgebra::Vector3;
+
+/// The receiver and its antennas: those of the application, which a user edits.
+#[path = "../../../apps/gnss/src/site.rs"]
+pub mod site;
+
+pub use site::receiver;
+use site::satellite_antenna;
 
 /// Room for twelve satellites.
 pub type Filter = PppFilter<{ states(12) }>;
@@ -53,58 +57,6 @@ const PLACES: [[f64; 2]; SATELLITES] = [
     [300.0, 137.0],
 ];
 
-/// Phase centres of the satellites: nadir angles of 0°, 7° and 14°.
-static SATELLITE_ANTENNA: [Pattern<'static>; 2] = {
-    const L1: Pattern<'static> = Pattern {
-        offset: [0.279, 0.0, 2.3195],
-        first: 0.0,
-        step: 7.0,
-        mean: &[-0.0008, -0.0045, 0.0026],
-        azimuth_step: 0.0,
-        by_azimuth: &[],
-    };
-    [L1, Pattern { offset: [0.279, 0.0, 2.2895], ..L1 }]
-};
-/// Phase centres of the receiver: zenith angles of 0°, 30°, 60° and 90°, azimuths of 0°, 180° and 360°.
-static RECEIVER_ANTENNA: [Pattern<'static>; 2] = {
-    const L1: Pattern<'static> = Pattern {
-        offset: [0.0012, -0.0004, 0.0892],
-        first: 0.0,
-        step: 30.0,
-        mean: &[0.0, -0.0041, -0.0018, 0.0094],
-        azimuth_step: 180.0,
-        by_azimuth: &[
-            0.0, -0.0040, -0.0016, 0.0090, 0.0, -0.0042, -0.0020, 0.0098, 0.0, -0.0040, -0.0016,
-            0.0090,
-        ],
-    };
-    [L1, Pattern { offset: [0.0, 0.0001, 0.1185], ..L1 }]
-};
-/// Tides of the ocean as near Denmark's west coast.
-static OCEAN_LOADING: OceanLoading = OceanLoading {
-    amplitude: [
-        [0.0074, 0.0023, 0.0017, 0.0006, 0.0013, 0.0008, 0.0004, 0.0002, 0.0006, 0.0003, 0.0003],
-        [0.0022, 0.0007, 0.0005, 0.0002, 0.0003, 0.0002, 0.0001, 0.0001, 0.0, 0.0, 0.0],
-        [0.0012, 0.0003, 0.0003, 0.0001, 0.0002, 0.0001, 0.0001, 0.0, 0.0001, 0.0, 0.0],
-    ],
-    lag: [
-        [-64.2, -40.1, -92.9, -43.5, -53.2, -104.7, -54.0, -153.2, 2.8, -9.5, 0.3],
-        [89.1, 118.4, 66.6, 117.1, 113.0, 16.5, 110.9, -41.1, -171.9, 176.0, 179.1],
-        [25.5, 78.8, -1.3, 79.9, 28.4, -29.6, 27.5, -65.4, 9.9, 178.2, 0.0],
-    ],
-};
-
-/// What is known of the receiver.
-pub const fn receiver() -> Receiver<'static> {
-    Receiver {
-        antenna: Some(RECEIVER_ANTENNA),
-        eccentricity: [0.0, 0.0, 0.0083],
-        ocean_loading: Some(&OCEAN_LOADING),
-        ut1_minus_gps: -18.24,
-        corrections: Corrections::ALL,
-    }
-}
-
 /// Where the receiver is, ECEF, m.
 pub fn station() -> Vector3<f64> {
     Geodetic { latitude: 0.968, longitude: 0.148, height: 57.0 }.to_ecef()
@@ -139,7 +91,7 @@ impl Epochs {
         let time = START.plus(elapsed);
         let site = Site::new(&receiver(), &self.station, time);
         let state = sending(0, &self.station, elapsed);
-        let antenna = Some(SATELLITE_ANTENNA);
+        let antenna = satellite_antenna();
         let none = Sighting {
             satellite: 0,
             code: [0.0; 2],

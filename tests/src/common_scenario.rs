@@ -1,0 +1,62 @@
+//! The common scenario on the host, as the images compute it: the extended filter, and what any other filter of
+//! the scenario starts from.
+
+use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::expected_range;
+use nalgebra::SVector;
+use target_bench::streams::ANCHORS;
+
+/// Where the anchors are, m.
+pub fn anchors<T: Scalar>() -> [SVector<T, 3>; 4] {
+    ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64)))
+}
+
+/// The first estimate.
+pub fn start<T: Scalar>() -> Gaussian<T, 4> {
+    let mean = SVector::from([5.0, 4.0, 0.0, 0.0].map(T::from_f64));
+    Gaussian::new(mean, Covariance::from_variances(&[T::ONE; 4]))
+}
+
+/// A step's motion with white acceleration of this density (m²/s³).
+pub fn motion<T: Scalar>(density: f64) -> ConstantVelocity<T, 2> {
+    ConstantVelocity::new(T::from_f64(0.1), T::from_f64(density))
+}
+
+/// The row and the expectation of a range.
+pub fn expected<T: Scalar>(mean: &SVector<T, 4>, anchor: &SVector<T, 3>) -> (SparseRow<T, 2>, T) {
+    let [x, y, ..] = mean.data.0[0];
+    let range = expected_range(&SVector::from([x, y]), T::ZERO, anchor);
+    (SparseRow::new([(0, range.direction[0]), (1, range.direction[1])]), range.distance)
+}
+
+/// The extended Kalman filter.
+#[derive(Debug)]
+pub struct Ekf<T: Scalar> {
+    anchors: [SVector<T, 3>; 4],
+    motion: ConstantVelocity<T, 2>,
+    variance: T,
+    estimate: Gaussian<T, 4>,
+}
+
+impl<T: Scalar> Ekf<T> {
+    /// A filter for ranges with this standard deviation (m).
+    pub fn new(sigma: f64) -> Self {
+        let variance = T::from_f64(sigma * sigma);
+        Self { anchors: anchors(), motion: motion(0.25), variance, estimate: start() }
+    }
+
+    /// Takes in the ranges of a step (m) and answers with the states after it.
+    ///
+    /// # Panics
+    /// A range is not finite.
+    pub fn step(&mut self, ranges: &[f64; 4]) -> [f64; 4] {
+        self.estimate.advance(&self.motion).expect("a finite state");
+        for (anchor, &measured) in self.anchors.iter().zip(ranges) {
+            let (row, distance) = expected(&self.estimate.mean, anchor);
+            let innovation = T::from_f64(measured) - distance;
+            self.estimate.update(&row, innovation, self.variance).expect("a finite range");
+        }
+        self.estimate.mean.data.0[0].map(T::to_f64)
+    }
+}
