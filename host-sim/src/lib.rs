@@ -10,10 +10,14 @@
 pub mod cli;
 pub mod design;
 mod error;
+pub mod explore;
+pub mod figure;
 pub mod metrics;
 pub mod output;
 pub mod published;
 pub mod random;
+pub mod report;
+pub mod stream;
 pub mod systems;
 pub mod table;
 pub mod text;

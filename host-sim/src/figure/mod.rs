@@ -1,0 +1,95 @@
+//! What a figure shows, whoever draws it: the [page](plotly), a [file for a paper](svg) or a table.
+
+pub mod plotly;
+mod series;
+pub mod svg;
+mod thin;
+
+pub use series::{Colour, Mark, Series};
+
+/// A diagram of one or more series over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Names its files and its place on the page: lower case, with hyphens.
+    pub id: String,
+    /// What it shows, in a few words.
+    pub title: String,
+    /// What to see in it.
+    pub caption: String,
+    /// From left to right.
+    pub x: Axis,
+    /// From below to above.
+    pub y: Axis,
+    /// Whether a metre is as long along either axis, as on a map.
+    pub equal: bool,
+    /// What is drawn, the first below the others.
+    pub series: Vec<Series>,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    /// Whether decades are equally long.
+    pub logarithmic: bool,
+    /// What is shown at first [default: everything].
+    pub range: Option<[f64; 2]>,
+}
+
+impl Figure {
+    /// A figure without series and axes.
+    pub fn new(id: impl Into<String>, title: impl Into<String>) -> Self {
+        Self {
+            id: id.into(),
+            title: title.into(),
+            caption: String::new(),
+            x: Axis::default(),
+            y: Axis::default(),
+            equal: false,
+            series: Vec::new(),
+        }
+    }
+
+    /// With the labels of both axes: quantity and unit.
+    pub fn axes(mut self, x: impl Into<String>, y: impl Into<String>) -> Self {
+        (self.x.label, self.y.label) = (x.into(), y.into());
+        self
+    }
+
+    /// With a logarithmic vertical axis.
+    pub fn logarithmic(mut self) -> Self {
+        self.y.logarithmic = true;
+        self
+    }
+
+    /// Showing these stretches of the axes at first.
+    pub fn showing(mut self, x: Option<[f64; 2]>, y: Option<[f64; 2]>) -> Self {
+        (self.x.range, self.y.range) = (x, y);
+        self
+    }
+
+    /// A map: a metre is as long along either axis.
+    pub fn map(mut self) -> Self {
+        self.equal = true;
+        self
+    }
+
+    /// With a sentence on what to see.
+    pub fn caption(mut self, caption: impl Into<String>) -> Self {
+        self.caption = caption.into();
+        self
+    }
+
+    /// With another series.
+    pub fn with(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+
+    /// With more series.
+    pub fn with_all(mut self, series: impl IntoIterator<Item = Series>) -> Self {
+        self.series.extend(series);
+        self
+    }
+}

@@ -1,0 +1,145 @@
+//! Figures as Plotly takes them: <https://plotly.com/javascript/reference/>.
+
+use serde_json::{Value, json};
+
+use super::{Axis, Colour, Figure, Mark, Series, thin};
+
+/// The figure for the page: its words, and `data` and `layout` of `Plotly.react`.
+///
+/// Colours of paper, text and grid are left to the page, which knows whether it is dark. A series of more
+/// than `most_points` is thinned.
+pub fn figure(figure: &Figure, most_points: usize) -> Value {
+    let data: Vec<_> = figure.series.iter().map(|series| trace(series, most_points)).collect();
+    let mut y = axis(&figure.y);
+    if figure.equal {
+        y["scaleanchor"] = json!("x");
+    }
+    json!({
+        "id": figure.id,
+        "title": figure.title,
+        "caption": figure.caption,
+        "equal": figure.equal,
+        "data": data,
+        "layout": { "xaxis": axis(&figure.x), "yaxis": y },
+    })
+}
+
+fn axis(axis: &Axis) -> Value {
+    let mut value = json!({ "title": { "text": axis.label } });
+    if axis.logarithmic {
+        value["type"] = json!("log");
+    }
+    if let Some(range) = axis.range {
+        let shown = range.map(|end| if axis.logarithmic { end.log10() } else { end });
+        value["range"] = json!(shown);
+    }
+    value
+}
+
+fn trace(series: &Series, most_points: usize) -> Value {
+    let kept = thin::indices(series, most_points);
+    let pick = |values: &[f64]| -> Vec<f64> {
+        rounded(kept.iter().map(|&i| values.get(i).copied().unwrap_or(f64::NAN)).collect())
+    };
+    let colour = css(series.colour);
+    let labelled = series.labels.is_some();
+    let mut trace = json!({
+        "type": "scatter",
+        "name": series.name,
+        "x": pick(&series.x),
+        "y": pick(&series.y),
+        "mode": mode(series.mark, labelled),
+        "line": { "color": colour, "width": if series.mark == Mark::Dashes { 1.5 } else { 1.8 } },
+        "marker": { "color": colour, "size": size(series.mark) },
+    });
+    match series.mark {
+        Mark::Dashes => trace["line"]["dash"] = json!("dash"),
+        Mark::Steps => trace["line"]["shape"] = json!("hv"),
+        Mark::Crosses => trace["marker"]["symbol"] = json!("x"),
+        Mark::Dots => trace["marker"]["opacity"] = json!(0.55),
+        Mark::Line | Mark::LineAndPoints | Mark::Points => {}
+    }
+    if let Some(error) = &series.error {
+        trace["error_y"] = json!({ "type": "data", "array": pick(error), "thickness": 1 });
+    }
+    if let Some(labels) = &series.labels {
+        let texts: Vec<_> =
+            kept.iter().map(|&i| labels.get(i).map_or("", String::as_str)).collect();
+        trace["text"] = json!(texts);
+        trace["textposition"] = json!("top center");
+    }
+    if series.hidden {
+        trace["visible"] = json!("legendonly");
+    }
+    trace
+}
+
+fn mode(mark: Mark, labelled: bool) -> &'static str {
+    match (mark, labelled) {
+        (Mark::Line | Mark::Dashes | Mark::Steps, false) => "lines",
+        (Mark::Line | Mark::Dashes | Mark::Steps, true) => "lines+text",
+        (Mark::LineAndPoints, false) => "lines+markers",
+        (Mark::LineAndPoints, true) => "lines+markers+text",
+        (Mark::Points | Mark::Dots | Mark::Crosses, false) => "markers",
+        (Mark::Points | Mark::Dots | Mark::Crosses, true) => "markers+text",
+    }
+}
+
+fn size(mark: Mark) -> u32 {
+    match mark {
+        Mark::Dots => 3,
+        Mark::LineAndPoints => 5,
+        _ => 7,
+    }
+}
+
+fn css(colour: Colour) -> String {
+    let [r, g, b] = colour.rgb();
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// To a millionth of their span: more is neither seen nor worth sending.
+fn rounded(mut values: Vec<f64>) -> Vec<f64> {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    let span = high - low;
+    if span.is_finite() && span > 0.0 {
+        // A power of ten divides to the shortest digits.
+        let scale = 10_f64.powi((6.0 - span.log10()).ceil() as i32);
+        for value in &mut values {
+            let scaled = (*value * scale).round() / scale;
+            if scaled.is_finite() {
+                *value = scaled;
+            }
+        }
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_points_and_gaps_come_through() {
+        let ours = Series::line("ours", vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, 0.5]);
+        let marks = Series::points("anchors", [[0.0, 1.0]])
+            .labelled(vec!["A1".to_owned()])
+            .coloured(Colour::Truth)
+            .hidden();
+        let drawn =
+            figure(&Figure::new("f", "F").axes("x, m", "y, m").map().with(ours).with(marks), 1000);
+        assert_eq!(drawn["data"][0]["y"], json!([1.0, null, 0.5]));
+        assert_eq!(drawn["data"][1]["text"], json!(["A1"]));
+        assert_eq!(drawn["data"][1]["visible"], "legendonly");
+        assert_eq!(drawn["layout"]["yaxis"]["scaleanchor"], "x");
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_the_eye_is() {
+        assert_eq!(rounded(vec![0.0, 0.123_456_789, 1.0]), [0.0, 0.123_457, 1.0]);
+        assert_eq!(rounded(vec![5.0, 5.0]), [5.0, 5.0]);
+        assert_eq!(rounded(vec![1e6, 1e6 + 1e-3]), [1e6, 1e6 + 1e-3]);
+    }
+}

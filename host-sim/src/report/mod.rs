@@ -1,0 +1,93 @@
+//! What a run shows: comparisons with the papers, figures, streams, and how each was made.
+
+mod comparison;
+
+pub use comparison::{Comparison, Row};
+
+use crate::figure::Figure;
+use crate::stream::Stream;
+
+/// A system's part of the report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chapter {
+    /// The system's name on the command line.
+    pub system: &'static str,
+    /// What the system does, in a few words.
+    pub title: &'static str,
+    /// The paper it is from.
+    pub paper: &'static str,
+    /// What a reader should know before the numbers, in a sentence or three.
+    pub about: String,
+    /// The few numbers that matter most: what the terminal shows.
+    pub summary: Comparison,
+    /// Tables and figures in the paper's order, then our own.
+    pub items: Vec<Item>,
+    /// What can be looked at in other programs.
+    pub streams: Vec<Stream>,
+}
+
+/// A table or figure of a chapter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Item {
+    /// What is shown.
+    pub content: Content,
+    /// How it came about.
+    pub made: Made,
+}
+
+/// What an [`Item`] shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// Published, ours and limit.
+    Comparison(Comparison),
+    /// A diagram.
+    Figure(Figure),
+}
+
+/// How numbers were made: enough to make them again.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Made {
+    /// What to type.
+    pub command: String,
+    /// Seed of the randomness.
+    pub seed: u64,
+    /// How many repetitions of what: `20 × 7 walks`.
+    pub trials: String,
+}
+
+impl Chapter {
+    /// The comparisons, without the summary.
+    pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
+        self.items.iter().filter_map(|item| match &item.content {
+            Content::Comparison(comparison) => Some(comparison),
+            Content::Figure(_) => None,
+        })
+    }
+
+    /// The figures.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.items.iter().filter_map(|item| match &item.content {
+            Content::Figure(figure) => Some(figure),
+            Content::Comparison(_) => None,
+        })
+    }
+}
+
+impl From<Comparison> for Content {
+    fn from(comparison: Comparison) -> Self {
+        Self::Comparison(comparison)
+    }
+}
+
+impl From<Figure> for Content {
+    fn from(figure: Figure) -> Self {
+        Self::Figure(figure)
+    }
+}
+
+impl Made {
+    /// As an item of a chapter.
+    pub fn item(&self, content: impl Into<Content>) -> Item {
+        Item { content: content.into(), made: self.clone() }
+    }
+}
