@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 
 use crate::design::Design;
+use crate::live::options::Live;
 use crate::systems::{drone, gnss, pedestrian, robot, uav};
 
 /// Estimators on synthetic and recorded streams.
@@ -30,6 +31,8 @@ pub enum Command {
     Calibrate(Calibrate),
     /// Design observers: gains, discretisations and covariances of a file of cases
     Design(Design),
+    /// Listen to a sender's telemetry, record it and follow it with a system's estimator
+    Live(Live),
     /// List systems, scenarios and log formats
     List,
 }

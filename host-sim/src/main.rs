@@ -42,6 +42,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Replay(Replay::Gnss(replay))) => replay.run(),
         Some(Command::Calibrate(Calibrate::Robot(calibrate))) => calibrate.run(),
         Some(Command::Design(design)) => design.run(),
+        Some(Command::Live(live)) => live.run(),
         Some(Command::List) => output::print(&systems::list()),
     }
 }

@@ -22,6 +22,7 @@ pub mod experiment;
 pub mod follow;
 pub mod log;
 pub mod model;
+pub mod online;
 pub mod options;
 pub mod plant;
 pub mod replay;

@@ -11,7 +11,6 @@ use super::follow::{self, Assumed, Estimate, Followed};
 use super::log::{self, Flight, Truth};
 use super::model::{Model, STATE_COLUMNS};
 use super::options::{EstimatorKind, four_numbers, poles, two_numbers};
-use super::scenario::Noise;
 use crate::metrics::rms;
 use crate::{Error, output};
 
@@ -77,7 +76,7 @@ impl Replay {
             return Err(Error::Usage("noise is for --estimator kalman".to_owned()));
         }
         let model = Model::read(&self.model)?;
-        let origin = self.origin(&model)?;
+        let origin = model.origin(self.absolute)?;
         let names: Vec<&str> = model.outputs.iter().map(|(name, _)| name.as_str()).collect();
         let mut flight = log::read(&self.log, &names)?;
         let mut warnings = Vec::new();
@@ -126,29 +125,14 @@ impl Replay {
         })
     }
 
-    /// What is taken from log and truth.
-    fn origin(&self, model: &Model) -> Result<([f64; 4], [f64; 2]), Error> {
-        match (self.absolute, model.trim) {
-            (false, _) => Ok(([0.0; 4], [0.0; 2])),
-            (true, Some(trim)) => Ok(trim),
-            (true, None) => Err(Error::Usage(
-                "--absolute needs a model with a trim: P1, or a file that has one".to_owned(),
-            )),
-        }
-    }
-
     fn followed(&self, model: &Model, flight: &Flight) -> Result<Followed, Error> {
         let followed = match self.estimator {
             EstimatorKind::Kalman => {
-                let sensors = Noise::SENSORS;
-                // Of the states' own sensors; what a file's C mixes is no worse than the worst of them.
-                let of = |output: usize| match self.output_noise {
-                    Some(all) => all[output],
-                    None => mixed(&model.outputs[output].1, &sensors.outputs),
-                };
+                let usual = Assumed::of_sensors(model, &flight.outputs);
+                let given = |all: [f64; 4]| flight.outputs.iter().map(|&o| all[o]).collect();
                 let assumed = Assumed {
-                    inputs: self.input_noise.unwrap_or(sensors.inputs),
-                    outputs: flight.outputs.iter().map(|&output| of(output)).collect(),
+                    inputs: self.input_noise.unwrap_or(usual.inputs),
+                    outputs: self.output_noise.map_or(usual.outputs, given),
                 };
                 follow::kalman(model, flight, &assumed)
             }
@@ -159,11 +143,6 @@ impl Replay {
         };
         followed.map_err(|problem| Error::File { path: self.log.clone(), problem })
     }
-}
-
-/// Of a row of C: √Σ(c·σ)².
-fn mixed(row: &[f64; 4], sigmas: &[f64; 4]) -> f64 {
-    row.iter().zip(sigmas).fold(0.0, |sum: f64, (part, sigma)| sum.hypot(part * sigma))
 }
 
 /// Whether airspeeds are nearer to the steady one than to nothing.
@@ -179,10 +158,8 @@ fn looks_absolute(flight: &Flight, model: &Model, airspeed: f64) -> Option<Strin
 }
 
 fn subtract(flight: &mut Flight, model: &Model, (state, input): ([f64; 4], [f64; 2])) {
-    let steady = |output: usize| -> f64 {
-        model.outputs[output].1.iter().zip(&state).map(|(part, state)| part * state).sum()
-    };
-    let steady: Vec<f64> = flight.outputs.iter().map(|&output| steady(output)).collect();
+    let outputs = flight.outputs.iter();
+    let steady: Vec<f64> = outputs.map(|&output| model.output(output, &state)).collect();
     for sample in &mut flight.samples {
         sample.input = std::array::from_fn(|i| sample.input[i] - input[i]);
         for (measured, steady) in sample.measured.iter_mut().zip(&steady) {
