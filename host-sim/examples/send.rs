@@ -36,7 +36,7 @@ enum System {
     Pedestrian,
     /// The robot's straight line through the paper's office
     Robot,
-    /// A drone that circles above a user at 100 m, 100 m over open ground
+    /// A drone that looks for a user at 100 m, 100 m over open ground, for four minutes
     Drone,
     /// Ten seconds of P3 (Navion), as deviations
     Uav,
@@ -66,8 +66,8 @@ fn measurements(system: System, seed: u64) -> Vec<(u64, Message)> {
         }
         System::Drone => (0..240_u64)
             .map(|second| {
-                let (sin, cos) = (second as f64 * std::f64::consts::TAU / 120.0).sin_cos();
-                let place = [150.0 * cos, 150.0 * sin, 50.0];
+                let [x, y] = [0.065, 0.105].map(|rate| 200.0 * (second as f64 * rate).sin());
+                let place = [x, y, 50.0];
                 let distance = (place[0] - 100.0).hypot(place[1] - 100.0).hypot(place[2]);
                 // What 2 GHz loses over open ground, and shadowing.
                 let loss = 38.5 + 20.0 * distance.log10() + normal(&mut rng, 3.0);

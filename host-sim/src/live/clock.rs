@@ -13,8 +13,10 @@ const MEANT: u32 = 5;
 #[derive(Debug, Default)]
 pub(super) struct Clock {
     latest_us: Option<u64>,
-    /// How many in a row did not fit.
-    odd: u32,
+    /// How many in a row were too late, …
+    late: u32,
+    /// … or far ahead.
+    ahead: u32,
 }
 
 /// What is to be thought of a time.
@@ -32,21 +34,27 @@ impl Clock {
     /// Judges the time of the next measurement.
     pub(super) fn judge(&mut self, time_us: u64) -> Verdict {
         let Some(latest_us) = self.latest_us else { return self.accept(time_us, Verdict::Fits) };
-        let late = time_us.saturating_add(LATE_US) < latest_us;
-        let ahead = time_us > latest_us.saturating_add(AHEAD_US);
-        if !late && !ahead {
-            return self.accept(time_us.max(latest_us), Verdict::Fits);
+        if time_us.saturating_add(LATE_US) < latest_us {
+            (self.late, self.ahead) = (self.late + 1, 0);
+            return if self.late < ANEW {
+                Verdict::Odd
+            } else {
+                self.accept(time_us, Verdict::Anew)
+            };
         }
-        self.odd += 1;
-        match (late, self.odd) {
-            (true, ANEW..) => self.accept(time_us, Verdict::Anew),
-            (false, MEANT..) => self.accept(time_us, Verdict::Fits),
-            _ => Verdict::Odd,
+        if time_us > latest_us.saturating_add(AHEAD_US) {
+            (self.late, self.ahead) = (0, self.ahead + 1);
+            return if self.ahead < MEANT {
+                Verdict::Odd
+            } else {
+                self.accept(time_us, Verdict::Fits)
+            };
         }
+        self.accept(time_us.max(latest_us), Verdict::Fits)
     }
 
     fn accept(&mut self, latest_us: u64, verdict: Verdict) -> Verdict {
-        *self = Self { latest_us: Some(latest_us), odd: 0 };
+        *self = Self { latest_us: Some(latest_us), ..Self::default() };
         verdict
     }
 }

@@ -181,8 +181,8 @@ mod tests {
     fn a_user_is_found_in_the_end_from_any_number_of_losses() -> Result<(), Error> {
         let (mut feed, mut state) = feed(SystemKind::Drone, &[]);
         for step in 0..1000_u64 {
-            let (sin, cos) = (step as f64 * 0.01).sin_cos();
-            let place = [200.0 * cos, 200.0 * sin, 50.0];
+            let place = [0.013, 0.021].map(|rate| 200.0 * (step as f64 * rate).sin());
+            let place = [place[0], place[1], 50.0];
             let distance = (place[0] - 60.0).hypot(place[1] + 40.0).hypot(place[2]);
             let loss = 38.5 + 20.0 * distance.log10();
             let (place, loss) = (place.map(|metres| metres as f32), loss as f32);
