@@ -6,6 +6,7 @@ pub mod svg;
 mod thin;
 
 pub use series::{Colour, Mark, Series};
+pub use thin::View;
 
 /// A diagram of one or more series over two axes.
 #[derive(Debug, Clone, PartialEq)]
