@@ -39,7 +39,7 @@ impl Outputs {
         }
         let chapters = [chapter];
         if let Some(path) = &self.csv {
-            report::csv(path, &chapters)?;
+            report::csv::write(path, &chapters)?;
         }
         if let Some(folder) = &self.report {
             say_where(&report::write(folder, &chapters)?);

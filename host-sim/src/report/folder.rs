@@ -23,11 +23,11 @@ pub fn write(folder: &Path, chapters: &[Chapter]) -> Result<PathBuf, Error> {
     for chapter in chapters {
         for drawn in chapter.figures() {
             text(&format!("{}.svg", drawn.id), svg::draw(drawn))?;
-            figure::csv(&folder.join(format!("{}.csv", drawn.id)), drawn)?;
+            figure::csv::write(&folder.join(format!("{}.csv", drawn.id)), drawn)?;
         }
         mcap::write(&folder.join(format!("{}.mcap", chapter.system)), &chapter.streams)?;
     }
-    csv(&folder.join("results.csv"), chapters)?;
+    csv::write(&folder.join("results.csv"), chapters)?;
     text("results.json", results(chapters).to_string())?;
     text("index.html", page::render(chapters))?;
     Ok(folder.join("index.html"))
