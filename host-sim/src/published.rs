@@ -19,6 +19,15 @@ pub struct PathLengths {
 /// Length of the paper's route through a flat, m.
 pub const PEDESTRIAN_ROUTE_M: f64 = 12.60;
 
+/// Its Table 1: lines of the log, time in ms, 3 × g, 3 × °/s.
+pub const PEDESTRIAN_LOG_LINES: [&str; 3] = [
+    "1490 -0.06 -0.21 -0.99 2.44 2.90 2.13",
+    "1499 -0.05 -0.21 -0.98 3.41 2.35 1.52",
+    "1508 -0.04 -0.22 -0.98 2.96 1.68 1.19",
+];
+/// Where Fig. 16 shows the walker after 15 s: x and y, m; z is about 0.
+pub const PEDESTRIAN_AFTER_15_S: [f64; 2] = [6.0, 3.0];
+
 /// Seven walks logged at 50 Hz.
 pub const PEDESTRIAN_50_HZ: PathLengths = PathLengths {
     source: "Table 3",
