@@ -15,7 +15,7 @@ pub fn write(path: &Path, chapters: &[Chapter]) -> Result<(), Error> {
         let mut table = csv::Writer::from_writer(file);
         table.write_record(["system", "table", "quantity", "published", "ours", "limit"])?;
         for chapter in chapters {
-            for (comparison, _) in chapter.tables() {
+            for comparison in chapter.comparisons() {
                 for Row { quantity, published, ours, limit } in &comparison.rows {
                     let cells = [quantity, published, ours, limit].map(String::as_str);
                     table.write_field(chapter.system)?;

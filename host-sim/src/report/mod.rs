@@ -68,6 +68,11 @@ impl Chapter {
         })
     }
 
+    /// The tables, without the summary.
+    pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
+        self.tables().map(|(comparison, _)| comparison)
+    }
+
     /// The figures.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.items.iter().filter_map(|item| match &item.content {

@@ -33,15 +33,20 @@ pub enum System {
 }
 
 /// What the explorer can open, the default first.
-pub static SOURCES: [Source; 5] =
-    [pedestrian::SOURCE, robot::SOURCE, drone::SOURCE, uav::SOURCE, gnss::SOURCE];
+pub static SOURCES: [Source; 5] = [
+    pedestrian::explorer::SOURCE,
+    robot::explorer::SOURCE,
+    drone::explorer::SOURCE,
+    uav::explorer::SOURCE,
+    gnss::explorer::SOURCE,
+];
 
 /// Runs the pedestrian's experiment and prints its report.
 ///
 /// # Errors
 /// Whatever keeps the experiment from running or its report from being printed or written.
 pub fn run_pedestrian(run: &PlainRun) -> Result<(), Error> {
-    deliver(&pedestrian::experiment::run(run.options)?, pedestrian::chapter, &run.outputs)
+    deliver(&pedestrian::experiment::run(run.options)?, pedestrian::chapter::chapter, &run.outputs)
 }
 
 /// Runs the robot's experiment and prints its report.
@@ -49,7 +54,7 @@ pub fn run_pedestrian(run: &PlainRun) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_robot(run: &PlainRun) -> Result<(), Error> {
-    deliver(&robot::experiment::run(run.options)?, robot::chapter, &run.outputs)
+    deliver(&robot::experiment::run(run.options)?, robot::chapter::chapter, &run.outputs)
 }
 
 /// Runs the drone's experiments, or one cell of them, and prints the report.
@@ -57,7 +62,7 @@ pub fn run_robot(run: &PlainRun) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_drone(run: &drone::options::Run) -> Result<(), Error> {
-    deliver(&drone::experiment::run(run)?, drone::chapter, &run.outputs)
+    deliver(&drone::experiment::run(run)?, drone::chapter::chapter, &run.outputs)
 }
 
 /// Runs the UAV's experiments and prints the report.
@@ -65,7 +70,7 @@ pub fn run_drone(run: &drone::options::Run) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_uav(run: &PlainRun) -> Result<(), Error> {
-    deliver(&uav::experiment::run(run.options)?, uav::chapter, &run.outputs)
+    deliver(&uav::experiment::run(run.options)?, uav::chapter::chapter, &run.outputs)
 }
 
 /// Runs the GNSS receiver's experiment and prints its report.
@@ -73,7 +78,7 @@ pub fn run_uav(run: &PlainRun) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_gnss(run: &PlainRun) -> Result<(), Error> {
-    deliver(&gnss::experiment::run(run.options)?, gnss::chapter, &run.outputs)
+    deliver(&gnss::experiment::run(run.options)?, gnss::chapter::chapter, &run.outputs)
 }
 
 /// Writes what was asked for, and prints the rest.
@@ -112,11 +117,15 @@ impl System {
     fn chapter(self) -> Result<Chapter, Error> {
         let options = RunOptions::default();
         match self {
-            Self::Pedestrian => pedestrian::chapter(&pedestrian::experiment::run(options)?),
-            Self::Robot => robot::chapter(&robot::experiment::run(options)?),
-            Self::Drone => drone::chapter(&drone::experiment::run(&drone::options::Run::default())?),
-            Self::Uav => uav::chapter(&uav::experiment::run(options)?),
-            Self::Gnss => gnss::chapter(&gnss::experiment::run(options)?),
+            Self::Pedestrian => {
+                pedestrian::chapter::chapter(&pedestrian::experiment::run(options)?)
+            }
+            Self::Robot => robot::chapter::chapter(&robot::experiment::run(options)?),
+            Self::Drone => {
+                drone::chapter::chapter(&drone::experiment::run(&drone::options::Run::default())?)
+            }
+            Self::Uav => uav::chapter::chapter(&uav::experiment::run(options)?),
+            Self::Gnss => gnss::chapter::chapter(&gnss::experiment::run(options)?),
         }
     }
 
