@@ -1,5 +1,6 @@
 //! What a figure shows, whoever draws it: the [page](plotly), a [file for a paper](svg) or a table.
 
+pub mod csv;
 pub mod plotly;
 mod series;
 pub mod svg;

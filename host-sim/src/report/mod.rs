@@ -1,6 +1,7 @@
 //! What a run shows: comparisons with the papers, figures, streams, and how each was made.
 
 mod comparison;
+pub mod csv;
 
 pub use comparison::{Comparison, Row};
 
