@@ -271,6 +271,7 @@ mod tests {
             assert_eq!(ids, expected, "{name}");
             let rmse: f64 = fact(&answer, "RMSE").trim_end_matches(" m").parse().unwrap();
             assert!(rmse < 1.0, "{name}: {rmse} m");
+            assert!(answer.warnings.is_empty(), "{name}: {:?}", answer.warnings);
         }
     }
 

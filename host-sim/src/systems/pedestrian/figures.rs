@@ -146,7 +146,7 @@ pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
     let truth = known.map(|i| {
         let (times, values) =
             truth.iter().map(|point| (seconds(point.time_us), point.position[i])).unzip();
-        let mark = if i == 2 { Mark::Dots } else { Mark::Crosses };
+        let mark = if i == 2 { Mark::Dots } else { Mark::Points };
         Series::new(format!("true {}", AXES[i]), mark, times, values).coloured(Colour::Truth)
     });
     Figure::new(id, "Position")

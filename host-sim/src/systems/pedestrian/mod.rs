@@ -28,6 +28,9 @@ pub mod track;
 pub mod truth;
 mod warning;
 
+pub use chapter::chapter;
+pub use explorer::SOURCE;
+
 /// What `host-sim list` says of this system.
 pub(super) const DESCRIPTION: &str = "\
 pedestrian  where a foot walked, from a foot-mounted IMU with zero-velocity updates

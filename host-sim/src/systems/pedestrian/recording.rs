@@ -44,8 +44,8 @@ impl Recording {
         Ok(Self { path: path.to_path_buf(), log, footprints: footprints.unwrap_or_default() })
     }
 
-    /// Walk number `index` of a seed, logged at `rate_hz` in the paper's text format, with the rounding that
-    /// comes with it.
+    /// Walk number `index` of a seed, logged at `rate_hz`: that of the paper's route in the paper's text format,
+    /// with the rounding that comes with it, others with every bit of the sensor.
     ///
     /// # Errors
     /// None that a sensor could cause; those of [`log::parse`].
@@ -53,9 +53,14 @@ impl Recording {
         let mut rng = stream(seed, index);
         let scenario = walked.draw(&mut rng);
         let measured = sensor::measure(&mut rng, &scenario.ideal_imu(rate_hz), rate_hz);
-        let text = sensor::razor_text(&measured).into_bytes();
         let path = PathBuf::from("synthetic walk");
-        let log = log::parse(&TextFile::from_bytes(&path, text)?)?;
+        let log = match walked {
+            Walked::Route => {
+                let text = sensor::razor_text(&measured).into_bytes();
+                log::parse(&TextFile::from_bytes(&path, text)?)?
+            }
+            Walked::Rounds(_) => Log { samples: measured, ..Log::default() },
+        };
         Ok(Self { path, log, footprints: scenario.footprints() })
     }
 

@@ -42,11 +42,13 @@ pub fn streams(samples: &[Sample], trace: &Trace, truth: &[TrackPoint]) -> Vec<S
     ];
     if !truth.is_empty() {
         let placement = Placement::of(&trace.walk.track, truth);
+        let columns = if truth.iter().all(|point| point.position[2].is_finite()) { 3 } else { 2 };
         let rows = truth.iter().map(|point| {
             let [x, y] = placement.from_plan(point.horizontal());
-            (seconds(point.time_us), vec![x, y, point.position[2]])
+            (seconds(point.time_us), [x, y, point.position[2]][..columns].to_vec())
         });
-        streams.push(Stream::new("/pedestrian/truth", &["x_m", "y_m", "z_m"], rows.collect()));
+        let names = &["x_m", "y_m", "z_m"][..columns];
+        streams.push(Stream::new("/pedestrian/truth", names, rows.collect()));
     }
     streams
 }
