@@ -113,7 +113,11 @@ pub const DRONE_TRAJECTORIES: [[f64; 4]; 2] =
 pub const DRONE_EQUAL_ENERGY: [f64; 2] = [67.9, 84.0];
 
 /// The UAV's thesis (Turkish; longitudinal states by a Luenberger observer and a Kalman filter) prints no numbers,
-/// but says what its figures show. Fig. 5.2: when step responses have settled, s.
+/// but says what its figures show. Table 3.1: steady flight, of α, q, V and θ.
+pub const UAV_TRIM: [&str; 4] = ["8°", "0", "40 m/s", "12°"];
+/// Sections 4.2.1 and 4.2.2: what is asked of the ranks of [B AB …] and [C; CA; …].
+pub const UAV_RANK: &str = "rank 4";
+/// Fig. 5.2: when step responses have settled, s.
 pub const UAV_SETTLING_S: f64 = 600.0;
 /// Figs 5.5 to 5.8, constant inputs: what, and what is said of it.
 pub const UAV_CONSTANT_INPUTS: [[&str; 2]; 6] = [
