@@ -87,7 +87,9 @@ impl Page {
             device_posture: None,
         })
         .expect("a width");
-        tab.navigate_to(address).and_then(|tab| tab.wait_until_navigated()).expect("the page loads");
+        tab.navigate_to(address)
+            .and_then(|tab| tab.wait_until_navigated())
+            .expect("the page loads");
         Some(Self { tab, noted, _browser: browser })
     }
 

@@ -16,6 +16,7 @@ pub mod beyond;
 pub mod experiment;
 pub mod flight;
 pub mod moving_user;
+pub mod online;
 pub mod options;
 pub mod replay;
 pub mod report;
