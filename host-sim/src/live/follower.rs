@@ -109,15 +109,12 @@ impl Decoder {
 
     fn decode(&mut self, bytes: &[u8]) -> Result<bool, Error> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut count = self.receiver.counts().received;
-        for frame in self.receiver.frames(bytes) {
-            if count >= self.most {
-                break;
-            }
-            count += 1;
+        // Those beyond are not even asked for.
+        let wanted = self.most.saturating_sub(self.receiver.counts().received);
+        for frame in self.receiver.frames(bytes).take(wanted as usize) {
             self.feed.take(&frame.message, &mut state)?;
         }
-        Ok(count < self.most)
+        Ok(self.receiver.counts().received < self.most)
     }
 
     fn show(&mut self, bytes: usize) {

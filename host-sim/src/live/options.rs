@@ -108,10 +108,11 @@ impl Live {
     /// Whatever is wrong with options and files, and a line or a disk that fails; what arrived before is in the
     /// recording.
     pub fn run(&self) -> Result<(), Error> {
+        let mut page = (!self.headless).then(|| Page::bind(self.port)).transpose()?;
         let live = super::Live::start(self)?;
-        let page = if self.headless { None } else { Some(Page::start(self.port, live.view())?) };
         output::warn(&live.announcement());
-        if let Some(page) = &page {
+        if let Some(page) = &mut page {
+            page.show(live.view());
             output::warn(&format!("page: {}  (Ctrl-C ends)", page.address()));
         }
         let (stop, ended) = (live.stopper(), Stopper::default());

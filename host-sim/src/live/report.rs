@@ -44,6 +44,8 @@ pub struct Report {
     pub counts: Counts,
     /// Where the estimator ended, m.
     pub position: Option<[f64; 3]>,
+    /// Of an aeroplane: angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch (rad) at its end.
+    pub state: Option<[f64; 4]>,
     /// Of a walk: its horizontal length from stance to stance, m.
     pub path_length_m: Option<f64>,
     /// What a user should know.
@@ -67,6 +69,12 @@ impl fmt::Display for Report {
         row("  refused", counts.refused.to_string());
         if let Some([x, y, z]) = self.position {
             row("position", format!("{x:.2} m, {y:.2} m, {z:.2} m"));
+        }
+        if let Some([alpha, rate, airspeed, pitch]) = self.state {
+            row("angle of attack", format!("{alpha:.4} rad"));
+            row("pitch rate", format!("{rate:.4} rad/s"));
+            row("airspeed", format!("{airspeed:.2} m/s"));
+            row("pitch", format!("{pitch:.4} rad"));
         }
         if let Some(length) = self.path_length_m {
             row("path length", format!("{length:.2} m"));

@@ -230,6 +230,7 @@ impl State {
             recording,
             counts: self.counts,
             position: self.position,
+            state: self.states.last().copied(),
             path_length_m: self.path_length_m,
             warnings: self.warnings(),
         }

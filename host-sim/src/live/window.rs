@@ -27,6 +27,11 @@ impl<T> Window<T> {
         self.0.push_back((time_us, sample));
     }
 
+    /// The last sample.
+    pub(super) fn last(&self) -> Option<&T> {
+        self.0.back().map(|(_, sample)| sample)
+    }
+
     /// Times, s, and samples.
     pub(super) fn iter(&self) -> impl Iterator<Item = (f64, &T)> {
         self.0.iter().map(|(time_us, sample)| (*time_us as f64 * 1e-6, sample))

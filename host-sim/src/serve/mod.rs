@@ -64,22 +64,28 @@ impl Serve {
 /// The page of a stream, beside whatever else the program does; it ends with this.
 #[derive(Debug)]
 pub struct Page {
+    runtime: Runtime,
+    listener: Option<TcpListener>,
     address: SocketAddr,
-    _runtime: Runtime,
 }
 
 impl Page {
-    /// Serves what `live` says.
+    /// Takes the port; nobody is answered yet.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the port cannot be had.
-    pub fn start(port: u16, live: View) -> Result<Self, Error> {
-        let shared =
-            Arc::new(Shared { sources: &[], sessions: Sessions::default(), live: Some(live) });
+    /// [`Error::Usage`] if it cannot be had.
+    pub fn bind(port: u16) -> Result<Self, Error> {
         let runtime = runtime()?;
         let (listener, address) = runtime.block_on(bind(port))?;
-        runtime.spawn(axum::serve(listener, router(shared, address)).into_future());
-        Ok(Self { address, _runtime: runtime })
+        Ok(Self { runtime, listener: Some(listener), address })
+    }
+
+    /// Shows what `live` says.
+    pub fn show(&mut self, live: View) {
+        let Some(listener) = self.listener.take() else { return };
+        let shared = Shared { sources: &[], sessions: Sessions::default(), live: Some(live) };
+        let router = router(Arc::new(shared), self.address);
+        self.runtime.spawn(axum::serve(listener, router).into_future());
     }
 
     /// Where it is.
