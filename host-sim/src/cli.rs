@@ -1,16 +1,33 @@
 //! The command line.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 
 use crate::design::Design;
 use crate::live::options::Live;
+use crate::outputs::Outputs;
+use crate::serve::Serve;
 use crate::systems::{drone, gnss, pedestrian, robot, uav};
+
+/// What the first page of `--help` ends with.
+const EXAMPLES: &str = "\
+Examples:
+  host-sim                                        every paper's experiments, and a report to look at
+  host-sim serve                                  turn thresholds and filters in the browser
+  host-sim run pedestrian --trials 5 --mcap a.mcap
+  host-sim replay pedestrian --log walk.txt --track path.csv
+  host-sim live pedestrian --udp 127.0.0.1:5775   follow a sensor that sends telemetry
+  host-sim completions bash > ~/.local/share/bash-completion/completions/host-sim
+
+Exit status: 0 if it was done, 2 if the command line or a file is not as it should be; then one sentence
+on standard error says which file, which line and what was expected. NO_COLOR is respected.";
 
 /// Estimators on synthetic and recorded streams.
 ///
-/// Without arguments every system runs on its synthetic streams.
+/// Without arguments every system runs on its synthetic streams, and target/report/index.html shows what
+/// came out, beside what the papers print.
 #[derive(Debug, Parser)]
-#[command(name = "host-sim", version)]
+#[command(name = "host-sim", version, after_help = EXAMPLES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -31,10 +48,17 @@ pub enum Command {
     Calibrate(Calibrate),
     /// Design observers: gains, discretisations and covariances of a file of cases
     Design(Design),
+    /// Explore recordings in the browser: thresholds and filters with sliders
+    Serve(Serve),
     /// Listen to a sender's telemetry, record it and follow it with a system's estimator
     Live(Live),
     /// List systems, scenarios and log formats
     List,
+    /// Print what makes a shell complete this program's options
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
 }
 
 /// `host-sim run`: every system has experiments of its own.
@@ -53,14 +77,14 @@ pub enum Run {
 }
 
 /// An experiment without options of its own.
-#[derive(Debug, Clone, Copy, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub struct PlainRun {
     /// Options that all systems share.
     #[command(flatten)]
     pub options: RunOptions,
-    /// Print one JSON object instead of a table
-    #[arg(long)]
-    pub json: bool,
+    /// Where the results go.
+    #[command(flatten)]
+    pub outputs: Outputs,
 }
 
 /// Options of a synthetic experiment.
@@ -111,6 +135,13 @@ pub enum ScalarKind {
     Fixed,
 }
 
+/// What makes a shell complete this program's options.
+pub fn completions(shell: Shell) -> String {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "host-sim", &mut script);
+    String::from_utf8_lossy(&script).into_owned()
+}
+
 /// Clap's complaint about a wrong command line, folded into one plain sentence.
 pub fn sentence(error: &clap::Error) -> String {
     let rendered = error.render().to_string();
@@ -122,7 +153,6 @@ pub fn sentence(error: &clap::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn definitions_are_consistent() {

@@ -1,5 +1,5 @@
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::systems::pedestrian::run::RunError;
 use crate::text::printable_path;
@@ -71,4 +71,23 @@ pub enum Error {
     /// Standard output cannot be written, for a reason other than a reader that went away.
     #[error("standard output cannot be written: {0}")]
     Stdout(#[source] io::Error),
+}
+
+impl Error {
+    /// With files below `folder` named by their last part: what an uploaded file is called, not where it lies.
+    pub fn naming_files_below(mut self, folder: &Path) -> Self {
+        match &mut self {
+            Self::Read { path, .. }
+            | Self::File { path, .. }
+            | Self::Line { path, .. }
+            | Self::Write { path, .. }
+            | Self::Walk { path, .. }
+                if path.starts_with(folder) =>
+            {
+                *path = path.file_name().map(PathBuf::from).unwrap_or_default();
+            }
+            _ => {}
+        }
+        self
+    }
 }

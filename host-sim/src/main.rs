@@ -1,14 +1,18 @@
 //! The program: dispatches the command line to the library.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
 use host_sim::cli::{self, Calibrate, Cli, Command, Replay, Run};
-use host_sim::systems::{self, System};
+use host_sim::systems;
 use host_sim::{Error, output};
 
 /// Wrong usage or unreadable input.
 const REFUSED: u8 = 2;
+
+/// Where the report goes, from the folder in which the program is started.
+const REPORT: &str = "target/report";
 
 /// A filter of thousands of particles is moved about a few times before it lies on the heap.
 const STACK_BYTES: usize = 16 << 20;
@@ -20,21 +24,20 @@ fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) if error.use_stderr() => return refuse(&cli::sentence(&error)),
-        Err(help_or_version) => {
-            return finish(output::print(&help_or_version.render().to_string()));
-        }
+        // Clap knows whether the terminal wants colours.
+        Err(help_or_version) => return finish(output::done(help_or_version.print())),
     };
     finish(dispatch(cli.command))
 }
 
 fn dispatch(command: Option<Command>) -> Result<(), Error> {
     match command {
-        None => System::ALL.into_iter().try_for_each(System::run_by_default),
-        Some(Command::Run(Run::Pedestrian(run))) => systems::run_pedestrian(run),
-        Some(Command::Run(Run::Robot(run))) => systems::run_robot(run),
-        Some(Command::Run(Run::Drone(run))) => systems::run_drone(run),
-        Some(Command::Run(Run::Uav(run))) => systems::run_uav(run),
-        Some(Command::Run(Run::Gnss(run))) => systems::run_gnss(run),
+        None => systems::report(Path::new(REPORT)),
+        Some(Command::Run(Run::Pedestrian(run))) => systems::run_pedestrian(&run),
+        Some(Command::Run(Run::Robot(run))) => systems::run_robot(&run),
+        Some(Command::Run(Run::Drone(run))) => systems::run_drone(&run),
+        Some(Command::Run(Run::Uav(run))) => systems::run_uav(&run),
+        Some(Command::Run(Run::Gnss(run))) => systems::run_gnss(&run),
         Some(Command::Replay(Replay::Pedestrian(replay))) => replay.run(),
         Some(Command::Replay(Replay::Robot(replay))) => replay.run(),
         Some(Command::Replay(Replay::Drone(replay))) => replay.run(),
@@ -42,6 +45,8 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Replay(Replay::Gnss(replay))) => replay.run(),
         Some(Command::Calibrate(Calibrate::Robot(calibrate))) => calibrate.run(),
         Some(Command::Design(design)) => design.run(),
+        Some(Command::Serve(serve)) => serve.run(&systems::SOURCES),
+        Some(Command::Completions { shell }) => output::print(&cli::completions(shell)),
         Some(Command::Live(live)) => live.run(),
         Some(Command::List) => output::print(&systems::list()),
     }

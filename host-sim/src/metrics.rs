@@ -66,12 +66,19 @@ pub fn closure(points: &[[f64; 2]]) -> f64 {
 /// so that they start at the origin, then `ours` is turned about it by the one angle that
 /// minimises the sum of the squared distances.
 pub fn aligned_errors(ours: &[[f64; 2]], truth: &[[f64; 2]]) -> Vec<f64> {
+    let (sin, cos) = best_turn(ours, truth).sin_cos();
+    let pairs = from_start(ours).into_iter().zip(from_start(truth));
+    pairs.map(|(a, b)| distance([cos * a[0] - sin * a[1], sin * a[0] + cos * a[1]], b)).collect()
+}
+
+/// By which angle, rad, anticlockwise, [`aligned_errors`] turns `ours` about its start; 0 of nothing.
+pub fn best_turn(ours: &[[f64; 2]], truth: &[[f64; 2]]) -> f64 {
     let (ours, truth) = (from_start(ours), from_start(truth));
-    let pairs = || ours.iter().zip(&truth);
-    let sine: f64 = pairs().map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
-    let cosine: f64 = pairs().map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum();
-    let (sin, cos) = sine.atan2(cosine).sin_cos();
-    pairs().map(|(a, &b)| distance([cos * a[0] - sin * a[1], sin * a[0] + cos * a[1]], b)).collect()
+    // Not `sum`, which of nothing is −0, whose angle is π.
+    let (sine, cosine) = ours.iter().zip(&truth).fold((0.0, 0.0), |(sine, cosine), (a, b)| {
+        (sine + a[0] * b[1] - a[1] * b[0], cosine + a[0] * b[0] + a[1] * b[1])
+    });
+    f64::atan2(sine, cosine)
 }
 
 fn from_start(points: &[[f64; 2]]) -> Vec<[f64; 2]> {

@@ -34,7 +34,15 @@ pub fn show(report: &(impl Serialize + Display), json: bool) -> Result<(), Error
 /// As [`show`].
 pub fn print(text: &str) -> Result<(), Error> {
     let mut stdout = io::stdout().lock();
-    match writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush()) {
+    done(writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush()))
+}
+
+/// What became of writing to standard output.
+///
+/// # Errors
+/// As [`show`].
+pub fn done(written: io::Result<()>) -> Result<(), Error> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Stdout(error)),
         _ => Ok(()),
     }

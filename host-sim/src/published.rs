@@ -19,6 +19,15 @@ pub struct PathLengths {
 /// Length of the paper's route through a flat, m.
 pub const PEDESTRIAN_ROUTE_M: f64 = 12.60;
 
+/// Its Table 1: lines of the log, time in ms, 3 × g, 3 × °/s.
+pub const PEDESTRIAN_LOG_LINES: [&str; 3] = [
+    "1490 -0.06 -0.21 -0.99 2.44 2.90 2.13",
+    "1499 -0.05 -0.21 -0.98 3.41 2.35 1.52",
+    "1508 -0.04 -0.22 -0.98 2.96 1.68 1.19",
+];
+/// Where Fig. 16 shows the walker after 15 s: x and y, m; z is about 0.
+pub const PEDESTRIAN_AFTER_15_S: [f64; 2] = [6.0, 3.0];
+
 /// Seven walks logged at 50 Hz.
 pub const PEDESTRIAN_50_HZ: PathLengths = PathLengths {
     source: "Table 3",
@@ -104,7 +113,11 @@ pub const DRONE_TRAJECTORIES: [[f64; 4]; 2] =
 pub const DRONE_EQUAL_ENERGY: [f64; 2] = [67.9, 84.0];
 
 /// The UAV's thesis (Turkish; longitudinal states by a Luenberger observer and a Kalman filter) prints no numbers,
-/// but says what its figures show. Fig. 5.2: when step responses have settled, s.
+/// but says what its figures show. Table 3.1: steady flight, of α, q, V and θ.
+pub const UAV_TRIM: [&str; 4] = ["8°", "0", "40 m/s", "12°"];
+/// Sections 4.2.1 and 4.2.2: what is asked of the ranks of [B AB …] and [C; CA; …].
+pub const UAV_RANK: &str = "rank 4";
+/// Fig. 5.2: when step responses have settled, s.
 pub const UAV_SETTLING_S: f64 = 600.0;
 /// Figs 5.5 to 5.8, constant inputs: what, and what is said of it.
 pub const UAV_CONSTANT_INPUTS: [[&str; 2]; 6] = [

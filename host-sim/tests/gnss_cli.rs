@@ -3,6 +3,7 @@
 mod program;
 mod station;
 
+use std::collections::BTreeMap;
 use std::fs;
 
 use program::{Desk, host_sim, json, refusal, text};
@@ -86,6 +87,30 @@ fn a_receiver_is_found() {
     let table = host_sim(&with(&files, &more));
     assert!(text(&table.stdout).contains("convergence"));
     assert!(text(&table.stderr).contains("warning: the load of the oceans"));
+}
+
+#[test]
+fn what_was_found_can_be_looked_at_in_other_programs() {
+    let desk = Desk::new();
+    let files = replay(&desk, 40, LATE, |_, _| Some(Fault::NONE));
+    let messages = |more: &[&str]| {
+        let file = desk.named("run.mcap");
+        report(&files, &[more, &["--mcap", &file]].concat());
+        let bytes = fs::read(&file).expect("a file");
+        let mut counts = BTreeMap::new();
+        for message in mcap::MessageStream::new(&bytes).expect("an MCAP file") {
+            *counts.entry(message.expect("a message").channel.topic.clone()).or_insert(0) += 1;
+        }
+        counts
+    };
+    let found = messages(&["--truth", &marker()]);
+    let each = ["/gnss/estimate", "/gnss/estimate/pose", "/gnss/truth", "/gnss/satellites"];
+    let rest = ["/gnss/code_residuals", "/gnss/phase_residuals"];
+    for topic in each.into_iter().chain(rest) {
+        assert_eq!(found.get(topic), Some(&40), "{topic}: {found:?}");
+    }
+    assert_eq!(found.get("/gnss/estimate/path"), Some(&1));
+    assert_eq!(messages(&[]).get("/gnss/truth"), None);
 }
 
 #[test]

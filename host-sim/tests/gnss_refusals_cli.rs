@@ -47,7 +47,9 @@ fn options_that_do_not_fit() {
         (&["--mode", "kinematic", "--process-noise", "0"], "m²/s"),
         (&["--filter", "all", "--track", &track], "--filter all"),
         (&["--filter", "all", "--residuals", &track], "--filter all"),
+        (&["--filter", "all", "--mcap", &track], "--filter all"),
         (&["--track", &track, "--residuals", &track], "same file"),
+        (&["--residuals", &track, "--mcap", &track], "--residuals and --mcap name the same file"),
         (&["--filter", "ukf"], "ukf"),
         (&["--mode", "flying"], "flying"),
         (&["--without", "gravity"], "gravity"),
@@ -57,6 +59,7 @@ fn options_that_do_not_fit() {
         (&["--until", "noon"], "seconds"),
         (&["--track", &files.obs], "overwrite"),
         (&["--residuals", &files.sp3], "overwrite"),
+        (&["--mcap", &files.obs], "overwrite"),
         (&["--track", &files.desk.named("absent/track.csv")], "absent"),
         (&["--track", &files.desk.named("")], "cannot be written"),
     ] {

@@ -16,7 +16,7 @@ use serde_json::Value;
 /// The program while it listens, and the line in which it says to what.
 fn listening(arguments: &[&str]) -> (Child, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-        .arg("live")
+        .args(["live", "--headless"])
         .args(arguments)
         // No test leaves it behind.
         .args(["--seconds", "300"])
@@ -65,7 +65,7 @@ fn a_killed_program_has_written_down_all_that_came() {
     assert_eq!(recorded, bytes[..100_000]);
     let (found, counts) = decoded(&recorded);
     assert_eq!((found.as_slice(), counts.lost), (&sent[..found.len()], 0));
-    let replayed = json(&host_sim(&["live", "--file", &named, "--json"]));
+    let replayed = json(&host_sim(&["live", "--headless", "--file", &named, "--json"]));
     assert_eq!(replayed["counts"]["received"], found.len());
     assert_eq!(replayed["counts"]["torn"], 1);
 }
@@ -90,13 +90,13 @@ fn a_torn_last_frame_is_counted() {
     let bytes = frames(healths(10));
     let counts = |cut: usize| {
         let recording = desk.file("cut.frames", &bytes[..bytes.len() - cut]);
-        json(&host_sim(&["live", "--file", &recording, "--json"]))["counts"].clone()
+        json(&host_sim(&["live", "--headless", "--file", &recording, "--json"]))["counts"].clone()
     };
     assert_eq!((&counts(0)["received"], &counts(0)["torn"]), (&10.into(), &0.into()));
     // Without its delimiter alone it is whole.
     assert_eq!((&counts(1)["received"], &counts(1)["torn"]), (&10.into(), &0.into()));
     assert_eq!((&counts(4)["received"], &counts(4)["torn"]), (&9.into(), &1.into()));
-    let table = host_sim(&["live", "--file", &desk.named("cut.frames")]);
+    let table = host_sim(&["live", "--headless", "--file", &desk.named("cut.frames")]);
     assert!(text(&table.stdout).contains("frames received"), "{}", text(&table.stderr));
 }
 

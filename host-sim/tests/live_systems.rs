@@ -20,7 +20,7 @@ use serde_json::Value;
 /// The report on a recording of these messages.
 fn live(desk: &Desk, messages: Vec<Message>, arguments: &[&str]) -> Value {
     let recording = desk.file("live.frames", frames(messages));
-    json(&host_sim(&[&["live", "--json", "--file", &recording], arguments].concat()))
+    json(&host_sim(&[&["live", "--headless", "--json", "--file", &recording], arguments].concat()))
 }
 
 fn number(value: &Value) -> f64 {

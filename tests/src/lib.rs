@@ -1,5 +1,6 @@
 //! What the tests across crates share.
 
+pub mod book;
 pub mod common_scenario;
 #[path = "../firmware/images/src/design.rs"]
 pub mod design;

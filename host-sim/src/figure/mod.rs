@@ -1,11 +1,13 @@
 //! What a figure shows, whoever draws it: the [page](plotly), a [file for a paper](svg) or a table.
 
+pub mod csv;
 pub mod plotly;
 mod series;
 pub mod svg;
 mod thin;
 
 pub use series::{Colour, Mark, Series};
+pub use thin::View;
 
 /// A diagram of one or more series over two axes.
 #[derive(Debug, Clone, PartialEq)]

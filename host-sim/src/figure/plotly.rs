@@ -2,14 +2,15 @@
 
 use serde_json::{Value, json};
 
-use super::{Axis, Colour, Figure, Mark, Series, thin};
+use super::{Axis, Colour, Figure, Mark, Series, View, thin};
 
 /// The figure for the page: its words, and `data` and `layout` of `Plotly.react`.
 ///
-/// Colours of paper, text and grid are left to the page, which knows whether it is dark. A series of more
-/// than `most_points` is thinned.
-pub fn figure(figure: &Figure, most_points: usize) -> Value {
-    let data: Vec<_> = figure.series.iter().map(|series| trace(series, most_points)).collect();
+/// Colours of paper, text and grid are left to the page, which knows whether it is dark.
+pub fn figure(figure: &Figure, view: View) -> Value {
+    // A map's points are in the order of time, not from left to right.
+    let view = if figure.equal { View { window: None, ..view } } else { view };
+    let data: Vec<_> = figure.series.iter().map(|series| trace(series, view)).collect();
     let mut y = axis(&figure.y);
     if figure.equal {
         y["scaleanchor"] = json!("x");
@@ -36,8 +37,8 @@ fn axis(axis: &Axis) -> Value {
     value
 }
 
-fn trace(series: &Series, most_points: usize) -> Value {
-    let kept = thin::indices(series, most_points);
+fn trace(series: &Series, view: View) -> Value {
+    let kept = thin::indices(series, view);
     let pick = |values: &[f64]| -> Vec<f64> {
         rounded(kept.iter().map(|&i| values.get(i).copied().unwrap_or(f64::NAN)).collect())
     };

@@ -1,18 +1,29 @@
 //! Long series, thinned to what a screen can show.
 
+use std::ops::Range;
+
 use super::Series;
 
-/// Indices of at most about `most` points that look like all of them: the lowest and the highest of each
-/// stretch, so that no peak is lost.
-pub(super) fn indices(series: &Series, most: usize) -> Vec<usize> {
-    let length = series.len();
-    if length <= most {
-        return (0..length).collect();
+/// What a screen shows of a figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// How many points of a series it can show, about.
+    pub most_points: usize,
+    /// From where to where along the horizontal axis, where it is zoomed in.
+    pub window: Option<[f64; 2]>,
+}
+
+/// Indices of points that look like all of them in this view: the lowest and the highest of each stretch, so
+/// that no peak is lost.
+pub(super) fn indices(series: &Series, view: View) -> Vec<usize> {
+    let seen = seen(series, view.window);
+    if seen.len() <= view.most_points {
+        return seen.collect();
     }
-    let stretch = (2 * length).div_ceil(most).max(1);
-    let mut kept = Vec::with_capacity(most + 2);
-    for begin in (0..length).step_by(stretch) {
-        let end = (begin + stretch).min(length);
+    let stretch = (2 * seen.len()).div_ceil(view.most_points).max(1);
+    let mut kept = Vec::with_capacity(view.most_points + 2);
+    for begin in seen.clone().step_by(stretch) {
+        let end = (begin + stretch).min(seen.end);
         let by_height = |&a: &usize, &b: &usize| series.y[a].total_cmp(&series.y[b]);
         let places = || (begin..end).filter(|&i| !series.y[i].is_nan());
         let (low, high) = (places().min_by(by_height), places().max_by(by_height));
@@ -23,12 +34,22 @@ pub(super) fn indices(series: &Series, most: usize) -> Vec<usize> {
         chosen.dedup();
         kept.extend(chosen);
     }
-    for end in [0, length - 1] {
+    for end in [seen.start, seen.end - 1] {
         if let Err(place) = kept.binary_search(&end) {
             kept.insert(place, end);
         }
     }
     kept
+}
+
+/// What lies in the window, and half as much on either side to move about.
+fn seen(series: &Series, window: Option<[f64; 2]>) -> Range<usize> {
+    let all = 0..series.len();
+    let Some([low, high]) = window.filter(|_| series.x.is_sorted()) else { return all };
+    let margin = (high - low).abs() / 2.0;
+    let begin = series.x.partition_point(|&x| x < low - margin).saturating_sub(1);
+    let end = (series.x.partition_point(|&x| x <= high + margin) + 1).min(all.end);
+    begin.min(end)..end
 }
 
 #[cfg(test)]
@@ -40,7 +61,8 @@ mod tests {
         let x: Vec<f64> = (0..10_000).map(f64::from).collect();
         let mut y = vec![0.0; 10_000];
         (y[4321], y[7777], y[5000]) = (9.0, -9.0, f64::NAN);
-        let kept = indices(&Series::line("", x, y), 500);
+        let series = Series::line("", x, y);
+        let kept = indices(&series, View { most_points: 500, window: None });
         assert!(kept.len() <= 505, "{}", kept.len());
         assert!(kept.is_sorted());
         for index in [0, 4321, 5000, 7777, 9999] {
@@ -51,7 +73,20 @@ mod tests {
     #[test]
     fn short_series_stay_as_they_are() {
         let series = Series::line("", vec![1.0, 2.0], vec![3.0, f64::NAN]);
-        assert_eq!(indices(&series, 2), [0, 1]);
-        assert!(indices(&Series::line("", vec![], vec![]), 2).is_empty());
+        let view = View { most_points: 2, window: None };
+        assert_eq!(indices(&series, view), [0, 1]);
+        assert!(indices(&Series::line("", vec![], vec![]), view).is_empty());
+    }
+
+    #[test]
+    fn zooming_in_shows_every_point() {
+        let x: Vec<f64> = (0..10_000).map(|i| f64::from(i) / 100.0).collect();
+        let series = Series::line("", x.clone(), x);
+        let zoomed = |window| indices(&series, View { most_points: 500, window: Some(window) });
+        let kept = zoomed([50.0, 51.0]);
+        assert_eq!((kept[0], kept.len(), kept[kept.len() - 1]), (4949, 203, 5151));
+        assert!(zoomed([-9.0, -8.0]).len() <= 2);
+        assert!(zoomed([900.0, 901.0]).len() <= 2);
+        assert!(zoomed([f64::NAN, 1.0]).len() <= 505);
     }
 }

@@ -57,6 +57,9 @@ pub struct Live {
     recording: PathBuf,
 }
 
+/// What gives an answer whenever it is asked.
+pub type View = Arc<dyn Fn() -> Answer + Send + Sync>;
+
 /// Ends a stream, from any thread.
 #[derive(Debug, Clone, Default)]
 pub struct Stopper(Arc<AtomicBool>);
@@ -156,10 +159,19 @@ impl Live {
 
     /// What there is to see now.
     pub fn answer(&self) -> Answer {
-        let mut answer = self.state().answer();
-        answer.fact("source", &*self.source);
-        answer.fact("recording", printable_path(&self.recording));
-        answer
+        (self.view())()
+    }
+
+    /// What gives the [answer](Self::answer), from any thread and even when this is finished.
+    pub fn view(&self) -> View {
+        let state = Arc::clone(&self.state);
+        let (source, recording) = (self.source.clone(), printable_path(&self.recording));
+        Arc::new(move || {
+            let mut answer = state.lock().unwrap_or_else(PoisonError::into_inner).answer();
+            answer.fact("source", &*source);
+            answer.fact("recording", &*recording);
+            answer
+        })
     }
 
     /// What became of everything so far.

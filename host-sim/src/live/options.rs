@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::Duration;
 
+use super::Stopper;
+use crate::serve::{self, Page};
 use crate::systems::pedestrian::options::SensorClass;
 use crate::{Error, output};
 
@@ -59,6 +61,12 @@ pub struct Live {
     /// End after this many good frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
+    /// Port of the page on this machine that shows the stream; 0 takes a free one
+    #[arg(long, value_name = "P", default_value_t = serve::PORT)]
+    pub port: u16,
+    /// Show no page
+    #[arg(long, conflicts_with = "port")]
+    pub headless: bool,
     /// At the end print one JSON object instead of a table
     #[arg(long)]
     pub json: bool,
@@ -100,11 +108,20 @@ impl Live {
     /// Whatever is wrong with options and files, and a line or a disk that fails; what arrived before is in the
     /// recording.
     pub fn run(&self) -> Result<(), Error> {
+        let mut page = (!self.headless).then(|| Page::bind(self.port)).transpose()?;
         let live = super::Live::start(self)?;
         output::warn(&live.announcement());
-        let stop = live.stopper();
+        if let Some(page) = &mut page {
+            page.show(live.view());
+            output::warn(&format!("page: {}  (Ctrl-C ends)", page.address()));
+        }
+        let (stop, ended) = (live.stopper(), Stopper::default());
+        let end = ended.clone();
         // Without it Ctrl-C ends the program at once: the recording is complete even so.
-        let _ = ctrlc::set_handler(move || stop.stop());
+        let _ = ctrlc::set_handler(move || {
+            stop.stop();
+            end.stop();
+        });
         while !live.is_finished() {
             thread::sleep(PATIENCE);
         }
@@ -112,7 +129,12 @@ impl Live {
         for warning in &report.warnings {
             output::warn(&format!("warning: {warning}"));
         }
-        output::show(&report, self.json)
+        output::show(&report, self.json)?;
+        // Played back, it is over before anybody has looked.
+        while page.is_some() && self.file.is_some() && !ended.is_stopped() {
+            thread::sleep(PATIENCE);
+        }
+        Ok(())
     }
 
     /// Where datagrams are to be sent.

@@ -1,8 +1,12 @@
 //! What a run shows: comparisons with the papers, figures, streams, and how each was made.
 
 mod comparison;
+pub mod csv;
+mod folder;
+mod page;
 
 pub use comparison::{Comparison, Row};
+pub use folder::write;
 
 use crate::figure::Figure;
 use crate::stream::Stream;
@@ -45,7 +49,7 @@ pub enum Content {
 }
 
 /// How numbers were made: enough to make them again.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Made {
     /// What to type.
     pub command: String,
@@ -56,12 +60,17 @@ pub struct Made {
 }
 
 impl Chapter {
-    /// The comparisons, without the summary.
-    pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
+    /// The tables, without the summary, and how each was made.
+    pub fn tables(&self) -> impl Iterator<Item = (&Comparison, &Made)> {
         self.items.iter().filter_map(|item| match &item.content {
-            Content::Comparison(comparison) => Some(comparison),
+            Content::Comparison(comparison) => Some((comparison, &item.made)),
             Content::Figure(_) => None,
         })
+    }
+
+    /// The tables, without the summary.
+    pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
+        self.tables().map(|(comparison, _)| comparison)
     }
 
     /// The figures.

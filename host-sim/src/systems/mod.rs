@@ -6,9 +6,16 @@ pub mod pedestrian;
 pub mod robot;
 pub mod uav;
 
-use crate::Error;
+use std::fmt::Display;
+use std::path::Path;
+
+use serde::Serialize;
+
 use crate::cli::{PlainRun, RunOptions, ScalarKind};
-use crate::output;
+use crate::explore::Source;
+use crate::outputs::{self, Outputs};
+use crate::report::{self, Chapter};
+use crate::{Error, output};
 
 /// A system that can be run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,62 +32,100 @@ pub enum System {
     Gnss,
 }
 
+/// What the explorer can open, the default first.
+pub static SOURCES: [Source; 5] = [
+    pedestrian::explorer::SOURCE,
+    robot::explorer::SOURCE,
+    drone::explorer::SOURCE,
+    uav::explorer::SOURCE,
+    gnss::explorer::SOURCE,
+];
+
 /// Runs the pedestrian's experiment and prints its report.
 ///
 /// # Errors
-/// Whatever keeps the experiment from running or its report from being printed.
-pub fn run_pedestrian(run: PlainRun) -> Result<(), Error> {
-    output::show(&pedestrian::experiment::run(run.options)?, run.json)
+/// Whatever keeps the experiment from running or its report from being printed or written.
+pub fn run_pedestrian(run: &PlainRun) -> Result<(), Error> {
+    deliver(&pedestrian::experiment::run(run.options)?, pedestrian::chapter::chapter, &run.outputs)
 }
 
 /// Runs the robot's experiment and prints its report.
 ///
 /// # Errors
 /// As [`run_pedestrian`].
-pub fn run_robot(run: PlainRun) -> Result<(), Error> {
-    output::show(&robot::experiment::run(run.options)?, run.json)
+pub fn run_robot(run: &PlainRun) -> Result<(), Error> {
+    deliver(&robot::experiment::run(run.options)?, robot::chapter::chapter, &run.outputs)
 }
 
 /// Runs the drone's experiments, or one cell of them, and prints the report.
 ///
 /// # Errors
 /// As [`run_pedestrian`].
-pub fn run_drone(run: drone::options::Run) -> Result<(), Error> {
-    output::show(&drone::experiment::run(run)?, run.json)
+pub fn run_drone(run: &drone::options::Run) -> Result<(), Error> {
+    deliver(&drone::experiment::run(run)?, drone::chapter::chapter, &run.outputs)
 }
 
 /// Runs the UAV's experiments and prints the report.
 ///
 /// # Errors
 /// As [`run_pedestrian`].
-pub fn run_uav(run: PlainRun) -> Result<(), Error> {
-    output::show(&uav::experiment::run(run.options)?, run.json)
+pub fn run_uav(run: &PlainRun) -> Result<(), Error> {
+    deliver(&uav::experiment::run(run.options)?, uav::chapter::chapter, &run.outputs)
 }
 
 /// Runs the GNSS receiver's experiment and prints its report.
 ///
 /// # Errors
 /// As [`run_pedestrian`].
-pub fn run_gnss(run: PlainRun) -> Result<(), Error> {
-    output::show(&gnss::experiment::run(run.options)?, run.json)
+pub fn run_gnss(run: &PlainRun) -> Result<(), Error> {
+    deliver(&gnss::experiment::run(run.options)?, gnss::chapter::chapter, &run.outputs)
+}
+
+/// Writes what was asked for, and prints the rest.
+fn deliver<R: Serialize + Display>(
+    report: &R,
+    chapter: impl FnOnce(&R) -> Result<Chapter, Error>,
+    outputs: &Outputs,
+) -> Result<(), Error> {
+    if outputs.any_file() {
+        outputs.write(chapter(report)?)?;
+    }
+    output::show(report, outputs.json)
+}
+
+/// Runs every system on its synthetic streams, prints the few numbers that matter most, and writes the
+/// report into `folder`.
+///
+/// # Errors
+/// As [`run_pedestrian`].
+pub fn report(folder: &Path) -> Result<(), Error> {
+    let mut chapters = Vec::new();
+    for system in System::ALL {
+        let chapter = system.chapter()?;
+        output::print(&format!("{}\n", chapter.summary))?;
+        chapters.push(chapter);
+    }
+    outputs::say_where(&report::write(folder, &chapters)?);
+    Ok(())
 }
 
 impl System {
     /// Every system, in the order in which they run.
     pub const ALL: [Self; 5] = [Self::Pedestrian, Self::Robot, Self::Drone, Self::Uav, Self::Gnss];
 
-    /// Runs the system on its synthetic streams and prints the report.
-    ///
-    /// # Errors
-    /// As [`run_pedestrian`].
-    pub fn run_by_default(self) -> Result<(), Error> {
-        let plain = PlainRun { options: RunOptions::default(), json: false };
+    /// Runs the system on its synthetic streams.
+    fn chapter(self) -> Result<Chapter, Error> {
+        let options = RunOptions::default();
         match self {
-            Self::Pedestrian => run_pedestrian(plain),
-            Self::Robot => run_robot(plain),
-            Self::Drone => run_drone(drone::options::Run::default()),
-            Self::Uav => run_uav(plain),
-            Self::Gnss => run_gnss(plain),
+            Self::Pedestrian => {
+                pedestrian::chapter::chapter(&pedestrian::experiment::run(options)?)
+            }
+            Self::Robot => robot::chapter::chapter(&robot::experiment::run(options)?),
+            Self::Drone => {
+                drone::chapter::chapter(&drone::experiment::run(&drone::options::Run::default())?)
+            }
+            Self::Uav => uav::chapter::chapter(&uav::experiment::run(options)?),
+            Self::Gnss => gnss::chapter::chapter(&gnss::experiment::run(options)?),
         }
     }
 

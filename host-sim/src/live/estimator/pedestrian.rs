@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::{Estimator, Outcome};
 use crate::systems::pedestrian::options::SensorClass;
-use crate::systems::pedestrian::run;
+use crate::systems::pedestrian::warning;
 
 /// What is known beforehand.
 #[derive(Debug, Clone, Copy)]
@@ -68,6 +68,6 @@ impl Estimator for Walker {
 
     fn warnings(&self) -> Vec<String> {
         // Whether a foot ever stood is not known before it did.
-        if self.last.is_some() { run::sentences(self.tracker.warnings()) } else { Vec::new() }
+        if self.last.is_some() { warning::sentences(self.tracker.warnings()) } else { Vec::new() }
     }
 }

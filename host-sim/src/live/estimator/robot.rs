@@ -107,7 +107,7 @@ impl Estimator for Tag {
         if let Message::Range(Range { anchor, range, .. }) = *message {
             let taken = self.tracker.range(since_us, anchor.into(), range.into());
             self.tracker.end_epoch(since_us);
-            return Outcome::taken(taken);
+            return Outcome::taken(taken.taken);
         }
         if let Some(acceleration) = acceleration {
             let acceleration = acceleration.map(f64::from);

@@ -36,7 +36,7 @@ const SPEED_KMH: f64 = 40.0;
 ///
 /// # Errors
 /// If the scalar is not supported.
-pub fn run(run: Run) -> Result<Report, Error> {
+pub fn run(run: &Run) -> Result<Report, Error> {
     let Run { options, cell, .. } = run;
     let all = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
     let scalar = choose_scalar("drone", options.scalar, &all, ScalarKind::F32)?;
@@ -48,8 +48,8 @@ pub fn run(run: Run) -> Result<Report, Error> {
     };
     Ok(match (cell.any(), cell.moving) {
         (false, _) => experiment.everything(),
-        (true, false) => experiment.static_cell(&cell),
-        (true, true) => experiment.moving_cell(&cell),
+        (true, false) => experiment.static_cell(cell),
+        (true, true) => experiment.moving_cell(cell),
     })
 }
 

@@ -4,9 +4,10 @@ use kestirim_particle_filter::Resampler;
 
 use super::scenario::EnvironmentKind;
 use crate::cli::RunOptions;
+use crate::outputs::Outputs;
 
 /// `host-sim run drone`: all tables and figures, or with any option of a cell that cell alone.
-#[derive(Debug, Clone, Copy, Default, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct Run {
     /// Options that all systems share.
     #[command(flatten)]
@@ -14,9 +15,9 @@ pub struct Run {
     /// The cell.
     #[command(flatten)]
     pub cell: CellOptions,
-    /// Print one JSON object instead of a table
-    #[arg(long)]
-    pub json: bool,
+    /// Where the results go.
+    #[command(flatten)]
+    pub outputs: Outputs,
 }
 
 /// One cell: a user who stays in 2000 m × 2000 m, or moves in 4000 m × 4000 m.

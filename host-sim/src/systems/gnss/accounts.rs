@@ -160,53 +160,62 @@ fn most_rejected(followed: &Followed) -> Vec<Rejections> {
     rejections
 }
 
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = output::table();
-        let mut row = |name: &str, value: String| {
-            table.add_row([name, value.as_str()]);
-        };
+impl Report {
+    /// What it says, each with a name.
+    pub fn facts(&self) -> Vec<(&'static str, String)> {
+        let mut facts = Vec::new();
+        let mut fact = |name, value| facts.push((name, value));
         let printed = if self.printed { ", as printed" } else { "" };
         let mode = format!("{:?}", self.mode).to_lowercase();
-        row("filter", format!("{}{printed}, {mode}", self.filter.name()));
-        row("epochs", format!("{}, {} with a solution", self.epochs, self.solved));
+        fact("filter", format!("{}{printed}, {mode}", self.filter.name()));
+        fact("epochs", format!("{}, {} with a solution", self.epochs, self.solved));
         let [x, y, z] = self.position_ecef_m;
-        row("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
+        fact("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
         let place = Geodetic::from_ecef(&Vector3::from(self.position_ecef_m));
         let [latitude, longitude] = [place.latitude, place.longitude].map(f64::to_degrees);
-        row(
+        fact(
             "latitude, longitude, height",
             format!("{latitude:.9}°, {longitude:.9}°, {:.4} m", place.height),
         );
-        row("standard deviation", enu(self.sd_enu_m));
+        fact("standard deviation", enu(self.sd_enu_m));
         let since = match self.converged_since_min {
             Some(minutes) => format!(", since {minutes:.1} min"),
             None => String::new(),
         };
-        row("health", format!("{}{since}", self.health));
-        row("zenith delay", format!("{:.1} mm", 1e3 * self.zenith_delay_m));
-        row("observations", self.observations.to_string());
+        fact("health", format!("{}{since}", self.health));
+        fact("zenith delay", format!("{:.1} mm", 1e3 * self.zenith_delay_m));
+        fact("observations", self.observations.to_string());
         let both = |both: Both| format!("{} codes, {} phases", both.code, both.phase);
-        row("rejected", both(self.rejected_by_kind));
+        fact("rejected", both(self.rejected_by_kind));
         if !self.most_rejected.is_empty() {
             let names = self
                 .most_rejected
                 .iter()
                 .map(|it| format!("{} {}", it.satellite, it.rejected.sum()));
-            row("  most of", names.collect::<Vec<_>>().join(", "));
+            fact("  most of", names.collect::<Vec<_>>().join(", "));
         }
-        row("down-weighted", both(self.deweighted_by_kind));
-        row("slips", slips(self.slips_by_kind));
-        row("not used", unused(&self.unused));
+        fact("down-weighted", both(self.deweighted_by_kind));
+        fact("slips", slips(self.slips_by_kind));
+        fact("not used", unused(&self.unused));
         if let Some(accuracy) = &self.accuracy {
             let Accuracy { final_3d_m, final_enu_m, .. } = *accuracy;
-            row("final error", format!("{} ({})", millimetres(final_3d_m), enu(final_enu_m)));
+            fact("final error", format!("{} ({})", millimetres(final_3d_m), enu(final_enu_m)));
             if let (Some(all), Some(each)) = (accuracy.rms_3d_m, accuracy.rms_enu_m) {
-                row("RMS after 1 h", format!("{} ({})", millimetres(all), enu(each)));
+                fact("RMS after 1 h", format!("{} ({})", millimetres(all), enu(each)));
             }
             let never = || "never below 10 cm for 15 min".to_owned();
             let minutes = |minutes: f64| format!("{minutes:.1} min");
-            row("convergence", accuracy.convergence_min.map_or_else(never, minutes));
+            fact("convergence", accuracy.convergence_min.map_or_else(never, minutes));
+        }
+        facts
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        for (name, value) in self.facts() {
+            table.add_row([name, value.as_str()]);
         }
         table.fmt(f)
     }

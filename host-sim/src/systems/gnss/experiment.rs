@@ -8,6 +8,7 @@ use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, Sighting, states
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::options::FilterKind;
 use super::report::{Report, Row};
 use super::sky::score::Score;
 use super::sky::{Day, Rates, UTC_MINUS_GPS};
@@ -23,6 +24,13 @@ pub const PROCESS_NOISE: f64 = 1e-4;
 /// Satellites that a filter has room for.
 const STATES: usize = states(16);
 
+/// The rows with the paper's static filters, …
+pub(super) const STATIC: &str = "Table 2: static";
+/// … those with its kinematic filters, …
+pub(super) const KINEMATIC: &str = "Table 3: kinematic";
+/// … and those of the days on which nothing goes wrong.
+pub(super) const CLEAN: &str = "the same days without faults";
+
 /// One filter on one kind of days.
 #[derive(Debug, Clone, Copy)]
 struct Case {
@@ -37,9 +45,6 @@ struct Case {
 /// All rows of the tables. By the letter of the paper the t-test is what it is anyway; UKF is IKF, as its factor never
 /// falls: one of the tables shows it.
 fn cases() -> Vec<Case> {
-    const STATIC: &str = "Table 2: static";
-    const KINEMATIC: &str = "Table 3: kinematic";
-    const CLEAN: &str = "the same days without faults";
     let printed =
         |estimator: Estimator| Estimator { robust: estimator.robust.printed(), ..estimator };
     let standing = Motion::Static;
@@ -61,20 +66,20 @@ fn cases() -> Vec<Case> {
     let [plain, igg3, t_test] = [Estimator::plain(), Estimator::igg3(), Estimator::t_test()];
     let [iterative, adaptive] = [Estimator::iterative_igg3(), Estimator::adaptive()];
     vec![
-        case(STATIC, "plain (GKF)", standing, plain, gkf),
-        case(STATIC, "IGG III (RKF)", standing, igg3, rkf),
-        case(STATIC, "t-test (SKF)", standing, t_test, skf),
-        case(STATIC, "iterative IGG III (IKF)", standing, iterative, ikf),
-        case(STATIC, "adaptive (UKF)", standing, adaptive, ukf),
-        case(STATIC, "default", standing, Estimator::guarded(standing), None),
+        case(STATIC, FilterKind::Gkf.title(), standing, plain, gkf),
+        case(STATIC, FilterKind::Rkf.title(), standing, igg3, rkf),
+        case(STATIC, FilterKind::Skf.title(), standing, t_test, skf),
+        case(STATIC, FilterKind::Ikf.title(), standing, iterative, ikf),
+        case(STATIC, FilterKind::Adaptive.title(), standing, adaptive, ukf),
+        case(STATIC, FilterKind::Default.title(), standing, Estimator::guarded(standing), None),
         case(STATIC, "RKF by the letter", standing, printed(igg3), None),
         case(STATIC, "IKF by the letter", standing, printed(iterative), None),
-        case(KINEMATIC, "plain (GKF)", moving, plain, None),
-        case(KINEMATIC, "IGG III (RKF)", moving, igg3, None),
-        case(KINEMATIC, "t-test (SKF)", moving, t_test, None),
-        case(KINEMATIC, "iterative IGG III (IKF)", moving, iterative, moving_ikf),
-        case(KINEMATIC, "adaptive (UKF)", moving, adaptive, moving_ukf),
-        case(KINEMATIC, "default", moving, Estimator::guarded(moving), None),
+        case(KINEMATIC, FilterKind::Gkf.title(), moving, plain, None),
+        case(KINEMATIC, FilterKind::Rkf.title(), moving, igg3, None),
+        case(KINEMATIC, FilterKind::Skf.title(), moving, t_test, None),
+        case(KINEMATIC, FilterKind::Ikf.title(), moving, iterative, moving_ikf),
+        case(KINEMATIC, FilterKind::Adaptive.title(), moving, adaptive, moving_ukf),
+        case(KINEMATIC, FilterKind::Default.title(), moving, Estimator::guarded(moving), None),
         case(KINEMATIC, "IKF by the letter", moving, printed(iterative), None),
         case(KINEMATIC, "UKF by the letter", moving, printed(adaptive), None),
         clean("plain, static", standing, plain),

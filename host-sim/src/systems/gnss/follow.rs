@@ -101,6 +101,8 @@ pub struct Followed {
     pub epochs: usize,
     /// Those with a solution.
     pub fixes: Vec<Fix>,
+    /// Their standard deviations to the east, north and up, m.
+    pub deviations: Vec<[f64; 3]>,
     /// The last of them.
     pub last: Option<Last>,
     /// Since when all positions have been converged ones, s.
@@ -187,6 +189,12 @@ fn below(sightings: &[Sighting<'_>], place: &Vector3<f64>, mask: f64) -> usize {
 }
 
 impl Followed {
+    /// The positions to the east, north and up of a place (ECEF, m), m.
+    pub fn enu_from(&self, place: &Vector3<f64>) -> Vec<[f64; 3]> {
+        let rotation = Geodetic::from_ecef(place).enu_from_ecef();
+        self.fixes.iter().map(|fix| (rotation * (fix.position - place)).into()).collect()
+    }
+
     fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {
         let tally = self.satellites.entry(prn).or_default();
         match reason {
@@ -204,11 +212,9 @@ impl Followed {
 
     fn take(&mut self, t: f64, solution: &Solution<STATES>, with_residuals: bool) {
         self.fixes.push(Fix { t, position: solution.position });
-        self.last = Some(Last {
-            sd_enu: solution.deviations_enu(),
-            health: solution.health,
-            wet_delay: solution.wet_delay,
-        });
+        let sd_enu = solution.deviations_enu();
+        self.deviations.push(sd_enu);
+        self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
         if solution.health == Health::Converged {
             self.converged_since.get_or_insert(t);
         } else {

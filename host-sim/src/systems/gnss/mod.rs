@@ -3,14 +3,18 @@
 //! `sky` makes observations, and `experiment` repeats the paper's tables on them.
 //! `files` reads observations and what services tell of satellites; `products` and `recording` put together what
 //! a filter needs. `follow` feeds one and counts what becomes of the observations, `accuracy` compares with the
-//! truth; `session` runs one filter or all for a [replay](replay::Replay).
+//! truth; `session` runs one filter or all for a [replay](replay::Replay) and for the `explorer`. `chapter` is the
+//! system's part of the report; `figures` and `streams` show what a filter made of a recording.
 //!
 //! Times are seconds since the midnight before the first epoch, positions those of the marker, ECEF.
 
 pub mod accounts;
 pub mod accuracy;
+pub mod chapter;
 pub mod comparison;
 pub mod experiment;
+pub mod explorer;
+mod figures;
 pub mod files;
 pub mod follow;
 pub mod options;
@@ -21,6 +25,7 @@ pub mod replay;
 pub mod report;
 pub mod session;
 pub mod sky;
+pub mod streams;
 pub mod tables;
 
 /// What `host-sim list` says of this system.

@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use kestirim_gnss_ppp::{Correction, Corrections};
 use kestirim_ppp_filter::{Config, Estimator, Motion, states};
+use kestirim_robust_kalman::Weight;
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -19,7 +20,7 @@ pub const STATES: usize = states(20);
 pub const PROCESS_NOISE: f64 = 100.0;
 
 /// The highest mask, degrees: above it there are hardly ever four satellites.
-const HIGHEST_MASK: f64 = 60.0;
+pub(super) const HIGHEST_MASK: f64 = 60.0;
 /// No marker is nearer to the Earth's centre, or farther from it, m.
 const RADII: std::ops::Range<f64> = 6.3e6..6.5e6;
 
@@ -32,6 +33,16 @@ pub enum Mode {
     Static,
     /// It may move
     Kinematic,
+}
+
+impl Mode {
+    /// Of a filter.
+    pub const fn of(motion: Motion) -> Self {
+        match motion {
+            Motion::Static => Self::Static,
+            Motion::Kinematic { .. } => Self::Kinematic,
+        }
+    }
 }
 
 /// Which filter.
@@ -71,6 +82,18 @@ impl FilterKind {
             Self::Skf => "skf",
             Self::Ikf => "ikf",
             Self::Adaptive => "adaptive",
+            Self::Default => "default",
+        }
+    }
+
+    /// What people call it.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Gkf => "plain (GKF)",
+            Self::Rkf => "IGG III (RKF)",
+            Self::Skf => "t-test (SKF)",
+            Self::Ikf => "iterative IGG III (IKF)",
+            Self::Adaptive => "adaptive (UKF)",
             Self::Default => "default",
         }
     }
@@ -177,17 +200,22 @@ pub struct Setup {
     pub mask: Option<f64>,
     /// Whether the paper's filters are taken by its letter.
     pub printed: bool,
+    /// Thresholds k0 and k1 of filters with IGG III weights; none: the filter's own.
+    pub thresholds: Option<[f64; 2]>,
 }
 
 impl Setup {
     /// The settings of a filter.
     pub fn config(&self, filter: FilterKind) -> Config {
         let config = Config::new(self.motion);
-        Config {
-            elevation_mask: self.mask.unwrap_or(config.elevation_mask),
-            estimator: filter.estimator(self.motion, self.printed),
-            ..config
+        let mut estimator = filter.estimator(self.motion, self.printed);
+        if let (Some(thresholds), Weight::Igg3 { k0, k1, .. }) =
+            (self.thresholds, &mut estimator.robust.weight)
+        {
+            [*k0, *k1] = thresholds;
         }
+        let elevation_mask = self.mask.unwrap_or(config.elevation_mask);
+        Config { elevation_mask, estimator, ..config }
     }
 }
 

@@ -11,6 +11,7 @@ use super::files::rinex_obs::{Epoch, Observations};
 use super::files::sp3::Orbits;
 use super::files::time::leap_seconds;
 use super::products::{Products, patterns};
+use super::sky::{Day, MIDNIGHT};
 use crate::Error;
 use crate::text::printable_path;
 
@@ -107,6 +108,19 @@ impl Recording {
             });
         let products = Products::new(start, &orbits, clocks.as_ref(), &antennas);
         Ok(Self { observations, products, antennas, loading, midnight, orbits_span, warnings })
+    }
+
+    /// A synthetic day: antennas are points, and oceans have no tides.
+    pub fn of_day(day: Day) -> Self {
+        Self {
+            observations: Observations { epochs: day.epochs, ..Observations::default() },
+            products: day.products,
+            antennas: Antennas::default(),
+            loading: None,
+            midnight: MIDNIGHT,
+            orbits_span: [f64::NEG_INFINITY, f64::INFINITY],
+            warnings: Vec::new(),
+        }
     }
 
     /// The epochs up to a time, s since the midnight before the first one.

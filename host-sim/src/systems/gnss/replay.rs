@@ -1,6 +1,6 @@
 //! `host-sim replay gnss`: recorded observations become positions.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use kestirim_ppp_filter::Motion;
 use nalgebra::Vector3;
@@ -11,10 +11,10 @@ use super::options::{
 };
 use super::recording::{Files, Recording};
 use super::session::Session;
-use super::tables;
+use super::{streams, tables};
 use crate::cli::ScalarKind;
 use crate::systems::choose_scalar;
-use crate::{Error, output};
+use crate::{Error, mcap, output};
 
 /// Options of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -68,6 +68,10 @@ pub struct Replay {
     /// Write residuals, weights and reasons of each observation to this file
     #[arg(long, value_name = "OUT.csv")]
     pub residuals: Option<PathBuf>,
+    /// Write what the filter found and what became of the satellites to this MCAP file, for viewers such as
+    /// Foxglove and Rerun: places about the truth, or else about the last one
+    #[arg(long, value_name = "OUT.mcap")]
+    pub mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table; with --filter all it has an array `filters` of what each would
     /// print alone
     #[arg(long)]
@@ -93,22 +97,27 @@ impl Replay {
         let recording = Recording::read(&files, corrections)?;
         let epochs = self.epochs(&recording)?;
         let session = Session {
-            files,
+            log: &self.obs,
             recording: &recording,
             epochs,
-            mode: self.mode,
             setup,
             corrections,
             truth: self.truth.as_ref(),
         };
         match self.filter {
             Choice::One(filter) => {
-                let (report, followed) = session.one(filter, self.residuals.is_some())?;
+                let with_residuals = self.residuals.is_some() || self.mcap.is_some();
+                let (report, followed) = session.one(filter, with_residuals)?;
                 if let Some(path) = &self.track {
                     tables::write_track(path, &followed.fixes)?;
                 }
                 if let Some(path) = &self.residuals {
                     tables::write_residuals(path, &followed.residuals)?;
+                }
+                if let Some(path) = &self.mcap {
+                    let last = Vector3::from(report.position_ecef_m);
+                    let about = self.truth.unwrap_or(last);
+                    mcap::write(path, &streams::streams(&followed, &about, self.truth.is_some()))?;
                 }
                 warn(&report.warnings);
                 output::show(&report, self.json)
@@ -135,12 +144,14 @@ impl Replay {
             Choice::One(filter) if self.printed && !filter.is_printed() => {
                 return refuse("--printed is for --filter rkf, skf, ikf, adaptive or all");
             }
-            Choice::All if self.track.is_some() || self.residuals.is_some() => {
-                return refuse("--track and --residuals are of one filter, not of --filter all");
+            Choice::All if self.outputs().next().is_some() => {
+                return refuse(
+                    "--track, --residuals and --mcap are of one filter, not of --filter all",
+                );
             }
             _ => {}
         }
-        Ok(Setup { motion, mask: self.mask, printed: self.printed })
+        Ok(Setup { motion, mask: self.mask, printed: self.printed, thresholds: None })
     }
 
     fn refuse_overwriting_input(&self) -> Result<(), Error> {
@@ -148,12 +159,22 @@ impl Replay {
             let several = self.sp3.iter().chain(&self.clk);
             several.chain([&self.obs, &self.antex]).chain(&self.blq)
         };
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
-        output::refuse_overwriting("--residuals", self.residuals.as_deref(), inputs())?;
-        if self.track.is_some() && self.track == self.residuals {
-            return Err(Error::Usage("--track and --residuals name the same file".to_owned()));
+        let outputs: Vec<_> = self.outputs().collect();
+        for (place, (option, path)) in outputs.iter().enumerate() {
+            output::refuse_overwriting(option, Some(path), inputs())?;
+            let same = outputs[..place].iter().find(|(_, earlier)| earlier == path);
+            if let Some((earlier, _)) = same {
+                return Err(Error::Usage(format!("{earlier} and {option} name the same file")));
+            }
         }
         Ok(())
+    }
+
+    /// The options that name files to write, with the files.
+    fn outputs(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let all =
+            [("--track", &self.track), ("--residuals", &self.residuals), ("--mcap", &self.mcap)];
+        all.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?)))
     }
 
     fn epochs<'a>(&self, recording: &'a Recording) -> Result<&'a [Epoch], Error> {

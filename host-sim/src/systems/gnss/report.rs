@@ -62,6 +62,28 @@ impl Row {
     }
 }
 
+impl Row {
+    /// Minutes until convergence in words, with what did not converge or had no solution.
+    pub(super) fn converged(&self) -> String {
+        let mean = self.ours.convergence_min.map_or("never".to_owned(), |it| format!("{it:.1}"));
+        let never = match self.unconverged {
+            0 => String::new(),
+            count if count == self.days.len() => String::new(),
+            count => format!(", {count} never"),
+        };
+        let unsolved = match self.unsolved {
+            0 => String::new(),
+            count => format!(", {count} epochs unsolved"),
+        };
+        mean + &never + &unsolved
+    }
+
+    /// Whether the filter is taken by the letter of the paper.
+    pub(super) fn is_printed(&self) -> bool {
+        self.filter.ends_with("by the letter")
+    }
+}
+
 /// All filters on the same station-days.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
@@ -124,27 +146,14 @@ fn shown(rows: &[Row]) -> Table {
         let pairs = [
             [published(|it| four(it.final_mm)), four(row.ours.final_mm)],
             [published(|it| four(it.rms_mm)), rms],
-            [published(minutes), converged(row)],
+            [published(minutes), row.converged()],
         ];
         table.add_row(cells(row.filter.to_owned(), pairs));
     }
     table
 }
 
-fn four(numbers: [f64; 4]) -> String {
+/// North, east, up and three-dimensional, mm.
+pub(super) fn four(numbers: [f64; 4]) -> String {
     numbers.map(|number| format!("{number:.1}")).join(" ")
-}
-
-fn converged(row: &Row) -> String {
-    let mean = row.ours.convergence_min.map_or("never".to_owned(), |it| format!("{it:.1}"));
-    let never = match row.unconverged {
-        0 => String::new(),
-        count if count == row.days.len() => String::new(),
-        count => format!(", {count} never"),
-    };
-    let unsolved = match row.unsolved {
-        0 => String::new(),
-        count => format!(", {count} epochs unsolved"),
-    };
-    mean + &never + &unsolved
 }

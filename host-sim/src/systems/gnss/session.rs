@@ -1,6 +1,7 @@
 //! One filter, or all, on one recording.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use kestirim_gnss_ppp::Corrections;
 use nalgebra::Vector3;
@@ -11,7 +12,7 @@ use super::comparison::Comparison;
 use super::files::rinex_obs::Epoch;
 use super::follow::{Followed, Tally, follow};
 use super::options::{FilterKind, Mode, Setup};
-use super::recording::{Files, Recording, names};
+use super::recording::{Recording, names};
 use crate::metrics::median;
 use crate::output::LateProgress;
 use crate::{Error, output};
@@ -19,15 +20,13 @@ use crate::{Error, output};
 /// A recording, and how positions are to be made of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Session<'a> {
-    /// Where it comes from.
-    pub files: Files<'a>,
+    /// The file of observations, as named by the user.
+    pub log: &'a Path,
     /// What was recorded.
     pub recording: &'a Recording,
     /// The part of it that counts: one epoch at least.
     pub epochs: &'a [Epoch],
-    /// Whether the receiver may move.
-    pub mode: Mode,
-    /// How it is filtered.
+    /// Whether the receiver may move, and how it is filtered.
     pub setup: Setup,
     /// What is corrected.
     pub corrections: Corrections,
@@ -74,7 +73,7 @@ impl Session<'_> {
         }
         let warnings = [self.warnings(last), outages_of_all(&followed)].concat();
         let epochs = self.epochs.len();
-        Ok(Comparison { system: "gnss", mode: self.mode, epochs, filters, warnings })
+        Ok(Comparison { system: "gnss", mode: self.mode(), epochs, filters, warnings })
     }
 
     fn follow(
@@ -97,12 +96,16 @@ impl Session<'_> {
         let circumstances = Circumstances {
             filter,
             printed: self.setup.printed,
-            mode: self.mode,
+            mode: self.mode(),
             corrections: self.corrections,
             begin: self.begin(),
             truth: self.truth,
         };
         Report::new(followed, circumstances, warnings)
+    }
+
+    const fn mode(&self) -> Mode {
+        Mode::of(self.setup.motion)
     }
 
     fn begin(&self) -> f64 {
@@ -161,7 +164,7 @@ impl Session<'_> {
                 self.begin()
             );
         }
-        Error::File { path: self.files.observations.to_path_buf(), problem }
+        Error::File { path: self.log.to_path_buf(), problem }
     }
 }
 

@@ -22,6 +22,22 @@ pub struct Accuracy {
     pub path_length_error_percent: Option<f64>,
 }
 
+impl Accuracy {
+    /// Names and values for people.
+    pub fn in_words(&self) -> [(&'static str, String); 4] {
+        let percent = |value: Option<f64>| match value {
+            Some(value) => format!("{value:+.2} %"),
+            None => "—".to_owned(),
+        };
+        [
+            ("RMSE", format!("{:.3} m", self.rmse_m)),
+            ("error at the end", format!("{:.3} m", self.final_error_m)),
+            ("  of the path", percent(self.final_error_percent)),
+            ("path length error", percent(self.path_length_error_percent)),
+        ]
+    }
+}
+
 /// Compares with measured footprints: positions at their times, the path length with the line
 /// through them.
 pub fn against_footprints(walk: &Walk, footprints: &[Footprint]) -> Accuracy {

@@ -5,7 +5,6 @@
 //! the same sensors are logged at both rates, so that the rate is the only difference.
 
 use std::fmt;
-use std::path::Path;
 
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
@@ -13,18 +12,16 @@ use serde::Serialize;
 
 use super::accuracy::{Accuracy, against_footprints};
 use super::options::{Options, SCALARS};
-use super::scenario::Scenario;
-use super::{log, run, sensor};
+use super::recording::{Recording, Walked};
+use super::run;
 use crate::cli::{RunOptions, ScalarKind};
 use crate::metrics::{mean, median, standard_deviation};
 use crate::published::{PEDESTRIAN_50_HZ, PEDESTRIAN_100_HZ, PEDESTRIAN_ROUTE_M, PathLengths};
-use crate::random::stream;
 use crate::systems::choose_scalar;
-use crate::text::TextFile;
 use crate::{Error, output};
 
 /// Walks at each rate in the paper.
-const WALKS: u64 = 7;
+pub(super) const WALKS: u64 = 7;
 /// Repetitions of all walks that take a few seconds.
 const DEFAULT_TRIALS: u32 = 20;
 const RATES: [(u32, PathLengths); 2] = [(50, PEDESTRIAN_50_HZ), (100, PEDESTRIAN_100_HZ)];
@@ -33,33 +30,36 @@ const RATES: [(u32, PathLengths); 2] = [(50, PEDESTRIAN_50_HZ), (100, PEDESTRIAN
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     system: &'static str,
-    seed: u64,
-    trials: u32,
-    scalar: ScalarKind,
+    pub(super) seed: u64,
+    pub(super) trials: u32,
+    pub(super) scalar: ScalarKind,
     route_m: f64,
-    rows: Vec<Row>,
+    pub(super) rows: Vec<Row>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Row {
-    rate_hz: u32,
-    published: PathLengths,
-    paper_method: Summary,
-    ours: Summary,
+pub(super) struct Row {
+    pub(super) rate_hz: u32,
+    pub(super) published: PathLengths,
+    pub(super) paper_method: Summary,
+    pub(super) ours: Summary,
     /// No bound on the error is known for this sensor and route.
     limit: Option<f64>,
 }
 
 /// What all walks at one rate have in common.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Summary {
+pub(super) struct Summary {
     walks: usize,
-    mean_relative_error_percent: f64,
+    pub(super) mean_relative_error_percent: f64,
     worst_relative_error_percent: f64,
     /// Standard deviation of the path length, m.
-    sigma_m: f64,
-    median_rmse_m: f64,
-    median_final_error_m: f64,
+    pub(super) sigma_m: f64,
+    pub(super) median_rmse_m: f64,
+    pub(super) median_final_error_m: f64,
+    /// Length of every path, m, in the order of the walks; the chapter's.
+    #[serde(skip)]
+    pub(super) lengths_m: Vec<f64>,
 }
 
 /// One walk as tracked.
@@ -109,16 +109,11 @@ fn track(
     rate_hz: f64,
     methods: &[Options; 2],
 ) -> Result<[Outcome; 2], Error> {
-    let mut rng = stream(seed, index);
-    let scenario = Scenario::draw(&mut rng);
-    let measured = sensor::measure(&mut rng, &scenario.ideal_imu(rate_hz), rate_hz);
-    let text = sensor::razor_text(&measured).into_bytes();
-    let log = log::parse(&TextFile::from_bytes(Path::new("synthetic walk"), text)?)?;
-    let footprints = scenario.footprints();
+    let recording = Recording::synthetic(Walked::Route, rate_hz, seed, index)?;
     let outcome = |options| {
-        let walk = run::walk(&log.samples, options)
+        let walk = run::walk(&recording.log.samples, options)
             .map_err(|source| Error::SyntheticWalk { index, source })?;
-        let accuracy = against_footprints(&walk, &footprints);
+        let accuracy = against_footprints(&walk, &recording.footprints);
         Ok(Outcome { path_length_m: walk.path_length_m, accuracy })
     };
     let [paper, ours] = methods;
@@ -131,10 +126,7 @@ impl Summary {
             outcomes.iter().map(|outcome| value(outcome)).collect::<Vec<_>>()
         };
         let lengths_m = all(|outcome| outcome.path_length_m);
-        let errors: Vec<_> = lengths_m
-            .iter()
-            .map(|length| 100.0 * (length / PEDESTRIAN_ROUTE_M - 1.0).abs())
-            .collect();
+        let errors: Vec<_> = lengths_m.iter().copied().map(error_percent).collect();
         Self {
             walks: lengths_m.len(),
             mean_relative_error_percent: mean(&errors),
@@ -142,8 +134,14 @@ impl Summary {
             sigma_m: standard_deviation(&lengths_m),
             median_rmse_m: median(&all(|outcome| outcome.accuracy.rmse_m)),
             median_final_error_m: median(&all(|outcome| outcome.accuracy.final_error_m)),
+            lengths_m,
         }
     }
+}
+
+/// Error of a path's length on the route, %, without its sign.
+pub(super) fn error_percent(length_m: f64) -> f64 {
+    100.0 * (length_m / PEDESTRIAN_ROUTE_M - 1.0).abs()
 }
 
 impl fmt::Display for Report {

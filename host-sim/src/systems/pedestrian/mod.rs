@@ -7,18 +7,29 @@
 //! origin at the start of the walk.
 
 pub mod accuracy;
+pub mod chapter;
 pub mod experiment;
+pub mod explorer;
+pub mod figures;
 pub mod gait;
 pub mod kinematics;
 pub mod log;
 pub mod options;
+pub mod placement;
+pub mod recording;
 pub mod replay;
 pub mod resample;
 pub mod run;
 pub mod scenario;
 pub mod sensor;
+pub mod streams;
+pub mod trace;
 pub mod track;
 pub mod truth;
+pub(crate) mod warning;
+
+pub use chapter::chapter;
+pub use explorer::SOURCE;
 
 /// What `host-sim list` says of this system.
 pub(super) const DESCRIPTION: &str = "\

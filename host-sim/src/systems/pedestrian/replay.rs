@@ -5,16 +5,19 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::accuracy::{self, Accuracy};
+use super::accuracy::Accuracy;
 use super::options::{
     DetectorKind, Options, SensorClass, TrackerKind, parse_contact_height, parse_detector,
 };
+use super::recording::Recording;
 use super::run::{self, Walk};
+use super::streams::streams;
+use super::trace::trace;
 use super::track::TrackPoint;
-use super::{log, options, resample, truth};
+use super::{log, options};
 use crate::cli::ScalarKind;
 use crate::systems::choose_scalar;
-use crate::{Error, output};
+use crate::{Error, mcap, output};
 
 /// Options of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -51,6 +54,9 @@ pub struct Replay {
     /// Write t,x,y,z of every (averaged) sample to this file
     #[arg(long, value_name = "OUT.csv")]
     track: Option<PathBuf>,
+    /// Write sensor, estimate and truth as streams, for Foxglove, PlotJuggler and Rerun
+    #[arg(long, value_name = "OUT.mcap")]
+    mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table
     #[arg(long)]
     json: bool,
@@ -69,26 +75,30 @@ impl Replay {
 
     fn report(&self) -> Result<Report, Error> {
         let options = self.options()?;
-        let inputs = [Some(&self.log), self.truth.as_ref()];
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())?;
-        let recorded = log::read(&self.log)?;
-        let footprints =
-            self.truth.as_deref().map(|path| truth::read(path, &recorded)).transpose()?;
-        let log = match self.rate {
-            Some(rate_hz) => resample::average_down(&recorded, rate_hz)?,
+        let inputs = || [Some(&self.log), self.truth.as_ref()].into_iter().flatten();
+        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
+        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
+        let recorded = Recording::read(&self.log, self.truth.as_deref())?;
+        let recording = match self.rate {
+            Some(rate_hz) => recorded.at_rate(rate_hz)?,
             None => recorded,
         };
-        let walk = run::walk(&log.samples, &options)
-            .map_err(|source| Error::Walk { path: self.log.clone(), source })?;
-        let accuracy = match (&footprints, &log.truth) {
-            (Some(footprints), _) => Some(accuracy::against_footprints(&walk, footprints)),
-            (None, Some(truth)) => Some(accuracy::against_truth(&walk, truth)),
-            (None, None) => None,
-        };
+        let walk = self.walk(&recording, &options)?;
+        let accuracy = recording.accuracy(&walk);
         if let Some(path) = &self.track {
             write_track(path, &walk.track)?;
         }
-        Ok(Report::new(&log, walk, accuracy))
+        Ok(Report::new(&recording.log, walk, accuracy))
+    }
+
+    /// Tracks the walk; its moments are kept only where they are asked for.
+    fn walk(&self, recording: &Recording, options: &Options) -> Result<Walk, Error> {
+        let refused = |source| Error::Walk { path: self.log.clone(), source };
+        let samples = &recording.log.samples;
+        let Some(path) = &self.mcap else { return run::walk(samples, options).map_err(refused) };
+        let trace = trace(samples, options).map_err(refused)?;
+        mcap::write(path, &streams(samples, &trace, &recording.truth()))?;
+        Ok(trace.walk)
     }
 
     fn options(&self) -> Result<Options, Error> {
@@ -170,14 +180,9 @@ impl fmt::Display for Report {
         row("path length", format!("{:.2} m", self.path_length_m));
         row("start to end", format!("{:.2} m", self.closure_m));
         if let Some(accuracy) = self.accuracy {
-            let percent = |value: Option<f64>| match value {
-                Some(value) => format!("{value:+.2} %"),
-                None => "—".to_owned(),
-            };
-            row("RMSE", format!("{:.3} m", accuracy.rmse_m));
-            row("error at the end", format!("{:.3} m", accuracy.final_error_m));
-            row("  of the path", percent(accuracy.final_error_percent));
-            row("path length error", percent(accuracy.path_length_error_percent));
+            for (name, value) in accuracy.in_words() {
+                row(name, value);
+            }
         }
         table.fmt(f)
     }

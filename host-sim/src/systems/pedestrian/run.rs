@@ -10,8 +10,9 @@ use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::SVector;
 
 use super::options::{DetectorKind, Options, TrackerKind};
+use super::trace::{Moment, OnlyAtStart, See, Updates};
 use super::track::TrackPoint;
-use super::{STANDARD_GRAVITY, Sample};
+use super::{STANDARD_GRAVITY, Sample, warning};
 use crate::cli::ScalarKind;
 
 /// What a tracker makes of a walk, in the room frame.
@@ -71,26 +72,43 @@ pub enum RunError {
 /// # Errors
 /// If the log is too short or holds a sample that the tracker refuses.
 pub fn walk(samples: &[Sample], options: &Options) -> Result<Walk, RunError> {
+    watched(samples, options, Updates::InStance, &mut |_| ())
+}
+
+/// Tracks a walk and lets `see` each moment of it.
+pub(super) fn watched(
+    samples: &[Sample],
+    options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
     if samples.len() < 2 {
         return Err(RunError::TooShort { found: samples.len(), needed: 2 });
     }
     match options.scalar {
-        ScalarKind::F32 => with_scalar::<f32>(samples, options),
-        ScalarKind::F64 => with_scalar::<f64>(samples, options),
-        ScalarKind::Fixed => with_scalar::<Q12_20>(samples, options),
+        ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
+        ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),
+        ScalarKind::Fixed => with_scalar::<Q12_20>(samples, options, updates, see),
     }
 }
 
-fn with_scalar<T: Scalar>(samples: &[Sample], options: &Options) -> Result<Walk, RunError> {
+fn with_scalar<T: Scalar>(
+    samples: &[Sample],
+    options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
     match options.tracker {
-        TrackerKind::Lite => with_navigator::<T, Lite<T>>(samples, options),
-        TrackerKind::Ekf => with_navigator::<T, Ekf<T>>(samples, options),
+        TrackerKind::Lite => with_navigator::<T, Lite<T>>(samples, options, updates, see),
+        TrackerKind::Ekf => with_navigator::<T, Ekf<T>>(samples, options, updates, see),
     }
 }
 
 fn with_navigator<T: Scalar, N: Navigator<T>>(
     samples: &[Sample],
     options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
 ) -> Result<Walk, RunError> {
     let samples: Vec<_> = samples.iter().map(imu_sample::<T>).collect();
     let mut config = Config { sensor: options.sensor.into(), ..Config::default() };
@@ -99,24 +117,28 @@ fn with_navigator<T: Scalar, N: Navigator<T>>(
         (None, DetectorKind::Magnitude(_)) => config.contact_height = T::ZERO,
         (None, _) => {}
     }
+    if updates == Updates::OnlyAtStart {
+        return causal::<T, N, _>(&samples, config, OnlyAtStart::default(), see);
+    }
     let threshold = T::from_f64;
     match options.detector {
         DetectorKind::Adaptive if options.causal => {
-            causal::<T, N, _>(&samples, config, Adaptive::default())
+            causal::<T, N, _>(&samples, config, Adaptive::default(), see)
         }
-        DetectorKind::Adaptive => offline::<T, N>(&samples, config),
+        DetectorKind::Adaptive => offline::<T, N>(&samples, config, see),
         DetectorKind::Magnitude(value) => {
-            causal::<T, N, _>(&samples, config, Magnitude::new(threshold(value / STANDARD_GRAVITY)))
+            let detector = Magnitude::new(threshold(value / STANDARD_GRAVITY));
+            causal::<T, N, _>(&samples, config, detector, see)
         }
         DetectorKind::Variance(value) => {
             let detector = MovingVariance::new(threshold(value / STANDARD_GRAVITY.powi(2)));
-            causal::<T, N, _>(&samples, config, detector)
+            causal::<T, N, _>(&samples, config, detector, see)
         }
         DetectorKind::AngularRate(value) => {
-            causal::<T, N, _>(&samples, config, AngularRateEnergy::new(threshold(value)))
+            causal::<T, N, _>(&samples, config, AngularRateEnergy::new(threshold(value)), see)
         }
         DetectorKind::Shoe(value) => {
-            causal::<T, N, _>(&samples, config, FixedShoe::new(threshold(value)))
+            causal::<T, N, _>(&samples, config, FixedShoe::new(threshold(value)), see)
         }
     }
 }
@@ -125,6 +147,7 @@ fn causal<T: Scalar, N: Navigator<T>, D: StanceDetector<T>>(
     samples: &[ImuSample<T>],
     config: Config<T>,
     detector: D,
+    see: &mut See<'_>,
 ) -> Result<Walk, RunError> {
     let mut tracker = Tracker::<T, N, D>::with_detector(config, detector);
     let mut walk = Walk::default();
@@ -132,7 +155,7 @@ fn causal<T: Scalar, N: Navigator<T>, D: StanceDetector<T>>(
         let estimate = tracker
             .update(sample)
             .map_err(|source| RunError::Sample { index: index + 1, source })?;
-        walk.push(&estimate);
+        walk.push(&estimate, see);
     }
     walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings());
     Ok(walk)
@@ -141,20 +164,22 @@ fn causal<T: Scalar, N: Navigator<T>, D: StanceDetector<T>>(
 fn offline<T: Scalar, N: Navigator<T>>(
     samples: &[ImuSample<T>],
     config: Config<T>,
+    see: &mut See<'_>,
 ) -> Result<Walk, RunError> {
     let mut unrest = vec![T::ZERO; samples.len()];
     let mut tracker = OfflineTracker::<T, N>::new(config, samples, &mut unrest)
         .map_err(|(index, source)| RunError::Sample { index: index + 1, source })?;
     let mut walk = Walk::default();
     for estimate in tracker.by_ref() {
-        walk.push(&estimate);
+        walk.push(&estimate, see);
     }
     walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings());
     Ok(walk)
 }
 
 impl Walk {
-    fn push<T: Scalar>(&mut self, estimate: &Estimate<T>) {
+    fn push<T: Scalar>(&mut self, estimate: &Estimate<T>, see: &mut See<'_>) {
+        see(Moment { velocity: double(&estimate.velocity), stance: estimate.stance });
         let position = double(&estimate.position);
         self.track.push(TrackPoint { time_us: estimate.time_us, position });
         self.strides.extend(estimate.stride.as_ref().map(Stride::from_estimate));
@@ -171,7 +196,7 @@ impl Walk {
         if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
             self.closure_m = x.hypot(*y);
         }
-        self.warnings = sentences(warnings);
+        self.warnings = warning::sentences(warnings);
     }
 }
 
@@ -197,38 +222,4 @@ fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {
 
 fn double<T: Scalar>(vector: &SVector<T, 3>) -> [f64; 3] {
     vector.data.0[0].map(T::to_f64)
-}
-
-pub(crate) fn sentences(warnings: Warnings) -> Vec<String> {
-    [
-        (
-            warnings.accelerometer_saturated,
-            "the accelerometer saturated: choose a wider range than the walker's steps",
-        ),
-        (
-            warnings.gyroscope_saturated,
-            "the gyroscope saturated: choose a wider range than the walker's steps",
-        ),
-        (
-            warnings.gravity_implausible,
-            "at rest the accelerometer does not show 9.8 m/s²: wrong unit, or uncalibrated",
-        ),
-        (
-            warnings.rate_implausible,
-            "angular rates beyond any foot's: degrees a second where radians are expected?",
-        ),
-        (
-            warnings.axes_inconsistent,
-            "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
-        ),
-        (warnings.gaps, "samples are missing for more than 0.1 s"),
-        (
-            warnings.never_still,
-            "no standstill of half a second was found: the gyro bias is unknown",
-        ),
-    ]
-    .into_iter()
-    .filter(|(raised, _)| *raised)
-    .map(|(_, sentence)| sentence.to_owned())
-    .collect()
 }

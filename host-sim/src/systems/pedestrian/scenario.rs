@@ -3,7 +3,8 @@
 //! The paper gives the sum but not the legs, and shows the walker near (6 m, 3 m) towards the end.
 //! Ours go east 3.78 m, north 1.26 m, east 2.52 m, north 1.26 m and back west 3.78 m, with a right
 //! angle between any two. The foot falls on every corner, half turned; its footfalls lie on the
-//! route, so the way from stance to stance is the length of the route exactly.
+//! route, so the way from stance to stance is the length of the route exactly. Whoever walks for longer
+//! closes the route to a loop of 17.64 m, and walks that again and again.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,6 +19,7 @@ use crate::random::{normal, normal3};
 
 /// A leg of the route: its length, m, and heading, rad anticlockwise from east, and how many
 /// strides it takes.
+#[derive(Debug, Clone, Copy)]
 struct Leg {
     length: f64,
     heading: f64,
@@ -30,6 +32,12 @@ const LEGS: [Leg; 5] = [
     Leg { length: 2.52, heading: 0.0, strides: 2 },
     Leg { length: 1.26, heading: PI / 2.0, strides: 1 },
     Leg { length: 3.78, heading: PI, strides: 3 },
+];
+
+/// From the end of [`LEGS`] straight on and back to its start.
+const WAY_BACK: [Leg; 2] = [
+    Leg { length: 2.52, heading: PI, strides: 2 },
+    Leg { length: 2.52, heading: 1.5 * PI, strides: 2 },
 ];
 
 /// Share of a stride during which the foot stands.
@@ -59,12 +67,26 @@ pub struct Scenario {
 impl Scenario {
     /// Draws a walk: speed, lengths of strides, mounting and sway differ a little from walk to walk.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Self {
+        Self::along(rng, LEGS)
+    }
+
+    /// Draws a walk of several rounds through the flat, each back to where it began.
+    pub fn draw_rounds<R: Rng + ?Sized>(rng: &mut R, rounds: u32) -> Self {
+        let round = |turns| {
+            let legs = LEGS.into_iter().chain(WAY_BACK);
+            legs.map(move |leg| Leg { heading: leg.heading + TAU * f64::from(turns), ..leg })
+        };
+        Self::along(rng, (0..rounds).flat_map(round))
+    }
+
+    fn along<R: Rng + ?Sized>(rng: &mut R, legs: impl IntoIterator<Item = Leg>) -> Self {
         let mut uniform =
             |low: f64, high: f64| low + (high - low) * (rng.next_u64() as f64 / u64::MAX as f64);
         let (still_before_s, still_after_s) = (uniform(2.0, 3.0), uniform(1.0, 2.0));
         let sway_phases = std::array::from_fn(|_| uniform(0.0, TAU));
         let stride_s = STRIDE_S * (1.0 + normal(rng, WALK_SPREAD));
-        let strides = strides(rng, still_before_s, stride_s);
+        let legs: Vec<_> = legs.into_iter().collect();
+        let strides = strides(rng, &legs, still_before_s, stride_s);
         let end_of_walk =
             strides.last().map_or(still_before_s, |last| last.start_s + last.moving_s);
         let [roll, pitch, yaw] = normal3(rng, MOUNT_SPREAD);
@@ -86,6 +108,16 @@ impl Scenario {
         Pose { position, attitude: attitude * sway * self.mount }
     }
 
+    /// How long it takes, standing before and after included, s.
+    pub fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    /// Lengths of the route's legs, m.
+    pub fn leg_lengths() -> impl Iterator<Item = f64> {
+        LEGS.iter().map(|leg| leg.length)
+    }
+
     /// What a perfect IMU measures on this walk.
     pub fn ideal_imu(&self, rate_hz: f64) -> Vec<Sample> {
         ideal_imu(|t| self.pose(t), self.duration_s, rate_hz)
@@ -105,10 +137,15 @@ impl Scenario {
 }
 
 /// The strides of all legs.
-fn strides<R: Rng + ?Sized>(rng: &mut R, mut start_s: f64, stride_s: f64) -> Vec<Stride> {
+fn strides<R: Rng + ?Sized>(
+    rng: &mut R,
+    legs: &[Leg],
+    mut start_s: f64,
+    stride_s: f64,
+) -> Vec<Stride> {
     let mut strides: Vec<Stride> = Vec::new();
     let mut corner = [0.0, 0.0];
-    for (leg, next) in LEGS.iter().zip(LEGS.iter().skip(1).map(Some).chain([None])) {
+    for (leg, next) in legs.iter().zip(legs.iter().skip(1).map(Some).chain([None])) {
         let (sin, cos) = leg.heading.sin_cos();
         let on_leg = |way: f64| [corner[0] + cos * way, corner[1] + sin * way];
         let weights: Vec<_> = (0..leg.strides).map(|_| 1.0 + normal(rng, LENGTH_SPREAD)).collect();
@@ -155,6 +192,16 @@ mod tests {
         assert!((polyline_length(&footfalls) - PEDESTRIAN_ROUTE_M).abs() < 1e-9);
         let mut steps = footfalls.windows(2).map(polyline_length);
         assert!(steps.all(|step| (1.05..1.45).contains(&step)));
+    }
+
+    #[test]
+    fn rounds_end_where_they_begin_and_never_turn_back() {
+        let scenario = Scenario::draw_rounds(&mut stream(7, 0), 3);
+        let footfalls: Vec<_> = scenario.footprints().iter().map(|f| f.position).collect();
+        assert!((polyline_length(&footfalls) - 3.0 * (PEDESTRIAN_ROUTE_M + 5.04)).abs() < 1e-9);
+        assert!(crate::metrics::closure(&footfalls) < 1e-9);
+        let turns = scenario.strides.iter().map(|stride| stride.yaws[1] - stride.yaws[0]);
+        assert!(turns.map(f64::abs).all(|turn| turn < 1.6));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Root mean square errors under noise, beside what the Lyapunov equation predicts.
 
-use kestirim_observer_design::{Discrete, error_covariance};
+use kestirim_observer_design::{Discrete, Error, error_covariance};
 use kestirim_scalar::{Q16_16, Scalar};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -199,15 +199,28 @@ fn flights<T: Scalar<Accumulator: Sync> + Sync, const P: usize>(
 
 fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -> [f64; 4] {
     let plant = cell.plant.discrete(INTERVAL_S);
-    let (q, r) = (cell.noise.process(&plant), cell.noise.measurement(c));
     if cell.window == Window::Whole {
+        let (q, r) = (cell.noise.process(&plant), cell.noise.measurement(c));
         return over_a_flight(c, &plant, kind, &q, &r, &(SVector::from(START) - cell.start()));
     }
-    let gain = kind.gain(&plant, c).expect("an estimator of the table");
+    settled(c, &plant, kind, &cell.noise).expect("a stable estimator of the table")
+}
+
+/// RMSE of α, q, V, θ of an estimator that has settled, from Lyapunov's equation.
+///
+/// # Errors
+/// Why there is none.
+pub fn settled<const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    plant: &Discrete<4, 2>,
+    kind: &Kind,
+    noise: &Noise,
+) -> Result<[f64; 4], Error> {
+    let gain = kind.gain(plant, c)?;
+    let (q, r) = (noise.process(plant), noise.measurement(c));
     let process = (&SMatrix::<f64, 4, 4>::identity(), &q);
-    let covariance =
-        error_covariance((&plant.a, c), &gain, process, &r).expect("a stable estimator");
-    covariance.diagonal().map(f64::sqrt).into()
+    let covariance = error_covariance((&plant.a, c), &gain, process, &r)?;
+    Ok(covariance.diagonal().map(f64::sqrt).into())
 }
 
 /// Mean and covariance of the error, sample by sample, averaged: from an initial error that is no surprise to

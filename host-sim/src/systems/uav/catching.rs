@@ -1,16 +1,15 @@
 //! How long an estimator that starts somewhere else takes to catch the plant, without noise.
 
-use kestirim_scalar::{Q16_16, Scalar};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 use serde::Serialize;
 
 use super::design::{FAST, Family, Kind, MIDDLE, SLOW};
-use super::estimator::{Estimator, Impossible};
-use super::plant::{Outputs, Plant, with_outputs};
-use super::scenario::{FAR, INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START, fly};
+use super::estimator::Impossible;
+use super::plant::{Outputs, Plant};
+use super::scenario::{FAR, INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START};
+use super::trip::{Moment, Trip};
 use crate::cli::ScalarKind;
 use crate::published::{UAV_KALMAN_CAUGHT, UAV_LUENBERGER_CAUGHT, UAV_SINE_CAUGHT};
-use crate::random::stream;
 
 /// A state is caught where its error stays within these.
 pub const BANDS: [f64; 4] = [0.005, 0.005, 0.1, 0.005];
@@ -39,11 +38,8 @@ impl Chase {
     /// # Errors
     /// Why there is no such estimator.
     pub fn errors(&self, scalar: ScalarKind) -> Result<Errors, Impossible> {
-        match scalar {
-            ScalarKind::F32 => with_outputs!(self.outputs, run::<f32, _>, self),
-            ScalarKind::F64 => with_outputs!(self.outputs, run::<f64, _>, self),
-            ScalarKind::Fixed => with_outputs!(self.outputs, run::<Q16_16, _>, self),
-        }
+        let errors = self.trip().follow(&self.kind, scalar, 0)?;
+        Ok(errors.iter().map(Moment::error).collect())
     }
 
     /// How far the start is off.
@@ -58,47 +54,23 @@ impl Chase {
 
     /// What the error recursion alone leads to: neither plant nor input, in double precision.
     fn predicted(&self) -> Option<[Option<f64>; 4]> {
-        let alone = Self { inputs: Inputs::None, ..*self };
-        let errors = with_outputs!(self.outputs, from_nothing, &alone);
-        errors.ok().map(|errors| caught(&errors))
+        // The plant rests at nothing, the estimator is as far off as ever.
+        let trip = Trip {
+            inputs: Inputs::None,
+            truth: [0.0; 4],
+            start: (-self.off()).into(),
+            ..self.trip()
+        };
+        let moments = trip.follow(&self.kind, ScalarKind::F64, 0).ok()?;
+        Some(caught(&moments.iter().map(Moment::error).collect::<Vec<_>>()))
     }
-}
 
-fn run<T: Scalar, const P: usize>(
-    c: &SMatrix<f64, P, 4>,
-    chase: &Chase,
-) -> Result<Errors, Impossible> {
-    follow::<T, P>(c, chase, START.into(), chase.start.into())
-}
-
-/// The plant rests at nothing, the estimator is as far off as ever.
-fn from_nothing<const P: usize>(
-    c: &SMatrix<f64, P, 4>,
-    chase: &Chase,
-) -> Result<Errors, Impossible> {
-    follow::<f64, P>(c, chase, SVector::zeros(), -chase.off())
-}
-
-fn follow<T: Scalar, const P: usize>(
-    c: &SMatrix<f64, P, 4>,
-    chase: &Chase,
-    truth: SVector<f64, 4>,
-    start: SVector<f64, 4>,
-) -> Result<Errors, Impossible> {
-    let plant = chase.plant.discrete(INTERVAL_S);
-    let mut estimator = Estimator::<T, P>::new(&chase.kind, &plant, c, &start, &chase.off())?;
-    // Nothing is drawn from it.
-    let quiet = stream(0, 0);
-    let flight = fly(plant, truth, chase.inputs, Noise::NONE, quiet);
-    Ok(flight
-        .take(SAMPLES)
-        .map(|sample| {
-            let error = sample.x - estimator.estimate();
-            // Where fixed point is at its rails, the estimate stays, and so does its error.
-            estimator.step(&sample.u, &(c * sample.y));
-            error
-        })
-        .collect())
+    /// As a flight.
+    pub(super) fn trip(&self) -> Trip {
+        let Self { plant, outputs, start, inputs, .. } = *self;
+        let (noise, truth, samples) = (Noise::NONE, START, SAMPLES);
+        Trip { plant, outputs, inputs, noise, truth, start, samples }
+    }
 }
 
 /// When each state's error was outside its band for the last time, and a sample later: s.
@@ -156,15 +128,17 @@ pub fn rows(scalar: ScalarKind) -> Vec<Row> {
 }
 
 /// The thesis' chases, with whatever gains and starts explain its figures.
-const THESIS: Chase = Chase {
+pub const THESIS: Chase = Chase {
     plant: Plant::P2,
     outputs: Outputs::Full,
     kind: Kind::Ratio(1e-2),
     start: FAR,
     inputs: Inputs::Constant,
 };
-const THESIS_LUENBERGER: Chase = Chase { kind: Kind::Luenberger(SLOW), start: NEAR, ..THESIS };
-const THESIS_SINE: Chase =
+/// The same of its observer.
+pub const THESIS_LUENBERGER: Chase = Chase { kind: Kind::Luenberger(SLOW), start: NEAR, ..THESIS };
+/// And under sine inputs.
+pub const THESIS_SINE: Chase =
     Chase { kind: Kind::Luenberger(FAST), inputs: Inputs::Sine, ..THESIS_LUENBERGER };
 
 impl Chase {

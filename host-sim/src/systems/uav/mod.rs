@@ -15,20 +15,24 @@
 pub mod accounts;
 pub mod accuracy;
 pub mod catching;
+pub mod chapter;
 pub mod claims;
 pub mod design;
 pub mod estimator;
 pub mod experiment;
+pub mod explorer;
 pub mod follow;
 pub mod log;
 pub mod model;
 pub mod online;
 pub mod options;
 pub mod plant;
+pub mod recording;
 pub mod replay;
 pub mod report;
 pub mod responses;
 pub mod scenario;
+pub mod trip;
 
 /// What `host-sim list` says of this system.
 pub(super) const DESCRIPTION: &str = "\

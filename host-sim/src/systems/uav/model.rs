@@ -165,7 +165,7 @@ impl Model {
 }
 
 /// State and input of P1's flight.
-fn climb() -> ([f64; 4], [f64; 2]) {
+pub(super) fn climb() -> ([f64; 4], [f64; 2]) {
     let flight = SteadyFlight { airspeed: 40.0, climb_angle: 4.0_f64.to_radians() };
     let trim = Airframe::aerosonde().trim(&flight).expect("the Aerosonde flies");
     (trim.state.into(), trim.input.into())

@@ -6,6 +6,14 @@ use serde::Serialize;
 
 /// States, as they are shown.
 pub const STATES: [&str; 4] = ["α", "q", "V", "θ"];
+/// What they are.
+pub const STATE_NAMES: [&str; 4] = ["angle of attack", "pitch rate", "airspeed", "pitch"];
+/// Their units.
+pub const STATE_UNITS: [&str; 4] = ["rad", "rad/s", "m/s", "rad"];
+/// As parts of the names of figures.
+pub const STATE_SLUGS: [&str; 4] = ["alpha", "pitch-rate", "airspeed", "pitch"];
+/// As columns of a stream.
+pub const STREAM_COLUMNS: [&str; 4] = ["alpha_rad", "q_rad_s", "v_m_s", "theta_rad"];
 
 /// An aircraft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -61,6 +69,15 @@ pub enum Outputs {
 impl Outputs {
     /// All.
     pub const ALL: [Self; 3] = [Self::Full, Self::RateAirspeedPitch, Self::AirspeedPitch];
+
+    /// How many.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Full => 4,
+            Self::RateAirspeedPitch => 3,
+            Self::AirspeedPitch => 2,
+        }
+    }
 
     /// For a table.
     pub fn name(self) -> &'static str {

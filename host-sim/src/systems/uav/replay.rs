@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use kestirim_observer_design::Complex;
-use nalgebra::SVector;
 
-use super::accounts::{Accuracy, Report, Residual};
+use super::accounts::{Report, Residual};
 use super::design::MIDDLE;
-use super::follow::{self, Assumed, Estimate, Followed};
-use super::log::{self, Flight, Truth};
-use super::model::{Model, STATE_COLUMNS};
+use super::follow::Estimate;
+use super::model::STATE_COLUMNS;
 use super::options::{EstimatorKind, four_numbers, poles, two_numbers};
+use super::recording::Recording;
 use crate::metrics::rms;
 use crate::{Error, output};
 
@@ -75,41 +74,35 @@ impl Replay {
         if !kalman && (self.input_noise.is_some() || self.output_noise.is_some()) {
             return Err(Error::Usage("noise is for --estimator kalman".to_owned()));
         }
-        let model = Model::read(&self.model)?;
-        let origin = model.origin(self.absolute)?;
-        let names: Vec<&str> = model.outputs.iter().map(|(name, _)| name.as_str()).collect();
-        let mut flight = log::read(&self.log, &names)?;
-        let mut warnings = Vec::new();
-        if let (false, Some(trim)) = (self.absolute, model.trim) {
-            warnings.extend(looks_absolute(&flight, &model, trim.0[2]));
-        }
-        subtract(&mut flight, &model, origin);
-        let truth = self.truth.as_deref().map(log::read_truth).transpose()?;
-        let followed = self.followed(&model, &flight)?;
-        let absolute = |estimate: &Estimate| estimate.state + SVector::from(origin.0);
-        let missing = flight.samples.iter().flat_map(|sample| &sample.measured);
-        let missing = missing.filter(|measured| measured.is_none()).count();
-        if flight.gaps > 0 {
-            warnings.push(format!(
-                "{} gaps are longer than one and a half intervals of {} s",
-                flight.gaps, flight.interval_s
-            ));
-        }
-        let accuracy = truth.map(|truth| accuracy(&followed.estimates, absolute, &truth));
+        let recording =
+            Recording::read(&self.log, &self.model, self.truth.as_deref(), self.absolute)?;
+        let mut warnings = recording.warnings();
+        let followed = match self.estimator {
+            EstimatorKind::Kalman => recording.kalman(self.input_noise, self.output_noise),
+            EstimatorKind::Luenberger => {
+                let default = MIDDLE.map(|re| Complex { re, im: 0.0 });
+                recording.observer(self.poles.unwrap_or(default))
+            }
+        };
+        let followed =
+            followed.map_err(|problem| Error::File { path: self.log.clone(), problem })?;
+        let accuracy = recording.accuracy(&followed.estimates);
         if accuracy.as_ref().is_some_and(|accuracy| accuracy.samples == 0) {
             warnings.push("no time of the truth is one of the log's".to_owned());
         }
         if let Some(path) = &self.track {
-            write_track(path, &followed.estimates, absolute)?;
+            write_track(path, &recording, &followed.estimates)?;
         }
-        let last = followed.estimates.last().map(absolute).unwrap_or_default();
+        let last = followed.estimates.last();
+        let last = last.map(|estimate| recording.absolute(estimate)).unwrap_or_default();
+        let flight = &recording.flight;
+        let missing = flight.samples.iter().flat_map(|sample| &sample.measured);
+        let missing = missing.filter(|measured| measured.is_none()).count();
         let innovations =
-            flight.outputs.iter().zip(&followed.innovations).map(|(&output, innovations)| {
-                Residual {
-                    output: names[output].to_owned(),
-                    measured: innovations.len(),
-                    rms: rms(innovations),
-                }
+            recording.names().zip(&followed.innovations).map(|(output, innovations)| Residual {
+                output: output.to_owned(),
+                measured: innovations.len(),
+                rms: rms(innovations),
             });
         Ok(Report {
             system: "uav",
@@ -124,90 +117,17 @@ impl Replay {
             accuracy,
         })
     }
-
-    fn followed(&self, model: &Model, flight: &Flight) -> Result<Followed, Error> {
-        let followed = match self.estimator {
-            EstimatorKind::Kalman => {
-                let usual = Assumed::of_sensors(model, &flight.outputs);
-                let given = |all: [f64; 4]| flight.outputs.iter().map(|&o| all[o]).collect();
-                let assumed = Assumed {
-                    inputs: self.input_noise.unwrap_or(usual.inputs),
-                    outputs: self.output_noise.map_or(usual.outputs, given),
-                };
-                follow::kalman(model, flight, &assumed)
-            }
-            EstimatorKind::Luenberger => {
-                let default = MIDDLE.map(|re| Complex { re, im: 0.0 });
-                follow::observer(model, flight, self.poles.unwrap_or(default))
-            }
-        };
-        followed.map_err(|problem| Error::File { path: self.log.clone(), problem })
-    }
 }
 
-/// Whether airspeeds are nearer to the steady one than to nothing.
-fn looks_absolute(flight: &Flight, model: &Model, airspeed: f64) -> Option<String> {
-    let column = flight.outputs.iter().position(|&output| model.outputs[output].0 == "V")?;
-    let mut values: Vec<f64> =
-        flight.samples.iter().filter_map(|sample| sample.measured[column]).collect();
-    values.sort_by(f64::total_cmp);
-    let middle = *values.get(values.len() / 2)?;
-    (middle > 0.5 * airspeed).then(|| {
-        format!("V is {middle} m/s where deviations from {airspeed} m/s are expected (--absolute)")
-    })
-}
-
-fn subtract(flight: &mut Flight, model: &Model, (state, input): ([f64; 4], [f64; 2])) {
-    let outputs = flight.outputs.iter();
-    let steady: Vec<f64> = outputs.map(|&output| model.output(output, &state)).collect();
-    for sample in &mut flight.samples {
-        sample.input = std::array::from_fn(|i| sample.input[i] - input[i]);
-        for (measured, steady) in sample.measured.iter_mut().zip(&steady) {
-            *measured = measured.map(|measured| measured - steady);
-        }
-    }
-}
-
-/// Errors at the times that log and truth share.
-fn accuracy(
-    estimates: &[Estimate],
-    absolute: impl Fn(&Estimate) -> SVector<f64, 4>,
-    truth: &Truth,
-) -> Accuracy {
-    let mut errors: [Vec<f64>; 4] = Default::default();
-    let mut late: [Vec<f64>; 4] = Default::default();
-    let middle = estimates.get(estimates.len() / 2).map_or(0, |estimate| estimate.t_us);
-    let mut samples = 0;
-    for estimate in estimates {
-        let Ok(place) = truth.binary_search_by_key(&estimate.t_us, |(t, _)| *t) else { continue };
-        samples += 1;
-        let state = absolute(estimate);
-        for (column, known) in truth[place].1.iter().enumerate() {
-            let Some(known) = known else { continue };
-            errors[column].push(state[column] - known);
-            if estimate.t_us >= middle {
-                late[column].push(state[column] - known);
-            }
-        }
-    }
-    let each = |errors: &[Vec<f64>; 4]| {
-        errors.each_ref().map(|errors| (!errors.is_empty()).then(|| rms(errors)))
-    };
-    Accuracy { samples, rmse: each(&errors), late_rmse: each(&late) }
-}
-
-fn write_track(
-    path: &Path,
-    estimates: &[Estimate],
-    absolute: impl Fn(&Estimate) -> SVector<f64, 4>,
-) -> Result<(), Error> {
+fn write_track(path: &Path, recording: &Recording, estimates: &[Estimate]) -> Result<(), Error> {
     output::write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
         table.write_field("t")?;
         table.write_record(STATE_COLUMNS)?;
         for estimate in estimates {
             table.write_field(format!("{:.6}", estimate.t_us as f64 / 1e6))?;
-            table.write_record(absolute(estimate).iter().map(|number| format!("{number:.9}")))?;
+            let state = recording.absolute(estimate);
+            table.write_record(state.iter().map(|number| format!("{number:.9}")))?;
         }
         table.flush()
     })

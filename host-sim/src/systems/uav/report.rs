@@ -102,7 +102,13 @@ fn plants(rows: &[Responses]) -> Table {
 fn constant_inputs(rows: &[Responses]) -> Table {
     let mut table = output::table();
     table.set_header(["P2 with δe 0.025, δt 0.155", "published", "ours"]);
-    let Some(row) = rows.iter().find(|row| row.plant == Plant::P2) else { return table };
+    table.add_rows(said_of_constant_inputs(rows));
+    table
+}
+
+/// What the thesis says of its Figs 5.5 to 5.8, and what comes out: quantity, published, ours.
+pub(super) fn said_of_constant_inputs(rows: &[Responses]) -> Vec<[String; 3]> {
+    let Some(row) = rows.iter().find(|row| row.plant == Plant::P2) else { return Vec::new() };
     let samples = &row.constant_inputs;
     let at = |s: f64, state: usize| {
         let sample = samples.iter().rfind(|sample| sample[0] <= s + 1e-9);
@@ -120,24 +126,23 @@ fn constant_inputs(rows: &[Responses]) -> Table {
         format!("{:.3}", least(4)[1]),
         format!("{:.3}", at(10.0, 4)),
     ];
-    for ([name, published], ours) in UAV_CONSTANT_INPUTS.into_iter().zip(ours) {
-        table.add_row([name, published, ours.as_str()]);
-    }
-    table
+    let both = UAV_CONSTANT_INPUTS.into_iter().zip(ours);
+    both.map(|([name, published], ours)| [name.to_owned(), published.to_owned(), ours]).collect()
 }
 
 /// Four numbers of the states, beside each other.
-fn four(numbers: [f64; 4]) -> String {
+pub(super) fn four(numbers: [f64; 4]) -> String {
     numbers.map(|number| format!("{number:.1e}")).join(" ")
 }
 
-fn times(seconds: Option<[Option<f64>; 4]>) -> String {
+/// Times to catch; none: not within ten seconds.
+pub(super) fn times(seconds: Option<[Option<f64>; 4]>) -> String {
     let one = |time: Option<f64>| time.map_or("> 10".to_owned(), |time| format!("{time:.2}"));
     seconds.map_or("none".to_owned(), |all| all.map(one).join(" "))
 }
 
 /// How many of the chases take as long with sine inputs as with constant ones.
-fn alike(rows: &[catching::Row]) -> String {
+pub(super) fn alike(rows: &[catching::Row]) -> String {
     let of = |inputs| rows.iter().filter(move |row| row.inputs == inputs);
     let twin = |row: &&catching::Row| {
         let same = |other: &catching::Row| {
@@ -243,7 +248,7 @@ fn claims(rows: &[Claim]) -> Table {
 }
 
 /// Three digits of each.
-fn shown(numbers: [f64; 4]) -> String {
+pub(super) fn shown(numbers: [f64; 4]) -> String {
     numbers
         .map(|number| if number < 0.01 { format!("{number:.1e}") } else { format!("{number:.3}") })
         .join(" ")

@@ -1,0 +1,193 @@
+// The explorer: sends how the controls stand, shows what comes back. It knows no system and computes nothing.
+"use strict";
+
+{
+  const element = (id) => document.getElementById(id);
+  const make = (tag, properties = {}, ...children) => {
+    const made = Object.assign(document.createElement(tag), properties);
+    made.append(...children);
+    return made;
+  };
+  const places = new Map();
+  let [sources, session, settings, windows] = [[], null, {}, {}];
+
+  // --- what comes back
+
+  function show(answer) {
+    element("alert").textContent = "";
+    element("facts").replaceChildren(...answer.facts.map(([name, value]) =>
+      make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
+    element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
+    const known = new Set(answer.figures.map((figure) => figure.id));
+    for (const [id, { place }] of places) {
+      if (known.has(id)) continue;
+      Figures.forget(place);
+      place.remove();
+      places.delete(id);
+    }
+    // All places first: each is then drawn as wide as it stays.
+    for (const { id, title } of answer.figures) {
+      if (places.has(id)) continue;
+      const place = make("figure", { id: `figure-${id}` }, make("h3", { textContent: title }));
+      places.set(id, { place, caption: make("figcaption"), text: "" });
+      element("figures").append(place);
+    }
+    for (const figure of answer.figures) {
+      const text = JSON.stringify(figure);
+      const entry = places.get(figure.id);
+      if (entry.text === text) continue;
+      entry.text = text;
+      Figures.draw(entry.place, figure, zoomed);
+      entry.caption.textContent = figure.caption;
+      entry.place.append(entry.caption);
+    }
+  }
+
+  function complain(sentence) {
+    element("alert").textContent = sentence;
+  }
+
+  async function post(path, body) {
+    const response = await fetch(path, { method: "POST", body }).catch(() => null);
+    if (!response) return complain("the program no longer answers: is it still running?");
+    if (!response.ok) return complain(await response.text());
+    return response.json();
+  }
+
+  // --- one request at a time; what happens meanwhile is asked for afterwards
+
+  let [asking, again] = [false, false];
+  async function ask() {
+    if (session === null) return;
+    if (asking) { again = true; return; }
+    asking = true;
+    const began = performance.now();
+    const answer = await post(`api/answer/${session}`, JSON.stringify({ settings, windows }));
+    if (answer) {
+      show(answer);
+      document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
+    }
+    asking = false;
+    if (again) { again = false; ask(); }
+  }
+
+  // A figure that is zoomed in gets its points from there.
+  function zoomed(id, range) {
+    if (JSON.stringify(windows[id] ?? null) === JSON.stringify(range)) return;
+    if (range) windows[id] = range; else delete windows[id];
+    ask();
+  }
+
+  // --- controls
+
+  function slider(control) {
+    const log = control.logarithmic;
+    const [inward, outward] = log ? [Math.log10, (v) => 10 ** v] : [Number, Number];
+    const output = make("output");
+    const range = make("input", { type: "range", id: control.name, step: control.step });
+    [range.min, range.max, range.value] = [control.min, control.max, control.value].map((v) => String(inward(v)));
+    const tell = () => {
+      const value = outward(Number(range.value));
+      output.textContent = `${Number(value.toPrecision(3))} ${control.unit}`;
+      range.setAttribute("aria-valuetext", output.textContent);
+      return Math.min(Math.max(value, control.min), control.max);
+    };
+    tell();
+    range.addEventListener("input", () => { settings[control.name] = tell(); ask(); });
+    const parts = [make("label", { htmlFor: control.name }, output, control.label), range];
+    if (control.playable) parts.push(player(range));
+    return parts;
+  }
+
+  function player(range) {
+    const button = make("button", { type: "button", textContent: "play" });
+    let timer = null;
+    button.addEventListener("click", () => {
+      if (timer) { clearInterval(timer); timer = null; button.textContent = "play"; return; }
+      button.textContent = "pause";
+      if (range.value === range.max) range.value = range.min;
+      timer = setInterval(() => {
+        if (!range.isConnected || range.value === range.max) { button.click(); return; }
+        if (asking) return;
+        range.stepUp();
+        range.dispatchEvent(new Event("input"));
+      }, 120);
+    });
+    return button;
+  }
+
+  function choice(control) {
+    const select = make("select", { id: control.name }, ...control.options.map(([value, text]) =>
+      make("option", { value, textContent: text, selected: value === control.value })));
+    select.addEventListener("input", () => { settings[control.name] = select.value; ask(); });
+    return [make("label", { htmlFor: control.name, textContent: control.label }), select];
+  }
+
+  function toggle(control) {
+    const box = make("input", { type: "checkbox", id: control.name, checked: control.value });
+    box.addEventListener("input", () => { settings[control.name] = box.checked; ask(); });
+    return [make("label", { className: "switch" }, box, control.label)];
+  }
+
+  function opened(reply) {
+    if (!reply) return;
+    [session, settings, windows] = [reply.session, {}, {}];
+    element("figures").replaceChildren();
+    for (const { place } of places.values()) Figures.forget(place);
+    places.clear();
+    const kinds = { slider, choice, switch: toggle };
+    element("controls").replaceChildren(...reply.controls.flatMap((control) => kinds[control.kind](control)));
+    ask();
+  }
+
+  // --- recordings
+
+  const system = () => sources.find((source) => source.system === element("system").value);
+
+  function offer() {
+    const source = system();
+    element("bundled").replaceChildren(
+      ...source.bundled.map(([value, text]) => make("option", { value, textContent: text })),
+      make("option", { value: "", textContent: "your own files …" }));
+    element("files").replaceChildren(...source.files.flatMap((file) => [
+      make("label", { htmlFor: `file-${file.name}`, textContent: `${file.label}${file.required ? "" : " (optional)"}` }),
+      make("input", { type: "file", id: `file-${file.name}`, name: file.name, required: file.required, multiple: file.several }),
+    ]));
+    location.hash = source.system;
+    choose();
+  }
+
+  async function choose() {
+    const own = element("bundled").value === "";
+    element("files").hidden = element("upload").hidden = !own;
+    if (!own) opened(await post(`api/open/${system().system}/${element("bundled").value}`));
+  }
+
+  element("system").addEventListener("input", offer);
+  element("bundled").addEventListener("input", choose);
+  element("controls").addEventListener("submit", (event) => event.preventDefault());
+  element("open").addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const files = new FormData(element("open"));
+    for (const [name, file] of [...files]) if (!file.size && !file.name) files.delete(name);
+    opened(await post(`api/open/${system().system}`, files));
+  });
+
+  function live() {
+    const socket = new WebSocket(`ws://${location.host}/live`);
+    document.querySelector(".controls").hidden = true;
+    document.querySelector(".explorer").style.gridTemplateColumns = "minmax(0, 1fr)";
+    socket.addEventListener("message", ({ data }) => { show(JSON.parse(data)); socket.send("next"); });
+    socket.addEventListener("close", () => complain("the stream has ended"));
+  }
+
+  fetch("api/sources").then((response) => response.json()).then((reply) => {
+    if (reply.live) return live();
+    sources = reply.sources;
+    element("system").replaceChildren(...sources.map((source) =>
+      make("option", { value: source.system, textContent: `${source.system}: ${source.title}` })));
+    const wanted = location.hash.slice(1);
+    if (sources.some((source) => source.system === wanted)) element("system").value = wanted;
+    offer();
+  });
+}

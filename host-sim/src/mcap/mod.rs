@@ -1,0 +1,131 @@
+//! Streams as an MCAP file, which Foxglove, `PlotJuggler` and Rerun open: <https://mcap.dev>.
+
+mod clock;
+mod place;
+mod schema;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::Path;
+
+use ::mcap::records::{MessageHeader, Metadata};
+use ::mcap::write::NoSeek;
+use ::mcap::{McapResult, WriteOptions, Writer};
+
+use crate::stream::Stream;
+use crate::{Error, output};
+use clock::Clock;
+use place::Place;
+use schema::Layout;
+
+/// Writes the streams as a file of messages in the order of their times, whole or not at all.
+///
+/// Every row is a message of doubles named as the columns are. A stream with a place has it drawn on its
+/// topic with `/pose` behind, and all of its places on its topic with `/path` behind. The same streams
+/// give the same bytes. Times before 0 cannot be written: then all streams are moved by the same whole
+/// seconds, which the metadata `clock` tells.
+///
+/// # Errors
+/// [`Error::File`] if a time is not a number or the times span more than 136 years, [`Error::Write`] if the
+/// file cannot be written.
+pub fn write(path: &Path, streams: &[Stream]) -> Result<(), Error> {
+    let times = streams.iter().flat_map(|stream| stream.rows.iter().map(|&(time, _)| time));
+    let clock = Clock::holding(times)
+        .map_err(|problem| Error::File { path: path.to_path_buf(), problem })?;
+    output::write_file(path, |file| {
+        messages(NoSeek::new(file), streams, clock).map_err(io::Error::other)
+    })
+}
+
+/// All of the file.
+fn messages(file: NoSeek<&mut dyn Write>, streams: &[Stream], clock: Clock) -> McapResult<()> {
+    let mut file = WriteOptions::new().compression(None).disable_seeking(true).create(file)?;
+    file.write_metadata(&Metadata {
+        name: "clock".to_owned(),
+        metadata: BTreeMap::from([("zero_s".to_owned(), clock.zero_s().to_string())]),
+    })?;
+    let mut channels = streams
+        .iter()
+        .map(|stream| Channels::new(&mut file, stream))
+        .collect::<McapResult<Vec<_>>>()?;
+    let rows = streams.iter().map(|stream| stream.rows.iter());
+    let mut order: Vec<_> = rows
+        .enumerate()
+        .flat_map(|(index, rows)| {
+            rows.map(move |(time, values)| (clock.nanoseconds(*time), index, values))
+        })
+        .collect();
+    // Rows of the same time stay in the order of their streams.
+    order.sort_by_key(|&(time, index, _)| (time, index));
+    for (time, index, values) in order {
+        channels[index].write(&mut file, time, values)?;
+    }
+    file.finish()?;
+    Ok(())
+}
+
+/// Where the messages of a stream go.
+struct Channels<'a> {
+    stream: &'a Stream,
+    layout: Layout,
+    rows: u16,
+    place: Option<(Place, u16, u16)>,
+    sequence: u32,
+}
+
+/// The file while it is written.
+type Draft<'a> = Writer<NoSeek<&'a mut dyn Write>>;
+
+impl<'a> Channels<'a> {
+    fn new(file: &mut Draft<'_>, stream: &'a Stream) -> McapResult<Self> {
+        let layout = Layout::new(&stream.topic, &stream.columns);
+        let rows = channel(file, &stream.topic, layout.name(), &layout.file_descriptor_set())?;
+        let place =
+            match (Place::among(&stream.columns), place::pose_schema(), place::path_schema()) {
+                (Some(place), Some(pose), Some(path)) => {
+                    let poses =
+                        channel(file, &format!("{}/pose", stream.topic), &pose.name, &pose.data)?;
+                    let paths =
+                        channel(file, &format!("{}/path", stream.topic), &path.name, &path.data)?;
+                    Some((place, poses, paths))
+                }
+                _ => None,
+            };
+        Ok(Self { stream, layout, rows, place, sequence: 0 })
+    }
+
+    fn write(&mut self, file: &mut Draft<'_>, time: u64, values: &[f64]) -> McapResult<()> {
+        let first = self.sequence == 0;
+        self.sequence = self.sequence.wrapping_add(1);
+        let header = |channel_id| MessageHeader {
+            channel_id,
+            sequence: self.sequence,
+            log_time: time,
+            publish_time: time,
+        };
+        file.write_to_known_channel(&header(self.rows), &self.layout.message(values))?;
+        let Some((place, poses, paths)) = &self.place else { return Ok(()) };
+        if first {
+            let path = place.path(time, &self.stream.topic, &self.stream.rows);
+            file.write_to_known_channel(&header(*paths), &path)?;
+        }
+        match place.pose(time, values) {
+            Some(pose) => file.write_to_known_channel(&header(*poses), &pose),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Adds a channel of protobuf messages.
+fn channel(
+    file: &mut Draft<'_>,
+    topic: &str,
+    message: &str,
+    descriptors: &[u8],
+) -> McapResult<u16> {
+    let schema = file.add_schema(message, "protobuf", descriptors)?;
+    file.add_channel(schema, topic, "protobuf", &BTreeMap::new())
+}

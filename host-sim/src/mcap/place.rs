@@ -1,0 +1,97 @@
+use foxglove::messages::{
+    Color, LinePrimitive, Point3, Pose, PoseInFrame, Quaternion, SceneEntity, SceneUpdate,
+    Timestamp, Vector3, line_primitive,
+};
+use foxglove::{Encode, Schema};
+use prost::Message;
+
+use crate::figure::Colour;
+
+/// The frame that all places are in.
+const FRAME: &str = "world";
+
+/// The columns of a stream that say where something is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    x: usize,
+    y: usize,
+    z: Option<usize>,
+}
+
+impl Place {
+    /// The place among the columns, if there is one.
+    pub(super) fn among(columns: &[String]) -> Option<Self> {
+        let find = |name| columns.iter().position(|column| column == name);
+        Some(Self { x: find("x_m")?, y: find("y_m")?, z: find("z_m") })
+    }
+
+    /// Where a row is; none if it does not say.
+    fn of(self, values: &[f64]) -> Option<[f64; 3]> {
+        let value = |index: usize| values.get(index).copied().filter(|value| value.is_finite());
+        let z = match self.z {
+            Some(z) => value(z)?,
+            None => 0.0,
+        };
+        Some([value(self.x)?, value(self.y)?, z])
+    }
+
+    /// The place of a row as a message of [`pose_schema`].
+    pub(super) fn pose(self, time: u64, values: &[f64]) -> Option<Vec<u8>> {
+        let [x, y, z] = self.of(values)?;
+        let position = Some(Vector3 { x, y, z });
+        let orientation = Some(Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 });
+        let pose = PoseInFrame {
+            timestamp: Some(stamp(time)),
+            frame_id: FRAME.to_owned(),
+            pose: Some(Pose { position, orientation }),
+        };
+        Some(pose.encode_to_vec())
+    }
+
+    /// The places of all rows as a message of [`path_schema`]: a line, interrupted where there is no place.
+    pub(super) fn path(self, time: u64, id: &str, rows: &[(f64, Vec<f64>)]) -> Vec<u8> {
+        let places: Vec<_> = rows.iter().map(|(_, values)| self.of(values)).collect();
+        let stretches = places.split(Option::is_none).filter(|stretch| stretch.len() > 1);
+        let entity = SceneEntity {
+            timestamp: Some(stamp(time)),
+            frame_id: FRAME.to_owned(),
+            id: id.to_owned(),
+            lines: stretches.map(|stretch| line(stretch.iter().flatten(), colour_of(id))).collect(),
+            ..SceneEntity::default()
+        };
+        SceneUpdate { entities: vec![entity], ..SceneUpdate::default() }.encode_to_vec()
+    }
+}
+
+/// What is true is drawn as in the figures.
+fn colour_of(topic: &str) -> Colour {
+    if topic.ends_with("/truth") { Colour::Truth } else { Colour::Ours }
+}
+
+fn line<'a>(places: impl Iterator<Item = &'a [f64; 3]>, colour: Colour) -> LinePrimitive {
+    let [r, g, b] = colour.rgb().map(|part| f64::from(part) / 255.0);
+    LinePrimitive {
+        r#type: line_primitive::Type::LineStrip.into(),
+        thickness: 2.0,
+        // As many pixels at any distance.
+        scale_invariant: true,
+        points: places.map(|&[x, y, z]| Point3 { x, y, z }).collect(),
+        color: Some(Color { r, g, b, a: 1.0 }),
+        ..LinePrimitive::default()
+    }
+}
+
+fn stamp(time: u64) -> Timestamp {
+    const SECOND: u64 = 1_000_000_000;
+    Timestamp::new((time / SECOND) as u32, (time % SECOND) as u32)
+}
+
+/// Describes the messages of [`Place::pose`].
+pub(super) fn pose_schema() -> Option<Schema> {
+    PoseInFrame::get_schema()
+}
+
+/// Describes the messages of [`Place::path`].
+pub(super) fn path_schema() -> Option<Schema> {
+    SceneUpdate::get_schema()
+}

@@ -1,0 +1,54 @@
+//! Where the results of a run go besides the terminal.
+
+use std::path::{Path, PathBuf};
+
+use crate::report::{self, Chapter};
+use crate::{Error, mcap, output};
+
+/// Options of every `host-sim run`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub struct Outputs {
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+    /// Write the tables: published, ours, limit
+    #[arg(long, value_name = "OUT.csv")]
+    pub csv: Option<PathBuf>,
+    /// Write the streams of a typical run, for Foxglove, PlotJuggler and Rerun
+    #[arg(long, value_name = "OUT.mcap")]
+    pub mcap: Option<PathBuf>,
+    /// Write this system's part of the report, a page and its figures, into a folder
+    #[arg(long, value_name = "FOLDER")]
+    pub report: Option<PathBuf>,
+}
+
+impl Outputs {
+    /// Whether anything is to be written to files.
+    pub const fn any_file(&self) -> bool {
+        self.csv.is_some() || self.mcap.is_some() || self.report.is_some()
+    }
+
+    /// Writes the files that were asked for.
+    ///
+    /// # Errors
+    /// [`Error::Write`].
+    pub fn write(&self, chapter: Chapter) -> Result<(), Error> {
+        if let Some(path) = &self.mcap {
+            mcap::write(path, &chapter.streams)?;
+        }
+        let chapters = [chapter];
+        if let Some(path) = &self.csv {
+            report::csv::write(path, &chapters)?;
+        }
+        if let Some(folder) = &self.report {
+            say_where(&report::write(folder, &chapters)?);
+        }
+        Ok(())
+    }
+}
+
+/// Tells where the page is.
+pub fn say_where(page: &Path) {
+    output::warn(&format!("report: {}", crate::text::printable_path(page)));
+}

@@ -1,0 +1,155 @@
+//! Station-days of the experiment again, this time with all that becomes of them.
+
+use std::path::Path;
+
+use kestirim_gnss_ppp::Corrections;
+use kestirim_ppp_filter::Motion;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::super::experiment::PROCESS_NOISE;
+use super::super::figures;
+use super::super::follow::Followed;
+use super::super::options::{FilterKind, Setup};
+use super::super::recording::Recording;
+use super::super::report::Report;
+use super::super::session::Session;
+use super::super::sky::{Day, Rates};
+use super::super::streams;
+use crate::Error;
+use crate::figure::Figure;
+use crate::stream::Stream;
+
+/// Station-days that are drawn; the paper draws three.
+const DRAWN: u32 = 3;
+/// Filters of which the paper has kinematic solutions, and ours.
+const MOVING: [FilterKind; 3] = [FilterKind::Ikf, FilterKind::Adaptive, FilterKind::Default];
+
+/// What filters made of the first few station-days.
+pub(super) struct Days {
+    /// Of each station-day: its place, ECEF, m, and all filters of a receiver that stands still.
+    standing: Vec<(Vector3<f64>, Filters)>,
+    /// The first day's filters of a receiver that may move.
+    moving: Filters,
+}
+
+type Filters = Vec<(FilterKind, Followed)>;
+
+impl Days {
+    /// Runs the filters.
+    ///
+    /// # Errors
+    /// [`Error::File`] if one finds no position.
+    pub(super) fn follow(report: &Report) -> Result<Self, Error> {
+        let count = report.trials.min(DRAWN);
+        let days: Vec<_> = (0..u64::from(count))
+            .into_par_iter()
+            .map(|index| {
+                let day = Day::new(report.seed, index, &Rates::RECORDING);
+                (day.marker, Recording::of_day(day))
+            })
+            .collect();
+        let standing: Result<_, Error> = days
+            .par_iter()
+            .map(|(marker, day)| Ok((*marker, filters(day, Motion::Static, &FilterKind::ALL)?)))
+            .collect();
+        let moving = match days.first() {
+            Some((_, day)) => {
+                filters(day, Motion::Kinematic { process_noise: PROCESS_NOISE }, &MOVING)?
+            }
+            None => Vec::new(),
+        };
+        Ok(Self { standing: standing?, moving })
+    }
+
+    /// The paper's figure 3: what is left in the codes.
+    pub(super) fn residuals(&self) -> impl Iterator<Item = Figure> {
+        let filters = self.standing.first().into_iter().flat_map(|(_, filters)| filters);
+        filters.map(|(filter, followed)| {
+            let id = format!("gnss-figure-3-{}", filter.name());
+            let title = format!(
+                "Figure 3: residuals of the codes, {} ({} rejected)",
+                filter.title(),
+                followed.rejected.code
+            );
+            let figure = figures::left(Figure::new(id, title), followed, |report| &report.code);
+            figure.showing(None, Some([-34.0, 34.0])).caption(
+                "Residuals over √(Qᵥ/γ), without the rejected codes: outliers stand out of the plain filter's, some \
+                 out of the t-test's, and none out of the others'; near ones are thinned.",
+            )
+        })
+    }
+
+    /// The paper's figure 4: errors of a receiver that stands still; each with the day's number.
+    pub(super) fn standing(&self) -> impl Iterator<Item = (usize, Figure)> {
+        (1..).zip(&self.standing).map(|(day, (marker, filters))| {
+            let figure = Figure::new(
+                format!("gnss-figure-4-{day}"),
+                format!("Figure 4: 3-D error of static filters, station-day {day}"),
+            );
+            let figure = figures::errors(figure, of(filters), marker).caption(
+                "Slips that nothing shows spoil the plain filter for hours; worst first (IKF, which UKF equals) and \
+                 the default leave them out.",
+            );
+            (day, figure)
+        })
+    }
+
+    /// The paper's figure 5: errors of a receiver that may move.
+    pub(super) fn moving(&self) -> Figure {
+        let figure =
+            Figure::new("gnss-figure-5", "Figure 5: 3-D error of kinematic filters, station-day 1");
+        figures::errors(figure, of(&self.moving), &self.place()).caption(
+            "The paper's filters lose the receiver to slips that they do not know; the default begins those \
+             ambiguities anew.",
+        )
+    }
+
+    /// Our own: whether the default knows how good it is.
+    pub(super) fn trusted(&self) -> Figure {
+        let figure = Figure::new(
+            "gnss-deviation",
+            "Standard deviations that the default reports, and its error",
+        );
+        let figure = match self.best() {
+            Some(followed) => figures::deviations(figure, followed, Some(&self.place())),
+            None => figure,
+        };
+        figure.caption("The error stays about as large as the deviations say, from the first hour to the last.")
+    }
+
+    /// The first day with the default.
+    pub(super) fn streams(&self) -> Vec<Stream> {
+        self.best().map_or_else(Vec::new, |it| streams::streams(it, &self.place(), true))
+    }
+
+    fn place(&self) -> Vector3<f64> {
+        self.standing.first().map_or_else(Vector3::zeros, |(marker, _)| *marker)
+    }
+
+    fn best(&self) -> Option<&Followed> {
+        let (_, filters) = self.standing.first()?;
+        filters.iter().find(|(filter, _)| *filter == FilterKind::Default).map(|(_, it)| it)
+    }
+}
+
+fn of(filters: &Filters) -> impl Iterator<Item = (FilterKind, &Followed)> {
+    filters.iter().map(|(filter, followed)| (*filter, followed))
+}
+
+fn filters(
+    recording: &Recording,
+    motion: Motion,
+    filters: &[FilterKind],
+) -> Result<Filters, Error> {
+    let session = Session {
+        log: Path::new("synthetic day"),
+        recording,
+        epochs: recording.epochs(None),
+        setup: Setup { motion, mask: None, printed: false, thresholds: None },
+        corrections: Corrections::ALL,
+        truth: None,
+    };
+    let follow = |&filter: &FilterKind| Ok((filter, session.one(filter, true)?.1));
+    filters.par_iter().map(follow).collect()
+}

@@ -1,0 +1,192 @@
+//! What a walk looks like: the diagrams of the paper.
+
+use super::placement::Placement;
+use super::trace::{Moment, Trace};
+use super::track::TrackPoint;
+use super::{STANDARD_GRAVITY, Sample};
+use crate::figure::{Colour, Figure, Mark, Series};
+
+const TIME: &str = "time, s";
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// Of the axes, wherever a colour means nothing else.
+const COLOURS: [Colour; 3] = [Colour::Other(0), Colour::Other(1), Colour::Other(2)];
+
+/// A walk on the plan.
+#[derive(Debug, Clone, Copy)]
+pub struct Placed<'a> {
+    /// The walk.
+    pub trace: &'a Trace,
+    /// Where it lies.
+    pub placement: Placement,
+}
+
+impl<'a> Placed<'a> {
+    /// A walk laid onto the truth, or as it is if that is unknown.
+    pub fn new(trace: &'a Trace, truth: &[TrackPoint]) -> Self {
+        Self { trace, placement: Placement::of(&trace.walk.track, truth) }
+    }
+
+    /// The way of the foot.
+    pub fn path(&self, name: &str) -> Series {
+        let track = self.trace.walk.track.iter();
+        Series::path(name, track.map(|point| self.placement.onto_plan(point.horizontal())))
+    }
+
+    /// Where the foot stood after each stride.
+    pub fn strides(&self, name: &str) -> Series {
+        let strides = self.trace.walk.strides.iter();
+        Series::points(
+            name,
+            strides.map(|stride| {
+                let [x, y, _] = stride.position;
+                self.placement.onto_plan([x, y])
+            }),
+        )
+    }
+
+    /// The velocity along an axis of the plan, counted from 0, over time.
+    pub fn velocity(&self, name: impl Into<String>, axis: usize) -> Series {
+        let velocity = |moment: &Moment| {
+            let [x, y, z] = moment.velocity;
+            let [x, y] = self.placement.turned([x, y]);
+            [x, y, z][axis]
+        };
+        Series::line(name, self.times(), self.trace.moments.iter().map(velocity).collect())
+    }
+
+    /// The position along an axis of the plan over time.
+    fn position(&self, name: impl Into<String>, axis: usize) -> Series {
+        let position = |point: &TrackPoint| {
+            let [x, y] = self.placement.onto_plan(point.horizontal());
+            [x, y, point.position[2]][axis]
+        };
+        Series::line(name, self.times(), self.trace.walk.track.iter().map(position).collect())
+    }
+
+    /// 1 while the foot stands, 0 while it moves: the logic of the paper.
+    pub fn stance(&self, name: &str) -> Series {
+        let stances = self.trace.moments.iter().map(|moment| f64::from(u8::from(moment.stance)));
+        Series::new(name, Mark::Steps, self.times(), stances.collect())
+    }
+
+    fn times(&self) -> Vec<f64> {
+        self.trace.walk.track.iter().map(|point| seconds(point.time_us)).collect()
+    }
+}
+
+/// The accelerometer over time.
+pub fn accelerometer(id: &str, samples: &[Sample]) -> Figure {
+    Figure::new(id, "Accelerometer")
+        .axes(TIME, "specific force, g")
+        .caption(
+            "The three axes of the sensor as logged; at rest gravity alone, spread over all three.",
+        )
+        .with_all(triad(samples, |sample| sample.specific_force.map(|f| f / STANDARD_GRAVITY)))
+}
+
+/// The gyroscope over time.
+pub fn gyroscope(id: &str, samples: &[Sample]) -> Figure {
+    Figure::new(id, "Gyroscope")
+        .axes(TIME, "angular rate, °/s")
+        .caption("The three axes of the sensor as logged: the foot pitches down, swings through, and lands on its heel.")
+        .with_all(triad(samples, |sample| sample.angular_rate.map(f64::to_degrees)))
+}
+
+/// Eq. 2 over time.
+pub fn magnitude(id: &str, samples: &[Sample]) -> Figure {
+    let magnitude = |sample: &Sample| {
+        let [x, y, z] = sample.specific_force;
+        x.hypot(y).hypot(z) / STANDARD_GRAVITY
+    };
+    let magnitudes = samples.iter().map(magnitude).collect();
+    Figure::new(id, "Magnitude of the specific force, |a|")
+        .axes(TIME, "|a|, g; 1 = standing, 0 = moving")
+        .caption("Gravity is part of |a|: at rest it is 1 g, and in every swing it passes 1 g several times.")
+        .with(Series::line("|a|", times(samples), magnitudes).coloured(Colour::Other(5)))
+}
+
+/// The paper's threshold: two lines about 1 g, as long as the log.
+pub fn threshold(samples: &[Sample], threshold_g: f64) -> Series {
+    let ends = [samples.first(), samples.last()];
+    let [from, to] = ends.map(|sample| sample.map_or(f64::NAN, |sample| seconds(sample.time_us)));
+    let (low, high) = (1.0 - threshold_g, 1.0 + threshold_g);
+    let (x, y) = (vec![from, to, f64::NAN, from, to], vec![high, high, f64::NAN, low, low]);
+    Series::new(format!("1 ± {threshold_g:.2} g"), Mark::Dashes, x, y).coloured(Colour::Limit)
+}
+
+/// All three velocities over time.
+pub fn velocities(id: &str, placed: &Placed<'_>) -> Figure {
+    let axis = |i: usize| placed.velocity(AXES[i], i).coloured(COLOURS[i]);
+    Figure::new(id, "Velocity with zero-velocity updates")
+        .axes(TIME, "velocity, m/s")
+        .caption("A hump a stride, and zero between; the sign tells the direction.")
+        .with_all((0..3).map(axis))
+}
+
+/// The velocity along x and, behind the legend, the other axes, with and without zero-velocity updates.
+pub fn velocity(id: &str, with: &Placed<'_>, without: &Placed<'_>) -> Figure {
+    let axis = |i: usize| {
+        let without = without
+            .velocity(format!("{} without updates", AXES[i]), i)
+            .coloured(if i == 0 { Colour::Alarm } else { COLOURS[i] })
+            .marked(if i == 0 { Mark::Line } else { Mark::Dashes });
+        let with = with.velocity(format!("{} with updates", AXES[i]), i).coloured(COLOURS[i]);
+        if i == 0 { [without, with] } else { [without.hidden(), with.hidden()] }
+    };
+    Figure::new(id, "Velocity with and without zero-velocity updates")
+        .axes(TIME, "velocity, m/s")
+        .caption("Without updates the velocity never comes back to zero when the foot stands; with them it does.")
+        .with_all((0..3).flat_map(axis))
+}
+
+/// Position over time, with the truth as far as it is known.
+pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
+    let ours = (0..3).map(|i| placed.position(AXES[i], i).coloured(COLOURS[i]));
+    let known = (0..3).filter(|&i| truth.iter().any(|point| point.position[i].is_finite()));
+    let truth = known.map(|i| {
+        let (times, values) =
+            truth.iter().map(|point| (seconds(point.time_us), point.position[i])).unzip();
+        let mark = if i == 2 { Mark::Dots } else { Mark::Points };
+        Series::new(format!("true {}", AXES[i]), mark, times, values).coloured(Colour::Truth)
+    });
+    Figure::new(id, "Position")
+        .axes(TIME, "position, m")
+        .caption("Flat in stance, one step a stride; z stays near zero on a flat floor.")
+        .with_all(ours)
+        .with_all(truth)
+}
+
+/// The plan: the true way, ours, and others behind it.
+pub fn path(id: &str, truth: &[TrackPoint], ours: &Placed<'_>, others: Vec<Series>) -> Figure {
+    let route = (!truth.is_empty()).then(|| {
+        Series::path("true way", truth.iter().map(TrackPoint::horizontal))
+            .marked(if truth.len() > 1000 { Mark::Dashes } else { Mark::LineAndPoints })
+            .coloured(Colour::Truth)
+    });
+    Figure::new(id, "Path on the plan")
+        .axes("x, m", "y, m")
+        .map()
+        .caption(
+            "The walked path from above, each stride marked; where the truth is known, tracks are turned onto it.",
+        )
+        .with_all(route)
+        .with_all(others)
+        .with(ours.path("ours").coloured(Colour::Ours))
+        .with(ours.strides("our strides").coloured(Colour::Ours))
+}
+
+fn triad(samples: &[Sample], value: impl Fn(&Sample) -> [f64; 3]) -> [Series; 3] {
+    std::array::from_fn(|i| {
+        let values = samples.iter().map(|sample| value(sample)[i]).collect();
+        Series::line(AXES[i], times(samples), values).coloured(COLOURS[i])
+    })
+}
+
+fn times(samples: &[Sample]) -> Vec<f64> {
+    samples.iter().map(|sample| seconds(sample.time_us)).collect()
+}
+
+/// Microseconds of the log's clock in seconds.
+pub fn seconds(time_us: u64) -> f64 {
+    time_us as f64 / 1e6
+}

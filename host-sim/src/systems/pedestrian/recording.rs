@@ -1,0 +1,106 @@
+//! A walk as it was recorded, with its truth where that is known: from files or synthetic.
+
+use std::path::{Path, PathBuf};
+
+use super::accuracy::{Accuracy, against_footprints, against_truth};
+use super::log::{self, Log};
+use super::run::Walk;
+use super::scenario::Scenario;
+use super::track::TrackPoint;
+use super::truth::{self, Footprint};
+use super::{resample, sensor};
+use crate::Error;
+use crate::random::stream;
+use crate::text::TextFile;
+
+/// A walk as it was recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Where it was read.
+    pub path: PathBuf,
+    /// What the sensor said.
+    pub log: Log,
+    /// Where the foot stood; empty if nobody measured it.
+    pub footprints: Vec<Footprint>,
+}
+
+/// Where a synthetic walk leads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Walked {
+    /// Once along the paper's route.
+    Route,
+    /// So many rounds through the same flat.
+    Rounds(u32),
+}
+
+impl Recording {
+    /// Reads a log and, if they were measured, its footprints.
+    ///
+    /// # Errors
+    /// As [`log::read`] and [`truth::read`].
+    pub fn read(path: &Path, footprints: Option<&Path>) -> Result<Self, Error> {
+        let log = log::read(path)?;
+        let footprints = footprints.map(|path| truth::read(path, &log)).transpose()?;
+        Ok(Self { path: path.to_path_buf(), log, footprints: footprints.unwrap_or_default() })
+    }
+
+    /// Walk number `index` of a seed, logged at `rate_hz`: that of the paper's route in the paper's text format,
+    /// with the rounding that comes with it, others with every bit of the sensor.
+    ///
+    /// # Errors
+    /// None that a sensor could cause; those of [`log::parse`].
+    pub fn synthetic(walked: Walked, rate_hz: f64, seed: u64, index: u64) -> Result<Self, Error> {
+        let mut rng = stream(seed, index);
+        let scenario = walked.draw(&mut rng);
+        let measured = sensor::measure(&mut rng, &scenario.ideal_imu(rate_hz), rate_hz);
+        let path = PathBuf::from("synthetic walk");
+        let log = match walked {
+            Walked::Route => {
+                let text = sensor::razor_text(&measured).into_bytes();
+                log::parse(&TextFile::from_bytes(&path, text)?)?
+            }
+            Walked::Rounds(_) => Log { samples: measured, ..Log::default() },
+        };
+        Ok(Self { path, log, footprints: scenario.footprints() })
+    }
+
+    /// Averaged down to this rate.
+    ///
+    /// # Errors
+    /// As [`resample::average_down`].
+    pub fn at_rate(self, rate_hz: f64) -> Result<Self, Error> {
+        Ok(Self { log: resample::average_down(&self.log, rate_hz)?, ..self })
+    }
+
+    /// Where the foot or the sensor truly was, as far as anybody knows: measured footprints replace what the
+    /// log says.
+    pub fn truth(&self) -> Vec<TrackPoint> {
+        let flat = |footprint: &Footprint| {
+            let [x, y] = footprint.position;
+            TrackPoint { time_us: footprint.time_us, position: [x, y, f64::NAN] }
+        };
+        match &self.log.truth {
+            Some(truth) if self.footprints.is_empty() => truth.clone(),
+            _ => self.footprints.iter().map(flat).collect(),
+        }
+    }
+
+    /// How far a walk is from the truth; none if nobody knows it.
+    pub fn accuracy(&self, walk: &Walk) -> Option<Accuracy> {
+        match &self.log.truth {
+            _ if !self.footprints.is_empty() => Some(against_footprints(walk, &self.footprints)),
+            Some(truth) => Some(against_truth(walk, truth)),
+            None => None,
+        }
+    }
+}
+
+impl Walked {
+    /// Draws such a walk.
+    pub fn draw<R: rand_core::Rng + ?Sized>(self, rng: &mut R) -> Scenario {
+        match self {
+            Self::Route => Scenario::draw(rng),
+            Self::Rounds(rounds) => Scenario::draw_rounds(rng, rounds),
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The book's figures: those of the report, as files.
+
+use std::io;
+use std::path::Path;
+
+use host_sim::figure::svg;
+use host_sim::report::Chapter;
+
+/// Draws figures of a chapter into the book's folder: their names in the chapter, and their files'.
+///
+/// # Errors
+/// If the chapter has no such figure, or a file cannot be written.
+pub fn draw(chapter: &Chapter, files: &[(&str, &str)]) -> io::Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/figures");
+    for (id, file) in files {
+        let figure = chapter
+            .figures()
+            .find(|figure| figure.id == *id)
+            .ok_or_else(|| io::Error::other(format!("the chapter has no figure {id}")))?;
+        std::fs::write(folder.join(file), svg::draw(figure))?;
+    }
+    Ok(())
+}
