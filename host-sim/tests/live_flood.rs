@@ -4,6 +4,7 @@ mod sender;
 
 use std::fs;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 
 use clap::Parser;
 use host_sim::cli::{Cli, Command};
@@ -12,13 +13,18 @@ use host_sim::random::{stream, uniform};
 use kestirim_telemetry::{Health, Imu, Message, Position, Range, VERSION};
 use rand_core::Rng;
 use sender::{decoded, frame, length, send};
+use tempfile::TempDir;
 
 const FRAMES: usize = 100_000;
 
-fn start(arguments: &[&str]) -> Live {
-    let arguments = [&["host-sim", "live"], arguments].concat();
+/// Follows a walker, and records to a file in this folder.
+fn start(folder: &TempDir) -> (Live, PathBuf) {
+    let path = folder.path().join("new.frames");
+    let record = path.to_str().expect("a plain name");
+    let arguments = ["host-sim", "live", "--udp", "127.0.0.1:0", "--system", "pedestrian"];
+    let arguments = [&arguments[..], &["--record", record]].concat();
     match Cli::try_parse_from(arguments).expect("good arguments").command {
-        Some(Command::Live(options)) => Live::start(&options).expect("it listens"),
+        Some(Command::Live(options)) => (Live::start(&options).expect("it listens"), path),
         other => panic!("{other:?}"),
     }
 }
@@ -86,15 +92,7 @@ fn a_flood_of_garbage_costs_no_good_frame() {
         bytes.extend(frame(message, number));
     }
     let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("flood.frames");
-    let live = start(&[
-        "--udp",
-        "127.0.0.1:0",
-        "--system",
-        "pedestrian",
-        "--record",
-        path.to_str().expect("a plain name"),
-    ]);
+    let (live, path) = start(&folder);
     let address: SocketAddr = live.address().expect("a port");
     send(address, pieces(&bytes, &mut rng).into_iter(), || {
         let counted = live.counts().bytes;
@@ -125,15 +123,7 @@ fn a_flood_of_garbage_costs_no_good_frame() {
 #[test]
 fn datagrams_that_overtake_each_other_cost_nothing_but_their_order() {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("mixed.frames");
-    let live = start(&[
-        "--udp",
-        "127.0.0.1:0",
-        "--system",
-        "pedestrian",
-        "--record",
-        path.to_str().expect("a plain name"),
-    ]);
+    let (live, _) = start(&folder);
     let still = |number: usize| Imu {
         time_us: number as u64 * 10_000,
         specific_force: [0.0, 0.0, 9.81],

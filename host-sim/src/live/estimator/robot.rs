@@ -26,14 +26,12 @@ pub(in crate::live) struct Plan {
 impl Plan {
     pub(super) fn read(options: &Live) -> Result<Self, Error> {
         let mut assumptions = Vec::new();
-        let anchors = match &options.anchors {
-            Some(path) => anchors::read(path)?,
-            None => {
-                assumptions.push(
-                    "the anchors are taken to be those of the paper's office (--anchors)".into(),
-                );
-                office()
-            }
+        let anchors = if let Some(path) = &options.anchors {
+            anchors::read(path)?
+        } else {
+            let office = "the anchors are taken to be those of the paper's office (--anchors)";
+            assumptions.push(office.to_owned());
+            office_anchors()
         };
         let height_m = options.height.unwrap_or_else(|| anchors.mean_height());
         if options.height.is_none() {
@@ -70,7 +68,7 @@ impl Plan {
     }
 }
 
-fn office() -> Anchors {
+fn office_anchors() -> Anchors {
     let positions = scenario::ANCHORS.to_vec();
     let names = (1..=positions.len()).map(|number| format!("A{number}")).collect();
     Anchors { names, positions }
