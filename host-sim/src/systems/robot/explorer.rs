@@ -4,6 +4,8 @@ mod controls;
 #[cfg(test)]
 mod tests;
 
+use super::accuracy::Accuracy;
+use super::feed::Followed;
 use super::figures::{self, Shown};
 use super::follow;
 use super::options::{Dimensions, Setup, TrackerKind};
@@ -35,8 +37,8 @@ pub const SOURCE: Source = Source {
         ("points", "The paper's office: fifteen points, 50 epochs each"),
         ("crowded-round", "The paper's office: a round, with somebody before each anchor in turn"),
     ],
-    open: |files| Ok(Opened::explorer(read(files)?)),
-    open_bundled: |name| Ok(Opened::explorer(bundled(name)?)),
+    open: |files| Ok(Box::new(Opened { recording: read(files)?, height_is_known: false })),
+    open_bundled: |name| Ok(Box::new(Opened { recording: bundled(name)?, height_is_known: true })),
 };
 
 const fn field(name: &'static str, label: &'static str, required: bool) -> FileField {
@@ -78,11 +80,24 @@ fn bundled(name: &str) -> Result<Recording, Error> {
 /// A recording that is open.
 struct Opened {
     recording: Recording,
+    /// Whether the tag is known to be as high as the anchors.
+    height_is_known: bool,
 }
 
 impl Opened {
-    fn explorer(recording: Recording) -> Box<dyn Explorer> {
-        Box::new(Self { recording })
+    fn warnings(&self, setup: &Setup, traces: &[Trace]) -> Vec<String> {
+        let mut warnings = self.recording.warnings.clone();
+        if traces.iter().all(|trace| trace.followed.known().next().is_none()) {
+            warnings.push("no position was found".to_owned());
+        }
+        let anchors_m = self.recording.anchors.mean_height();
+        let assumed = !self.height_is_known && setup.height_m == anchors_m;
+        if assumed && setup.dimensions == Dimensions::Two {
+            warnings.push(format!(
+                "the tag's height is taken to be that of the anchors, {anchors_m:.2} m"
+            ));
+        }
+        warnings
     }
 
     fn setup(&self, settings: &Settings) -> Setup {
@@ -119,7 +134,7 @@ impl Explorer for Opened {
         ];
         Ok(Answer {
             facts: facts(recording, &traces),
-            warnings: warnings(recording, &setup, &traces),
+            warnings: self.warnings(&setup, &traces),
             figures: vec![
                 shown.plan("plan", vec![positions]),
                 shown.ranges("ranges"),
@@ -131,28 +146,15 @@ impl Explorer for Opened {
     }
 }
 
-fn warnings(recording: &Recording, setup: &Setup, traces: &[Trace]) -> Vec<String> {
-    let mut warnings = recording.warnings.clone();
-    if traces.iter().all(|trace| trace.followed.known().next().is_none()) {
-        warnings.push("no position was found".to_owned());
-    }
-    let anchors_m = recording.anchors.mean_height();
-    if setup.dimensions == Dimensions::Two && setup.height_m == anchors_m {
-        warnings
-            .push(format!("the tag's height is taken to be that of the anchors, {anchors_m:.2} m"));
-    }
-    warnings
-}
-
 fn facts(recording: &Recording, traces: &[Trace]) -> Vec<(String, String)> {
     let all = || traces.iter().map(|trace| &trace.followed);
     let of_the_ranges = [
         ("ranges taken in", all().map(|followed| followed.updates).sum::<usize>().to_string()),
         ("ranges left out", all().map(|followed| followed.rejected).sum::<usize>().to_string()),
-        ("without a position", format!("{:.1} s", all().map(|f| f.lost_s()).sum::<f64>())),
+        ("without a position", format!("{:.1} s", all().map(Followed::lost_s).sum::<f64>())),
     ];
     let accuracy = recording.accuracy(all());
-    let of_the_truth = accuracy.iter().flat_map(|accuracy| accuracy.in_words());
+    let of_the_truth = accuracy.iter().flat_map(Accuracy::in_words);
     let facts = of_the_ranges.into_iter().chain(of_the_truth);
     facts.map(|(name, value)| (name.to_owned(), value)).collect()
 }

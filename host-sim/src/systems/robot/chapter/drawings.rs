@@ -100,8 +100,8 @@ fn three(day: &Day, ids: [&str; 3], numbers: [&str; 3], what: &str) -> [Figure; 
             2,
             "AEKF as printed",
             vec![honest(aekf), told(true_aekf)],
-            "Started at the truth it does not leave it where the tag stands; from an honest start it is as far off as the EKF, \
-             or runs away.",
+            "Started at the truth it hardly leaves the place of a standing tag; from an honest start it is as far off as the EKF. A \
+             moving tag it does not follow.",
         ),
     ]
 }

@@ -50,7 +50,7 @@ pub(super) fn table_1_from_the_truth(report: &Report) -> Comparison {
         table.row(name, three(&row.published), three(&row.from_the_truth), limits(row))
     };
     rows(report).fold(table, add).note(
-        "Below the limit because the answer was given: a small P₀ holds the filter at its start while eq. 18 \
+        "The filters are below the limit because the answer was given: a small P₀ holds the filter at its start while eq. 18 \
          inflates R. Nothing here is our tracker.",
     )
 }

@@ -25,6 +25,7 @@ fn every_bundled_recording_opens_with_the_same_figures() {
         let answer = answer(&*opened, &json!({}));
         let ids: Vec<_> = answer.figures.iter().map(|figure| figure.id.as_str()).collect();
         assert_eq!(ids, ["plan", "ranges", "health", "position", "error"], "{name}");
+        assert!(answer.warnings.is_empty(), "{name}: {:?}", answer.warnings);
         assert!(rmse_cm(&answer) < 40.0, "{name}: {} cm", rmse_cm(&answer));
     }
 }
@@ -69,7 +70,7 @@ fn a_gate_leaves_out_what_a_wide_one_takes() {
 #[test]
 fn the_initial_settings_are_those_of_the_command_line() {
     let recording = bundled("line").unwrap();
-    let opened = Opened { recording: recording.clone() };
+    let opened = Opened { recording: recording.clone(), height_is_known: true };
     let settings = Settings::initial(&opened.controls());
     let setup = Setup { biases: recording.biases.clone(), ..Setup::of_the_office(ScalarKind::F32) };
     assert_eq!(opened.setup(&settings), setup);
