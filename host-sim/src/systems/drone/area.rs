@@ -36,6 +36,11 @@ impl Area {
         Ok(area)
     }
 
+    /// The corners, m, in order.
+    pub fn corners(&self) -> &[[f64; 2]] {
+        &self.corners
+    }
+
     /// m².
     fn size(&self) -> f64 {
         let sum: f64 = self.sides().map(|([ax, ay], [bx, by])| ax * by - ay * bx).sum();
