@@ -25,13 +25,15 @@
       place.remove();
       places.delete(id);
     }
+    // All places first: each is then drawn as wide as it stays.
+    for (const { id, title } of answer.figures) {
+      if (places.has(id)) continue;
+      const place = make("figure", { id: `figure-${id}` }, make("h3", { textContent: title }));
+      places.set(id, { place, caption: make("figcaption"), text: "" });
+      element("figures").append(place);
+    }
     for (const figure of answer.figures) {
       const text = JSON.stringify(figure);
-      if (!places.has(figure.id)) {
-        const place = make("figure", { id: `figure-${figure.id}` }, make("h3", { textContent: figure.title }));
-        places.set(figure.id, { place, caption: make("figcaption"), text: "" });
-        element("figures").append(place);
-      }
       const entry = places.get(figure.id);
       if (entry.text === text) continue;
       entry.text = text;

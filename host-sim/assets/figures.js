@@ -3,22 +3,28 @@
 
 const Figures = (() => {
   const drawn = new Map();
+  const resized = new ResizeObserver((entries) => {
+    for (const { target } of entries) if (target.data) Plotly.Plots.resize(target);
+  });
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-  function axis(given) {
+  function axis(given, map) {
     const colours = { gridcolor: style("--line"), zerolinecolor: style("--line"), linecolor: style("--line") };
-    return { automargin: true, constrain: "domain", ...colours, ...structuredClone(given) };
+    // A map's proportions and growing margins chase each other.
+    const fit = map ? { constrain: "domain" } : { automargin: true };
+    return { ...fit, ...colours, ...structuredClone(given) };
   }
 
   function layout(figure) {
     return {
-      xaxis: axis(figure.layout.xaxis),
-      yaxis: axis(figure.layout.yaxis),
+      xaxis: axis(figure.layout.xaxis, figure.equal),
+      yaxis: axis(figure.layout.yaxis, figure.equal),
       paper_bgcolor: "rgba(0,0,0,0)",
       plot_bgcolor: "rgba(0,0,0,0)",
       font: { color: style("--ink"), family: "system-ui, sans-serif", size: 12 },
       hoverlabel: { bgcolor: style("--panel"), font: { color: style("--ink") } },
-      margin: { l: 52, r: 12, t: 8, b: 44 },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: style("--soft"), activecolor: style("--accent") },
+      margin: { l: 58, r: 12, t: 8, b: 46 },
       hovermode: "closest",
       dragmode: "zoom",
       showlegend: false,
@@ -81,6 +87,7 @@ const Figures = (() => {
     plot.addEventListener("keydown", (event) => keys(event, plot));
     buttons.className = "legend";
     place.append(buttons, plot);
+    resized.observe(plot);
     const hidden = new Set(figure.data.filter((series) => series.visible).map((series) => series.name));
     const entry = { plot, buttons, hidden, names: "", figure, onZoom };
     drawn.set(place, entry);
@@ -96,7 +103,7 @@ const Figures = (() => {
     if (names !== entry.names) legend(entry);
     entry.names = names;
     const done = Plotly.react(entry.plot, figure.data, layout(figure), {
-      responsive: true, displaylogo: false, scrollZoom: false,
+      displaylogo: false, scrollZoom: false,
       modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
     });
     if (first && onZoom) entry.plot.on("plotly_relayout", () => {
@@ -117,5 +124,11 @@ const Figures = (() => {
   document.getElementById("theme").addEventListener("click", () =>
     theme(document.documentElement.dataset.theme !== "dark"));
 
-  return { draw, forget: (place) => { drawn.delete(place); } };
+  const forget = (place) => {
+    const { plot } = drawn.get(place);
+    resized.unobserve(plot);
+    Plotly.purge(plot);
+    drawn.delete(place);
+  };
+  return { draw, forget };
 })();

@@ -4,6 +4,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::design::Design;
+use crate::live::options::Live;
 use crate::outputs::Outputs;
 use crate::serve::Serve;
 use crate::systems::{drone, gnss, pedestrian, robot, uav};
@@ -49,6 +50,8 @@ pub enum Command {
     Design(Design),
     /// Explore recordings in the browser: thresholds and filters with sliders
     Serve(Serve),
+    /// Listen to a sender's telemetry, record it and follow it with a system's estimator
+    Live(Live),
     /// List systems, scenarios and log formats
     List,
     /// Print what makes a shell complete this program's options

@@ -12,6 +12,7 @@ pub mod design;
 mod error;
 pub mod explore;
 pub mod figure;
+pub mod live;
 pub mod mcap;
 pub mod metrics;
 pub mod output;

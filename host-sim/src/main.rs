@@ -47,6 +47,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Error> {
         Some(Command::Design(design)) => design.run(),
         Some(Command::Serve(serve)) => serve.run(&systems::SOURCES),
         Some(Command::Completions { shell }) => output::print(&cli::completions(shell)),
+        Some(Command::Live(live)) => live.run(),
         Some(Command::List) => output::print(&systems::list()),
     }
 }

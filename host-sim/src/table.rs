@@ -8,7 +8,7 @@ use crate::text::{Header, Line, TextFile};
 /// Beyond any clock, s: three centuries, within which a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
 /// Beyond any place on earth in any projection, m.
-const FARTHEST_POSITION: f64 = 1e8;
+pub(crate) const FARTHEST_POSITION: f64 = 1e8;
 
 /// Reads a table: `row` is called for each line below the header.
 ///

@@ -10,3 +10,8 @@ pub mod ppp;
 pub mod recordings;
 pub mod robot;
 pub use target_bench::uav;
+
+/// The example of the first page compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct FirstPage;

@@ -24,7 +24,7 @@ const MOST_POINTS: usize = 700;
 pub(super) struct Refusal(StatusCode, String);
 
 impl Refusal {
-    fn of(problem: impl ToString) -> Self {
+    pub(super) fn of(problem: impl ToString) -> Self {
         Self(StatusCode::UNPROCESSABLE_ENTITY, problem.to_string())
     }
 }

@@ -6,6 +6,7 @@ mod api;
 mod assets;
 mod guard;
 mod sessions;
+mod socket;
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
@@ -14,11 +15,15 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
 use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
 
 use crate::explore::Source;
+use crate::live::View;
 use crate::{Error, output};
 use sessions::Sessions;
 
+/// The page's port unless told otherwise.
+pub const PORT: u16 = 8017;
 /// A day of satellites is some tens of megabytes.
 const LARGEST_UPLOAD: usize = 512 << 20;
 /// As the program's own threads: a filter of thousands of particles is moved about before it lies on the heap.
@@ -28,7 +33,7 @@ const STACK_BYTES: usize = 16 << 20;
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Serve {
     /// Port on this machine; 0 takes a free one
-    #[arg(long, value_name = "P", default_value_t = 8017)]
+    #[arg(long, value_name = "P", default_value_t = PORT)]
     port: u16,
 }
 
@@ -38,23 +43,66 @@ impl Serve {
     /// # Errors
     /// [`Error::Usage`] if the port cannot be had.
     pub fn run(self, sources: &'static [Source]) -> Result<(), Error> {
-        let shared = Arc::new(Shared { sources, sessions: Sessions::default() });
+        let shared = Arc::new(Shared { sources, sessions: Sessions::default(), live: None });
         runtime()?.block_on(async {
             let (listener, address) = bind(self.port).await?;
             output::print(&format!("http://{address}/  (Ctrl-C ends)"))?;
-            serve(listener, router(shared, address)).await
+            let serving = axum::serve(listener, router(shared, address));
+            let interrupted = async {
+                // Without a signal handler the signal ends the program by itself.
+                let _ = tokio::signal::ctrl_c().await;
+            };
+            tokio::select! {
+                result = serving => result
+                    .map_err(|error| Error::Usage(format!("the page cannot be served any longer: {error}"))),
+                () = interrupted => Ok(()),
+            }
         })
     }
 }
 
-/// What all requests have in common.
+/// The page of a stream, beside whatever else the program does; it ends with this.
 #[derive(Debug)]
+pub struct Page {
+    runtime: Runtime,
+    listener: Option<TcpListener>,
+    address: SocketAddr,
+}
+
+impl Page {
+    /// Takes the port; nobody is answered yet.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it cannot be had.
+    pub fn bind(port: u16) -> Result<Self, Error> {
+        let runtime = runtime()?;
+        let (listener, address) = runtime.block_on(bind(port))?;
+        Ok(Self { runtime, listener: Some(listener), address })
+    }
+
+    /// Shows what `live` says.
+    pub fn show(&mut self, live: View) {
+        let Some(listener) = self.listener.take() else { return };
+        let shared = Shared { sources: &[], sessions: Sessions::default(), live: Some(live) };
+        let router = router(Arc::new(shared), self.address);
+        self.runtime.spawn(axum::serve(listener, router).into_future());
+    }
+
+    /// Where it is.
+    pub fn address(&self) -> String {
+        format!("http://{}/", self.address)
+    }
+}
+
+/// What all requests have in common.
 struct Shared {
     sources: &'static [Source],
     sessions: Sessions,
+    /// Where there is a stream to show.
+    live: Option<View>,
 }
 
-fn runtime() -> Result<tokio::runtime::Runtime, Error> {
+fn runtime() -> Result<Runtime, Error> {
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .thread_stack_size(STACK_BYTES)
@@ -76,18 +124,9 @@ fn router(shared: Arc<Shared>, address: SocketAddr) -> Router {
         .route("/api/open/{system}", post(api::open_files))
         .route("/api/open/{system}/{recording}", post(api::open_bundled))
         .route("/api/answer/{session}", post(api::answer))
+        .route("/live", get(socket::open))
         .layer(DefaultBodyLimit::max(LARGEST_UPLOAD))
         .with_state(shared)
         .merge(assets::router())
         .layer(axum::middleware::from_fn_with_state(address, guard::only_this_machine))
-}
-
-async fn serve(listener: TcpListener, router: Router) -> Result<(), Error> {
-    axum::serve(listener, router)
-        .with_graceful_shutdown(async {
-            // Without a signal handler the signal ends the program by itself.
-            let _ = tokio::signal::ctrl_c().await;
-        })
-        .await
-        .map_err(|error| Error::Usage(format!("the page cannot be served any longer: {error}")))
 }

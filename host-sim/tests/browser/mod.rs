@@ -21,6 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub(crate) struct Page {
     tab: Arc<Tab>,
     noted: Arc<Mutex<Noted>>,
+    width: u32,
     _browser: Browser,
 }
 
@@ -69,12 +70,19 @@ impl Page {
             notes.lock().expect("the notes").take(event);
         }))
         .expect("a listener");
-        // A window cannot be as narrow as a telephone.
-        tab.call_method(Emulation::SetDeviceMetricsOverride {
-            width,
-            height: 900,
+        let page = Self { tab, noted, width, _browser: browser };
+        page.size(900);
+        page.tab.navigate_to(address).and_then(Tab::wait_until_navigated).expect("the page loads");
+        Some(page)
+    }
+
+    /// Makes the page this high, and as narrow as no window can be.
+    fn size(&self, height: u32) {
+        let metrics = Emulation::SetDeviceMetricsOverride {
+            width: self.width,
+            height,
             device_scale_factor: 1.0,
-            mobile: width < 500,
+            mobile: self.width < 500,
             scale: None,
             screen_width: None,
             screen_height: None,
@@ -85,10 +93,8 @@ impl Page {
             viewport: None,
             display_feature: None,
             device_posture: None,
-        })
-        .expect("a width");
-        tab.navigate_to(address).and_then(|tab| tab.wait_until_navigated()).expect("the page loads");
-        Some(Self { tab, noted, _browser: browser })
+        };
+        self.tab.call_method(metrics).expect("a size");
     }
 
     /// What a piece of JavaScript says; promises are awaited.
@@ -126,6 +132,10 @@ impl Page {
     pub(crate) fn screenshot(&self, name: &str) -> PathBuf {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screenshots");
         fs::create_dir_all(&folder).expect("a folder for screenshots");
+        let height = self.evaluate("document.documentElement.scrollHeight").as_f64();
+        self.size(height.map_or(900, |height| height as u32));
+        // Figures that come into view are drawn now.
+        std::thread::sleep(Duration::from_millis(500));
         let png = CaptureScreenshotFormatOption::Png;
         let image = self.tab.capture_screenshot(png, None, None, true).expect("a screenshot");
         let path = folder.join(name);

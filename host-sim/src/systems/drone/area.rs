@@ -36,7 +36,7 @@ impl Area {
         Ok(area)
     }
 
-    /// The corners, m, in order.
+    /// In the order of their file, m.
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.corners
     }

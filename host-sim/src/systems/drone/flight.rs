@@ -40,6 +40,15 @@ pub struct Flight {
 
 /// Heights above which no drone flies, m.
 const HIGHEST_M: f64 = 20_000.0;
+/// No radio measures a larger loss or level, dB.
+const LARGEST_DB: f64 = 300.0;
+
+impl Stop {
+    /// Whether a channel can use it.
+    pub fn is_usable(&self) -> bool {
+        self.height > 0.0 && self.height < HIGHEST_M && self.loss.abs() <= LARGEST_DB
+    }
+}
 
 /// Reads columns t,x,y,h and `path_loss_db` or `rssi_db`.
 ///
@@ -69,8 +78,9 @@ pub fn read(path: &Path) -> Result<Flight, Error> {
                 Quantity::PathLoss => row.number("path_loss_db", value)?,
                 Quantity::Level => -row.number("rssi_db", value)?,
             };
-            if height > 0.0 && height < HIGHEST_M && loss.abs() <= 300.0 {
-                flight.stops.push(Stop { t, place, height, loss });
+            let stop = Stop { t, place, height, loss };
+            if stop.is_usable() {
+                flight.stops.push(stop);
             } else {
                 flight.unusable += 1;
             }

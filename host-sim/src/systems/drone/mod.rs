@@ -20,6 +20,7 @@ pub mod explorer;
 pub mod film;
 pub mod flight;
 pub mod moving_user;
+pub mod online;
 pub mod options;
 pub mod replay;
 pub mod report;

@@ -1,17 +1,18 @@
 //! The paper's interface in the browser: a walk, a threshold, and what becomes of the path.
 
-use clap::ValueEnum;
+mod controls;
+#[cfg(test)]
+mod tests;
 
 use super::accuracy::Accuracy;
 use super::figures::{self, Placed};
-use super::options::{DetectorKind, Options, SensorClass, TrackerKind};
+use super::options::{DetectorKind, Options};
 use super::recording::{Recording, Walked};
 use super::run::RunError;
 use super::trace::{Trace, trace, without_updates};
 use super::track::TrackPoint;
 use super::{STANDARD_GRAVITY, Sample};
 use crate::Error;
-use crate::cli::ScalarKind;
 use crate::explore::{Answer, Control, Explorer, FileField, Files, Settings, Source};
 use crate::figure::{Colour, Figure};
 
@@ -92,55 +93,11 @@ impl Opened {
 
 impl Explorer for Opened {
     fn controls(&self) -> Vec<Control> {
-        let [low, high] = [0.05, 0.5];
-        vec![
-            Control::choice(
-                "tracker",
-                "tracker",
-                &[("ekf", "error-state Kalman filter"), ("lite", "the paper's architecture")],
-            ),
-            Control::choice(
-                "detector",
-                "stance detector",
-                &[
-                    ("adaptive", "adaptive, no threshold"),
-                    ("magnitude", "magnitude |a|, the paper's"),
-                    ("variance", "variance of |a|"),
-                    ("angular-rate", "angular rate"),
-                    ("shoe", "SHOE, fixed threshold"),
-                ],
-            ),
-            Control::slider("threshold", "threshold of |a| about 1 g", "g", [low, high, 0.01], 0.1),
-            Control::decades(
-                "factor",
-                "thresholds of variance, angular rate and SHOE, times their defaults",
-                "",
-                [0.1, 10.0],
-                1.0,
-            ),
-            Control::choice(
-                "sensor",
-                "class of the sensor",
-                &[("consumer", "consumer: bare chips"), ("industrial", "industrial: calibrated")],
-            ),
-            Control::slider(
-                "contact_height",
-                "sensor above the ball of the foot; 0 takes the foot for motionless, as the paper does",
-                "m",
-                [0.0, 0.2, 0.01],
-                0.07,
-            ),
-            Control::switch("causal", "look only backwards, as firmware must", false),
-            Control::choice(
-                "scalar",
-                "number type",
-                &[("f32", "f32"), ("f64", "f64"), ("fixed", "fixed point, Q12.20")],
-            ),
-        ]
+        controls::all()
     }
 
     fn answer(&self, settings: &Settings) -> Result<Answer, Error> {
-        let options = options(settings);
+        let options = controls::options(settings);
         let threshold_g = settings.number("threshold");
         let paper = Options {
             detector: DetectorKind::Magnitude(threshold_g * STANDARD_GRAVITY),
@@ -187,45 +144,12 @@ impl Explorer for Opened {
                 figures::position("position", &with, &self.truth),
             ],
         };
-        answer.fact("stance", threshold_in_words(options.detector));
+        answer.fact("stance", controls::in_words(options.detector));
         answer.fact(
             "path by the paper's method, literally",
             format!("{:.2} m", paper.walk.path_length_m),
         );
         Ok(answer)
-    }
-}
-
-fn options(settings: &Settings) -> Options {
-    let default = Options::default();
-    let factor = settings.number("factor");
-    let detector = match settings.choice("detector") {
-        "magnitude" => DetectorKind::Magnitude(settings.number("threshold") * STANDARD_GRAVITY),
-        "variance" => DetectorKind::Variance(factor * DetectorKind::VARIANCE_THRESHOLD),
-        "angular-rate" => DetectorKind::AngularRate(factor * DetectorKind::ANGULAR_RATE_THRESHOLD),
-        "shoe" => DetectorKind::Shoe(factor * DetectorKind::SHOE_THRESHOLD),
-        _ => DetectorKind::Adaptive,
-    };
-    let exactly = false;
-    Options {
-        tracker: TrackerKind::from_str(settings.choice("tracker"), exactly).unwrap_or_default(),
-        detector,
-        sensor: SensorClass::from_str(settings.choice("sensor"), exactly).unwrap_or_default(),
-        contact_height_m: Some(settings.number("contact_height")),
-        causal: settings.is_on("causal"),
-        scalar: ScalarKind::from_str(settings.choice("scalar"), exactly).unwrap_or(default.scalar),
-    }
-}
-
-fn threshold_in_words(detector: DetectorKind) -> String {
-    match detector {
-        DetectorKind::Adaptive => "near the quietest moments around".to_owned(),
-        DetectorKind::Magnitude(value) => {
-            format!("|a| within {:.2} g of 1 g", value / STANDARD_GRAVITY)
-        }
-        DetectorKind::Variance(value) => format!("variance of |a| below {value:.3} (m/s²)²"),
-        DetectorKind::AngularRate(value) => format!("mean |ω|² below {value:.3} (rad/s)²"),
-        DetectorKind::Shoe(value) => format!("SHOE's T below {value:.3} (rad/s)²"),
     }
 }
 
@@ -239,101 +163,4 @@ fn facts(trace: &Trace, accuracy: Option<Accuracy>) -> Vec<(String, String)> {
     let of_the_truth = accuracy.iter().flat_map(Accuracy::in_words);
     let facts = of_the_walk.into_iter().chain(of_the_truth);
     facts.map(|(name, value)| (name.trim().to_owned(), value)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use serde_json::{Value, json};
-
-    use super::*;
-
-    fn answer(explorer: &dyn Explorer, sent: &Value) -> Answer {
-        let sent = sent.as_object().cloned().unwrap_or_default();
-        explorer.answer(&Settings::sent(&explorer.controls(), &sent).unwrap()).unwrap()
-    }
-
-    fn figure<'a>(answer: &'a Answer, id: &str) -> &'a Figure {
-        answer.figures.iter().find(|figure| figure.id == id).unwrap()
-    }
-
-    fn fact<'a>(answer: &'a Answer, name: &str) -> &'a str {
-        &answer.facts.iter().find(|(found, _)| found == name).unwrap().1
-    }
-
-    #[test]
-    fn every_bundled_walk_opens_with_the_same_figures_and_is_walked_well() {
-        for (name, _) in SOURCE.bundled {
-            let opened = (SOURCE.open_bundled)(name).unwrap();
-            let answer = answer(&*opened, &json!({}));
-            let ids: Vec<_> = answer.figures.iter().map(|figure| figure.id.as_str()).collect();
-            let expected =
-                ["path", "accelerometer", "gyroscope", "magnitude", "velocity", "position"];
-            assert_eq!(ids, expected, "{name}");
-            let rmse: f64 = fact(&answer, "RMSE").trim_end_matches(" m").parse().unwrap();
-            assert!(rmse < 1.0, "{name}: {rmse} m");
-            assert!(answer.warnings.is_empty(), "{name}: {:?}", answer.warnings);
-        }
-    }
-
-    #[test]
-    fn the_threshold_moves_its_lines_and_the_path() {
-        let opened = (SOURCE.open_bundled)("route-50").unwrap();
-        let at = |threshold| {
-            answer(&*opened, &json!({ "detector": "magnitude", "threshold": threshold }))
-        };
-        let (low, high) = (at(0.1), at(0.4));
-        for id in ["path", "magnitude", "velocity", "position"] {
-            assert_ne!(figure(&low, id), figure(&high, id), "{id}");
-        }
-        for id in ["accelerometer", "gyroscope"] {
-            assert_eq!(figure(&low, id), figure(&high, id), "{id}");
-        }
-        assert_ne!(fact(&low, "path length"), fact(&high, "path length"));
-    }
-
-    #[test]
-    fn every_other_control_changes_the_path() {
-        let opened = (SOURCE.open_bundled)("route-100").unwrap();
-        let path = |sent: Value| figure(&answer(&*opened, &sent), "path").clone();
-        let initial = path(json!({}));
-        for sent in [
-            json!({ "tracker": "lite" }),
-            json!({ "detector": "shoe" }),
-            json!({ "sensor": "industrial" }),
-            json!({ "contact_height": 0.0 }),
-            json!({ "causal": true }),
-            json!({ "scalar": "fixed" }),
-        ] {
-            assert_ne!(initial, path(sent.clone()), "{sent}");
-        }
-        let fixed = |factor: f64| path(json!({ "detector": "variance", "factor": factor }));
-        assert_ne!(fixed(1.0), fixed(5.0));
-    }
-
-    #[test]
-    fn the_initial_settings_are_those_of_the_command_line() {
-        let opened = (SOURCE.open_bundled)("route-100").unwrap();
-        let initial = options(&Settings::initial(&opened.controls()));
-        let default = Options { contact_height_m: Some(0.07), ..Options::default() };
-        assert_eq!(initial, default);
-    }
-
-    #[test]
-    fn what_cannot_be_walked_is_refused_in_one_sentence() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("walk.txt");
-        let mut files = Files::default();
-        files.add("log", &path);
-        for (text, expected) in [
-            ("", "found an empty file"),
-            ("0 0 0 1 0 0 0\n10 0 0 1 0 0\n", "line 2: expected 7 blank-separated fields"),
-            ("0 0 0 1 0 0 0\n", "expected a log of at least 2 samples, found 1"),
-        ] {
-            std::fs::write(&path, text).unwrap();
-            let refusal = (SOURCE.open)(&files).err().unwrap().to_string();
-            assert!(refusal.contains(expected) && !refusal.contains('\n'), "{refusal}");
-        }
-        assert!((SOURCE.open)(&Files::default()).is_err());
-        assert!((SOURCE.open_bundled)("the moon").is_err());
-    }
 }

@@ -142,11 +142,11 @@ pub fn velocity(id: &str, with: &Placed<'_>, without: &Placed<'_>) -> Figure {
 /// Position over time, with the truth as far as it is known.
 pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
     let ours = (0..3).map(|i| placed.position(AXES[i], i).coloured(COLOURS[i]));
-    let known = (0..3).filter(|&i| truth.iter().any(|point| point.position[i].is_finite()));
+    let known = (0..3).filter(|&i| !truth.is_empty() && (i < 2 || is_continuous(truth)));
     let truth = known.map(|i| {
         let (times, values) =
             truth.iter().map(|point| (seconds(point.time_us), point.position[i])).unzip();
-        let mark = if i == 2 { Mark::Dots } else { Mark::Points };
+        let mark = if is_continuous(truth) { Mark::Dots } else { Mark::Points };
         Series::new(format!("true {}", AXES[i]), mark, times, values).coloured(Colour::Truth)
     });
     Figure::new(id, "Position")
@@ -160,7 +160,7 @@ pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
 pub fn path(id: &str, truth: &[TrackPoint], ours: &Placed<'_>, others: Vec<Series>) -> Figure {
     let route = (!truth.is_empty()).then(|| {
         Series::path("true way", truth.iter().map(TrackPoint::horizontal))
-            .marked(if truth.len() > 1000 { Mark::Dashes } else { Mark::LineAndPoints })
+            .marked(if is_continuous(truth) { Mark::Dashes } else { Mark::LineAndPoints })
             .coloured(Colour::Truth)
     });
     Figure::new(id, "Path on the plan")
@@ -173,6 +173,11 @@ pub fn path(id: &str, truth: &[TrackPoint], ours: &Placed<'_>, others: Vec<Serie
         .with_all(others)
         .with(ours.path("ours").coloured(Colour::Ours))
         .with(ours.strides("our strides").coloured(Colour::Ours))
+}
+
+/// Whether a truth is that of every sample rather than of footprints, which have no height.
+fn is_continuous(truth: &[TrackPoint]) -> bool {
+    truth.iter().any(|point| point.position[2].is_finite())
 }
 
 fn triad(samples: &[Sample], value: impl Fn(&Sample) -> [f64; 3]) -> [Series; 3] {

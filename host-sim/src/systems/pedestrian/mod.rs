@@ -26,7 +26,7 @@ pub mod streams;
 pub mod trace;
 pub mod track;
 pub mod truth;
-mod warning;
+pub(crate) mod warning;
 
 pub use chapter::chapter;
 pub use explorer::SOURCE;

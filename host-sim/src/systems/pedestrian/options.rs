@@ -71,6 +71,15 @@ pub enum SensorClass {
     Consumer,
 }
 
+impl From<SensorClass> for kestirim_pedestrian::SensorClass {
+    fn from(class: SensorClass) -> Self {
+        match class {
+            SensorClass::Industrial => Self::Industrial,
+            SensorClass::Consumer => Self::Consumer,
+        }
+    }
+}
+
 /// How stance is recognised; thresholds in SI, stance is below.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum DetectorKind {

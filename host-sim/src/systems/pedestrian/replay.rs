@@ -54,7 +54,7 @@ pub struct Replay {
     /// Write t,x,y,z of every (averaged) sample to this file
     #[arg(long, value_name = "OUT.csv")]
     track: Option<PathBuf>,
-    /// Write sensor, estimate and truth as streams, for Foxglove, PlotJuggler and Rerun
+    /// Write sensor, estimate and truth as MCAP, for Foxglove and Rerun
     #[arg(long, value_name = "OUT.mcap")]
     mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table

@@ -9,7 +9,7 @@ use kestirim_pedestrian::{
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::SVector;
 
-use super::options::{DetectorKind, Options, SensorClass, TrackerKind};
+use super::options::{DetectorKind, Options, TrackerKind};
 use super::trace::{Moment, OnlyAtStart, See, Updates};
 use super::track::TrackPoint;
 use super::{STANDARD_GRAVITY, Sample, warning};
@@ -111,13 +111,7 @@ fn with_navigator<T: Scalar, N: Navigator<T>>(
     see: &mut See<'_>,
 ) -> Result<Walk, RunError> {
     let samples: Vec<_> = samples.iter().map(imu_sample::<T>).collect();
-    let mut config = Config {
-        sensor: match options.sensor {
-            SensorClass::Industrial => kestirim_pedestrian::SensorClass::Industrial,
-            SensorClass::Consumer => kestirim_pedestrian::SensorClass::Consumer,
-        },
-        ..Config::default()
-    };
+    let mut config = Config { sensor: options.sensor.into(), ..Config::default() };
     match (options.contact_height_m, options.detector) {
         (Some(height), _) => config.contact_height = T::from_f64(height),
         (None, DetectorKind::Magnitude(_)) => config.contact_height = T::ZERO,

@@ -3,7 +3,7 @@
 use kestirim_pedestrian::Warnings;
 
 /// A sentence for each warning that was raised.
-pub(super) fn sentences(warnings: Warnings) -> Vec<String> {
+pub(crate) fn sentences(warnings: Warnings) -> Vec<String> {
     [
         (
             warnings.accelerometer_saturated,

@@ -44,6 +44,18 @@ impl Accuracy {
         })
     }
 
+    /// Names and values for people.
+    pub fn in_words(&self) -> [(&'static str, String); 5] {
+        let centimetres = |metres: f64| format!("{:.1} cm", 100.0 * metres);
+        [
+            ("positions compared", self.positions.to_string()),
+            ("RMSE", centimetres(self.rmse_m)),
+            ("mean error", centimetres(self.mean_m)),
+            ("95 % below", centimetres(self.p95_m)),
+            ("largest error", centimetres(self.max_m)),
+        ]
+    }
+
     /// Compares a track with a truth known over time, at every epoch within it.
     pub fn of_track(epochs: &[Epoch], truth: &Course<2>) -> Option<Self> {
         let pairs: Vec<_> = epochs

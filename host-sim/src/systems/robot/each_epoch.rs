@@ -4,7 +4,7 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Observation, Solver, Trilateration};
 use nalgebra::SVector;
 
-use super::follow::Follow;
+use super::follow::{Follow, Reception};
 use super::motion::{Inertial, Wheels};
 use super::options::Setup;
 
@@ -83,16 +83,16 @@ impl<T: Scalar, const D: usize> Follow for EachEpoch<T, D> {
         self.solver.height = T::from_f64(height_m);
     }
 
-    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> bool {
+    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> Reception {
         let (Some(last), Some(bias)) = (self.last.get_mut(anchor), self.biases.get(anchor)) else {
-            return false;
+            return Reception::unweighed(false);
         };
         let newer = last.is_none_or(|(heard_us, _)| heard_us < time_us);
         let plausible = PLAUSIBLE.contains(&range_m) && newer;
         if plausible {
             *last = Some((time_us, T::from_f64(range_m - bias)));
         }
-        plausible
+        Reception::unweighed(plausible)
     }
 
     fn inertial(&mut self, _: u64, _: &Inertial) {}

@@ -6,7 +6,6 @@
 use std::fmt;
 
 use indicatif::ParallelProgressIterator;
-use rand_core::Rng;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -14,12 +13,12 @@ use super::accuracy::Accuracy;
 use super::feed::{self, Company, Epoch};
 use super::follow::{self, Follow};
 use super::limit::{Knowledge, mean_error_limit};
-use super::options::{self, Dimensions, Setup, TrackerKind};
+use super::options::{self, Setup, TrackerKind};
 use super::printed::{Beginning, Constants};
 use super::ranges::RangeRow;
-use super::scenario::{self, ANCHORS, EPOCHS, Office};
+use super::scenario::{self, EPOCHS, Office};
 use crate::cli::{RunOptions, ScalarKind};
-use crate::metrics::{distance, mean, median};
+use crate::metrics::{distance, mean};
 use crate::published::{PositionErrors, ROBOT_TABLE_1, ROBOT_TABLE_1_MEAN};
 use crate::random::stream;
 use crate::systems::choose_scalar;
@@ -70,12 +69,12 @@ pub struct Line {
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     system: &'static str,
-    seed: u64,
-    trials: u32,
-    scalar: ScalarKind,
-    points: Vec<Row>,
-    mean: Row,
-    line: Line,
+    pub(super) seed: u64,
+    pub(super) trials: u32,
+    pub(super) scalar: ScalarKind,
+    pub(super) points: Vec<Row>,
+    pub(super) mean: Row,
+    pub(super) line: Line,
 }
 
 /// Runs the experiment.
@@ -119,16 +118,8 @@ impl Day {
         let office = Office::draw(&mut rng);
         let places = scenario::points();
         let measured = places.map(|place| office.measure(&mut rng, &[place; EPOCHS]));
-        let plain = Setup {
-            tracker: TrackerKind::Default,
-            dimensions: Dimensions::Two,
-            scalar,
-            room: None,
-            height_m: 0.0,
-            anchors: ANCHORS.to_vec(),
-            biases: None,
-        };
-        let calibrated = Setup { biases: Some(biases(&office, &mut rng)), ..plain.clone() };
+        let plain = Setup::of_the_office(scalar);
+        let calibrated = Setup { biases: Some(office.calibrate(&mut rng)), ..plain.clone() };
         let mut points = [[0.0; COLUMNS]; 15];
         for ((errors, rows), &place) in points.iter_mut().zip(&measured).zip(&places) {
             let trackers = trackers(&plain, &calibrated, place, trial)?;
@@ -170,19 +161,6 @@ fn trackers(
         follow::build(plain)?,
         follow::build(calibrated)?,
     ])
-}
-
-/// What each anchor measures too long, m: the median at the marked places.
-fn biases<R: Rng>(office: &Office, rng: &mut R) -> Vec<f64> {
-    let mut excess = [const { Vec::new() }; 4];
-    for place in scenario::marks() {
-        for row in office.measure(rng, &[place; EPOCHS]) {
-            let Some(range) = row.range else { continue };
-            let [x, y, _] = ANCHORS[row.anchor];
-            excess[row.anchor].push(range - distance(place, [x, y]));
-        }
-    }
-    excess.iter().map(|excess| median(excess)).collect()
 }
 
 fn positions(tracker: &mut dyn Follow, rows: &[RangeRow]) -> Vec<Epoch> {

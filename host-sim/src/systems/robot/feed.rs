@@ -1,6 +1,6 @@
 //! Feeds a recording to a tracker, in the order of its clock.
 
-use super::follow::Follow;
+use super::follow::{Follow, Reception};
 use super::motion::{Inertial, Wheels};
 use super::points::Course;
 use super::ranges::RangeRow;
@@ -37,6 +37,16 @@ pub struct Followed {
 }
 
 impl Followed {
+    /// Times, µs, and where the tag was then, m, wherever it was found.
+    pub fn known(&self) -> impl Iterator<Item = (i64, [f64; 3])> {
+        self.epochs.iter().filter_map(|epoch| Some((epoch.time_us, epoch.position?)))
+    }
+
+    /// Where it was at the last epoch, if that is known.
+    pub fn last(&self) -> Option<[f64; 3]> {
+        self.epochs.last().and_then(|epoch| epoch.position)
+    }
+
     /// How long the tag was not known after the first range, s.
     pub fn lost_s(&self) -> f64 {
         let lost = self.epochs.windows(2).filter(|pair| pair[0].position.is_none());
@@ -44,9 +54,33 @@ impl Followed {
     }
 }
 
+/// Looks on while a recording is fed.
+pub trait Witness {
+    /// A range was given to the tracker.
+    fn heard(&mut self, row: &RangeRow, reception: Reception);
+    /// All ranges of a time were given.
+    fn ended(&mut self, tracker: &dyn Follow);
+}
+
+/// Nobody.
+impl Witness for () {
+    fn heard(&mut self, _: &RangeRow, _: Reception) {}
+    fn ended(&mut self, _: &dyn Follow) {}
+}
+
 /// Feeds ranges and their company; nothing is reordered, and times that go backwards are the tracker's to
 /// refuse.
 pub fn follow(tracker: &mut dyn Follow, rows: &[RangeRow], company: &Company) -> Followed {
+    witnessed(tracker, rows, company, &mut ())
+}
+
+/// The same while somebody looks on; [`Witness::ended`] is called once for every epoch of what is returned.
+pub fn witnessed(
+    tracker: &mut dyn Follow,
+    rows: &[RangeRow],
+    company: &Company,
+    witness: &mut impl Witness,
+) -> Followed {
     let firsts = [
         rows.iter().map(|row| row.time_us).min(),
         company.inertial.first().map(|sample| sample.time_us),
@@ -71,7 +105,9 @@ pub fn follow(tracker: &mut dyn Follow, rows: &[RangeRow], company: &Company) ->
         }
         for row in epoch {
             let Some(range) = row.range else { continue };
-            if tracker.range(since(time_us), row.anchor, range) {
+            let reception = tracker.range(since(time_us), row.anchor, range);
+            witness.heard(row, reception);
+            if reception.taken {
                 followed.updates += 1;
             } else {
                 followed.rejected += 1;
@@ -82,6 +118,7 @@ pub fn follow(tracker: &mut dyn Follow, rows: &[RangeRow], company: &Company) ->
             latest_us = time_us;
             tracker.end_epoch(since(time_us));
             followed.epochs.push(Epoch { time_us, position: tracker.position() });
+            witness.ended(tracker);
         }
     }
     followed

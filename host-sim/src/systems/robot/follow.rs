@@ -1,6 +1,7 @@
 //! The trackers behind one face, whatever they compute in.
 
 use kestirim_adaptive_kalman::Learning;
+use kestirim_kalman::Covariance;
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_tracker::{
     Anchor, Config, InertialSample, OdometrySample, Outcome, RangeSample, Tracker,
@@ -12,6 +13,7 @@ use super::each_epoch::EachEpoch;
 use super::motion::{Inertial, Wheels};
 use super::options::{Dimensions, Setup, TrackerKind};
 use super::printed::{Beginning, Printed};
+use super::tuning::Tuning;
 use crate::Error;
 use crate::cli::ScalarKind;
 
@@ -19,8 +21,8 @@ use crate::cli::ScalarKind;
 pub trait Follow {
     /// Sets the tag's height, m.
     fn set_height(&mut self, height_m: f64);
-    /// Takes in a range, m, and says whether it made a difference.
-    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> bool;
+    /// Takes in a range, m, and says what became of it.
+    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> Reception;
     /// Takes in a sample of the IMU.
     fn inertial(&mut self, time_us: u64, sample: &Inertial);
     /// Takes in a sample of the wheels.
@@ -29,6 +31,26 @@ pub trait Follow {
     fn end_epoch(&mut self, time_us: u64);
     /// Where the tag is, m; its height is given back as it was set in two dimensions.
     fn position(&self) -> Option<[f64; 3]>;
+    /// Variance of x, covariance, and variance of y, m², of a tracker that knows them.
+    fn spread(&self) -> Option<[f64; 3]> {
+        None
+    }
+}
+
+/// What became of a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reception {
+    /// Whether it made a difference.
+    pub taken: bool,
+    /// Its normalised innovation squared, from a tracker that weighs ranges one by one.
+    pub nis: Option<f64>,
+}
+
+impl Reception {
+    /// Of a tracker that weighs nothing.
+    pub const fn unweighed(taken: bool) -> Self {
+        Self { taken, nis: None }
+    }
 }
 
 /// Builds what was chosen.
@@ -36,40 +58,57 @@ pub trait Follow {
 /// # Errors
 /// [`Error::Usage`] if these anchors or numbers will not do.
 pub fn build(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    build_tuned(setup, None)
+}
+
+/// The same with other constants.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_tuned(setup: &Setup, tuning: Option<&Tuning>) -> Result<Box<dyn Follow>, Error> {
     match setup.scalar {
-        ScalarKind::F32 => with_scalar::<f32>(setup),
-        ScalarKind::F64 => with_scalar::<f64>(setup),
-        ScalarKind::Fixed => with_scalar::<Q12_20>(setup),
+        ScalarKind::F32 => with_scalar::<f32>(setup, tuning),
+        ScalarKind::F64 => with_scalar::<f64>(setup, tuning),
+        ScalarKind::Fixed => with_scalar::<Q12_20>(setup, tuning),
     }
 }
 
-fn with_scalar<T: Scalar>(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+fn with_scalar<T: Scalar>(
+    setup: &Setup,
+    tuning: Option<&Tuning>,
+) -> Result<Box<dyn Follow>, Error> {
     match setup.dimensions {
-        Dimensions::Two => in_dimensions::<T, 2, 4, 5>(setup),
-        Dimensions::Three => in_dimensions::<T, 3, 6, 7>(setup),
+        Dimensions::Two => in_dimensions::<T, 2, 4, 5>(setup, tuning),
+        Dimensions::Three => in_dimensions::<T, 3, 6, 7>(setup, tuning),
     }
 }
 
 fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usize>(
     setup: &Setup,
+    tuning: Option<&Tuning>,
 ) -> Result<Box<dyn Follow>, Error> {
     let height = T::from_f64(setup.height_m);
+    let plain = |config| tuning.map_or(config, |tuning| tuning.of_any(config));
+    let robust = |config| tuning.map_or(config, |tuning| tuning.of_the_robust(config));
     Ok(match setup.tracker {
         TrackerKind::Lsq => Box::new(EachEpoch::<T, D>::new(setup, true)),
         TrackerKind::Nls => Box::new(EachEpoch::<T, D>::new(setup, false)),
-        TrackerKind::Ekf => Box::new(Recursive::<T, D, N>::new(setup, Config::plain(height))?),
+        TrackerKind::Ekf => {
+            Box::new(Recursive::<T, D, N>::new(setup, plain(Config::plain(height)))?)
+        }
         TrackerKind::Aekf => {
             let limits = [0.99, 0.0025, 9.0].map(T::from_f64);
             let learning = Learning::new(limits[0], limits[1], limits[2]).ok();
             let config = Config { learning, ..Config::plain(height) };
-            Box::new(Recursive::<T, D, N>::new(setup, config)?)
+            Box::new(Recursive::<T, D, N>::new(setup, plain(config))?)
         }
         TrackerKind::AekfPrinted => Printed::<T, D, N>::boxed(setup, Beginning::HONEST)?,
         TrackerKind::Default if setup.biases.is_some() => {
-            Box::new(Recursive::<T, D, N>::new(setup, Config::calibrated(height))?)
+            Box::new(Recursive::<T, D, N>::new(setup, robust(Config::calibrated(height)))?)
         }
         TrackerKind::Default => {
-            Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, Config::uncalibrated(height))?)
+            let config = robust(Config::uncalibrated(height));
+            Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, config)?)
         }
     })
 }
@@ -135,9 +174,15 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
         }
     }
 
-    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> bool {
+    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> Reception {
         let sample = RangeSample { time_us, anchor, range: T::from_f64(range_m) };
-        self.tracker.range(&sample).is_ok_and(|report| report.outcome != Outcome::Rejected)
+        match self.tracker.range(&sample) {
+            Ok(report) => Reception {
+                taken: report.outcome != Outcome::Rejected,
+                nis: report.innovation.map(|innovation| innovation.nis.to_f64()),
+            },
+            Err(_) => Reception::unweighed(false),
+        }
     }
 
     fn inertial(&mut self, time_us: u64, sample: &Inertial) {
@@ -164,4 +209,16 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
         let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
         Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(self.height_m)])
     }
+
+    fn spread(&self) -> Option<[f64; 3]> {
+        self.tracker.estimate().and_then(|estimate| of_the_plane(&estimate.covariance))
+    }
+}
+
+/// Variance of x, covariance and variance of y: of the first two states of any filter.
+pub(super) fn of_the_plane<T: Scalar, const N: usize>(
+    covariance: &Covariance<T, N>,
+) -> Option<[f64; 3]> {
+    let of = |i, j| covariance.get(i, j).map(T::to_f64);
+    Some([of(0, 0)?, of(0, 1)?, of(1, 1)?])
 }

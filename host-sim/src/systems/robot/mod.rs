@@ -9,9 +9,12 @@ pub mod accuracy;
 pub mod anchors;
 pub mod calibrate;
 pub mod calibration;
+pub mod chapter;
 pub mod each_epoch;
 pub mod experiment;
+pub mod explorer;
 pub mod feed;
+pub mod figures;
 pub mod follow;
 pub mod limit;
 pub mod motion;
@@ -19,8 +22,15 @@ pub mod options;
 pub mod points;
 pub mod printed;
 pub mod ranges;
+pub mod recording;
 pub mod replay;
 pub mod scenario;
+pub mod streams;
+pub mod trace;
+pub mod tuning;
+
+pub use chapter::chapter;
+pub use explorer::SOURCE;
 
 /// What `host-sim list` says of this system.
 pub(super) const DESCRIPTION: &str = "\

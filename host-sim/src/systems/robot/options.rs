@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use kestirim_uwb_ranging::Room;
 
+use super::scenario::ANCHORS;
 use crate::cli::ScalarKind;
 
 /// Number types the trackers are built for.
@@ -58,6 +59,19 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// The default tracker in the paper's office, without calibration.
+    pub fn of_the_office(scalar: ScalarKind) -> Self {
+        Self {
+            tracker: TrackerKind::Default,
+            dimensions: Dimensions::Two,
+            scalar,
+            room: None,
+            height_m: 0.0,
+            anchors: ANCHORS.to_vec(),
+            biases: None,
+        }
+    }
+
     /// The room in another number type.
     pub fn room<T: kestirim_scalar::Scalar>(&self) -> Option<Room<T>> {
         self.room.map(|corners| {

@@ -55,6 +55,16 @@ pub struct Course<const K: usize> {
 }
 
 impl<const K: usize> Course<K> {
+    /// What is known at these times, µs, which do not decrease.
+    pub fn new(rows: Vec<(i64, [f64; K])>) -> Self {
+        Self { rows }
+    }
+
+    /// Times, µs, and what is known then.
+    pub fn rows(&self) -> &[(i64, [f64; K])] {
+        &self.rows
+    }
+
     /// What is known at a time; nothing before the first row and after the last.
     pub fn within(&self, time_us: i64) -> Option<[f64; K]> {
         let after = self.rows.partition_point(|(row_us, _)| *row_us < time_us);
@@ -98,7 +108,7 @@ pub fn read_course<const K: usize>(path: &Path, names: [&str; K]) -> Result<Cour
             Ok(())
         },
     )?;
-    Ok(Course { rows })
+    Ok(Course::new(rows))
 }
 
 /// How high the tag is.

@@ -7,7 +7,7 @@ use kestirim_uwb_ranging::expected_range;
 use nalgebra::{SMatrix, SVector};
 
 use super::each_epoch::EachEpoch;
-use super::follow::Follow;
+use super::follow::{Follow, Reception, of_the_plane};
 use super::motion::{Inertial, Wheels};
 use super::options::Setup;
 use crate::Error;
@@ -144,16 +144,16 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Print
         self.first.set_height(height_m);
     }
 
-    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> bool {
+    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> Reception {
         let (Some(range), Some(bias)) = (self.ranges.get_mut(anchor), self.biases.get(anchor))
         else {
-            return false;
+            return Reception::unweighed(false);
         };
-        let plausible = self.first.range(time_us, anchor, range_m);
-        if plausible {
+        let reception = self.first.range(time_us, anchor, range_m);
+        if reception.taken {
             *range = Some(T::from_f64(range_m - bias));
         }
-        plausible
+        reception
     }
 
     fn inertial(&mut self, _: u64, sample: &Inertial) {
@@ -182,5 +182,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Print
         let (_, filter) = self.filter.as_ref()?;
         let mean = filter.estimate().mean.map(T::to_f64);
         Some([mean[0], mean[1], if D > 2 { mean[2] } else { self.height_m }])
+    }
+
+    fn spread(&self) -> Option<[f64; 3]> {
+        self.filter.as_ref().and_then(|(_, filter)| of_the_plane(&filter.estimate().covariance))
     }
 }

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::accuracy::Accuracy;
-use super::anchors::Anchors;
-use super::feed::{self, Company, Followed};
+use super::feed::Followed;
+use super::follow;
 use super::options::{self, Dimensions, Setup, TrackerKind, parse_room};
-use super::points::{self, Height, Point};
-use super::ranges::RangeLog;
-use super::{anchors, calibration, follow, motion, ranges};
+use super::recording::{Files, Recording};
+use super::streams::streams;
+use super::trace::{Trace, trace};
 use crate::cli::ScalarKind;
 use crate::systems::choose_scalar;
-use crate::{Error, output};
+use crate::{Error, mcap, output};
 
 /// Options of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -58,6 +58,9 @@ pub struct Replay {
     /// Write t,x,y,z of every epoch (point,x,y,z with --points) to this file
     #[arg(long, value_name = "OUT.csv")]
     track: Option<PathBuf>,
+    /// Write ranges, estimate and truth as MCAP, for Foxglove and Rerun
+    #[arg(long, value_name = "OUT.mcap")]
+    mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table
     #[arg(long)]
     json: bool,
@@ -76,127 +79,73 @@ impl Replay {
 
     fn report(&self) -> Result<Report, Error> {
         self.refuse_overwriting_input()?;
-        let anchors = anchors::read(&self.anchors)?;
-        let mut warnings = Vec::new();
-        let setup = self.setup(&anchors, &mut warnings)?;
-        match &self.points {
-            Some(points) => self.static_report(points, &anchors, &setup, warnings),
-            None => self.moving_report(&anchors, setup, warnings),
-        }
-    }
-
-    fn moving_report(
-        &self,
-        anchors: &Anchors,
-        mut setup: Setup,
-        mut warnings: Vec<String>,
-    ) -> Result<Report, Error> {
-        let mut log = ranges::read_moving(&self.log, anchors)?;
-        let truth =
-            self.truth.as_deref().map(|path| points::read_course(path, ["x", "y"])).transpose()?;
-        let height = self.height(false)?;
-        if let Some(Height::Metres(metres)) = height {
-            setup.height_m = metres;
-        }
-        let mut company = Company {
-            inertial: self.imu.as_deref().map_or(Ok(vec![]), motion::read_inertial)?,
-            wheels: self.odom.as_deref().map_or(Ok(vec![]), motion::read_wheels)?,
-            height: match height {
-                Some(Height::Course(course)) => Some(course),
-                _ => None,
-            },
-        };
-        if self.imu.is_some() && company.inertial.is_empty() {
-            warnings.push("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used".into());
-        }
-        warn_of_strangers(log.strangers, &mut warnings);
-        let ahead = ranges::drop_far_ahead(&mut log.rows, |row| row.time_us)
-            + ranges::drop_far_ahead(&mut company.inertial, |sample| sample.time_us)
-            + ranges::drop_far_ahead(&mut company.wheels, |sample| sample.time_us);
-        if ahead > 0 {
-            warnings.push(format!(
-                "{ahead} samples are more than 10 s ahead of what follows them: left out"
-            ));
-        }
-        let mut tracker = follow::build(&setup)?;
-        let followed = feed::follow(tracker.as_mut(), &log.rows, &company);
-        if followed.epochs.iter().all(|epoch| epoch.position.is_none()) {
-            warnings.push("no position was found".into());
-        }
-        let accuracy = truth.and_then(|truth| Accuracy::of_track(&followed.epochs, &truth));
-        if let Some(path) = &self.track {
-            let known = followed
-                .epochs
-                .iter()
-                .filter_map(|epoch| Some((seconds(epoch.time_us), epoch.position?)));
-            write_track(path, "t", known)?;
-        }
-        Ok(Report { warnings, accuracy, ..Report::of(&[followed]) })
-    }
-
-    fn static_report(
-        &self,
-        points: &Path,
-        anchors: &Anchors,
-        setup: &Setup,
-        mut warnings: Vec<String>,
-    ) -> Result<Report, Error> {
-        let points = points::read_points(points)?;
-        let logs = ranges::read_static(&self.log, anchors)?;
-        let height = self.height(true)?;
-        warn_of_strangers(logs.values().map(|log| log.strangers).sum(), &mut warnings);
-        let nothing = RangeLog::default();
-        let (mut found, mut all) = (Vec::new(), Vec::new());
-        for point in &points {
-            let log = logs.get(&point.name).unwrap_or(&nothing);
-            let height_m = height_at(height.as_ref(), point, setup.height_m)?;
-            let mut tracker = follow::build(&Setup { height_m, ..setup.clone() })?;
-            let followed = feed::follow(tracker.as_mut(), &log.rows, &Company::default());
-            found.push((point, followed.epochs.last().and_then(|epoch| epoch.position)));
-            all.push(followed);
-        }
-        let missing = found.iter().filter(|(_, position)| position.is_none()).count();
-        if missing > 0 {
-            warnings.push(format!("points without ranges enough for a position: {missing}"));
-        }
-        let pairs: Vec<_> =
-            found.iter().filter_map(|(point, position)| Some((*position, point.plane?))).collect();
-        let known = || found.iter().filter_map(|(point, position)| Some((point, (*position)?)));
-        if let Some(path) = &self.track {
-            write_track(path, "point", known().map(|(point, at)| (point.name.clone(), at)))?;
-        }
-        let points =
-            known().map(|(point, [x, y, z])| PointReport { point: point.name.clone(), x, y, z });
-        let (points, accuracy) = (Some(points.collect()), Accuracy::of(&pairs));
-        Ok(Report { warnings, accuracy, points, ..Report::of(&all) })
-    }
-
-    fn setup(&self, anchors: &Anchors, warnings: &mut Vec<String>) -> Result<Setup, Error> {
-        let scalar = choose_scalar("robot", self.scalar, &options::SCALARS, ScalarKind::F32)?;
-        let height_m = anchors.mean_height();
+        let recording = Recording::read(&self.files())?;
+        let setup = self.setup(&recording)?;
+        let traces = trace(&recording, &setup, follow::build)?;
+        let all = || traces.iter().map(|trace| &trace.followed);
+        let found = recording.parts.iter().zip(all());
+        let mut report = Report { accuracy: recording.accuracy(all()), ..Report::of(all()) };
         if self.height.is_none() && self.dim == Dimensions::Two {
-            warnings.push(format!(
-                "the tag's height is taken to be that of the anchors, {height_m:.2} m (--height)"
+            report.warnings.push(format!(
+                "the tag's height is taken to be that of the anchors, {:.2} m (--height)",
+                setup.height_m
             ));
         }
-        let biases = match &self.calibration {
-            Some(path) => Some(completed(calibration::read(path, anchors)?, anchors, warnings)),
-            None => None,
-        };
+        report.warnings.extend(recording.warnings.iter().cloned());
+        if self.points.is_some() {
+            let found: Vec<_> =
+                found.map(|(part, followed)| (part.name.clone(), followed.last())).collect();
+            report.take_points(found);
+        } else if all().all(|followed| followed.known().next().is_none()) {
+            report.warnings.push("no position was found".into());
+        }
+        self.write_files(&recording, &traces, &report)?;
+        Ok(report)
+    }
+
+    fn write_files(
+        &self,
+        recording: &Recording,
+        traces: &[Trace],
+        report: &Report,
+    ) -> Result<(), Error> {
+        if let (Some(path), Some(points)) = (&self.track, &report.points) {
+            let rows =
+                points.iter().map(|point| (point.point.clone(), [point.x, point.y, point.z]));
+            write_track(path, "point", rows)?;
+        } else if let Some(path) = &self.track {
+            let known = traces.iter().flat_map(|trace| trace.followed.known());
+            write_track(path, "t", known.map(|(time_us, at)| (seconds(time_us), at)))?;
+        }
+        match &self.mcap {
+            Some(path) => mcap::write(path, &streams(recording, traces)),
+            None => Ok(()),
+        }
+    }
+
+    fn files(&self) -> Files<'_> {
+        Files {
+            anchors: &self.anchors,
+            log: &self.log,
+            points: self.points.as_deref(),
+            truth: self.truth.as_deref(),
+            imu: self.imu.as_deref(),
+            odom: self.odom.as_deref(),
+            calibration: self.calibration.as_deref(),
+            height: self.height.as_deref(),
+        }
+    }
+
+    fn setup(&self, recording: &Recording) -> Result<Setup, Error> {
         Ok(Setup {
             tracker: self.tracker,
             dimensions: self.dim,
-            scalar,
+            scalar: choose_scalar("robot", self.scalar, &options::SCALARS, ScalarKind::F32)?,
             room: self.room,
-            height_m,
-            anchors: anchors.positions.clone(),
-            biases,
+            height_m: recording.anchors.mean_height(),
+            anchors: recording.anchors.positions.clone(),
+            biases: recording.biases.clone(),
         })
-    }
-
-    fn height(&self, of_points: bool) -> Result<Option<Height>, Error> {
-        let text = self.height.as_deref();
-        text.map(|text| points::read_height(text, of_points)).transpose()
     }
 
     fn refuse_overwriting_input(&self) -> Result<(), Error> {
@@ -211,38 +160,9 @@ impl Replay {
             self.calibration.as_ref(),
             height.as_ref(),
         ];
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())
-    }
-}
-
-fn height_at(height: Option<&Height>, point: &Point, else_m: f64) -> Result<f64, Error> {
-    match height {
-        Some(Height::Metres(metres)) => Ok(*metres),
-        Some(Height::Points(heights)) => heights
-            .get(&point.name)
-            .copied()
-            .ok_or_else(|| Error::Usage(format!("--height: point {} has no height", point.name))),
-        _ => Ok(else_m),
-    }
-}
-
-/// Biases of all anchors: one that the calibration does not know is taken to be like the others.
-fn completed(known: Vec<Option<f64>>, anchors: &Anchors, warnings: &mut Vec<String>) -> Vec<f64> {
-    let found: Vec<f64> = known.iter().flatten().copied().collect();
-    let mean = crate::metrics::mean(&found);
-    for (bias, name) in known.iter().zip(&anchors.names) {
-        if bias.is_none() {
-            warnings.push(format!(
-                "the calibration does not know anchor {name}: the others' mean bias is assumed"
-            ));
-        }
-    }
-    known.into_iter().map(|bias| bias.unwrap_or(mean)).collect()
-}
-
-fn warn_of_strangers(strangers: usize, warnings: &mut Vec<String>) {
-    if strangers > 0 {
-        warnings.push(format!("{strangers} ranges are from anchors that are not listed: left out"));
+        let inputs = || inputs.iter().copied().flatten();
+        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
+        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())
     }
 }
 
@@ -291,16 +211,27 @@ struct PointReport {
 }
 
 impl Report {
-    fn of(followed: &[Followed]) -> Self {
+    fn of<'a>(followed: impl Iterator<Item = &'a Followed> + Clone) -> Self {
         Self {
             system: "robot",
-            updates: followed.iter().map(|followed| followed.updates).sum(),
-            rejected: followed.iter().map(|followed| followed.rejected).sum(),
-            lost_s: followed.iter().map(Followed::lost_s).sum(),
+            updates: followed.clone().map(|followed| followed.updates).sum(),
+            rejected: followed.clone().map(|followed| followed.rejected).sum(),
+            lost_s: followed.map(Followed::lost_s).sum(),
             warnings: Vec::new(),
             accuracy: None,
             points: None,
         }
+    }
+
+    /// Takes the points at which there is a position, and warns of the others.
+    fn take_points(&mut self, found: Vec<(String, Option<[f64; 3]>)>) {
+        let missing = found.iter().filter(|(_, position)| position.is_none()).count();
+        if missing > 0 {
+            self.warnings.push(format!("points without ranges enough for a position: {missing}"));
+        }
+        let known = found.into_iter().filter_map(|(point, position)| Some((point, position?)));
+        self.points =
+            Some(known.map(|(point, [x, y, z])| PointReport { point, x, y, z }).collect());
     }
 }
 
@@ -317,12 +248,9 @@ impl fmt::Display for Report {
             row("points found", points.len().to_string());
         }
         if let Some(accuracy) = self.accuracy {
-            row("positions compared", accuracy.positions.to_string());
-            let centimetres = |metres: f64| format!("{:.1} cm", 100.0 * metres);
-            row("RMSE", centimetres(accuracy.rmse_m));
-            row("mean error", centimetres(accuracy.mean_m));
-            row("95 % below", centimetres(accuracy.p95_m));
-            row("largest error", centimetres(accuracy.max_m));
+            for (name, value) in accuracy.in_words() {
+                row(name, value);
+            }
         }
         table.fmt(f)
     }

@@ -8,14 +8,16 @@ use rand_core::Rng;
 use rand_distr::{Distribution, Exp};
 
 use super::ranges::RangeRow;
+use crate::metrics::{distance, median};
 use crate::random::{normal, uniform};
 
 /// The anchors A1 to A4, m.
 pub const ANCHORS: [[f64; 3]; 4] =
     [[0.0, 0.0, 0.0], [4.8, 6.4, 0.0], [0.0, 6.4, 0.0], [4.8, 0.0, 0.0]];
-/// Epochs at each point, and time between them, µs.
+/// Epochs at each point.
 pub const EPOCHS: usize = 50;
-const EPOCH_US: i64 = 100_000;
+/// Time between epochs, µs.
+pub const EPOCH_US: i64 = 100_000;
 
 /// What the common bias of all links is, m; per anchor and per link it differs by these standard deviations.
 pub const COMMON_BIAS: f64 = 0.19;
@@ -41,6 +43,9 @@ const BLOCKED_TO: f64 = 0.8;
 /// The robot drives at this speed, m/s, from one point of the office to another.
 const SPEED: f64 = 0.2;
 const LINE: [[f64; 2]; 2] = [[0.8, 0.8], [4.0, 5.6]];
+const ROUND: [[f64; 2]; 5] = [[0.8, 0.8], [4.0, 0.8], [4.0, 5.6], [0.8, 5.6], [0.8, 0.8]];
+/// Who meets a crowd has a person before each anchor in turn, for this share of the way.
+const CROWD_SHARE: usize = 6;
 
 /// The fifteen points, m. The paper does not say where its own were.
 pub fn points() -> [[f64; 2]; 15] {
@@ -60,13 +65,26 @@ pub fn marks() -> [[f64; 2]; 6] {
 
 /// Where the robot is at each epoch of its straight line, m.
 pub fn line() -> Vec<[f64; 2]> {
-    let [from, to] = LINE;
-    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-    let epochs = (length / SPEED / (EPOCH_US as f64 * 1e-6)) as usize;
-    let share = |epoch: usize| epoch as f64 / epochs as f64;
-    (0..=epochs)
-        .map(|epoch| [0, 1].map(|axis| from[axis] + share(epoch) * (to[axis] - from[axis])))
-        .collect()
+    along(&LINE)
+}
+
+/// And of a round through the office, back to where it began.
+pub fn round() -> Vec<[f64; 2]> {
+    along(&ROUND)
+}
+
+/// At each epoch of a way from corner to corner.
+fn along(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let stretch = |(from, to): (&[f64; 2], &[f64; 2])| {
+        let (from, to) = (*from, *to);
+        let epochs = (distance(from, to) / SPEED / (EPOCH_US as f64 * 1e-6)) as usize;
+        let share = move |epoch: usize| epoch as f64 / epochs as f64;
+        (1..=epochs).map(move |epoch| {
+            [0, 1].map(|axis| from[axis] + share(epoch) * (to[axis] - from[axis]))
+        })
+    };
+    let stretches = corners.iter().zip(corners.iter().skip(1)).flat_map(stretch);
+    corners.first().copied().into_iter().chain(stretches).collect()
 }
 
 /// An office on one day: what its anchors measure too long.
@@ -83,14 +101,56 @@ impl Office {
 
     /// Ranges along a way, four at each epoch.
     pub fn measure<R: Rng>(&self, rng: &mut R, way: &[[f64; 2]]) -> Vec<RangeRow> {
-        let links: [f64; 4] = self.biases.map(|bias| bias + normal(rng, LINK_SIGMA));
+        let links = self.links(rng);
         let person = Person::draw(rng, way.len());
+        Self::ranges(rng, way, links, &[person])
+    }
+
+    /// The same in a crowd: before each anchor somebody stands for a while, one after the other.
+    pub fn measure_in_a_crowd<R: Rng>(&self, rng: &mut R, way: &[[f64; 2]]) -> Vec<RangeRow> {
+        let links = self.links(rng);
+        let persons = std::array::from_fn::<_, 4, _>(|anchor| {
+            Person::before(
+                rng,
+                anchor,
+                way.len() * (anchor + 1) / CROWD_SHARE,
+                way.len() / CROWD_SHARE,
+            )
+        });
+        Self::ranges(rng, way, links, &persons)
+    }
+
+    /// What each anchor measures too long, m: the median at the marked places.
+    pub fn calibrate<R: Rng>(&self, rng: &mut R) -> Vec<f64> {
+        let mut excess = [const { Vec::new() }; 4];
+        for place in marks() {
+            for row in self.measure(rng, &[place; EPOCHS]) {
+                let Some(range) = row.range else { continue };
+                let [x, y, _] = ANCHORS[row.anchor];
+                excess[row.anchor].push(range - distance(place, [x, y]));
+            }
+        }
+        excess.iter().map(|excess| median(excess)).collect()
+    }
+
+    /// What the links from a place to the anchors measure too long, m.
+    fn links<R: Rng>(&self, rng: &mut R) -> [f64; 4] {
+        self.biases.map(|bias| bias + normal(rng, LINK_SIGMA))
+    }
+
+    fn ranges<R: Rng>(
+        rng: &mut R,
+        way: &[[f64; 2]],
+        links: [f64; 4],
+        persons: &[Person],
+    ) -> Vec<RangeRow> {
         let mut bursts = [0.0; 4];
         let mut rows = Vec::with_capacity(4 * way.len());
         for (epoch, &[x, y]) in way.iter().enumerate() {
             for (anchor, place) in ANCHORS.iter().enumerate() {
                 bursts[anchor] = next_burst(rng, bursts[anchor]);
-                let blocked = person.lengthens(anchor, epoch);
+                let blocked: f64 =
+                    persons.iter().map(|person| person.lengthens(anchor, epoch)).sum();
                 let range = (x - place[0]).hypot(y - place[1])
                     + links[anchor]
                     + bursts[anchor]
@@ -121,6 +181,7 @@ fn next_burst<R: Rng>(rng: &mut R, burst: f64) -> f64 {
 struct Person {
     anchor: usize,
     from: usize,
+    epochs: usize,
     length: f64,
 }
 
@@ -130,12 +191,17 @@ impl Person {
         let anchor = ((uniform(rng) * 4.0) as usize).min(3);
         let latest = epochs.saturating_sub(BLOCKED_EPOCHS) as f64;
         let from = (uniform(rng) * latest) as usize;
+        let person = Self::before(rng, anchor, from, BLOCKED_EPOCHS);
+        Self { length: if there { person.length } else { 0.0 }, ..person }
+    }
+
+    fn before<R: Rng>(rng: &mut R, anchor: usize, from: usize, epochs: usize) -> Self {
         let length = BLOCKED_FROM + uniform(rng) * (BLOCKED_TO - BLOCKED_FROM);
-        Self { anchor, from, length: if there { length } else { 0.0 } }
+        Self { anchor, from, epochs, length }
     }
 
     fn lengthens(&self, anchor: usize, epoch: usize) -> f64 {
-        let in_the_way = (self.from..self.from + BLOCKED_EPOCHS).contains(&epoch);
+        let in_the_way = (self.from..self.from + self.epochs).contains(&epoch);
         if anchor == self.anchor && in_the_way { self.length } else { 0.0 }
     }
 }

@@ -1,21 +1,13 @@
 //! Estimates along a recorded flight.
 
-use std::collections::HashMap;
-
-use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant};
 use kestirim_observer_design::Complex;
 use nalgebra::{SMatrix, SVector};
 
 use super::design::luenberger;
 use super::log::{Flight, Sample};
-use super::model::{Model, Step};
-
-/// What is not known of a state that the first line does not measure: rad, rad/s, m/s, rad.
-const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
-
-/// Of so many intervals.
-const LONGEST_GAP: f64 = 1e6;
+use super::model::Model;
+use super::online::{Filter, Steps};
 
 /// An estimate, after its line was taken in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,59 +36,19 @@ pub struct Assumed {
     pub outputs: Vec<f64>,
 }
 
-/// Transitions of the intervals that a log has.
-struct Steps<'a> {
-    model: &'a Model,
-    usual: f64,
-    noise: [f64; 2],
-    known: HashMap<i64, Step>,
-}
-
-impl Steps<'_> {
-    fn over(&mut self, interval_us: i64) -> Result<Step, String> {
-        if let Some(step) = self.known.get(&interval_us) {
-            return Ok(*step);
-        }
-        let interval = interval_us as f64 / 1e6;
-        if interval > LONGEST_GAP * self.usual {
-            return Err(format!("no estimate outlives a gap of {interval} s"));
-        }
-        let step = self.model.over(interval, self.usual, self.noise)?;
-        self.known.insert(interval_us, step);
-        Ok(step)
-    }
-}
-
 /// By a Kalman filter that starts at what the first line measures.
 ///
 /// # Errors
 /// In words: why it cannot.
 pub fn kalman(model: &Model, flight: &Flight, assumed: &Assumed) -> Result<Followed, String> {
-    let mut steps = steps(model, flight, assumed.inputs);
-    let rows: Vec<_> = rows(model, flight).iter().map(sparse).collect();
-    let mut filter = Gaussian::new(
-        SVector::zeros(),
-        Covariance::from_variances(&UNKNOWN.map(|sigma| sigma * sigma)),
-    );
+    let mut filter = Filter::new(model, &flight.outputs, assumed, flight.interval_s);
     let mut followed = empty(flight);
-    let mut before: Option<&Sample> = None;
     for sample in &flight.samples {
-        if let Some(before) = before {
-            let (step, noise) = steps.over(sample.t_us - before.t_us)?;
-            let spread = Covariance::from_lower_triangle(&noise);
-            filter.predict(&step.a, &spread).map_err(|error| error.to_string())?;
-            filter.mean += step.b * SVector::from(before.input);
+        let innovations = filter.take(sample)?;
+        for (all, innovation) in followed.innovations.iter_mut().zip(innovations) {
+            all.extend(innovation);
         }
-        for (output, row) in rows.iter().enumerate() {
-            let Some(measured) = sample.measured[output] else { continue };
-            let sigma = assumed.outputs[output];
-            let expected = row.dot(&filter.mean).unwrap_or_default();
-            let seen = filter.update(row, measured - expected, sigma * sigma);
-            seen.map_err(|error| error.to_string())?;
-            followed.innovations[output].push(measured - expected);
-        }
-        followed.estimates.push(Estimate { t_us: sample.t_us, state: filter.mean });
-        before = Some(sample);
+        followed.estimates.push(Estimate { t_us: sample.t_us, state: filter.state() });
     }
     Ok(followed)
 }
@@ -123,7 +75,7 @@ fn observer_of<const P: usize>(
     flight: &Flight,
     poles: [Complex<f64>; 4],
 ) -> Result<Followed, String> {
-    let mut steps = steps(model, flight, [0.0; 2]);
+    let mut steps = Steps::new(model, flight.interval_s, [0.0; 2]);
     let usual_us = (flight.interval_s * 1e6).round() as i64;
     let (plant, _) = steps.over(usual_us)?;
     let rows = rows(model, flight);
@@ -168,10 +120,6 @@ fn words(error: kestirim_luenberger::Error) -> String {
     error.to_string()
 }
 
-fn steps<'a>(model: &'a Model, flight: &Flight, noise: [f64; 2]) -> Steps<'a> {
-    Steps { model, usual: flight.interval_s, noise, known: HashMap::new() }
-}
-
 fn empty(flight: &Flight) -> Followed {
     Followed { estimates: Vec::new(), innovations: vec![Vec::new(); flight.outputs.len()] }
 }
@@ -179,10 +127,6 @@ fn empty(flight: &Flight) -> Followed {
 /// Rows of C that the log has.
 fn rows(model: &Model, flight: &Flight) -> Vec<[f64; 4]> {
     flight.outputs.iter().map(|&output| model.outputs[output].1).collect()
-}
-
-fn sparse(row: &[f64; 4]) -> SparseRow<f64, 4> {
-    SparseRow::new(std::array::from_fn(|state| (state, row[state])))
 }
 
 /// States that the first line measures by themselves; of the others nothing is known.

@@ -13,7 +13,7 @@ const REGULAR: f64 = 0.75;
 /// From this many usual intervals on, samples are missing.
 const GAP: f64 = 1.5;
 /// No sensor of an aircraft measures more, in any unit.
-const LARGEST: f64 = 1e6;
+pub(crate) const LARGEST: f64 = 1e6;
 
 /// A line of a log.
 #[derive(Debug, Clone, PartialEq)]

@@ -24,6 +24,7 @@ pub mod explorer;
 pub mod follow;
 pub mod log;
 pub mod model;
+pub mod online;
 pub mod options;
 pub mod plant;
 pub mod recording;

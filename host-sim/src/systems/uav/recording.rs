@@ -9,7 +9,6 @@ use super::accounts::Accuracy;
 use super::follow::{self, Assumed, Estimate, Followed};
 use super::log::{self, Flight, Truth};
 use super::model::Model;
-use super::scenario::Noise;
 use crate::Error;
 use crate::metrics::rms;
 
@@ -41,7 +40,7 @@ impl Recording {
     ) -> Result<Self, Error> {
         let model = Model::read(model)?;
         // Before the files are read, which may take a while.
-        origin(&model, absolute)?;
+        model.origin(absolute)?;
         let names: Vec<&str> = model.outputs.iter().map(|(name, _)| name.as_str()).collect();
         let flight = log::read(log, &names)?;
         let truth = truth.map(log::read_truth).transpose()?;
@@ -58,7 +57,7 @@ impl Recording {
         truth: Option<Truth>,
         absolute: bool,
     ) -> Result<Self, Error> {
-        let origin = origin(&model, absolute)?;
+        let origin = model.origin(absolute)?;
         let mut doubts = Vec::new();
         if let (false, Some(trim)) = (absolute, model.trim) {
             doubts.extend(looks_absolute(&flight, &model, trim.0[2]));
@@ -97,15 +96,12 @@ impl Recording {
 
     /// What a filter takes the noise for.
     pub fn assumed(&self, inputs: Option<[f64; 2]>, outputs: Option<[f64; 4]>) -> Assumed {
-        let sensors = Noise::SENSORS;
-        // Of the states' own sensors; what a file's C mixes is no worse than the worst of them.
-        let of = |output: usize| match outputs {
-            Some(all) => all[output],
-            None => mixed(&self.model.outputs[output].1, &sensors.outputs),
-        };
+        let measured = &self.flight.outputs;
+        let usual = Assumed::of_sensors(&self.model, measured);
+        let given = |all: [f64; 4]| measured.iter().map(|&output| all[output]).collect();
         Assumed {
-            inputs: inputs.unwrap_or(sensors.inputs),
-            outputs: self.flight.outputs.iter().map(|&output| of(output)).collect(),
+            inputs: inputs.unwrap_or(usual.inputs),
+            outputs: outputs.map_or(usual.outputs, given),
         }
     }
 
@@ -139,7 +135,7 @@ impl Recording {
     }
 
     fn steady(&self, output: usize) -> f64 {
-        steady(&self.model, output, &self.origin.0)
+        self.model.output(output, &self.origin.0)
     }
 
     /// Errors at times that log and truth share: estimated less true, of the states that are known.
@@ -170,22 +166,6 @@ impl Recording {
     }
 }
 
-/// What is taken from log and truth.
-fn origin(model: &Model, absolute: bool) -> Result<([f64; 4], [f64; 2]), Error> {
-    match (absolute, model.trim) {
-        (false, _) => Ok(([0.0; 4], [0.0; 2])),
-        (true, Some(trim)) => Ok(trim),
-        (true, None) => Err(Error::Usage(
-            "--absolute needs a model with a trim: P1, or a file that has one".to_owned(),
-        )),
-    }
-}
-
-/// Of a row of C: √Σ(c·σ)².
-fn mixed(row: &[f64; 4], sigmas: &[f64; 4]) -> f64 {
-    row.iter().zip(sigmas).fold(0.0, |sum: f64, (part, sigma)| sum.hypot(part * sigma))
-}
-
 /// Whether airspeeds are nearer to the steady one than to nothing.
 fn looks_absolute(flight: &Flight, model: &Model, airspeed: f64) -> Option<String> {
     let column = flight.outputs.iter().position(|&output| model.outputs[output].0 == "V")?;
@@ -198,14 +178,9 @@ fn looks_absolute(flight: &Flight, model: &Model, airspeed: f64) -> Option<Strin
     })
 }
 
-/// What an output shows of a state.
-fn steady(model: &Model, output: usize, state: &[f64; 4]) -> f64 {
-    model.outputs[output].1.iter().zip(state).map(|(part, state)| part * state).sum()
-}
-
 fn subtract(flight: &mut Flight, model: &Model, (state, input): ([f64; 4], [f64; 2])) {
     let shown: Vec<f64> =
-        flight.outputs.iter().map(|&output| steady(model, output, &state)).collect();
+        flight.outputs.iter().map(|&output| model.output(output, &state)).collect();
     for sample in &mut flight.samples {
         sample.input = std::array::from_fn(|i| sample.input[i] - input[i]);
         for (measured, steady) in sample.measured.iter_mut().zip(&shown) {

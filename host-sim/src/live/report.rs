@@ -1,0 +1,84 @@
+//! What is said at the end.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::output;
+use crate::text::printable_path;
+
+/// What became of everything that arrived.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Bytes that were decoded; all are in the recording.
+    pub bytes: u64,
+    /// Good frames.
+    pub received: u32,
+    /// Pieces between two delimiters that cannot have been a whole frame: cut, too long, or noise.
+    pub torn: u32,
+    /// Frames whose checksum is wrong.
+    pub corrupt: u32,
+    /// Frames of another version, or with a message that this program does not know.
+    pub unknown: u32,
+    /// Numbers that are missing between those of the good frames.
+    pub lost: u32,
+    /// Measurements that the estimator took in.
+    pub taken: u64,
+    /// What arrived whole and cannot be true, or is older than what came before.
+    pub refused: u64,
+    /// How often the sender's clock began anew, and the estimator with it.
+    pub restarts: u32,
+}
+
+/// What `host-sim live` prints at its end.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Whose estimator ran; `none` if none did.
+    pub system: &'static str,
+    /// What was listened to.
+    pub source: String,
+    /// Where everything is written down.
+    pub recording: PathBuf,
+    /// What became of it.
+    pub counts: Counts,
+    /// Where the estimator ended, m.
+    pub position: Option<[f64; 3]>,
+    /// Of an aeroplane: angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch (rad) at its end.
+    pub state: Option<[f64; 4]>,
+    /// Of a walk: its horizontal length from stance to stance, m.
+    pub path_length_m: Option<f64>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        let mut row = |name: &str, value: String| {
+            table.add_row([name, value.as_str()]);
+        };
+        let counts = &self.counts;
+        row("source", self.source.clone());
+        row("recording", format!("{}, {} bytes", printable_path(&self.recording), counts.bytes));
+        row("frames received", counts.received.to_string());
+        row("  lost on the way", counts.lost.to_string());
+        let Counts { torn, corrupt, unknown, .. } = counts;
+        row("torn, corrupt, unknown", format!("{torn}, {corrupt}, {unknown}"));
+        row("measurements taken in", counts.taken.to_string());
+        row("  refused", counts.refused.to_string());
+        if let Some([x, y, z]) = self.position {
+            row("position", format!("{x:.2} m, {y:.2} m, {z:.2} m"));
+        }
+        if let Some([alpha, rate, airspeed, pitch]) = self.state {
+            row("angle of attack", format!("{alpha:.4} rad"));
+            row("pitch rate", format!("{rate:.4} rad/s"));
+            row("airspeed", format!("{airspeed:.2} m/s"));
+            row("pitch", format!("{pitch:.4} rad"));
+        }
+        if let Some(length) = self.path_length_m {
+            row("path length", format!("{length:.2} m"));
+        }
+        table.fmt(f)
+    }
+}

@@ -1,0 +1,66 @@
+//! A long way in little memory.
+
+/// Values in their order, of which fewer are kept the more there are: at any time evenly many, and the last.
+#[derive(Debug, Clone)]
+pub(crate) struct Thinned<T> {
+    kept: Vec<T>,
+    most: usize,
+    /// One in so many is kept.
+    stride: u64,
+    count: u64,
+    last: Option<T>,
+}
+
+impl<T: Copy> Thinned<T> {
+    /// Of at most so many values, and the last; at least two.
+    pub(crate) fn new(most: usize) -> Self {
+        Self { kept: Vec::new(), most: most.max(2), stride: 1, count: 0, last: None }
+    }
+
+    /// Adds a value.
+    pub(crate) fn push(&mut self, value: T) {
+        if self.kept.len() == self.most && self.is_due() {
+            let mut keep = false;
+            self.kept.retain(|_| {
+                keep = !keep;
+                keep
+            });
+            self.stride *= 2;
+        }
+        let due = self.is_due();
+        if due {
+            self.kept.push(value);
+        }
+        self.last = (!due).then_some(value);
+        self.count += 1;
+    }
+
+    /// Whether the next value is one that is kept.
+    fn is_due(&self) -> bool {
+        self.count.is_multiple_of(self.stride)
+    }
+
+    /// The values that are left, and the last.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = T> {
+        self.kept.iter().copied().chain(self.last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_even_and_ends_at_the_end() {
+        let mut thinned = Thinned::new(8);
+        for number in 0..1000_u32 {
+            thinned.push(number);
+            let left: Vec<_> = thinned.iter().collect();
+            assert!(left.len() <= 9 && (left.len() > 4 || left.len() as u32 == number + 1));
+            assert_eq!((left.first(), left.last()), (Some(&0), Some(&number)));
+            let steps: Vec<_> = left.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let whole = steps.get(..steps.len().saturating_sub(1)).unwrap_or_default();
+            assert!(whole.windows(2).all(|pair| pair[0] == pair[1]), "{left:?}");
+        }
+    }
+}

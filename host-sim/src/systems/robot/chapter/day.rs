@@ -1,0 +1,72 @@
+//! One day in the office, followed by everyone.
+
+use super::super::follow::{self, Follow};
+use super::super::options::{Setup, TrackerKind};
+use super::super::printed::{Beginning, Constants};
+use super::super::recording::{Recording, Truth};
+use super::super::trace::{Trace, trace};
+use crate::Error;
+use crate::cli::ScalarKind;
+
+/// A recording, and what each tracker makes of it.
+pub(super) struct Day {
+    /// What was recorded.
+    pub(super) recording: Recording,
+    /// Trilateration alone.
+    pub(super) unfiltered: Vec<Trace>,
+    /// The paper's filters, begun at the first trilateration: plain and adaptive.
+    pub(super) honest: [Vec<Trace>; 2],
+    /// The same, begun where the tag truly was.
+    pub(super) from_the_truth: [Vec<Trace>; 2],
+    /// Our default without calibration …
+    pub(super) ours: Vec<Trace>,
+    /// … and with it.
+    pub(super) calibrated: Vec<Trace>,
+}
+
+impl Day {
+    pub(super) fn follow(recording: Recording, scalar: ScalarKind) -> Result<Self, Error> {
+        let plain = Setup::of_the_office(scalar);
+        let calibrated = Setup { biases: recording.biases.clone(), ..plain.clone() };
+        let unfiltered = Setup { tracker: TrackerKind::Lsq, ..plain.clone() };
+        let kinds = [Constants::PLAIN, Constants::ADAPTIVE];
+        let honest = kinds.map(|constants| {
+            let beginning = Beginning { start: None, constants };
+            trace(&recording, &plain, |setup| follow::build_printed(setup, beginning))
+        });
+        let from_the_truth =
+            kinds.map(|constants| each_from_its_truth(&recording, &plain, constants));
+        let [ekf, aekf] = honest;
+        let [true_ekf, true_aekf] = from_the_truth;
+        Ok(Self {
+            unfiltered: trace(&recording, &unfiltered, follow::build)?,
+            honest: [ekf?, aekf?],
+            from_the_truth: [true_ekf?, true_aekf?],
+            ours: trace(&recording, &plain, follow::build)?,
+            calibrated: trace(&recording, &calibrated, follow::build)?,
+            recording,
+        })
+    }
+}
+
+/// The paper's protocol: the surveyed point of each part is given to the filter as its start.
+fn each_from_its_truth(
+    recording: &Recording,
+    setup: &Setup,
+    constants: Constants,
+) -> Result<Vec<Trace>, Error> {
+    let starts: Vec<_> = recording.parts.iter().map(|part| start(part.truth.as_ref())).collect();
+    let next = std::cell::Cell::new(0);
+    trace(recording, setup, |setup| -> Result<Box<dyn Follow>, Error> {
+        let part = next.replace(next.get() + 1);
+        let start = starts.get(part).copied().flatten();
+        follow::build_printed(setup, Beginning { start, constants })
+    })
+}
+
+fn start(truth: Option<&Truth>) -> Option<[f64; 2]> {
+    match truth? {
+        Truth::Point(point) => Some(*point),
+        Truth::Course(course) => course.rows().first().map(|(_, place)| *place),
+    }
+}

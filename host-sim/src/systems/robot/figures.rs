@@ -1,0 +1,281 @@
+//! What a recording and its track look like.
+
+use super::recording::{Recording, Truth};
+use super::trace::{Trace, sigma_m};
+use crate::figure::{Colour, Figure, Mark, Series};
+use crate::metrics::distance;
+
+const TIME: &str = "time, s";
+/// χ² of two degrees of freedom, 95 %.
+const CHI_SQUARE_2: f64 = 5.991;
+/// χ² of one degree of freedom, 95 %.
+const CHI_SQUARE_1: f64 = 3.841;
+/// Ellipses along a track.
+const ELLIPSES: usize = 30;
+/// Between the points of a static recording, s.
+const PAUSE_S: f64 = 0.5;
+
+/// A recording, what was made of it, and when its parts are shown.
+#[derive(Debug, Clone)]
+pub struct Shown<'a> {
+    recording: &'a Recording,
+    traces: &'a [Trace],
+    /// What is added to the log's clock in each part, s.
+    shifts_s: Vec<f64>,
+}
+
+impl<'a> Shown<'a> {
+    /// Points that were recorded one by one are shown one after the other.
+    pub fn new(recording: &'a Recording, traces: &'a [Trace]) -> Self {
+        let mut begin_s = 0.0;
+        let mut shifts_s = Vec::with_capacity(recording.parts.len());
+        for part in &recording.parts {
+            shifts_s.push(begin_s);
+            let last_us = part.rows.iter().map(|row| row.time_us).max().unwrap_or_default();
+            begin_s += last_us as f64 * 1e-6 + PAUSE_S;
+        }
+        Self { recording, traces, shifts_s }
+    }
+
+    /// A series over time with a gap after each part.
+    fn over_time(
+        &self,
+        name: impl Into<String>,
+        mark: Mark,
+        points: impl Fn(usize, &Trace) -> Vec<(i64, f64)>,
+    ) -> Series {
+        let (mut xs, mut ys) = (Vec::new(), Vec::new());
+        for (index, (trace, shift_s)) in self.traces.iter().zip(&self.shifts_s).enumerate() {
+            for (time_us, value) in points(index, trace) {
+                xs.push(time_us as f64 * 1e-6 + shift_s);
+                ys.push(value);
+            }
+            xs.push(xs.last().copied().unwrap_or_default());
+            ys.push(f64::NAN);
+        }
+        Series::new(name, mark, xs, ys)
+    }
+
+    /// Every position that was found.
+    pub fn track(&self, name: &str, mark: Mark) -> Series {
+        let positions = |trace: &Trace| {
+            let found = trace.followed.epochs.iter().map(|epoch| match epoch.position {
+                Some([x, y, _]) => [x, y],
+                None => [f64::NAN; 2],
+            });
+            found.chain([[f64::NAN; 2]]).collect::<Vec<_>>()
+        };
+        Series::path(name, self.traces.iter().flat_map(positions)).marked(mark)
+    }
+
+    /// Where 95 of 100 positions would be if the tracker's covariance were right.
+    fn ellipses(&self) -> Series {
+        let mut points = Vec::new();
+        for trace in self.traces {
+            let every =
+                if self.traces.len() > 1 { usize::MAX } else { trace.spreads.len() / ELLIPSES };
+            let last = trace.spreads.len().saturating_sub(1);
+            for (index, (epoch, spread)) in trace.epochs().enumerate() {
+                let chosen = index == last || (index + 1).is_multiple_of(every.max(1));
+                if let (true, Some([x, y, _]), Some(spread)) = (chosen, epoch.position, spread) {
+                    points.extend(ellipse([x, y], spread));
+                    points.push([f64::NAN; 2]);
+                }
+            }
+        }
+        Series::path("95 % ellipses", points).coloured(Colour::Other(3))
+    }
+
+    /// The plan: walls, anchors, the true way, the track with its ellipses, and others behind it.
+    pub fn plan(&self, id: &str, others: Vec<Series>) -> Figure {
+        room(id, self.recording)
+            .caption("Anchors, the true way where it is known, and the track; ellipses hold 95 % if the covariance is right.")
+            .with_all(others)
+            .with(self.track("track", Mark::Line).coloured(Colour::Ours))
+            .with(self.ellipses())
+    }
+
+    /// Ranges of each anchor; crosses are what the tracker left out.
+    pub fn ranges(&self, id: &str) -> Figure {
+        let of = |anchor: usize, taken: bool| {
+            move |_: usize, trace: &Trace| -> Vec<(i64, f64)> {
+                let heard = trace.heard.iter().filter(move |(row, reception)| {
+                    row.anchor == anchor && reception.taken == taken
+                });
+                heard.filter_map(|(row, _)| Some((row.time_us, row.range?))).collect()
+            }
+        };
+        let names = &self.recording.anchors.names;
+        let mut figure = Figure::new(id, "Ranges")
+            .axes(TIME, "range, m")
+            .caption("What each anchor measured; a cross is a range that the tracker left out.");
+        for (anchor, name) in names.iter().enumerate() {
+            let taken = self.over_time(name.clone(), Mark::Dots, of(anchor, true));
+            figure.series.push(taken.coloured(Colour::Other(anchor)));
+        }
+        let (mut xs, mut ys) = (Vec::new(), Vec::new());
+        for anchor in 0..names.len() {
+            let left_out = self.over_time("", Mark::Crosses, of(anchor, false));
+            xs.extend(left_out.x);
+            ys.extend(left_out.y);
+        }
+        figure.with(Series::new("left out", Mark::Crosses, xs, ys).coloured(Colour::Alarm))
+    }
+
+    /// What the tracker thinks of itself.
+    pub fn health(&self, id: &str) -> Figure {
+        let nis = |taken: bool| {
+            move |_: usize, trace: &Trace| -> Vec<(i64, f64)> {
+                let heard = trace.heard.iter().filter(move |(_, heard)| heard.taken == taken);
+                heard.filter_map(|(row, heard)| Some((row.time_us, heard.nis?))).collect()
+            }
+        };
+        let sigma = |_: usize, trace: &Trace| {
+            let known = trace.epochs().filter_map(|(epoch, spread)| Some((epoch.time_us, spread?)));
+            known.map(|(time_us, spread)| (time_us, 100.0 * sigma_m(spread))).collect()
+        };
+        let bound = |_: usize, trace: &Trace| {
+            let epochs = &trace.followed.epochs;
+            let ends = [epochs.first(), epochs.last()].into_iter().flatten();
+            ends.map(|epoch| (epoch.time_us, CHI_SQUARE_1)).collect()
+        };
+        Figure::new(id, "Health")
+            .axes(TIME, "NIS of a range; σ of the position, cm")
+            .logarithmic()
+            .showing(None, Some([1e-2, 1e3]))
+            .caption("95 % of the NIS are below the line if the model is right; what is left out is far above it.")
+            .with(self.over_time("NIS", Mark::Dots, nis(true)).coloured(Colour::Other(4)))
+            .with(self.over_time("NIS, left out", Mark::Crosses, nis(false)).coloured(Colour::Alarm))
+            .with(self.over_time("95 %", Mark::Dashes, bound).coloured(Colour::Limit))
+            .with(self.over_time("σ of the position, cm", Mark::Line, sigma).coloured(Colour::Ours))
+    }
+
+    /// Coordinates over time, with the truth where it is known.
+    pub fn position(&self, id: &str) -> Figure {
+        let ours = ["x", "y", "z"].into_iter().enumerate().map(|(axis, name)| {
+            let of = move |_: usize, trace: &Trace| {
+                let coordinate = |position: [f64; 3]| position[axis];
+                let epochs = trace.followed.epochs.iter();
+                epochs.map(|e| (e.time_us, e.position.map_or(f64::NAN, coordinate))).collect()
+            };
+            self.over_time(name, Mark::Line, of).coloured(Colour::Other(axis))
+        });
+        let known = self.recording.parts.iter().any(|part| part.truth.is_some());
+        let truth = ["true x", "true y"].into_iter().enumerate().filter(|_| known);
+        let truth = truth.map(|(axis, name)| {
+            let of = move |part: usize, trace: &Trace| {
+                let epochs = trace.followed.epochs.iter();
+                let truth = |time_us| Some(self.truth(part, time_us)?[axis]);
+                epochs.map(|e| (e.time_us, truth(e.time_us).unwrap_or(f64::NAN))).collect()
+            };
+            self.over_time(name, Mark::Dashes, of).coloured(Colour::Truth)
+        });
+        Figure::new(id, "Position")
+            .axes(TIME, "position, m")
+            .caption("Coordinates in the room; z is as given unless the tracker estimates it.")
+            .with_all(truth)
+            .with_all(ours)
+    }
+
+    /// Horizontal error over time; empty where no truth is known.
+    pub fn error(&self, name: &str) -> Series {
+        let of = |part: usize, trace: &Trace| {
+            let error = |position: Option<[f64; 3]>, time_us| {
+                let ([x, y, _], truth) = (position?, self.truth(part, time_us)?);
+                Some(100.0 * distance([x, y], truth))
+            };
+            let epochs = trace.followed.epochs.iter();
+            epochs.filter_map(|e| Some((e.time_us, error(e.position, e.time_us)?))).collect()
+        };
+        self.over_time(name, Mark::Line, of)
+    }
+
+    fn truth(&self, part: usize, time_us: i64) -> Option<[f64; 2]> {
+        self.recording.parts.get(part)?.truth.as_ref()?.at(time_us)
+    }
+}
+
+/// Errors over time of one or more trackers.
+pub fn errors(id: &str, series: impl IntoIterator<Item = Series>) -> Figure {
+    Figure::new(id, "Error")
+        .axes(TIME, "horizontal error, cm")
+        .caption("The distance from the true place, where that is known.")
+        .with_all(series)
+}
+
+/// A map with the anchors, the rectangle about them, and the true way.
+pub fn room(id: &str, recording: &Recording) -> Figure {
+    let places = || recording.anchors.positions.iter().map(|&[x, y, _]| [x, y]);
+    let anchors = Series::points("anchors", places())
+        .labelled(recording.anchors.names.clone())
+        .coloured(Colour::Truth);
+    let [x0, y0, x1, y1] = around(places());
+    let walls = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
+    let mut figure = Figure::new(id, "Plan")
+        .axes("x, m", "y, m")
+        .map()
+        .with(Series::path("rectangle of the anchors", walls).coloured(Colour::Truth))
+        .with(anchors);
+    let (mut points, mut names) = (Vec::new(), Vec::new());
+    for part in &recording.parts {
+        match &part.truth {
+            Some(Truth::Course(course)) => {
+                let way = course.rows().iter().map(|(_, place)| *place);
+                let way = Series::path("true way", way).marked(Mark::Dashes);
+                figure.series.push(way.coloured(Colour::Truth));
+            }
+            Some(Truth::Point(point)) => {
+                points.push(*point);
+                names.push(part.name.clone());
+            }
+            None => {}
+        }
+    }
+    if !points.is_empty() {
+        let points = Series::points("true points", points).labelled(names);
+        figure.series.push(points.coloured(Colour::Truth));
+    }
+    figure
+}
+
+/// The smallest rectangle about some points: two opposite corners.
+pub fn around(points: impl Iterator<Item = [f64; 2]>) -> [f64; 4] {
+    points
+        .fold([f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY], |r, [x, y]| {
+            [r[0].min(x), r[1].min(y), r[2].max(x), r[3].max(y)]
+        })
+}
+
+/// The ellipse that holds 95 % of a normal distribution.
+fn ellipse([x, y]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Vec<[f64; 2]> {
+    let (mean, half) = (f64::midpoint(xx, yy), f64::midpoint(xx, -yy));
+    let root = half.hypot(xy);
+    let [long, short] = [mean + root, mean - root].map(|v| (CHI_SQUARE_2 * v.max(0.0)).sqrt());
+    let (sin, cos) = (xy.atan2(half) / 2.0).sin_cos();
+    let point = |step: u32| {
+        let (s, c) = (std::f64::consts::TAU * f64::from(step) / 24.0).sin_cos();
+        let (along, across) = (long * c, short * s);
+        [x + cos * along - sin * across, y + sin * along + cos * across]
+    };
+    (0..=24).map(point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ellipse_lies_along_its_longer_axis() {
+        let points = ellipse([1.0, 2.0], [2.5, 1.5, 2.5]);
+        let [x0, y0, x1, y1] = around(points.iter().copied());
+        // Variances 4 along the diagonal and 1 across it.
+        let extent = (CHI_SQUARE_2 * 2.5).sqrt();
+        for (found, expected) in [(x1 - 1.0, extent), (1.0 - x0, extent), (y1 - 2.0, extent)] {
+            assert!((found - expected).abs() < 0.05 * extent, "{found} / {expected}");
+        }
+        assert!((y0 - (2.0 - extent)).abs() < 0.05 * extent);
+        let farthest = points.iter().map(|&p| distance(p, [1.0, 2.0])).fold(0.0, f64::max);
+        assert!((farthest - 2.0 * CHI_SQUARE_2.sqrt()).abs() < 1e-9);
+        assert!((points[0][0] - 1.0 - (points[0][1] - 2.0)).abs() < 1e-9);
+    }
+}
