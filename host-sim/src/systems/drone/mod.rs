@@ -13,7 +13,11 @@
 
 pub mod area;
 pub mod beyond;
+pub mod chapter;
+pub mod cloud;
 pub mod experiment;
+pub mod explorer;
+pub mod film;
 pub mod flight;
 pub mod moving_user;
 pub mod online;
@@ -23,6 +27,7 @@ pub mod report;
 pub mod scenario;
 mod search;
 pub mod static_user;
+mod survey;
 pub mod sweeps;
 pub mod trajectory;
 

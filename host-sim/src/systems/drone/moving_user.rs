@@ -10,6 +10,8 @@ use kestirim_user_locator::{
 };
 use rand_core::{Rng, SeedableRng};
 
+use super::cloud::Cloud;
+use super::film::Frame;
 use super::scenario::{EnvironmentKind, measure};
 use crate::cli::ScalarKind;
 use crate::metrics::{distance, mean};
@@ -99,6 +101,9 @@ impl Outcome {
 trait Follower {
     /// Takes in a loss measured at a waypoint, and says where the user is and where to go.
     fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>);
+
+    /// What it believes.
+    fn cloud(&self) -> Cloud;
 }
 
 /// One user, one flight.
@@ -113,7 +118,38 @@ pub fn trial(walk: &Walk, scalar: ScalarKind, seed: u64, index: u64) -> Outcome 
     }
 }
 
+/// The same flight as [`trial`]'s, in double precision, frame by frame.
+pub fn film(walk: &Walk, seed: u64, index: u64) -> (Vec<Frame>, Outcome) {
+    let mut frames = Vec::new();
+    let mut watch = |step: &Step<'_>| {
+        let Waypoint { place: [x, y], height } = step.waypoint;
+        let Step { user, loss_db, estimate, .. } = *step;
+        let cloud = step.follower.cloud();
+        frames.push(Frame { drone: [x, y, height], user, loss_db, estimate, cloud });
+    };
+    let outcome = fly::<f64, MOST>(walk, seed, index, &mut watch);
+    (frames, outcome)
+}
+
+/// What a flight shows to who watches it.
+struct Step<'a> {
+    waypoint: Waypoint<f64>,
+    user: [f64; 2],
+    loss_db: f64,
+    estimate: [f64; 2],
+    follower: &'a dyn Follower,
+}
+
 fn with_scalar<T: Scalar, const L: usize>(walk: &Walk, seed: u64, index: u64) -> Outcome {
+    fly::<T, L>(walk, seed, index, &mut |_| {})
+}
+
+fn fly<T: Scalar, const L: usize>(
+    walk: &Walk,
+    seed: u64,
+    index: u64,
+    watch: &mut dyn FnMut(&Step<'_>),
+) -> Outcome {
     let mut world = stream(seed, index);
     let phase = TAU * uniform(&mut world);
     let rng = Xoshiro128PlusPlus::seed_from_u64(world.next_u64());
@@ -137,6 +173,7 @@ fn with_scalar<T: Scalar, const L: usize>(walk: &Walk, seed: u64, index: u64) ->
         let loss = measure(&channel, user, waypoint.place, waypoint.height, &mut world)
             + normal(&mut world, walk.unknown_noise_db);
         let (estimate, next) = follower.step(waypoint, loss);
+        watch(&Step { waypoint, user, loss_db: loss, estimate, follower: &*follower });
         errors.push(distance(user, estimate));
         way_m += distance(waypoint.place, next.place).hypot(next.height - waypoint.height);
         climb_m += (next.height - waypoint.height).max(0.0);
@@ -149,6 +186,8 @@ fn with_scalar<T: Scalar, const L: usize>(walk: &Walk, seed: u64, index: u64) ->
 struct Hovering<T: Scalar, const L: usize> {
     filter: PrintedLocator<T, L>,
     rng: Xoshiro128PlusPlus,
+    /// Effective number of particles after the last measurement.
+    effective: T,
 }
 
 impl<T: Scalar, const L: usize> Hovering<T, L> {
@@ -164,7 +203,8 @@ impl<T: Scalar, const L: usize> Hovering<T, L> {
             settings,
             &mut rng,
         );
-        Self { filter: filter.expect("the number of particles is within bounds"), rng }
+        let filter = filter.expect("the number of particles is within bounds");
+        Self { filter, rng, effective: T::ZERO }
     }
 }
 
@@ -172,10 +212,15 @@ impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
     fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
         if let Some(measurement) = measurement(from, loss_db) {
             // What no particle explains leaves the cloud as it was.
-            let _ = self.filter.measure(&measurement, &mut self.rng);
+            let update = self.filter.measure(&measurement, &mut self.rng);
+            self.effective = update.map_or(T::ZERO, |update| update.effective);
         }
         let place = self.filter.moments().mean().map(T::to_f64);
         (place, Waypoint { place, height: from.height })
+    }
+
+    fn cloud(&self) -> Cloud {
+        Cloud::of_particles(self.filter.particles(), self.effective.to_f64())
     }
 }
 
@@ -185,6 +230,8 @@ struct Orbiting<T: Scalar, const L: usize> {
     orbit: Orbit<T>,
     rng: Xoshiro128PlusPlus,
     begun: bool,
+    /// Effective number of particles after the last measurement.
+    effective: T,
 }
 
 impl<T: Scalar, const L: usize> Orbiting<T, L> {
@@ -197,7 +244,7 @@ impl<T: Scalar, const L: usize> Orbiting<T, L> {
             &mut rng,
         );
         let tracker = tracker.expect("the number of particles is within bounds");
-        Self { tracker, orbit: Orbit::new(height), rng, begun: false }
+        Self { tracker, orbit: Orbit::new(height), rng, begun: false, effective: T::ZERO }
     }
 }
 
@@ -218,12 +265,17 @@ impl<T: Scalar, const L: usize> Follower for Orbiting<T, L> {
         self.begun = true;
         if let Some(measurement) = measurement(from, loss_db) {
             // What no particle explains leaves the cloud as it was.
-            let _ = self.tracker.measure(&measurement, &mut self.rng);
+            let update = self.tracker.measure(&measurement, &mut self.rng);
+            self.effective = update.map_or(T::ZERO, |update| update.effective);
         }
         let estimate = self.tracker.estimate();
         let next = self.orbit.next(&estimate, interval);
         let next = Waypoint { place: next.place.map(T::to_f64), height: next.height.to_f64() };
         (estimate.place.map(T::to_f64), next)
+    }
+
+    fn cloud(&self) -> Cloud {
+        Cloud::of_particles(self.tracker.particles(), self.effective.to_f64())
     }
 }
 

@@ -5,15 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::area::Area;
-use super::flight::{self, Stop};
 use super::scenario::EnvironmentKind;
-use super::search::{BEYOND_M, Estimate, MOST, MOST_OPEN, Search};
+use super::search::Estimate;
+use super::survey::Survey;
 use crate::metrics::distance;
-use crate::{Error, output};
+use crate::stream::Stream;
+use crate::{Error, mcap, output};
 
-/// From here on a drone hears nothing, m.
-const FAR_M: f64 = 20_000.0;
 /// Errors are told after each of these, s.
 const MINUTE_S: f64 = 60.0;
 
@@ -38,6 +36,9 @@ pub struct Replay {
     /// Write t,x,y,sd of each measurement to this file
     #[arg(long, value_name = "OUT.csv")]
     pub track: Option<PathBuf>,
+    /// Write measurements, estimates and truth as streams, for Foxglove, PlotJuggler and Rerun
+    #[arg(long, value_name = "OUT.mcap")]
+    pub mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table
     #[arg(long)]
     pub json: bool,
@@ -59,60 +60,30 @@ impl Replay {
     /// # Errors
     /// As there.
     pub fn report(&self) -> Result<Report, Error> {
-        let inputs = [Some(&self.log), self.truth.as_ref(), self.area.as_ref()];
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())?;
-        let mut flight = flight::read(&self.log)?;
-        let truth = self.truth.as_deref().map(flight::read_truth).transpose()?;
-        let area = self.area.as_deref().map(Area::read).transpose()?;
-        let mut warnings = Vec::new();
-        if flight.unusable > 0 {
-            let count = flight.unusable;
-            warnings.push(format!(
-                "rows left out: {count} (a height is above 0 and below 20000 m, a measurement within \
-                 ±300 dB)"
-            ));
-        }
-        let most = if self.environment.is_some() { MOST } else { MOST_OPEN };
-        thin_out(&mut flight.stops, most, &mut warnings);
-        if flight.stops.len() < 3 {
-            return Err(Error::File {
-                path: self.log.clone(),
-                problem:
-                    "expected at least three measurements within ±300 dB, from above the ground"
-                        .to_owned(),
-            });
-        }
-        if area.is_none() {
-            warnings.push(format!(
-                "the user is looked for up to {BEYOND_M} m beyond the flight (--area)"
-            ));
-        }
-        if area.as_ref().is_some_and(|area| far(area, &flight.stops)) {
-            warnings.push("no measurement was made within 20 km of the area".to_owned());
-        }
+        let inputs =
+            || [Some(&self.log), self.truth.as_ref(), self.area.as_ref()].into_iter().flatten();
+        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
+        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
+        let survey =
+            Survey::read(&self.log, self.truth.as_deref(), self.area.as_deref(), self.environment)?;
         // What comes in between takes as long as the end, each time.
-        let only_last = truth.is_none() && self.track.is_none();
-        let search = Search::new(&flight, area.as_ref(), truth, only_last);
-        let estimates = match self.environment {
-            None => search.in_free_space(flight.quantity),
-            Some(environment) => search.among_buildings(environment, flight.quantity),
-        };
-        let Some(last) = estimates.last() else {
-            return Err(Error::File {
-                path: self.log.clone(),
-                problem: "no place explains the measurements".to_owned(),
-            });
-        };
+        let only_last = survey.truth.is_none() && self.track.is_none() && self.mcap.is_none();
+        let estimates = survey.find(&survey.search(only_last));
+        let mut warnings = survey.warnings.clone();
         let every = self.environment.is_some() || !only_last;
-        if every && estimates.len() < flight.stops.len() {
+        if every && estimates.len() < survey.flight.stops.len() {
             warnings.push("some measurements are explained by no place: left out".to_owned());
         }
+        let Some(last) = estimates.last() else { return Err(survey.nowhere()) };
         if let Some(path) = &self.track {
             write_track(path, &estimates)?;
         }
+        if let Some(path) = &self.mcap {
+            mcap::write(path, &streams(&survey, &estimates))?;
+        }
         Ok(Report {
             system: "drone",
-            measurements: flight.stops.len(),
+            measurements: survey.flight.stops.len(),
             estimate: Place { x: last.place[0], y: last.place[1] },
             sd_m: last.sd_m,
             level_db: last.level_db,
@@ -122,26 +93,32 @@ impl Replay {
                 "level at one metre"
             },
             warnings,
-            accuracy: truth.map(|truth| Accuracy::of(&estimates, truth)),
+            accuracy: survey.truth.map(|truth| Accuracy::of(&estimates, truth)),
         })
     }
 }
 
-/// Keeps as many stops as can be remembered.
-fn thin_out(stops: &mut Vec<Stop>, most: usize, warnings: &mut Vec<String>) {
-    let count = stops.len();
-    if count <= most {
-        return;
-    }
-    warnings.push(format!("of {count} measurements {most} are used, evenly"));
-    *stops = (0..most).map(|k| stops[k * count / most]).collect();
-}
-
-/// Whether no stop is anywhere near an area.
-fn far(area: &Area, stops: &[Stop]) -> bool {
-    let (low, high) = area.bounds();
-    let beside = |axis: usize, at: f64| at < low[axis] - FAR_M || at > high[axis] + FAR_M;
-    stops.iter().all(|stop| beside(0, stop.place[0]) || beside(1, stop.place[1]))
+/// Measurements, estimates and, where it is known, the truth.
+fn streams(survey: &Survey, estimates: &[Estimate]) -> Vec<Stream> {
+    let stops = &survey.flight.stops;
+    let measured = stops.iter().map(|stop| {
+        let [x, y] = stop.place;
+        (stop.t, vec![x, y, stop.height, stop.loss])
+    });
+    let found = estimates.iter().map(|found| {
+        let [x, y] = found.place;
+        (found.t, vec![x, y, found.sd_m])
+    });
+    let columns = ["x_m", "y_m", "z_m", "loss_db"];
+    let mut streams = vec![
+        Stream::new("/drone/measurements", &columns, measured.collect()),
+        Stream::new("/drone/estimate", &["x_m", "y_m", "sd_m"], found.collect()),
+    ];
+    streams.extend(survey.truth.map(|truth| {
+        let rows = stops.iter().map(|stop| (stop.t, truth.to_vec())).collect();
+        Stream::new("/drone/truth", &["x_m", "y_m"], rows)
+    }));
+    streams
 }
 
 fn write_track(path: &Path, estimates: &[Estimate]) -> Result<(), Error> {

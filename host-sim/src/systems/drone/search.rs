@@ -5,6 +5,7 @@ use kestirim_particle_filter::Region;
 use kestirim_user_locator::{Beacon, Locator};
 
 use super::area::Area;
+use super::cloud::Cloud;
 use super::flight::{Flight, Quantity, Stop};
 use super::scenario::{EnvironmentKind, WAVELENGTH_M};
 
@@ -24,7 +25,7 @@ const LEVELS: u32 = 41;
 const CALIBRATION_DB: f64 = 3.0;
 
 /// Where the user is after some measurements.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Estimate {
     pub(super) t: f64,
     pub(super) place: [f64; 2],
@@ -32,6 +33,8 @@ pub(super) struct Estimate {
     pub(super) level_db: Option<f64>,
     /// Whether the 90 % region holds the true place, if that is known.
     pub(super) covered: Option<bool>,
+    /// All that is believed of the place, if that is wanted.
+    pub(super) cloud: Option<Cloud>,
 }
 
 /// Where a user is looked for.
@@ -44,6 +47,8 @@ pub(super) struct Search<'a> {
     truth: Option<[f64; 2]>,
     /// Whether only the last estimate is wanted.
     only_last: bool,
+    /// Whether all that is believed is wanted.
+    with_clouds: bool,
 }
 
 impl<'a> Search<'a> {
@@ -54,7 +59,13 @@ impl<'a> Search<'a> {
         only_last: bool,
     ) -> Self {
         let (low, high) = area.map_or_else(|| surroundings(&flight.stops), Area::bounds);
-        Self { stops: &flight.stops, area, origin: low, high, truth, only_last }
+        let (stops, origin) = (&flight.stops[..], low);
+        Self { stops, area, origin, high, truth, only_last, with_clouds: false }
+    }
+
+    /// With all that is believed.
+    pub(super) fn with_clouds(self) -> Self {
+        Self { with_clouds: true, ..self }
     }
 
     fn inside(&self, place: [f64; 2]) -> bool {
@@ -103,6 +114,9 @@ impl<'a> Search<'a> {
                 sd_m: found.moments().spread(),
                 level_db: (quantity == Quantity::Level).then_some(found.level),
                 covered,
+                cloud: self
+                    .with_clouds
+                    .then(|| Cloud::of_lattice(&found.posterior).moved(self.origin)),
             });
         }
         estimates
@@ -192,6 +206,9 @@ impl<'a> Search<'a> {
                 // A level received is the negative loss: the more the transmitter sends, the less.
                 level_db: mean.get(2).map(|loss| -loss),
                 covered,
+                cloud: self
+                    .with_clouds
+                    .then(|| Cloud::of_lattice(locator.posterior()).moved(self.origin)),
             });
         }
         estimates

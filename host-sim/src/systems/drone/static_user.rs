@@ -6,6 +6,8 @@ use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{Locator, PrintedLocator, PrintedSettings};
 use rand_core::{Rng, SeedableRng};
 
+use super::cloud::Cloud;
+use super::film::Frame;
 use super::scenario::{EnvironmentKind, measure};
 use super::trajectory::{SIDE_M, Trajectory};
 use crate::cli::ScalarKind;
@@ -99,19 +101,40 @@ pub fn trial(job: &Job, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
     }
 }
 
-fn with_scalar<T: Scalar>(job: &Job, seed: u64, index: u64) -> Outcome {
-    let mut rng = stream(seed, index);
-    let user = [SIDE_M * uniform(&mut rng), SIDE_M * uniform(&mut rng)];
-    let geometry = &job.geometry;
-    let channel = geometry.environment.channel::<f64>();
-    let mut losses = Vec::new();
-    for place in geometry.trajectory.points(geometry.stops) {
-        for _ in 0..geometry.per_stop {
-            losses.push((place, measure(&channel, user, place, geometry.height_m, &mut rng)));
+/// Which filter a film shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shown {
+    /// The thesis'.
+    Paper(Paper),
+    /// Ours, with so many points.
+    Best(usize),
+}
+
+/// The same flight as [`trial`]'s, in double precision, frame by frame.
+pub fn film(geometry: &Geometry, shown: Shown, seed: u64, index: u64) -> Vec<Frame> {
+    let flight = Flight::new(geometry, seed, index);
+    match shown {
+        Shown::Paper(paper) => {
+            let (mut filter, mut rng) = flight.printed::<f64, MOST>(paper);
+            flight.film(|measurement| {
+                let update = filter.measure(measurement, &mut rng);
+                let effective = update.map_or(0.0, |update| update.effective);
+                Cloud::of_particles(filter.particles(), effective)
+            })
+        }
+        Shown::Best(points) => {
+            let mut filter = flight.lattice::<f64, MOST>(points);
+            flight.film(|measurement| {
+                // What nothing explains leaves the lattice as it was.
+                let _ = filter.measure(measurement);
+                Cloud::of_lattice(filter.posterior())
+            })
         }
     }
-    let seed = rng.next_u64();
-    let flight = Flight { geometry, losses, user, seed };
+}
+
+fn with_scalar<T: Scalar>(job: &Job, seed: u64, index: u64) -> Outcome {
+    let flight = Flight::new(&job.geometry, seed, index);
     let mut outcome = Outcome::default();
     for paper in &job.papers {
         let (error, refused) = if paper.particles <= FEW {
@@ -150,9 +173,36 @@ struct Flight<'a> {
     seed: u64,
 }
 
-impl Flight<'_> {
-    /// Error of the thesis' filter, and how many measurements it refused.
-    fn paper<T: Scalar, const L: usize>(&self, paper: Paper) -> (f64, u32) {
+impl<'a> Flight<'a> {
+    fn new(geometry: &'a Geometry, seed: u64, index: u64) -> Self {
+        let mut rng = stream(seed, index);
+        let user = [SIDE_M * uniform(&mut rng), SIDE_M * uniform(&mut rng)];
+        let channel = geometry.environment.channel::<f64>();
+        let mut losses = Vec::new();
+        for place in geometry.trajectory.points(geometry.stops) {
+            for _ in 0..geometry.per_stop {
+                losses.push((place, measure(&channel, user, place, geometry.height_m, &mut rng)));
+            }
+        }
+        Self { geometry, losses, user, seed: rng.next_u64() }
+    }
+
+    /// What a filter believes after each measurement.
+    fn film(&self, mut cloud: impl FnMut(&Measurement<f64>) -> Cloud) -> Vec<Frame> {
+        let frame = |measurement: Measurement<f64>| {
+            let cloud = cloud(&measurement);
+            let ([x, y], height) = (measurement.place(), measurement.height());
+            let (user, estimate) = (self.user, cloud.mean);
+            Frame { drone: [x, y, height], user, loss_db: measurement.loss(), estimate, cloud }
+        };
+        self.measurements().map(frame).collect()
+    }
+
+    /// The thesis' filter, and its randomness.
+    fn printed<T: Scalar, const L: usize>(
+        &self,
+        paper: Paper,
+    ) -> (Box<PrintedLocator<T, L>>, Xoshiro128PlusPlus) {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(self.seed);
         let settings = PrintedSettings { resampler: paper.resampler, ..PrintedSettings::thesis() };
         let channel = self.geometry.environment.channel::<T>();
@@ -163,7 +213,19 @@ impl Flight<'_> {
             settings,
             &mut rng,
         );
-        let mut filter = Box::new(filter.expect("the number of particles is within bounds"));
+        (Box::new(filter.expect("the number of particles is within bounds")), rng)
+    }
+
+    /// Our filter.
+    fn lattice<T: Scalar, const L: usize>(&self, points: usize) -> Box<Locator<T, L, MEMORY>> {
+        let channel = self.geometry.environment.channel::<T>();
+        let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
+        Box::new(filter.expect("the number of points is within bounds"))
+    }
+
+    /// Error of the thesis' filter, and how many measurements it refused.
+    fn paper<T: Scalar, const L: usize>(&self, paper: Paper) -> (f64, u32) {
+        let (mut filter, mut rng) = self.printed::<T, L>(paper);
         let measurements = self.measurements::<T>();
         let refused = measurements.filter(|m| filter.measure(m, &mut rng).is_err()).count() as u32;
         (self.error(filter.moments().mean()), refused)
@@ -171,9 +233,7 @@ impl Flight<'_> {
 
     /// Our filter; whether its 90 % region holds the user takes a while, and is only found if asked for.
     fn best<T: Scalar, const L: usize>(&self, points: usize, region: bool) -> Found {
-        let channel = self.geometry.environment.channel::<T>();
-        let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
-        let mut filter = Box::new(filter.expect("the number of points is within bounds"));
+        let mut filter = self.lattice::<T, L>(points);
         let refused = self.measurements::<T>().filter(|m| filter.measure(m).is_err()).count();
         let user = self.user.map(T::from_f64);
         let credible = region && filter.credible(&user, T::from_f64(0.9)) == Some(true);

@@ -32,6 +32,7 @@ pub mod replay;
 pub mod report;
 pub mod responses;
 pub mod scenario;
+mod streams;
 pub mod trip;
 
 /// What `host-sim list` says of this system.

@@ -118,6 +118,13 @@ impl Recording {
         estimate.state + SVector::from(self.origin.0)
     }
 
+    /// Inputs of the log as they were before the trim was taken.
+    pub fn inputs(&self) -> impl Iterator<Item = (i64, [f64; 2])> {
+        let steady = self.origin.1;
+        let absolute = move |input: [f64; 2]| std::array::from_fn(|i| input[i] + steady[i]);
+        self.flight.samples.iter().map(move |sample| (sample.t_us, absolute(sample.input)))
+    }
+
     /// Rows of the log as they were before the trim was taken: of each output, or nothing.
     pub fn measured(&self) -> impl Iterator<Item = (i64, Vec<Option<f64>>)> {
         let steady: Vec<f64> = self.flight.outputs.iter().map(|&o| self.steady(o)).collect();

@@ -10,8 +10,9 @@ use super::follow::Estimate;
 use super::model::STATE_COLUMNS;
 use super::options::{EstimatorKind, four_numbers, poles, two_numbers};
 use super::recording::Recording;
+use super::streams::streams;
 use crate::metrics::rms;
-use crate::{Error, output};
+use crate::{Error, mcap, output};
 
 /// Options of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -44,6 +45,9 @@ pub struct Replay {
     /// Write t,alpha,q,V,theta of each line to this file
     #[arg(long, value_name = "OUT.csv")]
     pub track: Option<PathBuf>,
+    /// Write inputs, sensors, estimate and truth as streams, for Foxglove, PlotJuggler and Rerun
+    #[arg(long, value_name = "OUT.mcap")]
+    pub mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table
     #[arg(long)]
     pub json: bool,
@@ -65,8 +69,10 @@ impl Replay {
     /// # Errors
     /// As there.
     pub fn report(&self) -> Result<Report, Error> {
-        let inputs = [Some(&self.log), Some(&self.model), self.truth.as_ref()];
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs.into_iter().flatten())?;
+        let inputs =
+            || [Some(&self.log), Some(&self.model), self.truth.as_ref()].into_iter().flatten();
+        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
+        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
         let kalman = self.estimator == EstimatorKind::Kalman;
         if kalman && self.poles.is_some() {
             return Err(Error::Usage("--poles are for --estimator luenberger".to_owned()));
@@ -92,6 +98,9 @@ impl Replay {
         }
         if let Some(path) = &self.track {
             write_track(path, &recording, &followed.estimates)?;
+        }
+        if let Some(path) = &self.mcap {
+            mcap::write(path, &streams(&recording, &followed))?;
         }
         let last = followed.estimates.last();
         let last = last.map(|estimate| recording.absolute(estimate)).unwrap_or_default();

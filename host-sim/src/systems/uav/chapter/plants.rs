@@ -20,20 +20,20 @@ pub(super) fn items(report: &Report) -> Vec<Item> {
     let once = made(report, "none: nothing is random");
     let mut items = vec![once.item(trim()), once.item(visibility(report))];
     let Some(plant) = report.plants.iter().find(|row| row.plant == Plant::P2) else { return items };
-    let figures = driven(
-        plant,
-        &plant.impulse,
-        ("uav-fig-5-1", "Fig. 5.1, impulse response of P2"),
-        "The short period is over in a second, the phugoid swings for minutes.",
-    );
-    items.extend(figures.map(|figure| once.item(figure)));
-    let figures = driven(
-        plant,
-        &plant.step,
-        ("uav-fig-5-2", "Fig. 5.2, step response of P2"),
-        "The thesis says that they settle after about 600 s: so do these, by the phugoid alone.",
-    );
-    items.extend(figures.map(|figure| once.item(figure)));
+    let impulse = ("uav-fig-5-1", "Fig. 5.1, impulse response of P2");
+    let step = ("uav-fig-5-2", "Fig. 5.2, step response of P2");
+    let settles =
+        "The thesis says that it settles after about 600 s: so does this, by the phugoid alone.";
+    for (response, name, caption) in [
+        (
+            &plant.impulse,
+            impulse,
+            "The short period is over in a second, the phugoid swings for minutes.",
+        ),
+        (&plant.step, step, settles),
+    ] {
+        items.extend(driven(plant, response, name, caption).map(|figure| once.item(figure)));
+    }
     items.push(once.item(settling(report)));
     items.extend(bode(plant).map(|figure| once.item(figure)));
     items.push(once.item(singular_values(&report.plants)));

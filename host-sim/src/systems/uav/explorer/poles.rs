@@ -13,38 +13,41 @@ pub(super) fn of(a: &SMatrix<f64, 4, 4>, interval: f64) -> Vec<[f64; 2]> {
     all.into_iter().filter(|pole| pole.iter().all(|part| part.is_finite())).collect()
 }
 
-/// Of the filter that a time-varying one settles at, for `outputs` (rows of C) with these standard deviations.
-pub(super) fn of_filter(
-    plant: &Discrete<4, 2>,
-    q: &SMatrix<f64, 4, 4>,
-    outputs: &[[f64; 4]],
-    sigmas: &[f64],
-    interval: f64,
-) -> Vec<[f64; 2]> {
-    match outputs.len() {
-        1 => with::<1>(plant, q, outputs, sigmas, interval),
-        2 => with::<2>(plant, q, outputs, sigmas, interval),
-        3 => with::<3>(plant, q, outputs, sigmas, interval),
-        _ => with::<4>(plant, q, outputs, sigmas, interval),
-    }
+/// The filter that a time-varying one settles at.
+pub(super) struct Settled<'a> {
+    /// What it filters.
+    pub(super) plant: Discrete<4, 2>,
+    /// Covariance of the process' noise.
+    pub(super) q: SMatrix<f64, 4, 4>,
+    /// Rows of C.
+    pub(super) outputs: &'a [[f64; 4]],
+    /// Standard deviations of their noise.
+    pub(super) sigmas: &'a [f64],
+    /// s.
+    pub(super) interval: f64,
 }
 
-fn with<const P: usize>(
-    plant: &Discrete<4, 2>,
-    q: &SMatrix<f64, 4, 4>,
-    outputs: &[[f64; 4]],
-    sigmas: &[f64],
-    interval: f64,
-) -> Vec<[f64; 2]> {
-    let c = SMatrix::<f64, P, 4>::from_fn(|row, state| outputs.get(row).map_or(0.0, |c| c[state]));
-    let sigma = |row: usize| sigmas.get(row).copied().unwrap_or(1.0);
-    let r = SMatrix::<f64, P, P>::from_fn(
-        |row, column| {
-            if row == column { sigma(row).powi(2) } else { 0.0 }
-        },
-    );
-    let gain = riccati(&plant.a, &c, q, &r).map(|filter| filter.predictor_gain);
-    gain.map(|gain| of(&(plant.a - gain * c), interval)).unwrap_or_default()
+impl Settled<'_> {
+    /// 1/s.
+    pub(super) fn poles(&self) -> Vec<[f64; 2]> {
+        match self.outputs.len() {
+            1 => self.poles_of::<1>(),
+            2 => self.poles_of::<2>(),
+            3 => self.poles_of::<3>(),
+            _ => self.poles_of::<4>(),
+        }
+    }
+
+    fn poles_of<const P: usize>(&self) -> Vec<[f64; 2]> {
+        let row = |output: usize| self.outputs.get(output).copied().unwrap_or_default();
+        let c = SMatrix::<f64, P, 4>::from_fn(|output, state| row(output)[state]);
+        let mut r = SMatrix::<f64, P, P>::identity();
+        for (output, sigma) in self.sigmas.iter().take(P).enumerate() {
+            r[(output, output)] = sigma * sigma;
+        }
+        let gain = riccati(&self.plant.a, &c, &self.q, &r).map(|filter| filter.predictor_gain);
+        gain.map(|gain| of(&(self.plant.a - gain * c), self.interval)).unwrap_or_default()
+    }
 }
 
 #[cfg(test)]

@@ -94,11 +94,12 @@ impl Explorer for Recorded {
         let end = seconds(end, begin);
         answer.figures.push(figures::error(error(&kalman), error(&luenberger), end));
         let interval = recording.flight.interval_s;
-        let (plant, noise) = recording.model.over(interval, interval, inputs).map_err(failed)?;
-        let rows: Vec<_> =
+        let (plant, q) = recording.model.over(interval, interval, inputs).map_err(failed)?;
+        let outputs: Vec<_> =
             recording.flight.outputs.iter().map(|&o| recording.model.outputs[o].1).collect();
         let sigmas = recording.assumed(Some(inputs), None).outputs;
-        let filter = poles::of_filter(&plant, &noise, &rows, &sigmas, interval);
+        let (outputs, sigmas) = (&outputs[..], &sigmas[..]);
+        let filter = poles::Settled { plant, q, outputs, sigmas, interval }.poles();
         let observer = poles.map(|pole| [pole, 0.0]);
         let observer = if luenberger.estimates.is_empty() { &[][..] } else { &observer[..] };
         answer.figures.push(figures::poles(&poles::of(&plant.a, interval), &filter, observer));
