@@ -4,7 +4,6 @@ pub mod drone;
 pub mod gnss;
 pub mod pedestrian;
 pub mod robot;
-mod stub;
 pub mod uav;
 
 use std::fmt::Display;

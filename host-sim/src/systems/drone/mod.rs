@@ -39,7 +39,3 @@ drone       where a user on the ground is, from the path loss to a drone
   log       CSV with columns t,x,y,h and path_loss_db or rssi_db in s, m and dB
   area      CSV with columns x,y in m: the corners of a polygon
   truth     CSV with columns x,y in m, one line";
-pub mod chapter {
-}
-pub mod explorer {
-}
