@@ -19,6 +19,7 @@ pub mod files;
 pub mod follow;
 pub mod options;
 pub mod outage;
+pub mod parts;
 pub mod products;
 pub mod recording;
 pub mod replay;

@@ -6,9 +6,8 @@ use kestirim_ppp_filter::Motion;
 use nalgebra::Vector3;
 
 use super::files::rinex_obs::Epoch;
-use super::options::{
-    self, Choice, Mode, PROCESS_NOISE, Part, Setup, all_but, mask, place, process_noise, time,
-};
+use super::options::{self, Choice, Mode, PROCESS_NOISE, Setup, mask, place, process_noise, time};
+use super::parts::{Part, all_but};
 use super::recording::{Files, Recording};
 use super::session::Session;
 use super::{streams, tables};

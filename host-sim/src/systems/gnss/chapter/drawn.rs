@@ -7,6 +7,7 @@ use kestirim_ppp_filter::Motion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::super::accuracy::BEGINNING;
 use super::super::experiment::PROCESS_NOISE;
 use super::super::figures;
 use super::super::follow::Followed;
@@ -18,6 +19,7 @@ use super::super::sky::{Day, Rates};
 use super::super::streams;
 use crate::Error;
 use crate::figure::Figure;
+use crate::metrics::median;
 use crate::stream::Stream;
 
 /// Station-days that are drawn; the paper draws three.
@@ -100,8 +102,8 @@ impl Days {
         let figure =
             Figure::new("gnss-figure-5", "Figure 5: 3-D error of kinematic filters, station-day 1");
         figures::errors(figure, of(&self.moving), &self.place()).caption(
-            "The paper's filters lose the receiver to slips that they do not know; the default begins those \
-             ambiguities anew.",
+            "Slips that the paper's filters do not know pull the receiver away until the satellite sets; the default \
+             begins those ambiguities anew.",
         )
     }
 
@@ -111,11 +113,16 @@ impl Days {
             "gnss-deviation",
             "Standard deviations that the default reports, and its error",
         );
-        let figure = match self.best() {
-            Some(followed) => figures::deviations(figure, followed, Some(&self.place())),
-            None => figure,
-        };
-        figure.caption("The error stays about as large as the deviations say, from the first hour to the last.")
+        let Some(followed) = self.best() else { return figure };
+        let place = self.place();
+        let reported = followed.fixes.iter().zip(&followed.deviations);
+        let ratios = reported.skip_while(|(fix, _)| fix.t < BEGINNING).map(|(fix, deviations)| {
+            (fix.position - place).norm() / Vector3::from(*deviations).norm()
+        });
+        let ratio = median(&ratios.collect::<Vec<_>>());
+        figures::deviations(figure, followed, Some(&place)).caption(format!(
+            "After the first hour the error is {ratio:.1} times the deviation in three dimensions (median)."
+        ))
     }
 
     /// The first day with the default.

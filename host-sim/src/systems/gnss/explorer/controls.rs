@@ -2,7 +2,8 @@
 
 use kestirim_gnss_ppp::Corrections;
 
-use super::super::options::{FilterKind, HIGHEST_MASK, PROCESS_NOISE, Part, all_but};
+use super::super::options::{FilterKind, HIGHEST_MASK, PROCESS_NOISE};
+use super::super::parts::{Part, all_but};
 use crate::explore::{Control, Settings};
 
 /// Parts of the observation model, each with the name of its switch and what people call it.
