@@ -15,7 +15,7 @@ pub struct Outputs {
     /// Write the tables: published, ours, limit
     #[arg(long, value_name = "OUT.csv")]
     pub csv: Option<PathBuf>,
-    /// Write the streams of a typical run, for Foxglove, PlotJuggler and Rerun
+    /// Write the streams of a typical run as MCAP, which Foxglove and others open
     #[arg(long, value_name = "OUT.mcap")]
     pub mcap: Option<PathBuf>,
     /// Write this system's part of the report, a page and its figures, into a folder

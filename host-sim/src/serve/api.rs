@@ -1,6 +1,7 @@
 //! What the page asks.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -24,8 +25,8 @@ const MOST_POINTS: usize = 700;
 pub(super) struct Refusal(StatusCode, String);
 
 impl Refusal {
-    pub(super) fn of(problem: impl ToString) -> Self {
-        Self(StatusCode::UNPROCESSABLE_ENTITY, problem.to_string())
+    pub(super) fn of(problem: impl Display) -> Self {
+        Self(StatusCode::UNPROCESSABLE_ENTITY, format!("{problem}"))
     }
 }
 
