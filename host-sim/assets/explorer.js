@@ -61,13 +61,16 @@
     if (session === null) return;
     if (asking) { again = true; return; }
     asking = true;
+    document.body.dataset.asking = "yes";
     const began = performance.now();
     const answer = await post(`api/answer/${session}`, JSON.stringify({ settings, windows }));
     if (answer) {
       show(answer);
       document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
+      document.body.dataset.answers = String(Number(document.body.dataset.answers ?? 0) + 1);
     }
     asking = false;
+    delete document.body.dataset.asking;
     if (again) { again = false; ask(); }
   }
 
@@ -84,7 +87,7 @@
     const log = control.logarithmic;
     const [inward, outward] = log ? [Math.log10, (v) => 10 ** v] : [Number, Number];
     const output = make("output");
-    const range = make("input", { type: "range", id: control.name, step: control.step });
+    const range = make("input", { type: "range", id: `control-${control.name}`, step: control.step });
     [range.min, range.max, range.value] = [control.min, control.max, control.value].map((v) => String(inward(v)));
     const tell = () => {
       const value = outward(Number(range.value));
@@ -94,7 +97,7 @@
     };
     tell();
     range.addEventListener("input", () => { settings[control.name] = tell(); ask(); });
-    const parts = [make("label", { htmlFor: control.name }, output, control.label), range];
+    const parts = [make("label", { htmlFor: `control-${control.name}` }, output, control.label), range];
     if (control.playable) parts.push(player(range));
     return parts;
   }
@@ -117,14 +120,14 @@
   }
 
   function choice(control) {
-    const select = make("select", { id: control.name }, ...control.options.map(([value, text]) =>
+    const select = make("select", { id: `control-${control.name}` }, ...control.options.map(([value, text]) =>
       make("option", { value, textContent: text, selected: value === control.value })));
     select.addEventListener("input", () => { settings[control.name] = select.value; ask(); });
-    return [make("label", { htmlFor: control.name, textContent: control.label }), select];
+    return [make("label", { htmlFor: `control-${control.name}`, textContent: control.label }), select];
   }
 
   function toggle(control) {
-    const box = make("input", { type: "checkbox", id: control.name, checked: control.value });
+    const box = make("input", { type: "checkbox", id: `control-${control.name}`, checked: control.value });
     box.addEventListener("input", () => { settings[control.name] = box.checked; ask(); });
     return [make("label", { className: "switch" }, box, control.label)];
   }

@@ -76,7 +76,7 @@ pub fn best_turn(ours: &[[f64; 2]], truth: &[[f64; 2]]) -> f64 {
     let (ours, truth) = (from_start(ours), from_start(truth));
     // Not `sum`, which of nothing is −0, whose angle is π.
     let (sine, cosine) = ours.iter().zip(&truth).fold((0.0, 0.0), |(sine, cosine), (a, b)| {
-        (sine + a[0] * b[1] - a[1] * b[0], cosine + a[0] * b[0] + a[1] * b[1])
+        (sine + (a[0] * b[1] - a[1] * b[0]), cosine + (a[0] * b[0] + a[1] * b[1]))
     });
     f64::atan2(sine, cosine)
 }

@@ -122,6 +122,8 @@ fn rounded(mut values: Vec<f64>) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    const VIEW: View = View { most_points: 1000, window: None };
+
     #[test]
     fn lines_points_and_gaps_come_through() {
         let ours = Series::line("ours", vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, 0.5]);
@@ -130,7 +132,7 @@ mod tests {
             .coloured(Colour::Truth)
             .hidden();
         let drawn =
-            figure(&Figure::new("f", "F").axes("x, m", "y, m").map().with(ours).with(marks), 1000);
+            figure(&Figure::new("f", "F").axes("x, m", "y, m").map().with(ours).with(marks), VIEW);
         assert_eq!(drawn["data"][0]["y"], json!([1.0, null, 0.5]));
         assert_eq!(drawn["data"][1]["text"], json!(["A1"]));
         assert_eq!(drawn["data"][1]["visible"], "legendonly");

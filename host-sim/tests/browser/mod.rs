@@ -2,7 +2,8 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -113,6 +114,12 @@ impl Page {
         }
     }
 
+    /// Puts a file into a field of a form.
+    pub(crate) fn choose_file(&self, field: &str, path: &str) {
+        let field = self.tab.find_element(field).expect("the field");
+        field.set_input_files(&[path]).expect("the file is taken");
+    }
+
     /// Presses a key where the focus is.
     pub(crate) fn press(&self, key: &str) {
         self.tab.press_key(key).expect("a key");
@@ -175,23 +182,43 @@ fn chromium() -> Option<PathBuf> {
 /// The program with a page of its own; it ends with this.
 pub(crate) struct Server {
     program: Child,
-    /// Where the page is.
-    pub(crate) address: String,
+    page: String,
+    datagrams: Option<SocketAddr>,
 }
 
 impl Server {
-    /// Starts `host-sim` with arguments that make it serve a page, and reads where from its first line.
+    /// Starts `host-sim` with arguments that make it serve a page, and reads where.
     pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut program = Command::new(env!("CARGO_BIN_EXE_host-sim"))
             .args(arguments)
             .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
             .spawn()
             .expect("the program runs");
-        let mut line = String::new();
-        let stdout = program.stdout.take().expect("its output");
-        BufReader::new(stdout).read_line(&mut line).expect("a first line");
-        let address = line.split_whitespace().next().expect("an address").to_owned();
-        Self { program, address }
+        // `live` keeps its standard output for its report.
+        let output: Box<dyn Read> = match arguments[0] {
+            "live" => Box::new(program.stderr.take().expect("a pipe")),
+            _ => Box::new(program.stdout.take().expect("a pipe")),
+        };
+        let (mut page, mut datagrams) = (None, None);
+        let mut lines = BufReader::new(output).lines();
+        while page.is_none() {
+            let line = lines.next().expect("it says where its page is").expect("text");
+            let words = || line.split([' ', ',']);
+            page = words().find(|word| word.starts_with("http://")).map(str::to_owned);
+            datagrams = datagrams.or(words().find_map(|word| word.parse().ok()));
+        }
+        Self { program, page: page.expect("it was found"), datagrams }
+    }
+
+    /// Where the page is.
+    pub(crate) fn address(&self) -> &str {
+        &self.page
+    }
+
+    /// Where it listens.
+    pub(crate) fn datagrams(&self) -> SocketAddr {
+        self.datagrams.expect("it listens")
     }
 }
 

@@ -1,5 +1,8 @@
 //! Runs the program and looks at what it says.
 
+// Each test needs a part of it.
+#![allow(dead_code)]
+
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};

@@ -12,17 +12,19 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::median;
 
 /// Residuals beyond this are all drawn, in standard deviations; …
-pub(super) const FAR: f64 = 4.0;
-/// … of the others about so many.
-const MOST_NEAR: usize = 4_000;
+pub const FAR: f64 = 4.0;
+/// … of the others about so many: in a drawing, …
+const DRAWN_NEAR: usize = 600;
+/// … and where one can look closer.
+const SHOWN_NEAR: usize = 8_000;
 /// A satellite has not set as long as it is missing for no more than so many epochs.
 const GAP_EPOCHS: f64 = 10.5;
 
 /// Code or phase of a satellite.
-pub(super) type Kind = fn(&SatelliteReport) -> &Decision<f64>;
+pub type Kind = fn(&SatelliteReport) -> &Decision<f64>;
 
 /// In which colour a filter is drawn.
-pub(super) fn colour(filter: FilterKind) -> Colour {
+pub fn colour(filter: FilterKind) -> Colour {
     match filter {
         FilterKind::Default => Colour::Ours,
         FilterKind::Gkf => Colour::Other(1),
@@ -34,7 +36,7 @@ pub(super) fn colour(filter: FilterKind) -> Colour {
 }
 
 /// Three-dimensional errors of filters over the hours.
-pub(super) fn errors<'a>(
+pub fn errors<'a>(
     figure: Figure,
     filters: impl IntoIterator<Item = (FilterKind, &'a Followed)>,
     truth: &Vector3<f64>,
@@ -47,7 +49,7 @@ pub(super) fn errors<'a>(
 }
 
 /// The position to the east, north and up of a place over the hours, m.
-pub(super) fn components(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
+pub fn components(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
     let places = followed.enu_from(about);
     let along = |axis: usize| places.iter().map(|place| place[axis]).collect();
     // The beginning is metres off: what comes after it is to be seen.
@@ -62,11 +64,7 @@ pub(super) fn components(figure: Figure, followed: &Followed, about: &Vector3<f6
 }
 
 /// The standard deviations that the filter reports over the hours, and the error where the truth is known.
-pub(super) fn deviations(
-    figure: Figure,
-    followed: &Followed,
-    truth: Option<&Vector3<f64>>,
-) -> Figure {
+pub fn deviations(figure: Figure, followed: &Followed, truth: Option<&Vector3<f64>>) -> Figure {
     let along = |axis: usize| followed.deviations.iter().map(|it| it[axis]).collect();
     let figure = figure.axes("time, h", "standard deviation, m").logarithmic().with_all(
         ["east", "north", "up"].into_iter().enumerate().map(|(axis, name)| {
@@ -81,17 +79,17 @@ pub(super) fn deviations(
 }
 
 /// The residual of an observation over its deviation √(Qᵥ/γ); none if it was rejected.
-pub(super) fn standardised(decision: &Decision<f64>) -> Option<f64> {
+pub fn standardised(decision: &Decision<f64>) -> Option<f64> {
     let weighted = decision.standardised * decision.weight.sqrt();
     (decision.reason != Reason::Rejected).then_some(weighted)
 }
 
 /// What is left in the observations in use over the hours, and that which is far off.
-pub(super) fn left(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
+pub fn left(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
     let used = followed.residuals.iter();
     let used = used.filter_map(|(t, report)| Some([t / 3600.0, standardised(kind(report))?]));
     let (far, near): (Vec<_>, Vec<_>) = used.partition(|[_, value]| value.abs() > FAR);
-    let step = near.len().div_ceil(MOST_NEAR).max(1);
+    let step = near.len().div_ceil(DRAWN_NEAR).max(1);
     let near = near.into_iter().step_by(step);
     figure
         .axes("time, h", "residual, σ")
@@ -104,8 +102,8 @@ pub(super) fn left(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
 }
 
 /// Residuals of each satellite over the hours, and those for which observations were rejected.
-pub(super) fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
-    let step = followed.residuals.len().div_ceil(2 * MOST_NEAR).max(1);
+pub fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
+    let step = followed.residuals.len().div_ceil(SHOWN_NEAR).max(1);
     let mut used: BTreeMap<u8, Vec<[f64; 2]>> = BTreeMap::new();
     let mut rejected = Vec::new();
     for (place, (t, report)) in followed.residuals.iter().enumerate() {
@@ -129,7 +127,7 @@ pub(super) fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figu
 }
 
 /// Which satellites were used when, what of them was rejected, and where their ambiguities began anew.
-pub(super) fn satellites(figure: Figure, followed: &Followed) -> Figure {
+pub fn satellites(figure: Figure, followed: &Followed) -> Figure {
     let steps: Vec<_> = followed.fixes.windows(2).map(|pair| pair[1].t - pair[0].t).collect();
     let longest = GAP_EPOCHS * median(&steps);
     let mut arcs: BTreeMap<u8, Vec<[f64; 2]>> = BTreeMap::new();
@@ -162,7 +160,7 @@ pub(super) fn satellites(figure: Figure, followed: &Followed) -> Figure {
 }
 
 /// Where the positions are on the ground, about a place.
-pub(super) fn plan(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
+pub fn plan(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
     let begin = followed.fixes.first().map_or(0.0, |fix| fix.t);
     let places = followed.fixes.iter().zip(followed.enu_from(about));
     let (early, late): (Vec<_>, Vec<_>) =

@@ -14,7 +14,7 @@ pub mod chapter;
 pub mod comparison;
 pub mod experiment;
 pub mod explorer;
-mod figures;
+pub mod figures;
 pub mod files;
 pub mod follow;
 pub mod options;
