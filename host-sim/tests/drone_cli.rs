@@ -5,7 +5,7 @@ mod program;
 use std::fs;
 use std::process::Command;
 
-use program::{Desk, host_sim, json, refusal, text};
+use program::{Desk, host_sim, json, messages, refusal, text};
 
 /// Losses over open ground round a user at (120, −40), of an unknown level.
 fn flight() -> String {
@@ -87,6 +87,22 @@ fn a_flight_is_replayed() {
     let without = json(&host_sim(&["replay", "drone", "--log", &log, "--json"]));
     assert!(without["accuracy"].is_null());
     assert_eq!(without["warnings"].as_array().map(Vec::len), Some(1));
+}
+
+#[test]
+fn a_replay_is_written_for_viewers() {
+    let desk = Desk::new();
+    let log = desk.file("flight.csv", flight());
+    let truth = desk.file("truth.csv", "x,y\n120,-40\n");
+    let file = desk.named("flight.mcap");
+    let arguments = ["replay", "drone", "--log", &log, "--mcap", &file, "--json"];
+    json(&host_sim(&arguments));
+    let alone = messages(&file);
+    assert_eq!((alone["/drone/measurements"], alone["/drone/estimate"]), (30, 30));
+    assert!(!alone.contains_key("/drone/truth"));
+    json(&host_sim(&[&arguments[..], &["--truth", &truth]].concat()));
+    assert_eq!(messages(&file)["/drone/truth"], 30);
+    assert!(refusal(&["replay", "drone", "--log", &log, "--mcap", &log]).contains("overwrite"));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
-use program::{Desk, host_sim, json, refusal, text};
+use program::{Desk, host_sim, json, messages, refusal, text};
 use serde_json::Value;
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -238,6 +238,11 @@ fn a_trim_is_taken_off_and_put_back() {
     let estimate = numbers(&report["estimate"]);
     assert!((estimate[2] - 40.0).abs() < 1e-6 && (estimate[3] - 0.053_941_088_491_4).abs() < 1e-8);
     assert_eq!(report["warnings"].as_array().map(Vec::len), Some(0));
+    let file = desk.named("steady.mcap");
+    json(&host_sim(&[&files[..], &["--absolute", "--json", "--mcap", &file]].concat()));
+    for topic in ["/uav/inputs", "/uav/sensors", "/uav/estimate"] {
+        assert_eq!(messages(&file).get(topic), Some(&200), "{topic}");
+    }
     let warned = host_sim(&files);
     assert!(text(&warned.stderr).contains("--absolute"));
     let sentence = refusal(&["replay", "uav", "--log", &log, "--model", "P2", "--absolute"]);
@@ -281,6 +286,7 @@ fn wrong_input_is_refused_with_a_sentence() {
     };
     assert!(with(&["--poles", "-1,-2,-3,-4"]).contains("luenberger"));
     assert!(with(&["--track", &log]).contains("overwrite"));
+    assert!(with(&["--mcap", &log]).contains("overwrite"));
     assert!(with(&["--truth", &desk.named("absent.csv")]).contains("absent.csv"));
     for wrong in [
         &["--estimator", "luenberger", "--poles", "-1,-2,-3"][..],

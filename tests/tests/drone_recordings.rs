@@ -17,6 +17,7 @@ fn a_rover_is_found_from_the_air() {
         free_space: true,
         area: Some(flight.join("area.csv")),
         track: None,
+        mcap: None,
         json: true,
     };
     let report = replay.report().expect("a recording can be read");

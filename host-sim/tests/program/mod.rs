@@ -3,8 +3,9 @@
 // Each test needs a part of it.
 #![allow(dead_code)]
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
@@ -31,6 +32,16 @@ pub(crate) fn refusal(arguments: &[&str]) -> String {
     assert!(output.stdout.is_empty(), "{arguments:?}");
     assert_eq!(sentence.trim_end().lines().count(), 1, "{sentence}");
     sentence.to_owned()
+}
+
+/// How many messages an MCAP file has of each topic.
+pub(crate) fn messages(file: impl AsRef<Path>) -> BTreeMap<String, usize> {
+    let bytes = fs::read(file).expect("a file");
+    let mut counts = BTreeMap::new();
+    for message in mcap::MessageStream::new(&bytes).expect("an MCAP file") {
+        *counts.entry(message.expect("a message").channel.topic.clone()).or_insert(0) += 1;
+    }
+    counts
 }
 
 /// A folder with files, and their paths as text.

@@ -5,8 +5,8 @@ use kestirim_scalar::Scalar;
 
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// Weights of less than this share of the heaviest are drawn apart.
-const LIGHT: f64 = 0.01;
+/// Share of the weight that the heaviest carry; the others are drawn apart.
+const SHARE: f64 = 0.9;
 /// Points of an ellipse.
 const CORNERS: u32 = 64;
 /// Most particles of each kind that are drawn.
@@ -15,9 +15,9 @@ const MOST: usize = 1500;
 /// Particles or lattice points, and the ellipse that stands for them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cloud {
-    /// Places that matter, m.
+    /// The heaviest places, which carry nine tenths of the weight, m.
     pub heavy: Vec<[f32; 2]>,
-    /// Places that hardly do, m.
+    /// The others, m.
     pub light: Vec<[f32; 2]>,
     /// The mean, m.
     pub mean: [f64; 2],
@@ -54,8 +54,9 @@ impl Cloud {
         effective: f64,
     ) -> Self {
         let (mut heavy, mut light) = (Vec::new(), Vec::new());
+        let least = least_of_the_heaviest(log_weights.iter().map(|log| log.to_f64()).collect());
         for (state, log_weight) in states.zip(log_weights) {
-            let kind = if log_weight.to_f64() > LIGHT.ln() { &mut heavy } else { &mut light };
+            let kind = if log_weight.to_f64() >= least { &mut heavy } else { &mut light };
             kind.push([state[0], state[1]].map(|axis| axis.to_f64() as f32));
         }
         let (mean, factor) = (moments.mean(), moments.factor());
@@ -78,14 +79,14 @@ impl Cloud {
         self.factor.iter().flatten().fold(0.0, |sum: f64, part| sum.hypot(*part))
     }
 
-    /// Draws it: what hardly matters, what does, and where nine of ten were if it were normally distributed.
+    /// Draws it: the light, the heavy, and where nine of ten were if it were normally distributed.
     pub fn on(&self, figure: Figure) -> Figure {
         let dots = |name: &str, places: &[[f32; 2]], colour| {
             let places = places.iter().map(|place| place.map(f64::from));
             Series::points(name, places).marked(Mark::Dots).coloured(colour)
         };
         figure
-            .with(dots("particles of little weight", &self.light, Colour::Truth))
+            .with(dots("particles with the last tenth of the weight", &self.light, Colour::Truth))
             .with(dots("particles", &self.heavy, Colour::Other(4)))
             .with(Series::path("90 % ellipse", self.ellipse()).coloured(Colour::Ours))
     }
@@ -103,6 +104,18 @@ impl Cloud {
     }
 }
 
+/// The smallest logarithm among the heaviest; those that weigh as much belong to them, too.
+fn least_of_the_heaviest(mut logs: Vec<f64>) -> f64 {
+    logs.sort_by(|a, b| b.total_cmp(a));
+    let all: f64 = logs.iter().map(|log| log.exp()).sum();
+    let mut sum = 0.0;
+    let last = logs.iter().find(|log| {
+        sum += log.exp();
+        sum >= SHARE * all
+    });
+    last.copied().unwrap_or(f64::NEG_INFINITY)
+}
+
 /// Every so manieth.
 fn thinned(places: &[[f32; 2]]) -> Vec<[f32; 2]> {
     places.iter().step_by(places.len().div_ceil(MOST).max(1)).copied().collect()
@@ -111,6 +124,14 @@ fn thinned(places: &[[f32; 2]]) -> Vec<[f32; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_heaviest_carry_nine_tenths_and_equals_stay_together() {
+        let logs = [0.03_f64, 0.5, 0.3, 0.05, 0.12].map(f64::ln);
+        assert!((least_of_the_heaviest(logs.to_vec()) - logs[4]).abs() < 1e-12);
+        assert!(least_of_the_heaviest(vec![0.0; 20]).abs() < 1e-12);
+        assert!(least_of_the_heaviest(Vec::new()).is_infinite());
+    }
 
     #[test]
     fn an_ellipse_lies_about_its_mean_and_long_clouds_are_thinned() {

@@ -36,7 +36,7 @@ pub struct Replay {
     /// Write t,x,y,sd of each measurement to this file
     #[arg(long, value_name = "OUT.csv")]
     pub track: Option<PathBuf>,
-    /// Write measurements, estimates and truth as streams, for Foxglove, PlotJuggler and Rerun
+    /// Write measurements, estimates and truth to this MCAP file, for viewers such as Foxglove and Rerun
     #[arg(long, value_name = "OUT.mcap")]
     pub mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table

@@ -123,7 +123,7 @@ pub fn film(geometry: &Geometry, shown: Shown, seed: u64, index: u64) -> Vec<Fra
             })
         }
         Shown::Best(points) => {
-            let mut filter = flight.lattice::<f64, MOST>(points);
+            let mut filter = Box::new(flight.lattice::<f64, MOST>(points));
             flight.film(|measurement| {
                 // What nothing explains leaves the lattice as it was.
                 let _ = filter.measure(measurement);
@@ -217,10 +217,10 @@ impl<'a> Flight<'a> {
     }
 
     /// Our filter.
-    fn lattice<T: Scalar, const L: usize>(&self, points: usize) -> Box<Locator<T, L, MEMORY>> {
+    fn lattice<T: Scalar, const L: usize>(&self, points: usize) -> Locator<T, L, MEMORY> {
         let channel = self.geometry.environment.channel::<T>();
         let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
-        Box::new(filter.expect("the number of points is within bounds"))
+        filter.expect("the number of points is within bounds")
     }
 
     /// Error of the thesis' filter, and how many measurements it refused.
@@ -233,7 +233,7 @@ impl<'a> Flight<'a> {
 
     /// Our filter; whether its 90 % region holds the user takes a while, and is only found if asked for.
     fn best<T: Scalar, const L: usize>(&self, points: usize, region: bool) -> Found {
-        let mut filter = self.lattice::<T, L>(points);
+        let mut filter = Box::new(self.lattice::<T, L>(points));
         let refused = self.measurements::<T>().filter(|m| filter.measure(m).is_err()).count();
         let user = self.user.map(T::from_f64);
         let credible = region && filter.credible(&user, T::from_f64(0.9)) == Some(true);

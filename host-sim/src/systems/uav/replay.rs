@@ -45,7 +45,7 @@ pub struct Replay {
     /// Write t,alpha,q,V,theta of each line to this file
     #[arg(long, value_name = "OUT.csv")]
     pub track: Option<PathBuf>,
-    /// Write inputs, sensors, estimate and truth as streams, for Foxglove, PlotJuggler and Rerun
+    /// Write inputs, sensors, estimate and truth to this MCAP file, for viewers such as Foxglove and Rerun
     #[arg(long, value_name = "OUT.mcap")]
     pub mcap: Option<PathBuf>,
     /// Print one JSON object instead of a table

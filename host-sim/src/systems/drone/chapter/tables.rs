@@ -31,14 +31,11 @@ pub(super) fn of(
 /// What both filters make of a cell.
 fn words(cell: &[&Row]) -> String {
     let one = |row: &&Row| {
-        let mut words = mean(row);
         let energy = row.energy_j.filter(|_| row.lost_percent.is_some());
-        if let Some(joules) = energy {
-            words += &format!(" m, {:.0} kJ", joules / 1e3);
-        }
-        if let Some(lost) = row.lost_percent {
-            words += &format!(", {lost:.0} % lost");
-        }
+        let energy =
+            energy.map_or_else(String::new, |joules| format!(" m, {:.0} kJ", joules / 1e3));
+        let lost = row.lost_percent.map_or_else(String::new, |lost| format!(", {lost:.0} % lost"));
+        let words = format!("{}{energy}{lost}", mean(row));
         if row.filter == "paper" {
             let z = row.published_z.map_or_else(String::new, |z| format!(", z = {z:.1}"));
             return format!("thesis' filter: {words}{z}");

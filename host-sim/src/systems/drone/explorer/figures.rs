@@ -6,6 +6,9 @@ use crate::explore::Answer;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::mean;
 
+/// A line over all steps: its name, its colour, and its value in a frame.
+type Line<'a> = (&'a str, Colour, &'a dyn Fn(&Frame) -> f64);
+
 /// A film, and which of its frames is looked at.
 pub(super) struct Film<'a> {
     /// All.
@@ -89,13 +92,13 @@ impl<'a> Film<'a> {
         &self,
         id: &str,
         (title, label): (&str, &str),
-        lines: [(&str, Colour, &dyn Fn(&Frame) -> f64); N],
+        lines: [Line<'_>; N],
     ) -> Figure {
         let values = |of: &dyn Fn(&Frame) -> f64| self.frames.iter().map(of).collect::<Vec<_>>();
         let all: Vec<_> =
             lines.into_iter().map(|(name, colour, of)| (name, colour, values(of))).collect();
         let highest = all.iter().flat_map(|(.., values)| values).copied().fold(0.0, f64::max);
-        let now = self.step(self.now);
+        let now = step(self.now);
         let figure =
             Figure::new(id, title).axes("step", label).caption("All steps; the line is now.");
         let lines = all.into_iter().map(|(name, colour, values)| {
@@ -126,12 +129,13 @@ impl<'a> Film<'a> {
     }
 
     fn steps(&self) -> Vec<f64> {
-        (0..self.frames.len()).map(|index| self.step(index)).collect()
+        (0..self.frames.len()).map(step).collect()
     }
+}
 
-    fn step(&self, index: usize) -> f64 {
-        index as f64 + 1.0
-    }
+/// Steps are counted from 1.
+fn step(index: usize) -> f64 {
+    index as f64 + 1.0
 }
 
 /// A single place with a word beside it.

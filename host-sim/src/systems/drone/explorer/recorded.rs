@@ -1,6 +1,7 @@
 //! A recorded flight.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::super::area::Area;
 use super::super::flight::{self, Flight};
@@ -15,6 +16,9 @@ use crate::explore::{Answer, Control, Explorer, Settings};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
 
+/// A flight as far as it is used, and where the user is after each measurement.
+type Found = (Survey, Vec<Estimate>);
+
 /// What was read, and what was last found in it.
 #[derive(Debug)]
 pub(super) struct Recorded {
@@ -22,7 +26,7 @@ pub(super) struct Recorded {
     flight: Flight,
     area: Option<Area>,
     truth: Option<[f64; 2]>,
-    last: Remembered<Option<EnvironmentKind>, (Survey, Vec<Estimate>)>,
+    last: Remembered<Option<EnvironmentKind>, Found>,
 }
 
 impl Recorded {
@@ -39,13 +43,19 @@ impl Recorded {
         let area = area.map(Area::read).transpose()?;
         let truth = truth.map(flight::read_truth).transpose()?;
         let recorded = Self { log, flight, area, truth, last: Remembered::default() };
-        // What is too short to be used is told now.
-        recorded.survey(None)?;
+        // What is asked for first; and what is too short to be used is told now.
+        recorded.found(None)?;
         Ok(recorded)
     }
 
-    fn survey(&self, environment: Option<EnvironmentKind>) -> Result<Survey, Error> {
-        Survey::new(&self.log, self.flight.clone(), self.truth, self.area.clone(), environment)
+    /// What is found after each measurement.
+    fn found(&self, environment: Option<EnvironmentKind>) -> Result<Arc<Found>, Error> {
+        self.last.of(environment, |&environment| {
+            let (flight, area) = (self.flight.clone(), self.area.clone());
+            let survey = Survey::new(&self.log, flight, self.truth, area, environment)?;
+            let estimates = survey.find(&survey.search(false).with_clouds());
+            if estimates.is_empty() { Err(survey.nowhere()) } else { Ok((survey, estimates)) }
+        })
     }
 }
 
@@ -62,11 +72,7 @@ impl Explorer for Recorded {
 
     fn answer(&self, settings: &Settings) -> Result<Answer, Error> {
         let built = settings.choice("environment") != "open";
-        let run = self.last.of(built.then(|| environment(settings)), |&environment| {
-            let survey = self.survey(environment)?;
-            let estimates = survey.find(&survey.search(false).with_clouds());
-            if estimates.is_empty() { Err(survey.nowhere()) } else { Ok((survey, estimates)) }
-        })?;
+        let run = self.found(built.then(|| environment(settings)))?;
         let (survey, estimates) = &*run;
         let mut answer = Answer { warnings: survey.warnings.clone(), ..Answer::default() };
         if estimates.len() < survey.flight.stops.len() {
