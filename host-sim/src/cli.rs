@@ -16,7 +16,7 @@ Examples:
   host-sim serve                                  turn thresholds and filters in the browser
   host-sim run pedestrian --trials 5 --mcap a.mcap
   host-sim replay pedestrian --log walk.txt --track path.csv
-  host-sim live pedestrian --udp 127.0.0.1:5775   follow a sensor that sends telemetry
+  host-sim live --system pedestrian               follow a sensor that sends telemetry
   host-sim completions bash > ~/.local/share/bash-completion/completions/host-sim
 
 Exit status: 0 if it was done, 2 if the command line or a file is not as it should be; then one sentence
