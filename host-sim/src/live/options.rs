@@ -52,7 +52,7 @@ pub struct Live {
     #[arg(long)]
     pub absolute: bool,
     /// Write everything that arrives to this new file, before it is looked at
-    /// [default: target/live/<date and time>.frames]
+    /// [default: target/live/DATE-TIME.frames]
     #[arg(long, value_name = "NEW.frames")]
     pub record: Option<PathBuf>,
     /// End after this many seconds
