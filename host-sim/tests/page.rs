@@ -153,11 +153,13 @@ fn the_report_opens_from_the_disk() {
     let address = format!("file://{folder}/index.html");
     for width in WIDTHS {
         let Some(page) = Page::open(&address, width) else { return };
-        page.wait_for("document.querySelectorAll('.main-svg').length > 0");
-        page.screenshot(&format!("report-robot-{width}.png"));
+        // On a page as high as its contents every figure comes into view.
+        let picture = format!("report-robot-{width}.png");
+        page.screenshot(&picture);
         page.wait_for(
             "[...document.querySelectorAll('[data-figure]')].every(f => f.querySelector('.main-svg'))",
         );
+        page.screenshot(&picture);
         let theme = "document.documentElement.dataset.theme";
         let before = page.evaluate(theme);
         page.evaluate("document.getElementById('theme').click()");

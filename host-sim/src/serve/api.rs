@@ -56,9 +56,8 @@ pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
             "bundled": source.bundled,
         })
     };
-    reply(
-        &json!({ "live": false, "sources": shared.sources.iter().map(source).collect::<Vec<_>>() }),
-    )
+    let sources: Vec<_> = shared.sources.iter().map(source).collect();
+    reply(&json!({ "live": shared.live.is_some(), "sources": sources }))
 }
 
 /// Opens a synthetic recording.
