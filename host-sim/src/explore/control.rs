@@ -59,9 +59,9 @@ pub struct Switch {
     pub value: bool,
 }
 
-impl Control {
-    /// A slider with equally long steps.
-    pub fn slider(
+impl Slider {
+    /// From the least to the greatest value in equally long steps.
+    const fn new(
         name: &'static str,
         label: &'static str,
         unit: &'static str,
@@ -69,31 +69,43 @@ impl Control {
         value: f64,
     ) -> Self {
         let (logarithmic, playable) = (false, false);
-        Self::Slider(Slider { name, label, unit, min, max, step, value, logarithmic, playable })
+        Self { name, label, unit, min, max, step, value, logarithmic, playable }
+    }
+}
+
+impl Control {
+    /// A slider with equally long steps.
+    pub const fn slider(
+        name: &'static str,
+        label: &'static str,
+        unit: &'static str,
+        range: [f64; 3],
+        value: f64,
+    ) -> Self {
+        Self::Slider(Slider::new(name, label, unit, range, value))
     }
 
     /// A slider with equally long decades, 40 steps each.
-    pub fn decades(
+    pub const fn decades(
         name: &'static str,
         label: &'static str,
         unit: &'static str,
         [min, max]: [f64; 2],
         value: f64,
     ) -> Self {
-        let (step, logarithmic, playable) = (0.025, true, false);
-        Self::Slider(Slider { name, label, unit, min, max, step, value, logarithmic, playable })
+        let slider = Slider::new(name, label, unit, [min, max, 0.025], value);
+        Self::Slider(Slider { logarithmic: true, ..slider })
     }
 
     /// A time or step that can be played like a film.
-    pub fn playable(
+    pub const fn playable(
         name: &'static str,
         label: &'static str,
         unit: &'static str,
-        [min, max, step]: [f64; 3],
+        range: [f64; 3],
         value: f64,
     ) -> Self {
-        let (logarithmic, playable) = (false, true);
-        Self::Slider(Slider { name, label, unit, min, max, step, value, logarithmic, playable })
+        Self::Slider(Slider { playable: true, ..Slider::new(name, label, unit, range, value) })
     }
 
     /// One of a few, each with its name and what people call it; the first at first.

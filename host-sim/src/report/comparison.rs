@@ -1,8 +1,12 @@
 use std::fmt;
 
+use comfy_table::ContentArrangement;
 use serde::Serialize;
 
 use crate::output;
+
+/// Columns of a terminal; what is longer is wrapped.
+const WIDTH: u16 = 120;
 
 /// A table of a paper: published, ours, limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,6 +64,7 @@ impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         let mut table = output::table();
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
         table.set_header(["", "published", "ours", "limit"]);
         let cell = |text: &str| if text.is_empty() { "—".to_owned() } else { text.to_owned() };
         for Row { quantity, published, ours, limit } in &self.rows {

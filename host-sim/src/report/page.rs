@@ -73,7 +73,7 @@ fn header(chapters: &[Chapter]) -> Markup {
             nav aria-label="systems" {
                 ul {
                     @for chapter in chapters {
-                        li { a href={ "#" (chapter.system) } { (chapter.system) ": " (chapter.title) } }
+                        li { a href={ "#" (chapter.system) } { (chapter.title) } }
                     }
                 }
             }

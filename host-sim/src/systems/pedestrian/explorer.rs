@@ -19,7 +19,7 @@ use crate::figure::{Colour, Figure};
 /// Where walks come from.
 pub const SOURCE: Source = Source {
     system: "pedestrian",
-    title: "Where a foot walked, from a foot-mounted IMU",
+    title: "where a foot walked, from a foot-mounted IMU",
     files: &[
         FileField {
             name: "log",

@@ -18,7 +18,7 @@ use crate::figure::{Colour, Mark};
 /// Where recordings come from.
 pub const SOURCE: Source = Source {
     system: "robot",
-    title: "Where a tag is, from ranges to ultra-wideband anchors",
+    title: "where a tag is, from ranges to ultra-wideband anchors",
     files: &[
         field("anchors", "Anchors: CSV anchor,x,y,z (m)", true),
         field(

@@ -15,7 +15,7 @@ use super::scenario::EnvironmentKind;
 /// Where flights come from.
 pub const SOURCE: Source = Source {
     system: "drone",
-    title: "Drone: where a user on the ground is, from path loss alone",
+    title: "where a user on the ground is, from path loss alone",
     files: &[
         FileField {
             name: "log",

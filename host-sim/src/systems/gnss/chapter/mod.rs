@@ -30,7 +30,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     items.push(one.item(days.trusted()));
     Ok(Chapter {
         system: "gnss",
-        title: "A GNSS receiver, positioned precisely",
+        title: "GNSS: a receiver, positioned precisely",
         paper: "Bahadur and Nohutcu 2020: robust Kalman filters for precise point positioning (in Turkish)",
         about: "The paper's hundred station-days are real; it names four of the ten stations, and of none what was \
                 wrong with its observations. These are synthetic ones with faults that are known, so that the order \

@@ -67,7 +67,7 @@ pub(super) fn without_faults(report: &Report) -> Comparison {
 pub(super) fn summary(report: &Report) -> Comparison {
     let mut table = Comparison::new(
         "gnss-summary",
-        format!("gnss: RMS 3-D after the first hour, {} station-days with faults", report.trials),
+        format!("GNSS: RMS 3-D after the first hour, {} station-days with faults", report.trials),
     );
     let wanted =
         [FilterKind::Ikf, FilterKind::Adaptive, FilterKind::Default].map(FilterKind::title);

@@ -39,7 +39,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     items.push(compared.item(own::methods(report)?));
     Ok(Chapter {
         system: "pedestrian",
-        title: "A foot-mounted IMU with zero-velocity updates",
+        title: "Pedestrian: a foot-mounted IMU with zero-velocity updates",
         paper: "Aydın and Erken, JESD, doi:10.21923/jesd.450256",
         about: "The paper's walks are not published: ours are synthetic walks of a route as long, logged by a \
                 simulated Razor in the paper's text format. Taken literally, the paper's stance detector fires \
@@ -57,7 +57,7 @@ fn summary(report: &Report) -> Comparison {
     let mut summary = Comparison::new(
         "pedestrian",
         format!(
-            "pedestrian: length of the path, {} × {WALKS} synthetic walks of 12.60 m",
+            "Pedestrian: length of the path, {} × {WALKS} synthetic walks of 12.60 m",
             report.trials
         ),
     );

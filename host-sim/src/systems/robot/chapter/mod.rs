@@ -47,7 +47,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     items.push(one.item(tables::round(&round)));
     Ok(Chapter {
         system: "robot",
-        title: "A robot among ultra-wideband anchors",
+        title: "Robot: ranges to ultra-wideband anchors",
         paper: "Ultra-wideband ranging and an IMU on an ESP32 (in Turkish)",
         about: "The paper's recordings are not published: ours are days in an office of the same layout, whose \
                 biases and noise are those of 90 recorded points. A standing tag's error is a bias of each link, \
@@ -64,7 +64,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
 fn summary(report: &Report) -> Comparison {
     let starts = tables::starts(report);
     let title = format!(
-        "robot: error of the mean of 50 positions, mean of 15 points, {} days",
+        "Robot: error of the mean of 50 positions, mean of 15 points, {} days",
         report.trials
     );
     Comparison { id: "robot".to_owned(), title, note: String::new(), ..starts }

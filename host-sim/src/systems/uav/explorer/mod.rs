@@ -14,7 +14,7 @@ use crate::explore::{Explorer, FileField, Files, Source};
 /// Where flights come from.
 pub const SOURCE: Source = Source {
     system: "uav",
-    title: "UAV: longitudinal states by a Kalman filter and a Luenberger observer",
+    title: "longitudinal states by a Kalman filter and a Luenberger observer",
     files: &[
         FileField {
             name: "log",
