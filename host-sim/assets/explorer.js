@@ -14,7 +14,6 @@
   // --- what comes back
 
   function show(answer) {
-    element("alert").textContent = "";
     element("facts").replaceChildren(...answer.facts.map(([name, value]) =>
       make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
     element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
@@ -48,10 +47,15 @@
   }
 
   async function post(path, body) {
-    const response = await fetch(path, { method: "POST", body }).catch(() => null);
-    if (!response) return complain("the program no longer answers: is it still running?");
-    if (!response.ok) return complain(await response.text());
-    return response.json();
+    try {
+      const response = await fetch(path, { method: "POST", body });
+      if (response.ok) return await response.json();
+      complain(await response.text());
+      // Others were opened since, or the program began anew.
+      if (response.status === 410 && element("bundled").value) choose();
+    } catch {
+      complain("the program no longer answers: is it still running?");
+    }
   }
 
   // --- one request at a time; what happens meanwhile is asked for afterwards
@@ -60,17 +64,22 @@
   async function ask() {
     if (session === null) return;
     if (asking) { again = true; return; }
+    complain("");
     asking = true;
     document.body.dataset.asking = "yes";
-    const began = performance.now();
-    const answer = await post(`api/answer/${session}`, JSON.stringify({ settings, windows }));
-    if (answer) {
-      show(answer);
-      document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
-      document.body.dataset.answers = String(Number(document.body.dataset.answers ?? 0) + 1);
+    const [began, asked] = [performance.now(), session];
+    try {
+      const answer = await post(`api/answer/${session}`, JSON.stringify({ settings, windows }));
+      // What was opened meanwhile has an answer of its own.
+      if (answer && asked === session) {
+        show(answer);
+        document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
+        document.body.dataset.answers = String(Number(document.body.dataset.answers ?? 0) + 1);
+      }
+    } finally {
+      asking = false;
+      delete document.body.dataset.asking;
     }
-    asking = false;
-    delete document.body.dataset.asking;
     if (again) { again = false; ask(); }
   }
 
@@ -108,11 +117,16 @@
     button.addEventListener("click", () => {
       if (timer) { clearInterval(timer); timer = null; button.textContent = "play"; return; }
       button.textContent = "pause";
-      if (range.value === range.max) range.value = range.min;
-      timer = setInterval(() => {
-        if (!range.isConnected || range.value === range.max) { button.click(); return; }
-        if (asking) return;
+      // The last step may end below the maximum: the end is where nothing moves any more.
+      const step = () => {
+        const before = range.value;
         range.stepUp();
+        return range.value !== before;
+      };
+      if (!step()) range.value = range.min;
+      timer = setInterval(() => {
+        if (asking && range.isConnected) return;
+        if (!range.isConnected || !step()) { button.click(); return; }
         range.dispatchEvent(new Event("input"));
       }, 120);
     });
@@ -163,7 +177,19 @@
   async function choose() {
     const own = element("bundled").value === "";
     element("files").hidden = element("upload").hidden = !own;
-    if (!own) opened(await post(`api/open/${system().system}/${element("bundled").value}`));
+    if (!own) await open(`api/open/${system().system}/${element("bundled").value}`);
+  }
+
+  // The last that was asked for is opened, however long another takes.
+  let openings = 0;
+  async function open(path, body) {
+    const opening = ++openings;
+    complain("");
+    element("warnings").replaceChildren(make("li", { textContent: "reading …" }));
+    const reply = await post(path, body);
+    if (opening !== openings) return;
+    if (!reply) element("warnings").replaceChildren();
+    opened(reply);
   }
 
   element("system").addEventListener("input", offer);
@@ -173,12 +199,14 @@
     event.preventDefault();
     const files = new FormData(element("open"));
     for (const [name, file] of [...files]) if (!file.size && !file.name) files.delete(name);
-    opened(await post(`api/open/${system().system}`, files));
+    open(`api/open/${system().system}`, files);
   });
 
   function live() {
     const socket = new WebSocket(`ws://${location.host}/live`);
     document.querySelector(".controls").hidden = true;
+    // Five times a second would be too much to be read out.
+    element("facts").ariaLive = "off";
     document.querySelector(".explorer").style.gridTemplateColumns = "minmax(0, 1fr)";
     socket.addEventListener("message", ({ data }) => { show(JSON.parse(data)); socket.send("next"); });
     socket.addEventListener("close", () => complain("the stream has ended"));
@@ -192,5 +220,11 @@
     const wanted = location.hash.slice(1);
     if (sources.some((source) => source.system === wanted)) element("system").value = wanted;
     offer();
-  });
+    addEventListener("hashchange", () => {
+      const wanted = location.hash.slice(1);
+      if (wanted === element("system").value || !sources.some((source) => source.system === wanted)) return;
+      element("system").value = wanted;
+      offer();
+    });
+  }).catch(() => complain("the program does not answer: is it still running?"));
 }

@@ -54,6 +54,8 @@ const Figures = (() => {
 
   // + and − zoom, arrows move, 0 shows everything.
   function keys(event, plot) {
+    // The browser's own keys stay its own.
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
     const { xaxis, yaxis } = plot._fullLayout;
     const change = (by, move) => {
       const update = {};

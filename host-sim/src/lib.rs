@@ -27,3 +27,7 @@ pub mod table;
 pub mod text;
 
 pub use error::Error;
+
+/// Stack of a thread that estimates: a filter of thousands of particles is moved about a few times before it
+/// lies on the heap.
+pub const STACK_BYTES: usize = 16 << 20;

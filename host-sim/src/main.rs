@@ -14,11 +14,10 @@ const REFUSED: u8 = 2;
 /// Where the report goes, from the folder in which the program is started.
 const REPORT: &str = "target/report";
 
-/// A filter of thousands of particles is moved about a few times before it lies on the heap.
-const STACK_BYTES: usize = 16 << 20;
-
 fn main() -> ExitCode {
-    if let Err(error) = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build_global() {
+    if let Err(error) =
+        rayon::ThreadPoolBuilder::new().stack_size(host_sim::STACK_BYTES).build_global()
+    {
         return refuse(&format!("no threads: {error}"));
     }
     let cli = match Cli::try_parse() {

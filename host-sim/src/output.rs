@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::{self, Path, PathBuf};
 use std::process;
 use std::sync::Once;
 use std::time::{Duration, Instant};
@@ -112,6 +112,22 @@ impl Drop for LateProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
+}
+
+/// Refuses to write two results to one file: `outputs` are options and their files.
+///
+/// # Errors
+/// [`Error::Usage`].
+pub fn refuse_twice(outputs: &[(&str, Option<&Path>)]) -> Result<(), Error> {
+    let mut known: Vec<(&str, PathBuf)> = Vec::new();
+    for &(option, path) in outputs {
+        let Some(path) = path.and_then(|path| path::absolute(path).ok()) else { continue };
+        if let Some((other, _)) = known.iter().find(|(_, taken)| *taken == path) {
+            return Err(Error::Usage(format!("{other} and {option} name the same file")));
+        }
+        known.push((option, path));
+    }
+    Ok(())
 }
 
 /// Refuses to write to a file that is an input as well.

@@ -29,6 +29,14 @@ impl Outputs {
         self.csv.is_some() || self.mcap.is_some() || self.report.is_some()
     }
 
+    /// Refuses options that contradict each other.
+    ///
+    /// # Errors
+    /// [`Error::Usage`].
+    pub fn check(&self) -> Result<(), Error> {
+        output::refuse_twice(&[("--csv", self.csv.as_deref()), ("--mcap", self.mcap.as_deref())])
+    }
+
     /// Writes the files that were asked for.
     ///
     /// # Errors

@@ -9,7 +9,11 @@ use super::{Axis, Colour, Figure, Mark, Series, View, thin};
 /// Colours of paper, text and grid are left to the page, which knows whether it is dark.
 pub fn figure(figure: &Figure, view: View) -> Value {
     // A map's points are in the order of time, not from left to right.
-    let view = if figure.equal { View { window: None, ..view } } else { view };
+    let window = view.window.filter(|_| !figure.equal);
+    // Of a logarithmic axis the page knows the exponents.
+    let window =
+        if figure.x.logarithmic { window.map(|ends| ends.map(|e| 10_f64.powf(e))) } else { window };
+    let view = View { window, ..view };
     let data: Vec<_> = figure.series.iter().map(|series| trace(series, view)).collect();
     let mut y = axis(&figure.y);
     if figure.equal {
@@ -137,6 +141,16 @@ mod tests {
         assert_eq!(drawn["data"][1]["text"], json!(["A1"]));
         assert_eq!(drawn["data"][1]["visible"], "legendonly");
         assert_eq!(drawn["layout"]["yaxis"]["scaleanchor"], "x");
+    }
+
+    #[test]
+    fn the_window_of_a_logarithmic_axis_is_in_exponents() {
+        let x: Vec<f64> = (0..100).map(|i| 10_f64.powf(0.1 * f64::from(i) - 5.0)).collect();
+        let mut drawn = Figure::new("f", "F").with(Series::line("ours", x.clone(), x));
+        drawn.x.logarithmic = true;
+        let data = figure(&drawn, View { most_points: 1000, window: Some([-2.0, -1.0]) });
+        let shown = data["data"][0]["x"].as_array().unwrap();
+        assert!((10..20).contains(&shown.len()), "{}", shown.len());
     }
 
     #[test]

@@ -42,9 +42,6 @@ use crate::Error;
 use crate::explore::Answer;
 use crate::text::printable_path;
 
-/// Filters are moved about on the stack before they lie on the heap.
-const STACK_BYTES: usize = 8 << 20;
-
 /// A stream that is being recorded and followed.
 #[derive(Debug)]
 pub struct Live {
@@ -212,6 +209,6 @@ impl Drop for Live {
 fn thread<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<JoinHandle<T>, Error> {
-    let spawned = thread::Builder::new().stack_size(STACK_BYTES).spawn(work);
+    let spawned = thread::Builder::new().stack_size(crate::STACK_BYTES).spawn(work);
     spawned.map_err(|error| Error::Usage(format!("no thread: {error}")))
 }

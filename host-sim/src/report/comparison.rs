@@ -34,6 +34,14 @@ pub struct Row {
     pub limit: String,
 }
 
+impl Row {
+    /// As it is shown: a dash for what is unknown.
+    pub fn cells(&self) -> [&str; 4] {
+        let Self { quantity, published, ours, limit } = self;
+        [quantity, published, ours, limit].map(|text| if text.is_empty() { "—" } else { text })
+    }
+}
+
 impl Comparison {
     /// A table without rows.
     pub fn new(id: impl Into<String>, title: impl Into<String>) -> Self {
@@ -66,9 +74,8 @@ impl fmt::Display for Comparison {
         let mut table = output::table();
         table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
         table.set_header(["", "published", "ours", "limit"]);
-        let cell = |text: &str| if text.is_empty() { "—".to_owned() } else { text.to_owned() };
-        for Row { quantity, published, ours, limit } in &self.rows {
-            table.add_row([quantity.clone(), cell(published), cell(ours), cell(limit)]);
+        for row in &self.rows {
+            table.add_row(row.cells());
         }
         write!(f, "{table}")?;
         if self.note.is_empty() { Ok(()) } else { write!(f, "\n{}", self.note) }

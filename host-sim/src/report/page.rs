@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
-use super::{Chapter, Comparison, Content, Item};
+use super::{Chapter, Comparison, Content, Item, Row};
 use crate::figure::{View, plotly};
 
 const STYLE: &str = include_str!("../../assets/page.css");
@@ -110,20 +110,14 @@ fn shown(item: &Item) -> Markup {
 }
 
 fn table(comparison: &Comparison) -> Markup {
-    let cell = |text: &str| if text.is_empty() { "—".to_owned() } else { text.to_owned() };
     html! {
         div.scroll id=(comparison.id) tabindex="0" role="region" aria-label=(comparison.title) {
             table {
                 caption { (comparison.title) }
                 thead { tr { th scope="col" {} th scope="col" { "published" } th scope="col" { "ours" } th scope="col" { "limit" } } }
                 tbody {
-                    @for row in &comparison.rows {
-                        tr {
-                            th scope="row" { (row.quantity) }
-                            td { (cell(&row.published)) }
-                            td { (cell(&row.ours)) }
-                            td { (cell(&row.limit)) }
-                        }
+                    @for [quantity, published, ours, limit] in comparison.rows.iter().map(Row::cells) {
+                        tr { th scope="row" { (quantity) } td { (published) } td { (ours) } td { (limit) } }
                     }
                 }
             }

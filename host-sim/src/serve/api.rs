@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use axum::extract::{Multipart, Path as InPath, State};
@@ -14,6 +14,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::Shared;
+use super::sessions::Recording;
 use crate::Error;
 use crate::explore::{Answer, Explorer, Files, Settings, Source};
 use crate::figure::{View, plotly};
@@ -67,7 +68,7 @@ pub(super) async fn open_bundled(
 ) -> Result<Response, Refusal> {
     let source = find(&shared, &system)?;
     let opened = beside(move || (source.open_bundled)(&recording)).await?;
-    Ok(keep(&shared, opened))
+    Ok(keep(&shared, opened, None))
 }
 
 /// Opens files that the page uploads.
@@ -94,10 +95,11 @@ pub(super) async fn open_files(
         fs::write(&path, bytes).map_err(Refusal::of)?;
         files.add(field, path);
     }
+    let place = folder.path().to_path_buf();
     let opened = beside(move || {
         (source.open)(&files).map_err(|error| error.naming_files_below(folder.path()))
     });
-    Ok(keep(&shared, opened.await?))
+    Ok(keep(&shared, opened.await?, Some(place)))
 }
 
 /// How the page stands.
@@ -116,12 +118,18 @@ pub(super) async fn answer(
     body: String,
 ) -> Result<Response, Refusal> {
     let Some(recording) = shared.sessions.get(session) else {
-        return Err(Refusal::of("this recording is no longer open: choose it again"));
+        let sentence = "this recording is no longer open: open it again".to_owned();
+        return Err(Refusal(StatusCode::GONE, sentence));
     };
     let question: Question = serde_json::from_str(&body).map_err(Refusal::of)?;
     let answer = beside(move || {
-        let settings = Settings::sent(&recording.controls(), &question.settings)?;
-        recording.answer(&settings).map(|answer| page(&answer, &question.windows))
+        let Recording { explorer, folder } = recording;
+        let settings = Settings::sent(&explorer.controls(), &question.settings)?;
+        let answer = explorer.answer(&settings).map_err(|error| match &folder {
+            Some(folder) => error.naming_files_below(folder),
+            None => error,
+        })?;
+        Ok(page(&answer, &question.windows))
     });
     Ok(reply(&answer.await?))
 }
@@ -144,9 +152,9 @@ fn find(shared: &Shared, system: &str) -> Result<&'static Source, Refusal> {
     found.ok_or_else(|| Refusal::of(format!("there is no system {system:?}")))
 }
 
-fn keep(shared: &Shared, opened: Box<dyn Explorer>) -> Response {
+fn keep(shared: &Shared, opened: Box<dyn Explorer>, folder: Option<PathBuf>) -> Response {
     let controls = opened.controls();
-    let session = shared.sessions.add(Arc::from(opened));
+    let session = shared.sessions.add(Recording { explorer: Arc::from(opened), folder });
     reply(&json!({ "session": session, "controls": controls }))
 }
 

@@ -34,5 +34,8 @@ pub(super) async fn only_this_machine(
 fn is_ours(request: &Request, header: HeaderName, address: SocketAddr) -> bool {
     let Some(value) = request.headers().get(header) else { return true };
     let name = value.to_str().unwrap_or_default().trim_start_matches("http://");
-    name == address.to_string() || name == format!("localhost:{}", address.port())
+    // On port 80 browsers leave it out.
+    let bare =
+        address.port() == 80 && [address.ip().to_string().as_str(), "localhost"].contains(&name);
+    bare || name == address.to_string() || name == format!("localhost:{}", address.port())
 }

@@ -26,9 +26,6 @@ use sessions::Sessions;
 pub const PORT: u16 = 8017;
 /// A day of satellites is some tens of megabytes.
 const LARGEST_UPLOAD: usize = 512 << 20;
-/// As the program's own threads: a filter of thousands of particles is moved about before it lies on the heap.
-const STACK_BYTES: usize = 16 << 20;
-
 /// Options of the command.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Serve {
@@ -44,7 +41,8 @@ impl Serve {
     /// [`Error::Usage`] if the port cannot be had.
     pub fn run(self, sources: &'static [Source]) -> Result<(), Error> {
         let shared = Arc::new(Shared { sources, sessions: Sessions::default(), live: None });
-        runtime()?.block_on(async {
+        let runtime = runtime()?;
+        let ended = runtime.block_on(async {
             let (listener, address) = bind(self.port).await?;
             output::print(&format!("http://{address}/  (Ctrl-C ends)"))?;
             let serving = axum::serve(listener, router(shared, address));
@@ -57,7 +55,10 @@ impl Serve {
                     .map_err(|error| Error::Usage(format!("the page cannot be served any longer: {error}"))),
                 () = interrupted => Ok(()),
             }
-        })
+        });
+        // Nobody waits for what is still being computed.
+        runtime.shutdown_background();
+        ended
     }
 }
 
@@ -105,7 +106,7 @@ struct Shared {
 fn runtime() -> Result<Runtime, Error> {
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()
-        .thread_stack_size(STACK_BYTES)
+        .thread_stack_size(crate::STACK_BYTES)
         .build()
         .map_err(|error| Error::Usage(format!("no threads: {error}")))
 }

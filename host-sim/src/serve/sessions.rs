@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::fmt;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::explore::Explorer;
@@ -16,12 +17,20 @@ pub(super) struct Sessions(Mutex<Open>);
 #[derive(Default)]
 struct Open {
     next: u64,
-    recordings: VecDeque<(u64, Arc<dyn Explorer>)>,
+    recordings: VecDeque<(u64, Recording)>,
+}
+
+/// A recording that is open.
+#[derive(Clone)]
+pub(super) struct Recording {
+    pub(super) explorer: Arc<dyn Explorer>,
+    /// Where its files lay while they were read: no business of the page's.
+    pub(super) folder: Option<PathBuf>,
 }
 
 impl Sessions {
     /// Keeps a recording, closes the oldest if there are too many, and says by which number to ask for it.
-    pub(super) fn add(&self, recording: Arc<dyn Explorer>) -> u64 {
+    pub(super) fn add(&self, recording: Recording) -> u64 {
         let mut open = self.lock();
         let number = open.next;
         open.next += 1;
@@ -33,10 +42,10 @@ impl Sessions {
     }
 
     /// The recording of that number, if it is still open.
-    pub(super) fn get(&self, number: u64) -> Option<Arc<dyn Explorer>> {
+    pub(super) fn get(&self, number: u64) -> Option<Recording> {
         let open = self.lock();
         let found = open.recordings.iter().find(|(known, _)| *known == number);
-        found.map(|(_, recording)| Arc::clone(recording))
+        found.map(|(_, recording)| recording.clone())
     }
 
     fn lock(&self) -> MutexGuard<'_, Open> {

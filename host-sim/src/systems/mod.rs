@@ -46,7 +46,7 @@ pub static SOURCES: [Source; 5] = [
 /// # Errors
 /// Whatever keeps the experiment from running or its report from being printed or written.
 pub fn run_pedestrian(run: &PlainRun) -> Result<(), Error> {
-    deliver(&pedestrian::experiment::run(run.options)?, pedestrian::chapter::chapter, &run.outputs)
+    deliver(|| pedestrian::experiment::run(run.options), pedestrian::chapter::chapter, &run.outputs)
 }
 
 /// Runs the robot's experiment and prints its report.
@@ -54,7 +54,7 @@ pub fn run_pedestrian(run: &PlainRun) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_robot(run: &PlainRun) -> Result<(), Error> {
-    deliver(&robot::experiment::run(run.options)?, robot::chapter::chapter, &run.outputs)
+    deliver(|| robot::experiment::run(run.options), robot::chapter::chapter, &run.outputs)
 }
 
 /// Runs the drone's experiments, or one cell of them, and prints the report.
@@ -62,7 +62,7 @@ pub fn run_robot(run: &PlainRun) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_drone(run: &drone::options::Run) -> Result<(), Error> {
-    deliver(&drone::experiment::run(run)?, drone::chapter::chapter, &run.outputs)
+    deliver(|| drone::experiment::run(run), drone::chapter::chapter, &run.outputs)
 }
 
 /// Runs the UAV's experiments and prints the report.
@@ -70,7 +70,7 @@ pub fn run_drone(run: &drone::options::Run) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_uav(run: &PlainRun) -> Result<(), Error> {
-    deliver(&uav::experiment::run(run.options)?, uav::chapter::chapter, &run.outputs)
+    deliver(|| uav::experiment::run(run.options), uav::chapter::chapter, &run.outputs)
 }
 
 /// Runs the GNSS receiver's experiment and prints its report.
@@ -78,19 +78,21 @@ pub fn run_uav(run: &PlainRun) -> Result<(), Error> {
 /// # Errors
 /// As [`run_pedestrian`].
 pub fn run_gnss(run: &PlainRun) -> Result<(), Error> {
-    deliver(&gnss::experiment::run(run.options)?, gnss::chapter::chapter, &run.outputs)
+    deliver(|| gnss::experiment::run(run.options), gnss::chapter::chapter, &run.outputs)
 }
 
-/// Writes what was asked for, and prints the rest.
+/// Runs an experiment, writes what was asked for, and prints the rest.
 fn deliver<R: Serialize + Display>(
-    report: &R,
+    run: impl FnOnce() -> Result<R, Error>,
     chapter: impl FnOnce(&R) -> Result<Chapter, Error>,
     outputs: &Outputs,
 ) -> Result<(), Error> {
+    outputs.check()?;
+    let report = run()?;
     if outputs.any_file() {
-        outputs.write(chapter(report)?)?;
+        outputs.write(chapter(&report)?)?;
     }
-    output::show(report, outputs.json)
+    output::show(&report, outputs.json)
 }
 
 /// Runs every system on its synthetic streams, prints the few numbers that matter most, and writes the

@@ -62,6 +62,10 @@ impl Replay {
     pub fn report(&self) -> Result<Report, Error> {
         let inputs =
             || [Some(&self.log), self.truth.as_ref(), self.area.as_ref()].into_iter().flatten();
+        output::refuse_twice(&[
+            ("--track", self.track.as_deref()),
+            ("--mcap", self.mcap.as_deref()),
+        ])?;
         output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
         output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
         let survey =

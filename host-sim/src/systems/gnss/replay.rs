@@ -158,15 +158,11 @@ impl Replay {
             let several = self.sp3.iter().chain(&self.clk);
             several.chain([&self.obs, &self.antex]).chain(&self.blq)
         };
-        let outputs: Vec<_> = self.outputs().collect();
-        for (place, (option, path)) in outputs.iter().enumerate() {
-            output::refuse_overwriting(option, Some(path), inputs())?;
-            let same = outputs[..place].iter().find(|(_, earlier)| earlier == path);
-            if let Some((earlier, _)) = same {
-                return Err(Error::Usage(format!("{earlier} and {option} name the same file")));
-            }
-        }
-        Ok(())
+        let outputs: Vec<_> = self.outputs().map(|(option, path)| (option, Some(path))).collect();
+        output::refuse_twice(&outputs)?;
+        outputs
+            .into_iter()
+            .try_for_each(|(option, path)| output::refuse_overwriting(option, path, inputs()))
     }
 
     /// The options that name files to write, with the files.

@@ -23,7 +23,7 @@ pub const SOURCE: Source = Source {
     files: &[
         FileField {
             name: "log",
-            label: "Recorded walk: CSV t,ax,ay,az,gx,gy,gz (s, m/s², rad/s), or Razor text (ms, 3 × g, 3 × °/s)",
+            label: "Recorded walk: CSV t,ax,ay,az,gx,gy,gz (s, m/s², rad/s), or Razor text separated by blanks (ms, 3 × g, 3 × °/s)",
             required: true,
             several: false,
         },

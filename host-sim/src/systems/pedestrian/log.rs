@@ -86,6 +86,11 @@ pub fn parse(file: &TextFile) -> Result<Log, Error> {
 }
 
 fn parse_csv<'a>(file: &'a TextFile, first: Line<'a>) -> Result<Log, Error> {
+    if first.starts_with_number() {
+        return Err(first.error(
+            "expected a header with a column t, or Razor text separated by blanks, found neither",
+        ));
+    }
     let header = Header::new(first);
     let columns = header.require(CSV_COLUMNS)?;
     let has_truth = TRUTH_COLUMNS.iter().any(|name| header.find(name).is_some());

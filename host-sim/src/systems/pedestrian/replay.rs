@@ -76,6 +76,10 @@ impl Replay {
     fn report(&self) -> Result<Report, Error> {
         let options = self.options()?;
         let inputs = || [Some(&self.log), self.truth.as_ref()].into_iter().flatten();
+        output::refuse_twice(&[
+            ("--track", self.track.as_deref()),
+            ("--mcap", self.mcap.as_deref()),
+        ])?;
         output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
         output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
         let recorded = Recording::read(&self.log, self.truth.as_deref())?;

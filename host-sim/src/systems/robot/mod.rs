@@ -39,6 +39,8 @@ robot       where a tag is, from ranges to ultra-wideband anchors, with or witho
   log       CSV with columns t,anchor,range in s and m, of a moving tag
   log       CSV with columns point,k,anchor,range in m, of a tag put down, epochs k 0.1 s apart
   anchors   CSV with columns anchor,x,y,z in m
-  truth     CSV with columns t,x,y,z or point,x,y,z in s and m
+  truth     CSV with columns t,x,y in s and m (z is not compared)
+  points    CSV with columns point,x,y,z in m
+  biases    CSV with columns anchor,bias in m (--calibration), as `calibrate robot` writes it
   imu       CSV with t and any of qw,qx,qy,qz gx,gy,gz ax,ay,az lax,lay,laz in SI
   odom      CSV with columns t,v_left,v_right,track in s, m/s and m";

@@ -68,12 +68,10 @@ const BUNDLED_S: f64 = 8.0 * 3600.0;
 
 fn open(files: &Files) -> Result<Box<dyn Explorer>, Error> {
     let log = files.required("obs")?;
+    files.required("sp3")?;
     let all = recording::Files {
         observations: log,
-        orbits: match files.all("sp3") {
-            [] => return Err(Error::Usage("a file is needed: sp3".to_owned())),
-            orbits => orbits,
-        },
+        orbits: files.all("sp3"),
         clocks: files.all("clk"),
         antennas: files.required("antex")?,
         ocean_loading: files.one("blq"),

@@ -52,7 +52,8 @@ impl Recorded {
             Some(model) => model.clone(),
             None => Model::read(Path::new(settings.choice("plant")))?,
         };
-        let absolute = settings.is_on("absolute");
+        // A switch for another aircraft: one without a trim has deviations alone.
+        let absolute = settings.is_on("absolute") && model.trim.is_some();
         Recording::new(model, self.flight.clone(), self.truth.clone(), absolute)
     }
 }
