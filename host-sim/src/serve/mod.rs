@@ -26,6 +26,7 @@ use sessions::Sessions;
 pub const PORT: u16 = 8017;
 /// A day of satellites is some tens of megabytes.
 const LARGEST_UPLOAD: usize = 512 << 20;
+
 /// Options of the command.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Serve {

@@ -52,8 +52,7 @@ impl Recorded {
             Some(model) => model.clone(),
             None => Model::read(Path::new(settings.choice("plant")))?,
         };
-        // A switch for another aircraft: one without a trim has deviations alone.
-        let absolute = settings.is_on("absolute") && model.trim.is_some();
+        let absolute = settings.is_on("absolute");
         Recording::new(model, self.flight.clone(), self.truth.clone(), absolute)
     }
 }
