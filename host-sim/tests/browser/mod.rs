@@ -73,7 +73,12 @@ impl Page {
         .expect("a listener");
         let page = Self { tab, noted, width, _browser: browser };
         page.size(900);
-        page.tab.navigate_to(address).and_then(Tab::wait_until_navigated).expect("the page loads");
+        page.tab.navigate_to(address).expect("an address");
+        // The tab's own waiting misses a page that is there at once.
+        let place = address.split('#').next().expect("the address");
+        page.wait_for(&format!(
+            "location.href.startsWith('{place}') && document.readyState === 'complete'"
+        ));
         Some(page)
     }
 
@@ -107,7 +112,12 @@ impl Page {
     /// Waits until a piece of JavaScript is true.
     pub(crate) fn wait_for(&self, script: &str) {
         let begun = Instant::now();
-        while self.evaluate(script) != Value::Bool(true) {
+        // There is nobody to ask while one page gives way to the next.
+        let came_true = || {
+            let result = self.tab.evaluate(script, true);
+            result.is_ok_and(|result| result.value == Some(Value::Bool(true)))
+        };
+        while !came_true() {
             let complaints = self.complaints();
             assert!(begun.elapsed() < PATIENCE, "{script} never came true: {complaints:?}");
             std::thread::sleep(Duration::from_millis(20));
