@@ -114,6 +114,18 @@ impl Drop for LateProgress {
     }
 }
 
+/// Refuses outputs, which are options and their files, if two are one file, or one is an input as well.
+///
+/// # Errors
+/// [`Error::Usage`].
+pub fn refuse_clashes<'a>(
+    outputs: &[(&str, Option<&Path>)],
+    inputs: &(impl IntoIterator<Item = &'a PathBuf> + Clone),
+) -> Result<(), Error> {
+    refuse_twice(outputs)?;
+    outputs.iter().try_for_each(|&(option, path)| refuse_overwriting(option, path, inputs.clone()))
+}
+
 /// Refuses to write two results to one file: `outputs` are options and their files.
 ///
 /// # Errors

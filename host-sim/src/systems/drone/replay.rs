@@ -61,13 +61,9 @@ impl Replay {
     /// As there.
     pub fn report(&self) -> Result<Report, Error> {
         let inputs =
-            || [Some(&self.log), self.truth.as_ref(), self.area.as_ref()].into_iter().flatten();
-        output::refuse_twice(&[
-            ("--track", self.track.as_deref()),
-            ("--mcap", self.mcap.as_deref()),
-        ])?;
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
-        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
+            [Some(&self.log), self.truth.as_ref(), self.area.as_ref()].into_iter().flatten();
+        let outputs = [("--track", self.track.as_deref()), ("--mcap", self.mcap.as_deref())];
+        output::refuse_clashes(&outputs, &inputs)?;
         let survey =
             Survey::read(&self.log, self.truth.as_deref(), self.area.as_deref(), self.environment)?;
         // What comes in between takes as long as the end, each time.

@@ -154,15 +154,10 @@ impl Replay {
     }
 
     fn refuse_overwriting_input(&self) -> Result<(), Error> {
-        let inputs = || {
-            let several = self.sp3.iter().chain(&self.clk);
-            several.chain([&self.obs, &self.antex]).chain(&self.blq)
-        };
+        let several = self.sp3.iter().chain(&self.clk);
+        let inputs = several.chain([&self.obs, &self.antex]).chain(&self.blq);
         let outputs: Vec<_> = self.outputs().map(|(option, path)| (option, Some(path))).collect();
-        output::refuse_twice(&outputs)?;
-        outputs
-            .into_iter()
-            .try_for_each(|(option, path)| output::refuse_overwriting(option, path, inputs()))
+        output::refuse_clashes(&outputs, &inputs)
     }
 
     /// The options that name files to write, with the files.

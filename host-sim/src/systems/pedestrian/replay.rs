@@ -75,13 +75,9 @@ impl Replay {
 
     fn report(&self) -> Result<Report, Error> {
         let options = self.options()?;
-        let inputs = || [Some(&self.log), self.truth.as_ref()].into_iter().flatten();
-        output::refuse_twice(&[
-            ("--track", self.track.as_deref()),
-            ("--mcap", self.mcap.as_deref()),
-        ])?;
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
-        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
+        let inputs = [Some(&self.log), self.truth.as_ref()].into_iter().flatten();
+        let outputs = [("--track", self.track.as_deref()), ("--mcap", self.mcap.as_deref())];
+        output::refuse_clashes(&outputs, &inputs)?;
         let recorded = Recording::read(&self.log, self.truth.as_deref())?;
         let recording = match self.rate {
             Some(rate_hz) => recorded.at_rate(rate_hz)?,

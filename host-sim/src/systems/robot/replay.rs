@@ -160,13 +160,9 @@ impl Replay {
             self.calibration.as_ref(),
             height.as_ref(),
         ];
-        let inputs = || inputs.iter().copied().flatten();
-        output::refuse_twice(&[
-            ("--track", self.track.as_deref()),
-            ("--mcap", self.mcap.as_deref()),
-        ])?;
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
-        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())
+        let inputs = inputs.iter().copied().flatten();
+        let outputs = [("--track", self.track.as_deref()), ("--mcap", self.mcap.as_deref())];
+        output::refuse_clashes(&outputs, &inputs)
     }
 }
 

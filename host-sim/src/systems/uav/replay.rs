@@ -70,13 +70,9 @@ impl Replay {
     /// As there.
     pub fn report(&self) -> Result<Report, Error> {
         let inputs =
-            || [Some(&self.log), Some(&self.model), self.truth.as_ref()].into_iter().flatten();
-        output::refuse_twice(&[
-            ("--track", self.track.as_deref()),
-            ("--mcap", self.mcap.as_deref()),
-        ])?;
-        output::refuse_overwriting("--track", self.track.as_deref(), inputs())?;
-        output::refuse_overwriting("--mcap", self.mcap.as_deref(), inputs())?;
+            [Some(&self.log), Some(&self.model), self.truth.as_ref()].into_iter().flatten();
+        let outputs = [("--track", self.track.as_deref()), ("--mcap", self.mcap.as_deref())];
+        output::refuse_clashes(&outputs, &inputs)?;
         let kalman = self.estimator == EstimatorKind::Kalman;
         if kalman && self.poles.is_some() {
             return Err(Error::Usage("--poles are for --estimator luenberger".to_owned()));
