@@ -17,6 +17,9 @@
     element("facts").replaceChildren(...answer.facts.map(([name, value]) =>
       make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
     element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
+    disable(new Map(answer.disabled));
+    for (const said of ["command", "firmware"]) element(said).textContent = answer[said];
+    element("again").hidden = !answer.command;
     const known = new Set(answer.figures.map((figure) => figure.id));
     for (const [id, { place }] of places) {
       if (known.has(id)) continue;
@@ -146,14 +149,54 @@
     return [make("label", { className: "switch" }, box, control.label)];
   }
 
+  function set(control) {
+    const chosen = new Set();
+    const boxes = control.options.map(([value, text]) => {
+      const box = make("input", { type: "checkbox", id: `control-${control.name}-${value}` });
+      box.addEventListener("input", () => {
+        if (box.checked) chosen.add(value); else chosen.delete(value);
+        settings[control.name] = [...chosen];
+        ask();
+      });
+      return make("label", { className: "switch" }, box, text);
+    });
+    return [make("fieldset", { id: `control-${control.name}` }, make("legend", { textContent: control.label }), ...boxes)];
+  }
+
+  function text(control) {
+    const field = make("input", { type: "text", id: `control-${control.name}`, placeholder: control.form });
+    field.addEventListener("change", () => {
+      if (field.value.trim()) settings[control.name] = field.value.trim(); else delete settings[control.name];
+      ask();
+    });
+    return [make("label", { htmlFor: `control-${control.name}`, textContent: control.label }), field];
+  }
+
+  // What has no effect as the others stand cannot be turned, and says why.
+  function disable(reasons) {
+    for (const part of document.querySelectorAll("[data-setting]")) {
+      const reason = reasons.get(part.dataset.setting);
+      part.classList.toggle("disabled", reason !== undefined);
+      part.title = reason ?? "";
+      for (const input of part.querySelectorAll("input, select, button")) input.disabled = reason !== undefined;
+    }
+  }
+
   function opened(reply) {
     if (!reply) return;
     [session, settings, windows] = [reply.session, {}, {}];
     element("figures").replaceChildren();
     for (const { place } of places.values()) Figures.forget(place);
     places.clear();
-    const kinds = { slider, choice, switch: toggle };
-    element("controls").replaceChildren(...reply.controls.flatMap((control) => kinds[control.kind](control)));
+    const kinds = { slider, choice, switch: toggle, set, text };
+    const part = (control) => {
+      const made = make("div", {}, ...kinds[control.kind](control));
+      made.dataset.setting = control.name;
+      return made;
+    };
+    const reset = make("button", { type: "button", textContent: "all as at first" });
+    reset.addEventListener("click", () => opened(reply));
+    element("controls").replaceChildren(...reply.controls.map(part), reset);
     ask();
   }
 

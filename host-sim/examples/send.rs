@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
 use host_sim::random::{normal, stream};
-use host_sim::systems::pedestrian::{scenario::Scenario, sensor};
+use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
 use host_sim::systems::robot::scenario::{Office, line};
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, SAMPLES, fly};

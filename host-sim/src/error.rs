@@ -1,7 +1,6 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::systems::pedestrian::run::RunError;
 use crate::text::printable_path;
 
 /// Why a command could not be carried out: one plain sentence, and exit status 2.
@@ -50,24 +49,6 @@ pub enum Error {
         source: io::Error,
     },
 
-    /// A readable log from which the tracker can make no walk.
-    #[error("{}: {source}", printable_path(.path))]
-    Walk {
-        /// The log, as named by the user.
-        path: PathBuf,
-        /// What the tracker said.
-        source: RunError,
-    },
-
-    /// A synthetic walk that the tracker refuses.
-    #[error("synthetic walk {index}: {source}")]
-    SyntheticWalk {
-        /// Which walk of the experiment, counted from 0.
-        index: u64,
-        /// What the tracker said.
-        source: RunError,
-    },
-
     /// Standard output cannot be written, for a reason other than a reader that went away.
     #[error("standard output cannot be written: {0}")]
     Stdout(#[source] io::Error),
@@ -81,7 +62,6 @@ impl Error {
             | Self::File { path, .. }
             | Self::Line { path, .. }
             | Self::Write { path, .. }
-            | Self::Walk { path, .. }
                 if path.starts_with(folder) =>
             {
                 *path = path.file_name().map(PathBuf::from).unwrap_or_default();

@@ -1,27 +1,22 @@
 //! Feeds the estimators with synthetic and recorded streams and shows what comes out.
 //!
-//! A sample flows one way: a recorded [log](systems::pedestrian::log) or a seeded
-//! [scenario](systems::pedestrian::scenario) → the system's estimator → a report of plain data, which
-//! [`output::show`] prints as a table or as one JSON object.
+//! A sample flows one way: a recorded log or a seeded scenario → the system's estimator → an account of plain data,
+//! which a command prints, draws or writes.
 //!
 //! Everything inside is SI and radians; other units are converted where a file is read.
-//! Every system lives in its own folder below [`systems`] and knows nothing of the others.
+//! Every system lives in its own folder below [`systems`] and knows nothing of the others; the [`commands`] know
+//! no more of one than the face that [`system`] describes.
 
-pub mod cli;
-pub mod design;
+pub mod commands;
 mod error;
-pub mod explore;
 pub mod figure;
-pub mod live;
 pub mod mcap;
 pub mod metrics;
 pub mod output;
-pub mod outputs;
-pub mod published;
 pub mod random;
 pub mod report;
-pub mod serve;
 pub mod stream;
+pub mod system;
 pub mod systems;
 pub mod table;
 pub mod text;

@@ -2,6 +2,9 @@
 //!
 //! Horizontal positions are `[x, y]` in metres, in any right-handed frame with z up.
 
+/// Standard gravity, m/s²: the g in which accelerometers are specified.
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
+
 /// Root mean square; 0 of nothing.
 pub fn rms(values: &[f64]) -> f64 {
     mean(&values.iter().map(|value| value * value).collect::<Vec<_>>()).sqrt()

@@ -191,6 +191,16 @@ pub fn printable(text: &str) -> String {
     format!("\"{}{dots}\"", start.escape_debug())
 }
 
+/// Words as they are typed into a shell: what holds more than letters, digits and a few signs is quoted.
+pub fn command_line(words: impl IntoIterator<Item = String>) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "-_./,:=+%@°".contains(letter);
+    let quoted = words.into_iter().map(|word| {
+        let is_plain = !word.is_empty() && word.chars().all(plain);
+        if is_plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    });
+    quoted.collect::<Vec<_>>().join(" ")
+}
+
 /// A path as a user would write it, on one line whatever its name holds.
 pub fn printable_path(path: &Path) -> String {
     path.display().to_string().replace(char::is_control, "?")
@@ -202,6 +212,12 @@ mod tests {
 
     fn file(bytes: &[u8]) -> Result<TextFile, Error> {
         TextFile::from_bytes(Path::new("walk.csv"), bytes.to_vec())
+    }
+
+    #[test]
+    fn words_of_a_command_are_quoted_where_a_shell_needs_it() {
+        let words = ["host-sim", "--log", "my walk.txt", "it's", ""].map(str::to_owned);
+        assert_eq!(command_line(words), r"host-sim --log 'my walk.txt' 'it'\''s' ''");
     }
 
     #[test]

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
-use host_sim::systems::pedestrian::scenario::Scenario;
-use host_sim::systems::pedestrian::sensor::razor_text;
-use host_sim::systems::pedestrian::truth::Footprint;
+use host_sim::systems::pedestrian::recording::truth::Footprint;
+use host_sim::systems::pedestrian::simulate::scenario::Scenario;
+use host_sim::systems::pedestrian::simulate::sensor::razor_text;
 use program::{Desk, host_sim, json, refusal, text};
 
 const HEADER: &str = "t,ax,ay,az,gx,gy,gz\n";

@@ -13,10 +13,10 @@ use super::report::{Report, Row};
 use super::static_user::{self, Geometry, Job, Paper};
 use super::sweeps::{MovingSweeps, STOPS, StaticSweeps, place_of};
 use super::trajectory::{SIDE_M, Trajectory};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::metrics::mean;
 use crate::published::DRONE_ENERGY;
-use crate::systems::choose_scalar;
+use crate::system::choose_scalar;
 use crate::{Error, output};
 
 /// Trials of a cell of a user who stays unless told otherwise: portions of so many, until …

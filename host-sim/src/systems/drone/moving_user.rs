@@ -13,7 +13,7 @@ use rand_core::{Rng, SeedableRng};
 use super::cloud::Cloud;
 use super::film::Frame;
 use super::scenario::{EnvironmentKind, measure};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::metrics::{distance, mean};
 use crate::random::{normal, stream, uniform};
 

@@ -3,8 +3,8 @@
 use kestirim_particle_filter::Resampler;
 
 use super::scenario::EnvironmentKind;
-use crate::cli::RunOptions;
-use crate::outputs::Outputs;
+use crate::system::RunOptions;
+use crate::system::Outputs;
 
 /// `host-sim run drone`: all tables and figures, or with any option of a cell that cell alone.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]

@@ -5,7 +5,7 @@ use std::fmt;
 use comfy_table::Table;
 use serde::Serialize;
 
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::metrics::{mean, percentile, rms, standard_deviation};
 use crate::output;
 

@@ -10,7 +10,7 @@ use super::cloud::Cloud;
 use super::film::Frame;
 use super::scenario::{EnvironmentKind, measure};
 use super::trajectory::{SIDE_M, Trajectory};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::metrics::distance;
 use crate::random::{stream, uniform};
 

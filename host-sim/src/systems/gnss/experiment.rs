@@ -12,9 +12,9 @@ use super::options::FilterKind;
 use super::report::{Report, Row};
 use super::sky::score::Score;
 use super::sky::{Day, Rates, UTC_MINUS_GPS};
-use crate::cli::{RunOptions, ScalarKind};
+use crate::system::{RunOptions, ScalarKind};
 use crate::published::{GNSS_KINEMATIC, GNSS_STATIC, PppErrors};
-use crate::systems::choose_scalar;
+use crate::system::choose_scalar;
 use crate::{Error, output};
 
 /// Station-days unless told otherwise; the paper has 100.

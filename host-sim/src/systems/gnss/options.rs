@@ -6,7 +6,7 @@ use kestirim_robust_kalman::Weight;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 
 /// Number types the filter is built for: ranges of 26 000 km to a millimetre need the digits.
 pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];

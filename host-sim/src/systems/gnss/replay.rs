@@ -11,8 +11,8 @@ use super::parts::{Part, all_but};
 use super::recording::{Files, Recording};
 use super::session::Session;
 use super::{streams, tables};
-use crate::cli::ScalarKind;
-use crate::systems::choose_scalar;
+use crate::system::ScalarKind;
+use crate::system::choose_scalar;
 use crate::{Error, mcap, output};
 
 /// Options of the command.

@@ -6,7 +6,7 @@ use comfy_table::Table;
 use serde::Serialize;
 
 use super::sky::score::Score;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::metrics::mean;
 use crate::output;
 use crate::published::PppErrors;

@@ -1,15 +1,67 @@
 //! What a walk looks like: the diagrams of the paper.
 
-use super::placement::Placement;
-use super::trace::{Moment, Trace};
-use super::track::TrackPoint;
-use super::{STANDARD_GRAVITY, Sample};
+pub mod placement;
+pub mod streams;
+
+use self::placement::Placement;
+use super::Sample;
+use super::recording::Recording;
+use super::recording::position::TrackPoint;
+use super::settings::Options;
+use super::track::RunError;
+use super::track::trace::{Moment, Trace, trace, without_updates};
+use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
+use crate::metrics::STANDARD_GRAVITY;
+use crate::system::Answer;
 
 const TIME: &str = "time, s";
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Of the axes, wherever a colour means nothing else.
 const COLOURS: [Colour; 3] = [Colour::Other(0), Colour::Other(1), Colour::Other(2)];
+
+/// The page's figures, and facts of what they compare with: the published method, and no updates at all.
+pub(super) fn draw(
+    recording: &Recording,
+    options: &Options,
+    ours: &Trace,
+    answer: &mut Answer,
+) -> Result<(), Error> {
+    let published = options.published_beside();
+    let samples = &recording.log.samples;
+    type Tracker = fn(&[Sample], &Options) -> Result<Trace, RunError>;
+    let traced = |tracker: Tracker, options: &Options| {
+        tracker(samples, options).map_err(|error| recording.refused(&error))
+    };
+    let (published_trace, drifting) =
+        rayon::join(|| traced(trace, &published), || traced(without_updates, options));
+    let (published_trace, drifting) = (published_trace?, drifting?);
+    let truth = recording.truth();
+    let (with, by_paper) = (Placed::new(ours, &truth), Placed::new(&published_trace, &truth));
+    // Without updates the track leaves the plan, and no turn would fit: it lies as ours does.
+    let without = Placed { trace: &drifting, placement: with.placement };
+    let others = vec![
+        by_paper.path("the published method").coloured(Colour::Published),
+        without.path("without updates").coloured(Colour::Alarm).hidden(),
+    ];
+    let threshold_g = published.magnitude_threshold_g();
+    let magnitude = magnitude("magnitude", samples)
+        .with(threshold(samples, threshold_g))
+        .with(by_paper.stance("within the threshold").coloured(Colour::Published).hidden())
+        .with(with.stance("standing, as detected").coloured(Colour::Ours));
+    answer.figures = vec![
+        path("path", &truth, &with, others),
+        accelerometer("accelerometer", samples),
+        gyroscope("gyroscope", samples),
+        magnitude,
+        velocity("velocity", &with, &without),
+        position("position", &with, &truth),
+    ];
+    answer.fact("stance", options.detector.in_words());
+    let length = format!("{:.2} m", published_trace.walk.path_length_m);
+    answer.fact("path by the published method", length);
+    Ok(())
+}
 
 /// A walk on the plan.
 #[derive(Debug, Clone, Copy)]

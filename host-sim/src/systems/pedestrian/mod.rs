@@ -1,48 +1,37 @@
 //! A foot-mounted IMU and zero-velocity updates.
 //!
-//! `log` → `resample` → `run` → `accuracy` is a [replay](replay::Replay);
-//! `scenario` → `sensor` → `log` → `run` → `metrics` is the [experiment].
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes.
 //!
 //! Frames: *body* is the sensor's own, as mounted on the foot; *room* is right-handed with z up, its
 //! origin at the start of the walk.
 
-pub mod accuracy;
-pub mod chapter;
-pub mod experiment;
-pub mod explorer;
+pub mod account;
 pub mod figures;
-pub mod gait;
-pub mod kinematics;
-pub mod log;
-pub mod options;
-pub mod placement;
+mod online;
+pub mod paper;
 pub mod recording;
-pub mod replay;
-pub mod resample;
-pub mod run;
-pub mod scenario;
-pub mod sensor;
-pub mod streams;
-pub mod trace;
+pub mod settings;
+pub mod simulate;
 pub mod track;
-pub mod truth;
-pub(crate) mod warning;
 
-pub use chapter::chapter;
-pub use explorer::SOURCE;
+use std::sync::Arc;
 
-/// What `host-sim list` says of this system.
-pub(super) const DESCRIPTION: &str = "\
-pedestrian  where a foot walked, from a foot-mounted IMU with zero-velocity updates
-  scenario  the paper's 12.60 m route through a flat, 7 walks each at 50 and at 100 Hz
-  log       CSV with columns t,ax,ay,az,gx,gy,gz in s, m/s², rad/s (gt_x,gt_y,gt_z in m = truth)
-  log       Razor text, blank-separated: time in ms, 3 × specific force in g, 3 × rate in °/s
-  truth     CSV of footprints with columns t,x,y in s and m";
+use self::figures::streams;
+use self::paper::experiment;
+use self::recording::{Recording, Walked};
+use self::settings::Options;
+use self::track::Track;
+use crate::Error;
+use crate::report::Chapter;
+use crate::stream::Stream;
+use crate::system::{
+    Account, Answer, Detail, FileField, Files, Idle, OutputField, Panel, Plan, RunOptions, Setting,
+    Settings, System, Table,
+};
 
-/// Standard gravity, m/s²: the g in which accelerometers are specified.
-///
-/// The paper rounds it to 9.8; the difference, 0.07 %, is below its sensor's scale error.
-pub const STANDARD_GRAVITY: f64 = 9.806_65;
+/// The system.
+#[derive(Debug, Clone, Copy)]
+pub struct Pedestrian;
 
 /// What the sensor says at one moment, in the body frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,3 +43,102 @@ pub struct Sample {
     /// Angular rate, rad/s, right-handed.
     pub angular_rate: [f64; 3],
 }
+
+impl System for Pedestrian {
+    const NAME: &'static str = "pedestrian";
+    const TITLE: &'static str = "where a foot walked, from a foot-mounted IMU";
+    const PAPER: &'static str = "Aydın and Erken, JESD, doi:10.21923/jesd.450256";
+    const FILES: &'static [FileField] = &[
+        FileField::required(
+            "log",
+            "Recorded walk: CSV t,ax,ay,az,gx,gy,gz (s, m/s², rad/s; gt_x,gt_y,gt_z in m = truth), or Razor text \
+             separated by blanks (ms, 3 × g, 3 × °/s)",
+        ),
+        FileField::optional(
+            "truth",
+            "Measured footprints: CSV t,x,y (s, m); replaces a truth that the log carries",
+        ),
+    ];
+    const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
+        ("route-50", "The paper's route of 12.60 m, 50 Hz"),
+        ("route-100", "The paper's route of 12.60 m, 100 Hz"),
+        ("two-minutes", "Two minutes through the same flat, 200 Hz"),
+    ];
+    const OUTPUTS: &'static [OutputField] = &[OutputField {
+        name: "track",
+        help: "Write t,x,y,z of every (averaged) sample to this file",
+    }];
+    const PANELS: &'static [Panel] = &[Panel::Map, Panel::Forces, Panel::Rates];
+
+    type Recording = Recording;
+    type Trace = Track;
+    type Experiment = experiment::Report;
+
+    fn settings(recording: Option<&Recording>) -> Vec<Setting> {
+        settings::table(recording)
+    }
+
+    fn idle(_: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        settings::idle(settings, name)
+    }
+
+    fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
+        Recording::read(files.required("log")?, files.one("truth"))
+    }
+
+    fn synthetic(name: &str) -> Result<Recording, Error> {
+        let (walked, rate_hz) = match name {
+            "route-50" => (Walked::Route, 50.0),
+            "route-100" => (Walked::Route, 100.0),
+            "two-minutes" => (Walked::Rounds(7), 200.0),
+            _ => return Err(Error::Usage(format!("there is no synthetic walk {name:?}"))),
+        };
+        Recording::synthetic(walked, rate_hz, 0, 0)
+    }
+
+    fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {
+        Track::of(recording, settings.number("rate"), &Options::of(settings), detail)
+    }
+
+    fn account(recording: &Recording, _: &Settings, track: &Track) -> Result<Account, Error> {
+        account::account(track.tracked(recording), &track.trace.walk)
+    }
+
+    fn figures(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+        answer: &mut Answer,
+    ) -> Result<(), Error> {
+        let recording = track.tracked(recording);
+        figures::draw(recording, &Options::of(settings), &track.trace, answer)
+    }
+
+    fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
+        account::table(&track.trace.walk)
+    }
+
+    fn streams(recording: &Recording, _: &Settings, track: &Track) -> Vec<Stream> {
+        let recording = track.tracked(recording);
+        streams::streams(&recording.log.samples, &track.trace, &recording.truth())
+    }
+
+    fn firmware(_: Option<&Recording>, settings: &Settings) -> String {
+        Options::of(settings).firmware()
+    }
+
+    fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
+        experiment::run(*run)
+    }
+
+    fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {
+        paper::chapter::chapter(experiment)
+    }
+
+    fn online(settings: &Settings, _: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        Ok(Some(Arc::new(online::Walking { options: Options::of(settings) })))
+    }
+}
+
+#[cfg(test)]
+mod tests;

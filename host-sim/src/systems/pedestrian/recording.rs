@@ -1,14 +1,19 @@
 //! A walk as it was recorded, with its truth where that is known: from files or synthetic.
 
+pub mod log;
+pub mod position;
+pub mod resample;
+pub mod truth;
+
 use std::path::{Path, PathBuf};
 
-use super::accuracy::{Accuracy, against_footprints, against_truth};
-use super::log::{self, Log};
-use super::run::Walk;
-use super::scenario::Scenario;
-use super::track::TrackPoint;
-use super::truth::{self, Footprint};
-use super::{resample, sensor};
+use self::log::Log;
+use self::position::TrackPoint;
+use self::truth::Footprint;
+use super::account::accuracy::{Accuracy, against_footprints, against_truth};
+use super::simulate::scenario::Scenario;
+use super::simulate::sensor;
+use super::track::{RunError, Walk};
 use crate::Error;
 use crate::random::stream;
 use crate::text::TextFile;
@@ -64,12 +69,24 @@ impl Recording {
         Ok(Self { path, log, footprints: scenario.footprints() })
     }
 
+    /// The rates to which it can be averaged down, Hz: least, most, and from one to the next.
+    pub fn rates_hz(&self) -> [f64; 3] {
+        let own = resample::rate_hz(&self.log.samples).unwrap_or(1.0);
+        [1.0, own.round().max(1.0), 1.0]
+    }
+
+    /// A complaint that no tracker takes it.
+    pub(super) fn refused(&self, error: &RunError) -> Error {
+        Error::File { path: self.path.clone(), problem: error.to_string() }
+    }
+
     /// Averaged down to this rate.
     ///
     /// # Errors
     /// As [`resample::average_down`].
-    pub fn at_rate(self, rate_hz: f64) -> Result<Self, Error> {
-        Ok(Self { log: resample::average_down(&self.log, rate_hz)?, ..self })
+    pub fn at_rate(&self, rate_hz: f64) -> Result<Self, Error> {
+        let log = resample::average_down(&self.log, rate_hz)?;
+        Ok(Self { log, path: self.path.clone(), footprints: self.footprints.clone() })
     }
 
     /// Where the foot or the sensor truly was, as far as anybody knows: measured footprints replace what the

@@ -1,48 +1,304 @@
-//! Positions over time.
+//! Feeds a walk to the tracker, in the number type, mode and shape that were chosen.
 
-/// Where something is at a time.
+pub mod trace;
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use kestirim_pedestrian::detector::{
+    Adaptive, AngularRateEnergy, FixedShoe, Magnitude, MovingVariance, StanceDetector,
+};
+use kestirim_pedestrian::{
+    Config, Ekf, Estimate, ImuSample, Lite, Navigator, OfflineTracker, Tracker, Warnings,
+};
+use kestirim_scalar::{Q12_20, Scalar};
+use nalgebra::SVector;
+
+use self::trace::{Moment, OnlyAtStart, See, Trace, Updates};
+use super::Sample;
+use super::account::warning;
+use super::recording::Recording;
+use super::recording::position::TrackPoint;
+use super::settings::{DetectorKind, Options, TrackerKind};
+use crate::Error;
+use crate::metrics::STANDARD_GRAVITY;
+use crate::system::{Detail, ScalarKind};
+
+/// What the tracker made of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    /// The recording at another rate, if one was chosen.
+    averaged: Option<Recording>,
+    /// Without moments if only the result was wanted.
+    pub trace: Trace,
+}
+
+impl Track {
+    /// Tracks a recording, averaged down to a rate if one is given, Hz.
+    ///
+    /// # Errors
+    /// [`Error::File`] if no tracker takes the log, [`Error::Usage`] for a rate that it does not have.
+    pub fn of(
+        recording: &Recording,
+        rate_hz: Option<f64>,
+        options: &Options,
+        detail: Detail,
+    ) -> Result<Self, Error> {
+        let averaged = rate_hz.map(|rate_hz| recording.at_rate(rate_hz)).transpose()?;
+        let samples = &averaged.as_ref().unwrap_or(recording).log.samples;
+        let tracked = match detail {
+            Detail::Result => walk(samples, options).map(|walk| Trace { walk, ..Trace::default() }),
+            Detail::Every => trace::trace(samples, options),
+        };
+        let trace = tracked.map_err(|error| recording.refused(&error))?;
+        Ok(Self { averaged, trace })
+    }
+
+    /// What was tracked of a recording.
+    pub fn tracked<'a>(&'a self, recording: &'a Recording) -> &'a Recording {
+        self.averaged.as_ref().unwrap_or(recording)
+    }
+}
+
+/// What a tracker makes of a walk, in the room frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Walk {
+    /// One position for every sample.
+    pub track: Vec<TrackPoint>,
+    /// One entry for every stride, in order.
+    pub strides: Vec<Stride>,
+    /// Horizontal, stance to stance, m.
+    pub path_length_m: f64,
+    /// Horizontal distance from start to end, m.
+    pub closure_m: f64,
+    /// What is suspicious about the sensor or the walk.
+    pub warnings: Vec<String>,
+}
+
+/// One stride of the foot, from stance to stance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackPoint {
-    /// Time of the log's clock, µs.
+pub struct Stride {
+    /// When the foot stands again, µs.
     pub time_us: u64,
-    /// Position, m, z up.
+    /// Where it stands then, m.
     pub position: [f64; 3],
+    /// Horizontal distance from the stance before, m.
+    pub length_m: f64,
+    /// Time from the stance before, s.
+    pub duration_s: f64,
+    /// Turn with respect to the stride before, rad, anticlockwise.
+    pub heading_change_rad: f64,
 }
 
-impl TrackPoint {
-    /// The position without its height, m.
-    pub fn horizontal(&self) -> [f64; 2] {
-        [self.position[0], self.position[1]]
+/// Why a tracker makes no walk of a log.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// Too short to integrate anything.
+    #[error("expected a log of at least {needed} samples, found {found}")]
+    TooShort {
+        /// Samples of the log.
+        found: usize,
+        /// Samples it takes.
+        needed: usize,
+    },
+    /// The tracker refuses a sample.
+    #[error("sample {index}: {source}")]
+    Sample {
+        /// Counted from 1.
+        index: usize,
+        /// Why.
+        source: kestirim_pedestrian::Error,
+    },
+}
+
+/// Tracks a walk.
+///
+/// # Errors
+/// If the log is too short or holds a sample that the tracker refuses.
+pub fn walk(samples: &[Sample], options: &Options) -> Result<Walk, RunError> {
+    watched(samples, options, Updates::InStance, &mut |_| ())
+}
+
+/// Tracks a walk and lets `see` each moment of it.
+pub(super) fn watched(
+    samples: &[Sample],
+    options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
+    if samples.len() < 2 {
+        return Err(RunError::TooShort { found: samples.len(), needed: 2 });
+    }
+    match options.scalar {
+        ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
+        ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),
+        ScalarKind::Fixed => with_scalar::<Q12_20>(samples, options, updates, see),
     }
 }
 
-/// The position at a time, interpolated linearly between neighbours and held beyond the ends;
-/// none of an empty track. Times must not decrease.
-pub fn position_at(track: &[TrackPoint], time_us: u64) -> Option<[f64; 3]> {
-    let after = track.partition_point(|point| point.time_us <= time_us);
-    let next = track.get(after).or(track.last())?;
-    let previous = if after == 0 { next } else { &track[after - 1] };
-    let span = next.time_us - previous.time_us;
-    if span == 0 {
-        return Some(previous.position);
+fn with_scalar<T: Scalar>(
+    samples: &[Sample],
+    options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
+    match options.tracker {
+        TrackerKind::Lite => with_navigator::<T, Lite<T>>(samples, options, updates, see),
+        TrackerKind::Ekf => with_navigator::<T, Ekf<T>>(samples, options, updates, see),
     }
-    let share = (time_us - previous.time_us) as f64 / span as f64;
-    let between =
-        |i: usize| previous.position[i] + share * (next.position[i] - previous.position[i]);
-    Some([between(0), between(1), between(2)])
 }
 
-#[cfg(test)]
-#[expect(clippy::float_cmp, reason = "these values are exact")]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn positions_are_interpolated_and_held() {
-        let point = |time_us, x| TrackPoint { time_us, position: [x, 0.0, 0.0] };
-        let track = [point(10, 1.0), point(20, 2.0), point(20, 3.0), point(30, 5.0)];
-        let x_at = |time_us| position_at(&track, time_us).unwrap()[0];
-        assert_eq!([5, 10, 15, 25, 30, 99].map(x_at), [1.0, 1.0, 1.5, 4.0, 5.0, 5.0]);
-        assert_eq!(position_at(&[], 5), None);
+fn with_navigator<T: Scalar, N: Navigator<T>>(
+    samples: &[Sample],
+    options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
+    let samples: Vec<_> = samples.iter().map(imu_sample::<T>).collect();
+    let config = config(options);
+    if updates == Updates::OnlyAtStart {
+        return causal::<T, N, _>(&samples, config, OnlyAtStart::default(), see);
     }
+    if options.detector == DetectorKind::Adaptive && !options.causal {
+        return offline::<T, N>(&samples, config, see);
+    }
+    with_detector(
+        options,
+        Causally::<T, N> { samples: &samples, config, see, navigator: PhantomData },
+    )
+}
+
+/// What a tracker is built from.
+pub(super) fn config<T: Scalar>(options: &Options) -> Config<T> {
+    let config = Config { sensor: options.sensor.into(), ..Config::default() };
+    match options.contact_height_m() {
+        Some(height) => Config { contact_height: T::from_f64(height), ..config },
+        None => config,
+    }
+}
+
+/// What is done with a detector, whichever it is.
+pub(super) trait WithDetector<T: Scalar> {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Self::Output;
+}
+
+/// Does something with the detector that is chosen.
+pub(super) fn with_detector<T: Scalar, W: WithDetector<T>>(
+    options: &Options,
+    work: W,
+) -> W::Output {
+    let threshold = T::from_f64;
+    match options.detector {
+        DetectorKind::Adaptive => work.with(Adaptive::default()),
+        DetectorKind::Magnitude(value) => {
+            work.with(Magnitude::new(threshold(value / STANDARD_GRAVITY)))
+        }
+        DetectorKind::Variance(value) => {
+            work.with(MovingVariance::new(threshold(value / STANDARD_GRAVITY.powi(2))))
+        }
+        DetectorKind::AngularRate(value) => work.with(AngularRateEnergy::new(threshold(value))),
+        DetectorKind::Shoe(value) => work.with(FixedShoe::new(threshold(value))),
+    }
+}
+
+/// A log, tracked sample by sample.
+struct Causally<'a, 'b, T: Scalar, N> {
+    samples: &'a [ImuSample<T>],
+    config: Config<T>,
+    see: &'a mut See<'b>,
+    navigator: PhantomData<N>,
+}
+
+impl<T: Scalar, N: Navigator<T>> WithDetector<T> for Causally<'_, '_, T, N> {
+    type Output = Result<Walk, RunError>;
+
+    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Self::Output {
+        causal::<T, N, D>(self.samples, self.config, detector, self.see)
+    }
+}
+
+fn causal<T: Scalar, N: Navigator<T>, D: StanceDetector<T>>(
+    samples: &[ImuSample<T>],
+    config: Config<T>,
+    detector: D,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
+    let mut tracker = Tracker::<T, N, D>::with_detector(config, detector);
+    let mut walk = Walk::default();
+    for (index, sample) in samples.iter().enumerate() {
+        let estimate = tracker
+            .update(sample)
+            .map_err(|source| RunError::Sample { index: index + 1, source })?;
+        walk.push(&estimate, see);
+    }
+    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings());
+    Ok(walk)
+}
+
+fn offline<T: Scalar, N: Navigator<T>>(
+    samples: &[ImuSample<T>],
+    config: Config<T>,
+    see: &mut See<'_>,
+) -> Result<Walk, RunError> {
+    let mut energy = vec![T::ZERO; samples.len()];
+    let mut tracker = OfflineTracker::<T, N>::new(config, samples, &mut energy)
+        .map_err(|(index, source)| RunError::Sample { index: index + 1, source })?;
+    let mut walk = Walk::default();
+    for estimate in tracker.by_ref() {
+        walk.push(&estimate, see);
+    }
+    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings());
+    Ok(walk)
+}
+
+impl Walk {
+    fn push<T: Scalar>(&mut self, estimate: &Estimate<T>, see: &mut See<'_>) {
+        see(Moment { velocity: double(&estimate.velocity), stance: estimate.stance });
+        let position = double(&estimate.position);
+        self.track.push(TrackPoint { time_us: estimate.time_us, position });
+        self.strides.extend(estimate.stride.as_ref().map(Stride::from_estimate));
+    }
+
+    fn finish<T: Scalar>(
+        &mut self,
+        last: Option<kestirim_pedestrian::Stride<T>>,
+        path_length: T,
+        warnings: Warnings,
+    ) {
+        self.strides.extend(last.as_ref().map(Stride::from_estimate));
+        self.path_length_m = path_length.to_f64();
+        if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
+            self.closure_m = x.hypot(*y);
+        }
+        self.warnings = warning::sentences(warnings);
+    }
+}
+
+impl Stride {
+    fn from_estimate<T: Scalar>(stride: &kestirim_pedestrian::Stride<T>) -> Self {
+        Self {
+            time_us: stride.time_us,
+            position: double(&stride.position),
+            length_m: stride.length.to_f64(),
+            duration_s: stride.duration.to_f64(),
+            heading_change_rad: stride.heading_change.to_f64(),
+        }
+    }
+}
+
+pub(super) fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {
+    ImuSample {
+        time_us: sample.time_us,
+        specific_force: SVector::from(sample.specific_force.map(T::from_f64)),
+        angular_rate: SVector::from(sample.angular_rate.map(T::from_f64)),
+    }
+}
+
+pub(super) fn double<T: Scalar>(vector: &SVector<T, 3>) -> [f64; 3] {
+    vector.data.0[0].map(T::to_f64)
 }

@@ -17,11 +17,11 @@ use super::options::{self, Setup, TrackerKind};
 use super::printed::{Beginning, Constants};
 use super::ranges::RangeRow;
 use super::scenario::{self, EPOCHS, Office};
-use crate::cli::{RunOptions, ScalarKind};
+use crate::system::{RunOptions, ScalarKind};
 use crate::metrics::{distance, mean};
 use crate::published::{PositionErrors, ROBOT_TABLE_1, ROBOT_TABLE_1_MEAN};
 use crate::random::stream;
-use crate::systems::choose_scalar;
+use crate::system::choose_scalar;
 use crate::{Error, output};
 
 /// Repetitions unless told otherwise: the mean of the table is then good to a fiftieth.

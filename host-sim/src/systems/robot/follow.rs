@@ -15,7 +15,7 @@ use super::options::{Dimensions, Setup, TrackerKind};
 use super::printed::{Beginning, Printed};
 use super::tuning::Tuning;
 use crate::Error;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 
 /// Something that follows a tag. Times are µs since the recording began.
 pub trait Follow {

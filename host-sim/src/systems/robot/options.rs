@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use kestirim_uwb_ranging::Room;
 
 use super::scenario::ANCHORS;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 
 /// Number types the trackers are built for.
 pub const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];

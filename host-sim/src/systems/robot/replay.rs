@@ -12,8 +12,8 @@ use super::options::{self, Dimensions, Setup, TrackerKind, parse_room};
 use super::recording::{Files, Recording};
 use super::streams::streams;
 use super::trace::{Trace, trace};
-use crate::cli::ScalarKind;
-use crate::systems::choose_scalar;
+use crate::system::ScalarKind;
+use crate::system::choose_scalar;
 use crate::{Error, mcap, output};
 
 /// Options of the command.

@@ -55,7 +55,7 @@ mod tests {
     use super::super::recording::Driven;
     use super::super::trace::trace;
     use super::*;
-    use crate::cli::ScalarKind;
+    use crate::system::ScalarKind;
 
     #[test]
     fn rows_fit_their_columns_and_every_point_has_its_topics() {

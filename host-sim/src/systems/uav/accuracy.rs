@@ -10,7 +10,7 @@ use super::design::{FAST, Family, Kind, MIDDLE, SLOW};
 use super::estimator::Estimator;
 use super::plant::{Outputs, Plant, with_outputs};
 use super::scenario::{INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START, fly};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::random::stream;
 
 /// Samples after which an estimator that starts at the truth has settled: the slowest error of the experiment, that

@@ -8,7 +8,7 @@ use super::estimator::Impossible;
 use super::plant::{Outputs, Plant};
 use super::scenario::{FAR, INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START};
 use super::trip::{Moment, Trip};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::published::{UAV_KALMAN_CAUGHT, UAV_LUENBERGER_CAUGHT, UAV_SINE_CAUGHT};
 
 /// A state is caught where its error stays within these.

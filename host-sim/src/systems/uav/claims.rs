@@ -9,7 +9,7 @@ use super::catching::{self, Chase};
 use super::design::{FAST, Family, Kind, SLOW};
 use super::plant::{Outputs, Plant};
 use super::scenario::{INTERVAL_S, Inputs, NEAR, Noise};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 
 /// A claim in one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]

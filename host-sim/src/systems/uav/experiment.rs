@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::plant::Plant;
 use super::report::Report;
 use super::{accuracy, catching, claims, responses};
-use crate::cli::{RunOptions, ScalarKind};
-use crate::systems::choose_scalar;
+use crate::system::{RunOptions, ScalarKind};
+use crate::system::choose_scalar;
 use crate::{Error, output};
 
 /// Flights a cell unless told otherwise: a RMSE is then known to one or two percent.

@@ -11,7 +11,7 @@ use super::claims::{Claim, Independence, SlowestPoles};
 use super::plant::{Plant, STATES};
 use super::responses::Responses;
 use super::scenario::Inputs;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::output;
 use crate::published::{UAV_CONSTANT_INPUTS, UAV_SETTLING_S};
 

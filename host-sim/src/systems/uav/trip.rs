@@ -7,7 +7,7 @@ use super::design::Kind;
 use super::estimator::{Estimator, Impossible};
 use super::plant::{Outputs, Plant, with_outputs};
 use super::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::random::stream;
 
 /// A flight, and where an estimator starts on it.

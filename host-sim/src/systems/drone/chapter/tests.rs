@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::cli::RunOptions;
+use crate::system::RunOptions;
 use crate::systems::drone::experiment;
 use crate::systems::drone::options::{CellOptions, Run};
 

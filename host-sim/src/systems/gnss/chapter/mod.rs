@@ -48,7 +48,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
 mod tests {
     use super::super::experiment;
     use super::*;
-    use crate::cli::RunOptions;
+    use crate::system::RunOptions;
 
     #[test]
     fn the_chapter_has_every_table_and_figure_of_the_paper() {

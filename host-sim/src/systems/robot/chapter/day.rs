@@ -6,7 +6,7 @@ use super::super::printed::{Beginning, Constants};
 use super::super::recording::{Recording, Truth};
 use super::super::trace::{Trace, trace};
 use crate::Error;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 
 /// A recording, and what each tracker makes of it.
 pub(super) struct Day {

@@ -74,7 +74,7 @@ fn summary(report: &Report) -> Comparison {
 mod tests {
     use super::super::experiment::run;
     use super::*;
-    use crate::cli::RunOptions;
+    use crate::system::RunOptions;
 
     fn made() -> Chapter {
         let options = RunOptions { trials: Some(2), seed: 2, scalar: None };

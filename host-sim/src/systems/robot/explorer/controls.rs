@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use super::super::options::{Dimensions, TrackerKind};
 use super::super::recording::Recording;
 use super::super::tuning::Tuning;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::explore::{Control, Settings};
 
 /// Farther above or below the anchors no tag is looked for, m.

@@ -1,7 +1,7 @@
 use serde_json::{Value, json};
 
 use super::*;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::figure::Figure;
 
 fn answer(explorer: &dyn Explorer, sent: &Value) -> Answer {

@@ -8,7 +8,7 @@ use super::super::report::{Report, alike, four, shown};
 use super::super::scenario::{Inputs, Noise};
 use super::made;
 use crate::Error;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::figure::{Colour, Figure, Series};
 use crate::report::{Comparison, Item};
 

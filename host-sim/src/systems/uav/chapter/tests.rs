@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::cli::{RunOptions, ScalarKind};
+use crate::system::{RunOptions, ScalarKind};
 use crate::systems::uav::experiment;
 
 #[test]

@@ -14,7 +14,7 @@ use super::controls::{self, estimators};
 use super::figures::{self, KALMAN, LUENBERGER, Line, State, in_bands};
 use super::poles;
 use crate::Error;
-use crate::cli::ScalarKind;
+use crate::system::ScalarKind;
 use crate::explore::{Answer, Control, Explorer, Settings};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::rms;

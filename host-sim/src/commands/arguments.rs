@@ -1,0 +1,31 @@
+//! What the commands read from a command line.
+
+use clap::{ArgMatches, FromArgMatches};
+
+use crate::Error;
+use crate::system::AnySystem;
+use crate::systems::ALL;
+
+/// Options of a command that are said in a struct.
+pub(super) fn read<T: FromArgMatches>(matches: &ArgMatches) -> Result<T, Error> {
+    T::from_arg_matches(matches).map_err(|error| Error::Usage(sentence(&error)))
+}
+
+/// The system that a subcommand names, and its arguments.
+pub(super) fn chosen(matches: &ArgMatches) -> Result<(&'static dyn AnySystem, &ArgMatches), Error> {
+    let chosen = matches.subcommand().and_then(|(name, matches)| Some((find(name)?, matches)));
+    chosen.ok_or_else(|| Error::Usage("expected a system".to_owned()))
+}
+
+/// The system of a name.
+pub(super) fn find(name: &str) -> Option<&'static dyn AnySystem> {
+    ALL.iter().copied().find(|system| system.name() == name)
+}
+
+/// Clap's complaint about a wrong command line, folded into one plain sentence.
+pub(super) fn sentence(error: &clap::Error) -> String {
+    let rendered = error.render().to_string();
+    let complaint = rendered.lines().take_while(|line| !line.trim().is_empty());
+    let joined = complaint.map(str::trim).collect::<Vec<_>>().join(" ");
+    format!("{} (see --help)", joined.trim_start_matches("error: "))
+}

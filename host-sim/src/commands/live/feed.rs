@@ -1,0 +1,208 @@
+//! From messages to the estimator, and what came of it to whoever looks on.
+
+use std::sync::Arc;
+
+use kestirim_telemetry::{Flight, Imu, Message, PathLoss, Range};
+
+use super::clock::{Clock, Verdict};
+use super::state::State;
+use crate::Error;
+use crate::system::{Online, Outcome, Plan};
+
+/// Feeds an estimator.
+#[derive(Debug)]
+pub(super) struct Feed {
+    plan: Option<Arc<dyn Plan>>,
+    estimator: Option<Box<dyn Online>>,
+    clock: Clock,
+}
+
+impl Feed {
+    /// With a fresh estimator.
+    pub(super) fn new(plan: Option<Arc<dyn Plan>>) -> Result<Self, Error> {
+        let estimator = plan.as_deref().map(Plan::build).transpose()?;
+        Ok(Self { plan, estimator, clock: Clock::default() })
+    }
+
+    /// Takes in a message. What cannot be true is counted and no more.
+    pub(super) fn take(&mut self, message: &Message, state: &mut State) -> Result<(), Error> {
+        let Some(time_us) = measured(message) else {
+            state.tell(message);
+            return Ok(());
+        };
+        let outcome = match self.clock.judge(time_us) {
+            Verdict::Odd => Outcome::Refused,
+            Verdict::Anew => {
+                state.restart();
+                self.estimator = self.plan.as_deref().map(Plan::build).transpose()?;
+                self.measure(message)
+            }
+            Verdict::Fits => self.measure(message),
+        };
+        state.measure(time_us, message, outcome, self.estimator.as_deref());
+        Ok(())
+    }
+
+    fn measure(&mut self, message: &Message) -> Outcome {
+        self.estimator.as_mut().map_or(Outcome::NotMine, |estimator| estimator.take(message))
+    }
+
+    /// Nothing more is there for now.
+    pub(super) fn settle(&mut self) {
+        if let Some(estimator) = &mut self.estimator {
+            estimator.settle();
+        }
+    }
+
+    /// Nothing more will come.
+    pub(super) fn finish(&mut self) {
+        if let Some(estimator) = &mut self.estimator {
+            estimator.finish();
+        }
+    }
+
+    /// Shows how the estimator is doing.
+    pub(super) fn show(&self, state: &mut State) {
+        if let Some(estimator) = &self.estimator {
+            state.show(estimator.as_ref());
+        }
+    }
+}
+
+/// When a measurement was made, if it is one.
+fn measured(message: &Message) -> Option<u64> {
+    match message {
+        Message::Imu(Imu { time_us, .. })
+        | Message::Range(Range { time_us, .. })
+        | Message::PathLoss(PathLoss { time_us, .. })
+        | Message::Flight(Flight { time_us, .. }) => Some(*time_us),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::options::Following;
+    use super::*;
+    use crate::system::{AnySystem, Files, Panel, Settings};
+    use crate::systems::ALL;
+    use kestirim_telemetry::{Footprint, GlobalPosition, Position};
+
+    /// Whose estimators are built without files.
+    fn systems() -> impl Iterator<Item = Following> {
+        ALL.iter().filter_map(|system| following(*system))
+    }
+
+    fn following(system: &dyn AnySystem) -> Option<Following> {
+        Following::of(system, &Settings::new(system.settings()), &Files::default()).ok()
+    }
+
+    /// One that takes messages like this.
+    fn taking(message: &Message) -> Following {
+        let takes = |following: &Following| {
+            let online = following.plan.as_deref().map(|plan| plan.build().unwrap());
+            online.is_some_and(|mut online| online.take(message) != Outcome::NotMine)
+        };
+        systems().find(takes).expect("a system that takes this")
+    }
+
+    fn feed(following: &Following) -> (Feed, State) {
+        (Feed::new(following.plan.clone()).unwrap(), State::new(following))
+    }
+
+    fn still(time_us: u64) -> Message {
+        let (specific_force, angular_rate) = ([0.0, 0.0, 9.81], [0.0; 3]);
+        Imu { time_us, specific_force, angular_rate }.into()
+    }
+
+    #[test]
+    fn a_sender_that_begins_anew_is_followed_anew() -> Result<(), Error> {
+        let (mut feed, mut state) = feed(&taking(&still(0)));
+        let mut send = |from_us: u64, count: u64, state: &mut State| {
+            (0..count).try_for_each(|step| feed.take(&still(from_us + step * 10_000), state))
+        };
+        send(1_000_000_000, 100, &mut state)?;
+        send(u64::MAX - 10_000, 2, &mut state)?;
+        assert_eq!((state.counts.taken, state.counts.refused), (100, 2));
+        send(0, 100, &mut state)?;
+        assert_eq!((state.counts.taken, state.counts.refused), (151, 51));
+        assert_eq!(state.counts.restarts, 1);
+        assert!(state.warnings().iter().any(|warning| warning.contains("anew")));
+        Ok(())
+    }
+
+    #[test]
+    fn a_system_always_shows_the_same_figures() -> Result<(), Error> {
+        for following in systems().chain([Following::NONE]) {
+            let (mut feed, mut state) = feed(&following);
+            let ids = |state: &State| -> Vec<String> {
+                state.answer().figures.into_iter().map(|figure| figure.id).collect()
+            };
+            let before = ids(&state);
+            for step in 0..200_u64 {
+                feed.take(&still(step * 10_000), &mut state)?;
+                let (anchor, range) = ((step % 4) as u16, 3.0);
+                feed.take(&Range { time_us: step * 10_000, anchor, range }.into(), &mut state)?;
+            }
+            feed.settle();
+            feed.show(&mut state);
+            assert_eq!(ids(&state), before);
+            assert!(before.len() >= 2);
+            let listens = following.plan.is_some() && !following.panels.contains(&Panel::Losses);
+            assert_eq!(state.counts.taken > 0, listens);
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn what_the_sender_says_of_itself_is_drawn_if_it_can_be_true() -> Result<(), Error> {
+        let (mut feed, mut state) = feed(&Following::NONE);
+        let place = |x| Position { time_us: 0, position: [x, 1.0, 0.0], sigma: None }.into();
+        for message in [place(1.0), place(f32::NAN), place(2.0), place(1e30)] {
+            feed.take(&message, &mut state)?;
+        }
+        let foot = Footprint { time_us: 0, position: [0.5, 0.5, f32::NAN], length: 1.0 };
+        feed.take(&foot.into(), &mut state)?;
+        assert_eq!(state.counts.refused, 2);
+        assert_eq!(state.senders_way.iter().collect::<Vec<_>>(), [[1.0, 1.0], [2.0, 1.0]]);
+        assert_eq!(state.footprints.iter().count(), 1);
+        Ok(())
+    }
+
+    #[test]
+    fn places_on_earth_are_drawn_east_and_north_of_the_first() -> Result<(), Error> {
+        let (mut feed, mut state) = feed(&Following::NONE);
+        let radius = 6_378_137.0;
+        // On the equator at longitude 0 east is y, and north is z.
+        for position in [[radius, 0.0, 0.0], [radius, 3.0, 4.0], [f64::NAN; 3]] {
+            let message = GlobalPosition { time_us: 0, position, sigma: None };
+            feed.take(&message.into(), &mut state)?;
+        }
+        assert_eq!(state.counts.refused, 1);
+        let way: Vec<_> = state.senders_way.iter().collect();
+        assert_eq!(way.len(), 2);
+        assert!((way[1][0] - 3.0).abs() < 1e-6 && (way[1][1] - 4.0).abs() < 1e-6, "{way:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn a_user_is_found_in_the_end_from_any_number_of_losses() -> Result<(), Error> {
+        let heard = PathLoss { time_us: 0, place: [0.0, 0.0, 50.0], loss: 90.0 };
+        let (mut feed, mut state) = feed(&taking(&heard.into()));
+        for step in 0..1000_u64 {
+            let place = [0.013, 0.021].map(|rate| 200.0 * (step as f64 * rate).sin());
+            let place = [place[0], place[1], 50.0];
+            let distance = (place[0] - 60.0).hypot(place[1] + 40.0).hypot(place[2]);
+            let loss = 38.5 + 20.0 * distance.log10();
+            let (place, loss) = (place.map(|metres| metres as f32), loss as f32);
+            let message = PathLoss { time_us: step * 100_000, place, loss };
+            feed.take(&message.into(), &mut state)?;
+        }
+        assert_eq!(state.position, None);
+        feed.finish();
+        feed.show(&mut state);
+        let [x, y, _] = state.position.unwrap();
+        assert!((x - 60.0).hypot(y + 40.0) < 5.0, "{x} {y}");
+        Ok(())
+    }
+}

@@ -1,0 +1,250 @@
+//! `host-sim live`: telemetry of a sender that is switched on, followed while it comes.
+//!
+//! `source` → `recorder` → file → `tape` → `follower` → `feed` → [`Online`](crate::system::Online) → `state` →
+//! `picture`.
+//!
+//! One thread waits for bytes and does nothing but write them to the recording; the other reads them there,
+//! decodes them and feeds the estimator. So whatever is counted as received is in the file, whoever receives waits
+//! for nobody, and an estimator that is slower than the stream falls behind without losing anything. Whoever asks
+//! for an [answer](Live::answer) holds up the second thread at most.
+
+mod clock;
+mod feed;
+mod follower;
+mod listener;
+pub mod options;
+mod picture;
+mod recorder;
+mod report;
+mod source;
+mod state;
+mod tape;
+mod thinned;
+mod window;
+
+use std::net::SocketAddr;
+use std::panic::resume_unwind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use clap::ArgMatches;
+
+use self::follower::Follower;
+use self::listener::Listener;
+use self::options::{Following, Stream};
+pub(super) use self::options::{command, complaint};
+use self::recorder::Recorder;
+pub use self::report::{Counts, Report};
+use self::source::Source;
+use self::state::State;
+use self::tape::{Reel, Tape};
+use super::serve::{Page, View};
+use crate::system::{Answer, Plan};
+use crate::text::printable_path;
+use crate::{Error, output};
+
+/// Between two looks whether the stream has ended.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+/// Listens until the stream ends or somebody presses Ctrl-C, and prints what came.
+pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
+    let (stream, following) = options::read(matches)?;
+    let mut page = (!stream.headless).then(|| Page::bind(stream.port)).transpose()?;
+    let live = Live::start(&stream, &following)?;
+    output::warn(&live.announcement());
+    if let Some(page) = &mut page {
+        page.show(live.view());
+        output::warn(&format!("page: {}  (Ctrl-C ends)", page.address()));
+    }
+    let (stop, ended) = (live.stopper(), Stopper::default());
+    let end = ended.clone();
+    // Without it Ctrl-C ends the program at once: the recording is complete even so.
+    let _ = ctrlc::set_handler(move || {
+        stop.stop();
+        end.stop();
+    });
+    while !live.is_finished() {
+        thread::sleep(PATIENCE);
+    }
+    let report = live.finish()?;
+    for warning in &report.warnings {
+        output::warn(&format!("warning: {warning}"));
+    }
+    output::show(&report, stream.json)?;
+    // Played back, it is over before anybody has looked.
+    while page.is_some() && stream.file.is_some() && !ended.is_stopped() {
+        thread::sleep(PATIENCE);
+    }
+    Ok(())
+}
+
+/// A stream that is being recorded and followed.
+#[derive(Debug)]
+pub struct Live {
+    state: Arc<Mutex<State>>,
+    stop: Stopper,
+    listener: Option<JoinHandle<Result<(), Error>>>,
+    follower: Option<JoinHandle<Result<(), Error>>>,
+    address: Option<SocketAddr>,
+    source: String,
+    recording: PathBuf,
+}
+
+/// Ends a stream, from any thread.
+#[derive(Debug, Clone, Default)]
+pub struct Stopper(Arc<AtomicBool>);
+
+impl Stopper {
+    /// Nothing more is received; what has arrived is still followed.
+    pub fn stop(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+impl Live {
+    /// Begins to listen, to record and to follow; or plays a recording back.
+    ///
+    /// # Errors
+    /// Whatever is wrong with options, files, address and device; then no recording has been begun.
+    pub fn start(options: &Stream, following: &Following) -> Result<Self, Error> {
+        let stop = Stopper::default();
+        let mut live = Self {
+            state: Arc::new(Mutex::new(State::new(following))),
+            stop: stop.clone(),
+            listener: None,
+            follower: None,
+            address: None,
+            source: String::new(),
+            recording: PathBuf::new(),
+        };
+        // What will not do is known before anything is recorded.
+        let plan = following.plan.clone();
+        plan.as_deref().map(Plan::build).transpose()?;
+        let (reel, disk) = match &options.file {
+            Some(path) => {
+                live.source = printable_path(path);
+                live.recording.clone_from(path);
+                let reel = Reel::complete(path);
+                (reel.map_err(|source| Error::Read { path: path.clone(), source })?, None)
+            }
+            None => live.listen(options)?,
+        };
+        let (state, most) = (Arc::clone(&live.state), options.frames);
+        let path = live.recording.clone();
+        let follower = Follower { reel, disk, plan, state, most, stop, path };
+        live.follower = Some(thread(|| follower.run())?);
+        Ok(live)
+    }
+
+    /// Begins to listen and to record; where to read the recording, and what to have written to the disk.
+    fn listen(&mut self, options: &Stream) -> Result<(Reel, Option<std::fs::File>), Error> {
+        let source = match &options.serial {
+            Some(device) => Source::serial(device, options.baud)?,
+            None => Source::udp(options.address())?,
+        };
+        let recorder = Recorder::create(options.record.as_deref())?;
+        self.address = source.address();
+        self.source = source.name();
+        self.recording = recorder.path().to_path_buf();
+        let tape = Arc::new(Tape::default());
+        let reel = Reel::growing(&self.recording, Arc::clone(&tape))
+            .map_err(|source| Error::Read { path: self.recording.clone(), source })?;
+        let disk = recorder.file()?;
+        let seconds = options.seconds.map(Duration::from_secs);
+        let until = seconds.and_then(|seconds| Instant::now().checked_add(seconds));
+        let listener = Listener { source, recorder, tape, stop: self.stop.clone(), until };
+        self.listener = Some(thread(|| listener.run())?);
+        Ok((reel, Some(disk)))
+    }
+
+    /// At which address it listens to datagrams, if it does.
+    pub fn address(&self) -> Option<SocketAddr> {
+        self.address
+    }
+
+    /// Where everything is written down.
+    pub fn recording(&self) -> &Path {
+        &self.recording
+    }
+
+    /// One line that says what is listened to and where it is written.
+    pub fn announcement(&self) -> String {
+        if self.listener.is_none() {
+            return format!("playing {} back", self.source);
+        }
+        let (source, recording) = (&self.source, printable_path(&self.recording));
+        let open = self.address.filter(|address| !address.ip().is_loopback());
+        let warning = if open.is_some() { "; anybody in the network can send to it" } else { "" };
+        format!("listening on {source}, recording to {recording}{warning}")
+    }
+
+    /// What can end it, from any thread.
+    pub fn stopper(&self) -> Stopper {
+        self.stop.clone()
+    }
+
+    /// What there is to see now.
+    pub fn answer(&self) -> Answer {
+        (self.view())()
+    }
+
+    /// What gives the [answer](Self::answer), from any thread and even when this is finished.
+    pub fn view(&self) -> View {
+        let state = Arc::clone(&self.state);
+        let (source, recording) = (self.source.clone(), printable_path(&self.recording));
+        Arc::new(move || {
+            let mut answer = state.lock().unwrap_or_else(PoisonError::into_inner).answer();
+            answer.fact("source", &*source);
+            answer.fact("recording", &*recording);
+            answer
+        })
+    }
+
+    /// What became of everything so far.
+    pub fn counts(&self) -> Counts {
+        self.state().counts
+    }
+
+    /// Whether the stream has ended and all of it has been followed.
+    pub fn is_finished(&self) -> bool {
+        self.follower.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Stops listening and says what came of it.
+    ///
+    /// # Errors
+    /// If the line broke or the recording could not be written any further.
+    pub fn finish(mut self) -> Result<Report, Error> {
+        self.stop.stop();
+        // The listener's complaint comes first: without it there is nothing to follow.
+        for thread in [self.listener.take(), self.follower.take()].into_iter().flatten() {
+            thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
+        }
+        let (source, recording) = (self.source.clone(), self.recording.clone());
+        Ok(self.state().report(source, recording))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.stop.stop();
+    }
+}
+
+fn thread<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<JoinHandle<T>, Error> {
+    let spawned = thread::Builder::new().stack_size(crate::STACK_BYTES).spawn(work);
+    spawned.map_err(|error| Error::Usage(format!("no thread: {error}")))
+}

@@ -1,0 +1,171 @@
+//! What the command line of `host-sim live` can choose.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::builder::PossibleValuesParser;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, ArgMatches, Args, Command};
+
+use crate::Error;
+use crate::commands::arguments::{self, find};
+use crate::commands::serve;
+use crate::system::{AnySystem, Files, Panel, Plan, Setting, Settings};
+use crate::systems::ALL;
+
+/// Nobody's estimator: what the sender itself estimates is shown.
+const NONE: &str = "none";
+
+/// Where senders find this program if nobody says otherwise: on the same machine.
+const DEFAULT_ADDRESS: &str = "127.0.0.1:5775";
+
+/// Options of a stream that have nothing to do with who sends it.
+#[derive(Debug, Clone, Args)]
+pub struct Stream {
+    /// Listen to datagrams for this address [default: 127.0.0.1:5775, which only this machine reaches]
+    #[arg(long, value_name = "ADDR:PORT", conflicts_with_all = ["serial", "file"])]
+    pub udp: Option<String>,
+    /// Listen to a serial port
+    #[arg(long, value_name = "DEV", conflicts_with = "file")]
+    pub serial: Option<PathBuf>,
+    /// Speed of the serial port
+    #[arg(long, value_name = "BAUD", default_value_t = 115_200, requires = "serial")]
+    pub baud: u32,
+    /// Play a recording back, as fast as it goes
+    #[arg(long, value_name = "RECORDING", conflicts_with_all = ["record", "seconds"])]
+    pub file: Option<PathBuf>,
+    /// Write everything that arrives to this new file, before it is looked at
+    /// [default: target/live/DATE-TIME.frames]
+    #[arg(long, value_name = "NEW.frames")]
+    pub record: Option<PathBuf>,
+    /// End after this many seconds
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..))]
+    pub seconds: Option<u64>,
+    /// End after this many good frames
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
+    /// Port of the page on this machine that shows the stream; 0 takes a free one
+    #[arg(long, value_name = "P", default_value_t = serve::PORT)]
+    pub port: u16,
+    /// Show no page
+    #[arg(long, conflicts_with = "port")]
+    pub headless: bool,
+    /// At the end print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Stream {
+    /// Where datagrams are to be sent.
+    pub(super) fn address(&self) -> &str {
+        self.udp.as_deref().unwrap_or(DEFAULT_ADDRESS)
+    }
+}
+
+/// Whose estimator follows a stream, with its settings.
+#[derive(Debug, Clone)]
+pub struct Following {
+    /// The system's name, or `none`.
+    pub name: &'static str,
+    /// Its figures.
+    pub panels: &'static [Panel],
+    /// What makes its estimator.
+    pub plan: Option<Arc<dyn Plan>>,
+}
+
+impl Following {
+    /// Nobody's estimator.
+    pub const NONE: Self = Self { name: NONE, panels: &Panel::ALL, plan: None };
+
+    /// A system's.
+    ///
+    /// # Errors
+    /// Whatever is wrong with files and settings; [`Error::Usage`] for a system that follows no stream.
+    pub fn of(system: &dyn AnySystem, settings: &Settings, files: &Files) -> Result<Self, Error> {
+        let plan = system.online(settings, files)?;
+        let name = system.name();
+        let plan =
+            plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream (--system)")))?;
+        Ok(Self { name, panels: system.panels(), plan: Some(plan) })
+    }
+}
+
+/// `host-sim live`, with the options of the system that `arguments` names.
+pub(in crate::commands) fn command(arguments: &[OsString]) -> Command {
+    let names = followers().map(AnySystem::name);
+    let names: Vec<_> = std::iter::once(NONE).chain(names).collect();
+    let command = Stream::augment_args(Command::new("live"))
+        .about("Listen to a sender's telemetry, record it and follow it with a system's estimator")
+        .arg(
+            Arg::new("system")
+                .long("system")
+                .value_name("SYSTEM")
+                .help("Whose estimator follows the stream; none shows what the sender itself estimates; options of a \
+                       system: --system NAME --help")
+                .value_parser(PossibleValuesParser::new(names))
+                .default_value(NONE),
+        );
+    let Some(system) = named(arguments) else { return command };
+    let settings = live_settings(system);
+    let files = system.files().iter().filter(|field| field.in_live);
+    let is_file = |name: &str| system.files().iter().any(|it| it.in_live && it.name == name);
+    command
+        .next_help_heading(format!("Of --system {}", system.name()))
+        .args(files.map(|field| field.argument(&settings)))
+        .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
+}
+
+/// What the arguments ask for.
+pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
+    let stream = arguments::read::<Stream>(matches)?;
+    let system = matches.get_one::<String>("system").and_then(|name| find(name));
+    let Some(system) = system else { return Ok((stream, Following::NONE)) };
+    let mut settings = Settings::matched(live_settings(system), matches);
+    let files = Files::matched(system.files(), matches, &mut settings);
+    system.refuse_idle(&settings)?;
+    Ok((stream, Following::of(system, &settings, &files)?))
+}
+
+/// A complaint about an option that another system has says so.
+pub(in crate::commands) fn complaint(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    if error.kind() != ErrorKind::UnknownArgument {
+        return None;
+    }
+    let name = option.trim_start_matches('-').split(['=', ' ']).next()?;
+    let has = |system: &&dyn AnySystem| {
+        let files = system.files().iter().any(|field| field.in_live && field.name == name);
+        files || live_settings(*system).iter().any(|setting| setting.option() == name)
+    };
+    let systems: Vec<_> = followers().filter(has).map(AnySystem::name).collect();
+    (!systems.is_empty()).then(|| format!("--{name} is for --system {}", systems.join(" or ")))
+}
+
+fn followers() -> impl Iterator<Item = &'static dyn AnySystem> {
+    ALL.iter().copied().filter(|system| !system.panels().is_empty())
+}
+
+fn live_settings(system: &dyn AnySystem) -> Vec<Setting> {
+    system.settings().into_iter().filter(|setting| setting.in_live).collect()
+}
+
+/// The system that a command line of `live` names, before it is read.
+fn named(arguments: &[OsString]) -> Option<&'static dyn AnySystem> {
+    let mut words = arguments.iter().filter_map(|word| word.to_str());
+    words.next();
+    if words.next() != Some("live") {
+        return None;
+    }
+    while let Some(word) = words.next() {
+        if word == "--system" {
+            return find(words.next()?);
+        }
+        if let Some(name) = word.strip_prefix("--system=") {
+            return find(name);
+        }
+    }
+    None
+}

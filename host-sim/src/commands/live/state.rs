@@ -1,0 +1,254 @@
+//! What there is to see, in bounded memory however long the stream.
+
+use std::path::PathBuf;
+
+use kestirim_gnss_ppp::Geodetic;
+use kestirim_telemetry::{
+    Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range,
+};
+use nalgebra::{Matrix3, Vector3};
+
+use super::options::Following;
+use super::report::{Counts, Report};
+use super::thinned::Thinned;
+use super::window::Window;
+use crate::figure::Series;
+use crate::system::{Answer, Online, Outcome, Panel, Plan};
+use crate::table::FARTHEST_POSITION;
+
+/// Points of a way on the map.
+const WAY: usize = 4096;
+
+/// A way on the map, m.
+pub(super) type Way = Thinned<[f64; 2]>;
+
+/// All that is shown.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub(super) system: &'static str,
+    pub(super) panels: &'static [Panel],
+    pub(super) counts: Counts,
+    /// The last time of the sender's clock, µs.
+    pub(super) time_us: Option<u64>,
+    pub(super) health: Option<Health>,
+    /// Where the estimator is, m.
+    pub(super) position: Option<[f64; 3]>,
+    pub(super) path_length_m: Option<f64>,
+    pub(super) facts: Vec<(String, String)>,
+    assumptions: Vec<String>,
+    suspicions: Vec<String>,
+    pub(super) map: Vec<Series>,
+    /// By the estimator here.
+    pub(super) way: Way,
+    /// By the sender's own.
+    pub(super) senders_way: Way,
+    pub(super) footprints: Way,
+    /// Of the drone.
+    pub(super) flown: Way,
+    pub(super) inertial: Window<Inertial>,
+    /// Anchors, ranges, and whether they were refused.
+    pub(super) ranges: Window<(u16, f32, bool)>,
+    pub(super) losses: Window<f32>,
+    pub(super) states: Window<[f64; 4]>,
+    pub(super) senders_states: Window<[f64; 4]>,
+    /// Where the sender's first place on earth is, and how east, north and up point there.
+    origin: Option<(Vector3<f64>, Matrix3<f64>)>,
+}
+
+/// What an IMU said, and whether the foot stood.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inertial {
+    pub(super) force: [f32; 3],
+    pub(super) rate: [f32; 3],
+    pub(super) is_still: bool,
+}
+
+impl State {
+    /// Before anything has come.
+    pub(super) fn new(following: &Following) -> Self {
+        let plan = following.plan.as_deref();
+        let way = Way::new(WAY);
+        Self {
+            system: following.name,
+            panels: following.panels,
+            counts: Counts::default(),
+            time_us: None,
+            health: None,
+            position: None,
+            path_length_m: None,
+            facts: Vec::new(),
+            assumptions: plan.map(Plan::assumptions).unwrap_or_default(),
+            suspicions: Vec::new(),
+            map: plan.map(Plan::map).unwrap_or_default(),
+            way: way.clone(),
+            senders_way: way.clone(),
+            footprints: way.clone(),
+            flown: way,
+            inertial: Window::default(),
+            ranges: Window::default(),
+            losses: Window::default(),
+            states: Window::default(),
+            senders_states: Window::default(),
+            origin: None,
+        }
+    }
+
+    /// So many more bytes were decoded; all together they came to this.
+    pub(super) fn count(&mut self, bytes: usize, frames: kestirim_telemetry::Counts) {
+        let kestirim_telemetry::Counts { received, torn, corrupt, unknown, lost } = frames;
+        let bytes = self.counts.bytes + bytes as u64;
+        self.counts = Counts { bytes, received, torn, corrupt, unknown, lost, ..self.counts };
+    }
+
+    /// The sender has begun anew: what was drawn is no more.
+    pub(super) fn restart(&mut self) {
+        let way = Way::new(WAY);
+        self.counts.restarts += 1;
+        self.position = None;
+        self.way = way.clone();
+        self.senders_way = way.clone();
+        self.footprints = way.clone();
+        self.flown = way;
+        self.inertial = Window::default();
+        self.ranges = Window::default();
+        self.losses = Window::default();
+        self.states = Window::default();
+        self.senders_states = Window::default();
+        self.origin = None;
+    }
+
+    /// A measurement, and what the estimator did with it.
+    pub(super) fn measure(
+        &mut self,
+        time_us: u64,
+        message: &Message,
+        outcome: Outcome,
+        estimator: Option<&dyn Online>,
+    ) {
+        let refused = outcome == Outcome::Refused;
+        self.counts.taken += u64::from(outcome == Outcome::Taken);
+        self.counts.refused += u64::from(refused);
+        match *message {
+            Message::Range(Range { anchor, range, .. }) => {
+                self.ranges.push(time_us, (anchor, range, refused));
+            }
+            // What else was refused would only spoil the drawing.
+            _ if refused => return,
+            Message::Imu(Imu { specific_force: force, angular_rate: rate, .. }) => {
+                let is_still = estimator.is_some_and(Online::is_still);
+                self.inertial.push(time_us, Inertial { force, rate, is_still });
+            }
+            Message::PathLoss(PathLoss { place: [x, y, _], loss, .. }) => {
+                self.flown.push([x, y].map(f64::from));
+                self.losses.push(time_us, loss);
+            }
+            Message::Flight(_) => {
+                if let Some(state) = estimator.and_then(Online::state) {
+                    self.states.push(time_us, state);
+                }
+            }
+            _ => {}
+        }
+        self.time_us = Some(time_us);
+        self.move_to(estimator.and_then(Online::position));
+    }
+
+    fn move_to(&mut self, position: Option<[f64; 3]>) {
+        if let Some([x, y, _]) = position.filter(|_| position != self.position) {
+            self.way.push([x, y]);
+        }
+        self.position = position;
+    }
+
+    /// How the estimator is doing.
+    pub(super) fn show(&mut self, estimator: &dyn Online) {
+        self.move_to(estimator.position());
+        self.path_length_m = estimator.path_length_m();
+        self.facts = estimator.facts();
+        self.suspicions = estimator.warnings();
+    }
+
+    /// What the sender says of itself.
+    pub(super) fn tell(&mut self, message: &Message) {
+        let believed = match *message {
+            Message::Position(Position { position: [x, y, _], .. }) => {
+                push(&mut self.senders_way, [x, y].map(f64::from))
+            }
+            Message::Footprint(Footprint { position: [x, y, _], .. }) => {
+                push(&mut self.footprints, [x, y].map(f64::from))
+            }
+            Message::GlobalPosition(GlobalPosition { position, .. }) => {
+                let place = self.near(position);
+                push(&mut self.senders_way, place)
+            }
+            Message::State(kestirim_telemetry::State { time_us, state }) => {
+                let believed = state.iter().all(|number| number.is_finite());
+                if believed {
+                    self.senders_states.push(time_us, state.map(f64::from));
+                }
+                believed
+            }
+            Message::Health(health) => {
+                self.health = Some(health);
+                true
+            }
+            // A kind that this program does not draw.
+            _ => true,
+        };
+        self.counts.refused += u64::from(!believed);
+    }
+
+    /// East and north of the first place on earth, m.
+    fn near(&mut self, position: [f64; 3]) -> [f64; 2] {
+        let position = Vector3::from(position);
+        if !position.iter().all(|coordinate| coordinate.abs() <= FARTHEST_POSITION) {
+            return [f64::NAN; 2];
+        }
+        let enu = |place: &Vector3<f64>| Geodetic::from_ecef(place).enu_from_ecef();
+        let (origin, turn) = *self.origin.get_or_insert_with(|| (position, enu(&position)));
+        let near = turn * (position - origin);
+        [near.x, near.y]
+    }
+
+    /// What a user should know.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let restarts = self.counts.restarts;
+        let anew = (restarts > 0).then(|| {
+            format!("the sender's clock began anew ({restarts} times), and the estimator with it")
+        });
+        self.assumptions.iter().chain(&self.suspicions).cloned().chain(anew).collect()
+    }
+
+    /// Facts, warnings and figures.
+    pub(super) fn answer(&self) -> Answer {
+        Answer {
+            facts: self.all_facts(),
+            warnings: self.warnings(),
+            figures: self.figures(),
+            ..Answer::default()
+        }
+    }
+
+    /// What came of it.
+    pub(super) fn report(&self, source: String, recording: PathBuf) -> Report {
+        Report {
+            system: self.system,
+            source,
+            recording,
+            counts: self.counts,
+            position: self.position,
+            state: self.states.last().copied(),
+            path_length_m: self.path_length_m,
+            warnings: self.warnings(),
+        }
+    }
+}
+
+/// Draws a way on, unless nobody can be there.
+fn push(way: &mut Way, place: [f64; 2]) -> bool {
+    let believed = place.iter().all(|coordinate| coordinate.abs() <= FARTHEST_POSITION);
+    if believed {
+        way.push(place);
+    }
+    believed
+}

@@ -1,0 +1,142 @@
+//! The commands, each written once for any system.
+
+mod arguments;
+mod calibrate;
+pub mod design;
+mod list;
+pub mod live;
+mod replay;
+mod run;
+pub mod serve;
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::{ArgMatches, Args, Command, value_parser};
+use clap_complete::Shell;
+
+use self::arguments::{read, sentence};
+use self::design::Design;
+use self::serve::Serve;
+use crate::system::AnySystem;
+use crate::systems::ALL;
+use crate::{Error, output};
+
+/// Where the report goes, from the folder in which the program is started.
+const REPORT: &str = "target/report";
+
+/// The whole command line. The options of `live` are those of the system that `arguments` names.
+pub fn command(arguments: &[OsString]) -> Command {
+    Command::new("host-sim")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Estimators on synthetic and recorded streams")
+        .long_about(
+            "Estimators on synthetic and recorded streams.\n\nWithout arguments every system runs on its synthetic \
+             streams, and target/report/index.html shows what came out, beside what the papers print.",
+        )
+        .after_help(examples(ALL[0]))
+        .subcommand(run::command())
+        .subcommand(replay::command())
+        .subcommand(calibrate::command())
+        .subcommand(Design::augment_args(Command::new("design").about(
+            "Design observers: gains, discretisations and covariances of a file of cases",
+        )))
+        .subcommand(Serve::augment_args(
+            Command::new("serve")
+                .about("Explore recordings in the browser: thresholds and filters with sliders"),
+        ))
+        .subcommand(live::command(arguments))
+        .subcommand(Command::new("list").about("List systems, scenarios and log formats"))
+        .subcommand(
+            Command::new("completions")
+                .about("Print what makes a shell complete this program's options")
+                .arg(
+                    clap::Arg::new("shell")
+                        .help("Which shell")
+                        .required(true)
+                        .value_parser(value_parser!(Shell)),
+                ),
+        )
+}
+
+fn examples(system: &dyn AnySystem) -> String {
+    let name = system.name();
+    format!(
+        "\
+Examples:
+  host-sim                                        every paper's experiments, and a report to look at
+  host-sim serve                                  turn thresholds and filters in the browser
+  host-sim run {name} --trials 5 --mcap a.mcap
+  host-sim replay {name} --log walk.txt --track path.csv
+  host-sim live --system {name}               follow a sensor that sends telemetry
+  host-sim completions bash > ~/.local/share/bash-completion/completions/host-sim
+
+Exit status: 0 if it was done, 2 if the command line or a file is not as it should be; then one sentence
+on standard error says which file, which line and what was expected. NO_COLOR is respected."
+    )
+}
+
+/// Does what the command line asks for.
+///
+/// # Errors
+/// One sentence.
+pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
+    let Some((name, matches)) = matches.subcommand() else {
+        return run::everything(Path::new(REPORT));
+    };
+    match name {
+        "run" => run::run(matches),
+        "replay" => replay::run(matches),
+        "calibrate" => calibrate::run(matches),
+        "design" => read::<Design>(matches)?.run(),
+        "serve" => read::<Serve>(matches)?.run(),
+        "live" => live::run(matches),
+        "list" => output::print(&list::list()),
+        _ => completions(matches),
+    }
+}
+
+/// Prints what makes a shell complete this program's options.
+fn completions(matches: &ArgMatches) -> Result<(), Error> {
+    let Some(&shell) = matches.get_one::<Shell>("shell") else { return Ok(()) };
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command(&[]), "host-sim", &mut script);
+    output::print(&String::from_utf8_lossy(&script))
+}
+
+/// What is wrong with a command line, in one plain sentence.
+pub fn complaint(error: &clap::Error, arguments: &[OsString]) -> String {
+    let is_live = arguments.get(1).is_some_and(|word| word == "live");
+    let known = if is_live { live::complaint(error) } else { None };
+    known.unwrap_or_else(|| sentence(error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn definitions_are_consistent() {
+        command(&[]).debug_assert();
+        for system in ALL {
+            let arguments = ["host-sim", "live", "--system", system.name()].map(OsString::from);
+            command(&arguments).debug_assert();
+        }
+    }
+
+    #[test]
+    fn a_usage_error_is_one_sentence() {
+        let first = ALL[0].name();
+        for arguments in [
+            &["host-sim", "fly"][..],
+            &["host-sim", "run"],
+            &["host-sim", "run", first, "--trials", "0"],
+            &["host-sim", "replay", first],
+            &["host-sim", "replay", first, "--log", "a", "--tracker", "best"],
+        ] {
+            let error = command(&[]).try_get_matches_from(arguments).unwrap_err();
+            let sentence = sentence(&error);
+            assert!(!sentence.contains('\n') && !sentence.starts_with("error"), "{sentence}");
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! `host-sim replay`: a recording, tracked and compared with the truth where that is known.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+
+use super::arguments::chosen;
+use crate::system::{Account, AnySystem, Files, Setting, Settings, Source, Wanted};
+use crate::systems::ALL;
+use crate::{Error, output};
+
+pub(super) fn command() -> Command {
+    let command = Command::new("replay").about("Run a system on a recorded log");
+    command
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands(ALL.iter().map(|system| of(*system)))
+}
+
+fn of(system: &dyn AnySystem) -> Command {
+    let settings = system.settings();
+    let is_file = |name: &str| system.files().iter().any(|field| field.name == name);
+    let files = system.files().iter().map(|field| {
+        let arg = field.argument(&settings);
+        if field.required { arg.required_unless_present("synthetic") } else { arg }
+    });
+    let names = system.synthetic().iter().map(|(name, _)| *name);
+    let synthetic = Arg::new("synthetic")
+        .long("synthetic")
+        .value_name("NAME")
+        .help("A synthetic recording instead of files")
+        .value_parser(PossibleValuesParser::new(names))
+        .conflicts_with_all(system.files().iter().map(|field| field.name).filter(|name| {
+            // Text that is a value of a setting is no file.
+            !settings.iter().any(|setting| setting.name == *name)
+        }));
+    let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
+    Command::new(system.name())
+        .about(system.title())
+        .args(files)
+        .arg(synthetic)
+        .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
+        .next_help_heading("Output")
+        .args(outputs)
+        .arg(file(
+            "mcap",
+            "OUT.mcap",
+            "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun",
+        ))
+        .arg(
+            Arg::new("json")
+                .long("json")
+                .help("Print one JSON object instead of a table")
+                .action(ArgAction::SetTrue),
+        )
+}
+
+fn file(name: &'static str, value_name: &'static str, help: &'static str) -> Arg {
+    let arg = Arg::new(name).long(name).value_name(value_name).help(help);
+    arg.value_parser(value_parser!(PathBuf))
+}
+
+/// Reads, tracks, compares, writes and prints; nothing is printed if anything is wrong.
+pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
+    let (system, matches) = chosen(matches)?;
+    let mut settings = Settings::matched(system.settings(), matches);
+    let files = Files::matched(system.files(), matches, &mut settings);
+    let outputs = system.outputs().iter();
+    let tables = outputs
+        .filter_map(|output| Some((output.name, matches.get_one::<PathBuf>(output.name)?.clone())));
+    let mcap = matches.get_one::<PathBuf>("mcap").cloned();
+    let wanted = Wanted { tables: tables.collect(), mcap };
+    refuse_clashes(&wanted, &files)?;
+    system.refuse_idle(&settings)?;
+    let source = match matches.get_one::<String>("synthetic") {
+        Some(name) => Source::Synthetic(name.clone()),
+        None => Source::Files(files),
+    };
+    let opened = system.open(source, &settings)?;
+    let account = opened.replay(&settings, &wanted)?;
+    show(&account, matches.get_flag("json"))
+}
+
+fn show(account: &Account, json: bool) -> Result<(), Error> {
+    for warning in &account.warnings {
+        match &account.about {
+            Some(path) => output::warn_of(path, std::slice::from_ref(warning)),
+            None => output::warn(&format!("warning: {warning}")),
+        }
+    }
+    if json {
+        return output::print(&account.report.to_string());
+    }
+    if let Some(text) = &account.text {
+        return output::print(text);
+    }
+    let mut table = output::table();
+    for (name, value) in &account.facts {
+        table.add_row([name, value]);
+    }
+    output::print(&table.to_string())
+}
+
+fn refuse_clashes(wanted: &Wanted, files: &Files) -> Result<(), Error> {
+    let option = |name: &str| format!("--{name}");
+    let tables = wanted.tables.iter().map(|(name, path)| (option(name), path));
+    let all: Vec<_> = tables.chain(wanted.mcap.iter().map(|path| (option("mcap"), path))).collect();
+    let outputs: Vec<_> =
+        all.iter().map(|(name, path)| (name.as_str(), Some(path.as_path()))).collect();
+    output::refuse_clashes(&outputs, &files.paths())
+}

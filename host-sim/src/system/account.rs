@@ -1,0 +1,80 @@
+//! What came of a recording.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::Error;
+use crate::figure::Figure;
+
+/// What came of a recording: for programs, for people, and what a user should know.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Account {
+    /// What `--json` prints.
+    pub report: Value,
+    /// Numbers with their units, by name.
+    pub facts: Vec<(String, String)>,
+    /// What the terminal shows instead of the facts.
+    pub text: Option<String>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+    /// Which file the warnings are about; none if each says so itself.
+    pub about: Option<PathBuf>,
+}
+
+impl Account {
+    /// Of a report, with its warnings.
+    ///
+    /// # Errors
+    /// [`Error::Stdout`] for a report that is no JSON.
+    pub fn new(report: &impl Serialize, warnings: Vec<String>) -> Result<Self, Error> {
+        let report = serde_json::to_value(report).map_err(|error| Error::Stdout(error.into()))?;
+        Ok(Self { report, warnings, ..Self::default() })
+    }
+
+    /// With another fact.
+    pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
+        self.facts.push((name.into(), value.into()));
+    }
+}
+
+/// What the page shows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Answer {
+    /// Numbers with their units, by name.
+    pub facts: Vec<(String, String)>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+    /// Always the same ones in the same order for a recording, whatever the settings.
+    pub figures: Vec<Figure>,
+    /// Settings that have no effect as the others are, and why.
+    pub disabled: Vec<(&'static str, String)>,
+    /// The command that gives the same again.
+    pub command: String,
+    /// The same settings in firmware, in Rust.
+    pub firmware: String,
+}
+
+impl Answer {
+    /// With another fact.
+    pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
+        self.facts.push((name.into(), value.into()));
+    }
+}
+
+/// Rows of a file that an option asks for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Table {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// A field a column.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// Without rows.
+    pub fn new(header: &[&str]) -> Self {
+        Self { header: header.iter().map(|&name| name.to_owned()).collect(), rows: Vec::new() }
+    }
+}

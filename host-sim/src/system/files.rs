@@ -1,0 +1,159 @@
+//! Where a recording comes from.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+
+use super::settings::Settings;
+use crate::Error;
+use crate::text::printable_path;
+
+/// A file that belongs to a recording.
+///
+/// A setting of the same name is an alternative: `--height 0.1` or `--height FILE`.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct FileField {
+    /// Its name everywhere: `log` is `--log`.
+    pub name: &'static str,
+    /// What it holds, with its columns.
+    #[serde(rename = "label")]
+    pub help: &'static str,
+    /// Whether there is no recording without it.
+    pub required: bool,
+    /// Whether there may be more than one.
+    pub several: bool,
+    /// Whether it is read for a stream that is followed while it comes.
+    #[serde(skip)]
+    pub in_live: bool,
+}
+
+impl FileField {
+    /// A file without which there is no recording.
+    pub const fn required(name: &'static str, help: &'static str) -> Self {
+        Self { name, help, required: true, several: false, in_live: false }
+    }
+
+    /// A file that may be missing.
+    pub const fn optional(name: &'static str, help: &'static str) -> Self {
+        Self { name, help, required: false, several: false, in_live: false }
+    }
+
+    /// Perhaps more than one.
+    #[must_use]
+    pub const fn several(mut self) -> Self {
+        self.several = true;
+        self
+    }
+
+    /// Of a stream that is followed while it comes, too.
+    #[must_use]
+    pub const fn live(mut self) -> Self {
+        self.in_live = true;
+        self
+    }
+
+    /// The option of the command line.
+    pub fn argument(&self, settings: &[super::Setting]) -> Arg {
+        let arg = Arg::new(self.name).long(self.name).help(self.help);
+        let alternative = settings.iter().find(|setting| setting.name == self.name);
+        let arg = match alternative {
+            Some(setting) => {
+                let value_name = format!("{}|FILE", setting.form());
+                let help = format!("{}, or {}", setting.help, self.help);
+                arg.value_name(value_name).help(help).allow_hyphen_values(true)
+            }
+            None => arg.value_name("FILE").value_parser(value_parser!(PathBuf)),
+        };
+        arg.action(if self.several { ArgAction::Append } else { ArgAction::Set })
+    }
+}
+
+/// Where the files of a recording lie, by the names of their fields.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Files(BTreeMap<String, Vec<PathBuf>>);
+
+impl Files {
+    /// What the command line names. A text that is a value of the setting of the same name is given to that.
+    pub fn matched(fields: &[FileField], matches: &ArgMatches, settings: &mut Settings) -> Self {
+        let mut files = Self::default();
+        for field in fields {
+            if let Ok(Some(paths)) = matches.try_get_many::<PathBuf>(field.name) {
+                paths.for_each(|path| files.add(field.name, path));
+            } else if let Ok(Some(texts)) = matches.try_get_many::<String>(field.name) {
+                for text in texts {
+                    if settings.set(field.name, text).is_err() {
+                        files.add(field.name, text);
+                    }
+                }
+            }
+        }
+        files
+    }
+
+    /// Adds a file.
+    pub fn add(&mut self, field: impl Into<String>, path: impl Into<PathBuf>) {
+        self.0.entry(field.into()).or_default().push(path.into());
+    }
+
+    /// The file of a field, if there is one.
+    pub fn one(&self, field: &str) -> Option<&Path> {
+        self.all(field).first().map(PathBuf::as_path)
+    }
+
+    /// All files of a field.
+    pub fn all(&self, field: &str) -> &[PathBuf] {
+        self.0.get(field).map_or(&[], Vec::as_slice)
+    }
+
+    /// All files.
+    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> + Clone {
+        self.0.values().flatten()
+    }
+
+    /// The file of a field that must be there.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it is not.
+    pub fn required(&self, field: &str) -> Result<&Path, Error> {
+        self.one(field).ok_or_else(|| Error::Usage(format!("a file is needed: --{field}")))
+    }
+
+    /// Refuses files that exclude each other.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if `one` is there and any of the others is.
+    pub fn exclude(&self, one: &str, others: &[&str]) -> Result<(), Error> {
+        let other = others.iter().find(|other| self.one(other).is_some());
+        match (self.one(one), other) {
+            (Some(_), Some(other)) => {
+                Err(Error::Usage(format!("--{one} cannot be used with --{other}")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Where a recording comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Source {
+    /// Files.
+    Files(Files),
+    /// A synthetic one, by name.
+    Synthetic(String),
+}
+
+impl Source {
+    /// Options of the command line that name it; uploaded files by their names alone.
+    pub fn arguments(&self) -> Vec<String> {
+        match self {
+            Self::Synthetic(name) => vec!["--synthetic".to_owned(), name.clone()],
+            Self::Files(Files(files)) => {
+                let each = files.iter().flat_map(|(field, paths)| {
+                    paths.iter().map(move |path| [format!("--{field}"), printable_path(path)])
+                });
+                each.flatten().collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! A recording that is open, and what can be tried on it.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::{Account, Answer, Detail, Idle, Setting, Settings, Source, System, Table, refuse};
+use crate::{Error, mcap, output, text};
+
+/// What a replay is to write.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// Options and the files for their tables.
+    pub tables: Vec<(&'static str, PathBuf)>,
+    /// A file for the streams.
+    pub mcap: Option<PathBuf>,
+}
+
+impl Wanted {
+    /// Whether anything is to be written.
+    pub fn any(&self) -> bool {
+        !self.tables.is_empty() || self.mcap.is_some()
+    }
+}
+
+/// A recording of any system, open.
+pub trait Opened: Send + Sync {
+    /// What can be set.
+    fn settings(&self) -> Vec<Setting>;
+
+    /// What came of it, and the files that are wanted.
+    ///
+    /// # Errors
+    /// One sentence, if recording and settings give nothing; settings that would change nothing; files that
+    /// cannot be written.
+    fn replay(&self, settings: &Settings, wanted: &Wanted) -> Result<Account, Error>;
+
+    /// What the page shows.
+    ///
+    /// # Errors
+    /// One sentence, if recording and settings give nothing.
+    fn answer(&self, settings: &Settings) -> Result<Answer, Error>;
+}
+
+/// A recording, and the last track that was made of it.
+struct Open<S: System> {
+    recording: S::Recording,
+    source: Source,
+    last: Mutex<Option<Last<S>>>,
+}
+
+/// How a track was made, and the track.
+struct Last<S: System> {
+    settings: Settings,
+    detail: Detail,
+    trace: Arc<S::Trace>,
+}
+
+pub(super) fn open<S: System>(recording: S::Recording, source: Source) -> Box<dyn Opened> {
+    Box::new(Open::<S> { recording, source, last: Mutex::new(None) })
+}
+
+impl<S: System> Open<S> {
+    /// The track, made anew only if other settings make another one.
+    fn trace(&self, settings: &Settings, detail: Detail) -> Result<Arc<S::Trace>, Error> {
+        let key = settings.without_views();
+        {
+            let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(last) = last.as_ref().filter(|it| it.settings == key && it.detail >= detail)
+            {
+                return Ok(Arc::clone(&last.trace));
+            }
+        }
+        let trace = Arc::new(S::track(&self.recording, settings, detail)?);
+        let last = Last { settings: key, detail, trace: Arc::clone(&trace) };
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(last);
+        Ok(trace)
+    }
+
+    fn idle(&self, settings: &Settings, name: &str) -> Option<Idle> {
+        S::idle(Some(&self.recording), settings, name)
+    }
+}
+
+impl<S: System> Opened for Open<S> {
+    fn settings(&self) -> Vec<Setting> {
+        S::settings(Some(&self.recording))
+    }
+
+    fn replay(&self, settings: &Settings, wanted: &Wanted) -> Result<Account, Error> {
+        refuse(settings, |name| self.idle(settings, name))?;
+        let views = settings.table().iter().any(|it| it.is_view && settings.is_given(it.name));
+        let detail = if wanted.any() || views { Detail::Every } else { Detail::Result };
+        let trace = self.trace(settings, detail)?;
+        let account = S::account(&self.recording, settings, &trace)?;
+        for (output, path) in &wanted.tables {
+            write(path, &S::table(output, &self.recording, settings, &trace))?;
+        }
+        if let Some(path) = &wanted.mcap {
+            mcap::write(path, &S::streams(&self.recording, settings, &trace))?;
+        }
+        Ok(account)
+    }
+
+    fn answer(&self, settings: &Settings) -> Result<Answer, Error> {
+        let trace = self.trace(settings, Detail::Every)?;
+        let Account { facts, warnings, .. } = S::account(&self.recording, settings, &trace)?;
+        let disabled = settings.table().iter().filter_map(|setting| {
+            let idle = self.idle(settings, setting.name)?;
+            Some((setting.name, idle.reason().to_owned()))
+        });
+        let command = ["host-sim", "replay", S::NAME].map(str::to_owned).into_iter();
+        let command = command.chain(self.source.arguments()).chain(settings.arguments());
+        let mut answer = Answer {
+            facts,
+            warnings,
+            figures: Vec::new(),
+            disabled: disabled.collect(),
+            command: text::command_line(command),
+            firmware: S::firmware(Some(&self.recording), settings),
+        };
+        S::figures(&self.recording, settings, &trace, &mut answer)?;
+        Ok(answer)
+    }
+}
+
+fn write(path: &std::path::Path, Table { header, rows }: &Table) -> Result<(), Error> {
+    output::write_file(path, |file| {
+        let mut table = csv::Writer::from_writer(file);
+        table.write_record(header)?;
+        rows.iter().try_for_each(|row| table.write_record(row))?;
+        table.flush()
+    })
+}

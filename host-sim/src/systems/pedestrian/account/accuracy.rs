@@ -1,0 +1,133 @@
+//! A tracked walk against the truth.
+
+use serde::Serialize;
+
+use crate::metrics::{aligned_errors, polyline_length, relative_error_percent, rms};
+use crate::systems::pedestrian::recording::position::{TrackPoint, position_at};
+use crate::systems::pedestrian::recording::truth::Footprint;
+use crate::systems::pedestrian::track::Walk;
+
+/// How far a walk is from the truth: horizontally, after a least-squares yaw alignment about the
+/// start.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// Root mean square distance over all true positions, the start included, m.
+    pub rmse_m: f64,
+    /// Distance at the last true position, m.
+    pub final_error_m: f64,
+    /// The same in percent of the true path length; none if truth stood still.
+    pub final_error_percent: Option<f64>,
+    /// Error of the stance-to-stance path length in percent of the true one; positive is too long;
+    /// none if truth stood still.
+    pub path_length_error_percent: Option<f64>,
+}
+
+impl Accuracy {
+    /// Names and values for people.
+    pub fn in_words(&self) -> [(&'static str, String); 4] {
+        let percent = |value: Option<f64>| match value {
+            Some(value) => format!("{value:+.2} %"),
+            None => "—".to_owned(),
+        };
+        [
+            ("RMSE", format!("{:.3} m", self.rmse_m)),
+            ("error at the end", format!("{:.3} m", self.final_error_m)),
+            ("  of the path", percent(self.final_error_percent)),
+            ("path length error", percent(self.path_length_error_percent)),
+        ]
+    }
+}
+
+/// Compares with measured footprints: positions at their times, the path length with the line
+/// through them.
+pub fn against_footprints(walk: &Walk, footprints: &[Footprint]) -> Accuracy {
+    let truth: Vec<_> = footprints.iter().map(|footprint| footprint.position).collect();
+    let times = footprints.iter().map(|footprint| footprint.time_us);
+    let ours = horizontal_at(&walk.track, times);
+    compare(&ours, &truth, walk.path_length_m, polyline_length(&truth))
+}
+
+/// Compares with a truth that is known at every sample.
+///
+/// The sensor's true arc is longer than the way walked, so the true path length is taken from
+/// stance to stance as well: along the true positions at the start and at the ends of our own
+/// strides. Strides that the tracker missed therefore shorten both.
+pub fn against_truth(walk: &Walk, truth: &[TrackPoint]) -> Accuracy {
+    let start = truth.first().map(|point| point.time_us);
+    let stances = start.into_iter().chain(walk.strides.iter().map(|stride| stride.time_us));
+    let true_length_m = polyline_length(&horizontal_at(truth, stances));
+    let ours = horizontal_at(&walk.track, truth.iter().map(|point| point.time_us));
+    let truth: Vec<_> = truth.iter().map(TrackPoint::horizontal).collect();
+    compare(&ours, &truth, walk.path_length_m, true_length_m)
+}
+
+fn horizontal_at(track: &[TrackPoint], times_us: impl Iterator<Item = u64>) -> Vec<[f64; 2]> {
+    times_us.filter_map(|time| position_at(track, time)).map(|[x, y, _]| [x, y]).collect()
+}
+
+fn compare(ours: &[[f64; 2]], truth: &[[f64; 2]], length_m: f64, true_length_m: f64) -> Accuracy {
+    let errors = aligned_errors(ours, truth);
+    let final_error_m = errors.last().copied().unwrap_or_default();
+    Accuracy {
+        rmse_m: rms(&errors),
+        final_error_m,
+        final_error_percent: (true_length_m > 0.0).then(|| 100.0 * final_error_m / true_length_m),
+        path_length_error_percent: relative_error_percent(length_m, true_length_m),
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these values are exact")]
+mod tests {
+    use super::*;
+    use crate::systems::pedestrian::track::Stride;
+
+    /// A walk straight ahead along y, 1 m a second, one stride a second, `stretch` times too long.
+    fn straight(stretch: f64) -> Walk {
+        let position = |i: u64| [0.0, i as f64 * stretch, 0.0];
+        let stride = |i| Stride {
+            time_us: i * 1_000_000,
+            position: position(i),
+            length_m: stretch,
+            duration_s: 1.0,
+            heading_change_rad: 0.0,
+        };
+        Walk {
+            track: (0..=4)
+                .map(|i| TrackPoint { time_us: i * 1_000_000, position: position(i) })
+                .collect(),
+            strides: (1..=4).map(stride).collect(),
+            path_length_m: 4.0 * stretch,
+            closure_m: 4.0 * stretch,
+            warnings: vec![],
+        }
+    }
+
+    #[test]
+    fn footprints_in_another_frame_show_only_the_stretch() {
+        let footprint =
+            |i: u64| Footprint { time_us: i * 1_000_000, position: [5.0 - i as f64, 7.0] };
+        let footprints: Vec<_> = (0..=4).map(footprint).collect();
+        let accuracy = against_footprints(&straight(1.1), &footprints);
+        assert!((accuracy.final_error_m - 0.4).abs() < 1e-12);
+        assert!((accuracy.final_error_percent.unwrap() - 10.0).abs() < 1e-9);
+        assert!((accuracy.path_length_error_percent.unwrap() - 10.0).abs() < 1e-9);
+        assert!((accuracy.rmse_m - (0.30_f64 / 5.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn continuous_truth_is_measured_from_stance_to_stance() {
+        let truth = straight(1.0).track;
+        let accuracy = against_truth(&straight(0.9), &truth);
+        assert!((accuracy.path_length_error_percent.unwrap() + 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_truth_that_stands_still_gives_no_percentages() {
+        let truth: Vec<_> =
+            straight(1.0).track.iter().map(|p| TrackPoint { position: [0.0; 3], ..*p }).collect();
+        let accuracy = against_truth(&straight(1.0), &truth);
+        assert_eq!(accuracy.final_error_percent, None);
+        assert_eq!(accuracy.final_error_m, 4.0);
+    }
+}

@@ -1,0 +1,103 @@
+//! A walk, followed as firmware follows it.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use kestirim_pedestrian::detector::StanceDetector;
+use kestirim_pedestrian::{Ekf, Estimate, Lite, Navigator, Tracker};
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_telemetry::{Imu, Message};
+
+use super::Sample;
+use super::account::warning;
+use super::settings::{Options, TrackerKind};
+use super::track::{WithDetector, config, double, imu_sample, with_detector};
+use crate::Error;
+use crate::system::{Online, Outcome, Plan, ScalarKind};
+
+/// What is known beforehand.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Walking {
+    pub(super) options: Options,
+}
+
+impl Plan for Walking {
+    fn build(&self) -> Result<Box<dyn Online>, Error> {
+        Ok(match self.options.scalar {
+            ScalarKind::F32 => self.with_scalar::<f32>(),
+            ScalarKind::F64 => self.with_scalar::<f64>(),
+            ScalarKind::Fixed => self.with_scalar::<Q12_20>(),
+        })
+    }
+}
+
+impl Walking {
+    fn with_scalar<T: Scalar + 'static>(&self) -> Box<dyn Online> {
+        let options = &self.options;
+        match options.tracker {
+            TrackerKind::Lite => with_detector(options, Built::<Lite<T>>(options, PhantomData)),
+            TrackerKind::Ekf => with_detector(options, Built::<Ekf<T>>(options, PhantomData)),
+        }
+    }
+}
+
+/// Builds a tracker around a detector.
+struct Built<'a, N>(&'a Options, PhantomData<N>);
+
+impl<T: Scalar + 'static, N: Navigator<T> + Debug + 'static> WithDetector<T> for Built<'_, N> {
+    type Output = Box<dyn Online>;
+
+    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Box<dyn Online> {
+        let tracker = Tracker::<T, N, D>::with_detector(config(self.0), detector);
+        Box::new(Walker { tracker, last: None, strides: 0 })
+    }
+}
+
+/// A causal tracker.
+#[derive(Debug)]
+struct Walker<T: Scalar, N, D> {
+    tracker: Tracker<T, N, D>,
+    last: Option<Estimate<T>>,
+    strides: u32,
+}
+
+impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online for Walker<T, N, D> {
+    fn take(&mut self, message: &Message) -> Outcome {
+        let Message::Imu(Imu { time_us, specific_force, angular_rate }) = *message else {
+            return Outcome::NotMine;
+        };
+        let [specific_force, angular_rate] =
+            [specific_force, angular_rate].map(|axes| axes.map(f64::from));
+        let sample = imu_sample(&Sample { time_us, specific_force, angular_rate });
+        let Ok(estimate) = self.tracker.update(&sample) else { return Outcome::Refused };
+        self.strides += u32::from(estimate.stride.is_some());
+        self.last = Some(estimate);
+        Outcome::Taken
+    }
+
+    fn finish(&mut self) {
+        self.strides += u32::from(self.tracker.finish().is_some());
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        self.last.as_ref().map(|estimate| double(&estimate.position))
+    }
+
+    fn is_still(&self) -> bool {
+        self.last.as_ref().is_some_and(|estimate| estimate.stance)
+    }
+
+    fn path_length_m(&self) -> Option<f64> {
+        Some(self.tracker.path_length().to_f64())
+    }
+
+    fn facts(&self) -> Vec<(String, String)> {
+        let length = format!("{:.2} m", self.tracker.path_length().to_f64());
+        vec![("path length".to_owned(), length), ("strides".to_owned(), self.strides.to_string())]
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        // Whether a foot ever stood is not known before it did.
+        if self.last.is_some() { warning::sentences(self.tracker.warnings()) } else { Vec::new() }
+    }
+}

@@ -1,0 +1,192 @@
+//! `host-sim run pedestrian`: the paper's experiment on synthetic walks.
+//!
+//! Each walk is rendered to a log file in the paper's format, with the rounding that comes with
+//! it, read back and tracked twice: by the method of the paper and by ours. The same walks with
+//! the same sensors are logged at both rates, so that the rate is the only difference.
+
+use std::fmt;
+
+use indicatif::ParallelProgressIterator;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::published::{FIFTY_HZ, HUNDRED_HZ, PathLengths, ROUTE_M};
+use crate::metrics::{mean, median, standard_deviation};
+use crate::system::choose_scalar;
+use crate::system::{RunOptions, ScalarKind};
+use crate::systems::pedestrian::account::accuracy::{Accuracy, against_footprints};
+use crate::systems::pedestrian::recording::{Recording, Walked};
+use crate::systems::pedestrian::settings::{Options, SCALARS};
+use crate::systems::pedestrian::track::{RunError, walk};
+use crate::{Error, output};
+
+/// Walks at each rate in the paper.
+pub(super) const WALKS: u64 = 7;
+/// Repetitions of all walks that take a few seconds.
+const DEFAULT_TRIALS: u32 = 20;
+const RATES: [(u32, PathLengths); 2] = [(50, FIFTY_HZ), (100, HUNDRED_HZ)];
+
+/// Result of the experiment.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    system: &'static str,
+    pub(super) seed: u64,
+    pub(super) trials: u32,
+    pub(super) scalar: ScalarKind,
+    route_m: f64,
+    pub(super) rows: Vec<Row>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Row {
+    pub(super) rate_hz: u32,
+    pub(super) published: PathLengths,
+    pub(super) paper_method: Summary,
+    pub(super) ours: Summary,
+    /// No bound on the error is known for this sensor and route.
+    limit: Option<f64>,
+}
+
+/// What all walks at one rate have in common.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Summary {
+    walks: usize,
+    pub(super) mean_relative_error_percent: f64,
+    worst_relative_error_percent: f64,
+    /// Standard deviation of the path length, m.
+    pub(super) sigma_m: f64,
+    pub(super) median_rmse_m: f64,
+    pub(super) median_final_error_m: f64,
+    /// Length of every path, m, in the order of the walks; the chapter's.
+    #[serde(skip)]
+    pub(super) lengths_m: Vec<f64>,
+}
+
+/// One walk as tracked.
+struct Outcome {
+    path_length_m: f64,
+    accuracy: Accuracy,
+}
+
+/// Runs the experiment; the same options give the same report at any number of threads.
+///
+/// # Errors
+/// [`Error::Usage`] for a number type that the tracker is not built for.
+pub fn run(options: RunOptions) -> Result<Report, Error> {
+    let default = Options::default();
+    let scalar = choose_scalar("pedestrian", options.scalar, &SCALARS, default.scalar)?;
+    let trials = options.trials.unwrap_or(DEFAULT_TRIALS);
+    let methods = [Options { scalar, ..Options::published() }, Options { scalar, ..default }];
+    let walks = u64::from(trials) * WALKS;
+    let progress = output::progress(walks * RATES.len() as u64, "walks");
+    let row = |(rate_hz, published): (u32, PathLengths)| {
+        let outcomes = (0..walks)
+            .into_par_iter()
+            .progress_with(progress.clone())
+            .map(|index| track(options.seed, index, f64::from(rate_hz), &methods))
+            .collect::<Result<Vec<_>, Error>>()?;
+        let summary = |method: usize| {
+            Summary::of(&outcomes.iter().map(|pair| &pair[method]).collect::<Vec<_>>())
+        };
+        Ok(Row { rate_hz, published, paper_method: summary(0), ours: summary(1), limit: None })
+    };
+    let rows = RATES.into_iter().map(row).collect::<Result<_, Error>>();
+    progress.finish_and_clear();
+    Ok(Report {
+        system: "pedestrian",
+        seed: options.seed,
+        trials,
+        scalar,
+        route_m: ROUTE_M,
+        rows: rows?,
+    })
+}
+
+/// Walks once, logs it, and tracks the log by each method.
+fn track(
+    seed: u64,
+    index: u64,
+    rate_hz: f64,
+    methods: &[Options; 2],
+) -> Result<[Outcome; 2], Error> {
+    let recording = Recording::synthetic(Walked::Route, rate_hz, seed, index)?;
+    let outcome = |options| {
+        let walk = walk(&recording.log.samples, options).map_err(|error| refused(index, &error))?;
+        let accuracy = against_footprints(&walk, &recording.footprints);
+        Ok(Outcome { path_length_m: walk.path_length_m, accuracy })
+    };
+    let [paper, ours] = methods;
+    Ok([outcome(paper)?, outcome(ours)?])
+}
+
+/// A complaint that the tracker refuses a synthetic walk.
+pub(super) fn refused(index: u64, error: &RunError) -> Error {
+    Error::Usage(format!("synthetic walk {index}: {error}"))
+}
+
+impl Summary {
+    fn of(outcomes: &[&Outcome]) -> Self {
+        let all = |value: fn(&Outcome) -> f64| {
+            outcomes.iter().map(|outcome| value(outcome)).collect::<Vec<_>>()
+        };
+        let lengths_m = all(|outcome| outcome.path_length_m);
+        let errors: Vec<_> = lengths_m.iter().copied().map(error_percent).collect();
+        Self {
+            walks: lengths_m.len(),
+            mean_relative_error_percent: mean(&errors),
+            worst_relative_error_percent: errors.iter().copied().fold(0.0, f64::max),
+            sigma_m: standard_deviation(&lengths_m),
+            median_rmse_m: median(&all(|outcome| outcome.accuracy.rmse_m)),
+            median_final_error_m: median(&all(|outcome| outcome.accuracy.final_error_m)),
+            lengths_m,
+        }
+    }
+}
+
+/// Error of a path's length on the route, %, without its sign.
+pub(super) fn error_percent(length_m: f64) -> f64 {
+    100.0 * (length_m / ROUTE_M - 1.0).abs()
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { seed, trials, route_m, .. } = self;
+        writeln!(
+            f,
+            "pedestrian: error of the path length on a route of {route_m:.2} m\n\
+             {trials} × {WALKS} synthetic walks, seed {seed}"
+        )?;
+        let cell = |error: f64, sigma_m: f64| format!("{error:.2} %, σ {:.1} cm", 100.0 * sigma_m);
+        let tracked = |summary: &Summary| {
+            let error = cell(summary.mean_relative_error_percent, summary.sigma_m);
+            format!("{error}\nend off by {:.2} m", summary.median_final_error_m)
+        };
+        let mut table = output::table();
+        table.set_header(["rate", "published", "paper's method", "ours", "limit"]);
+        for row in &self.rows {
+            let published = row.published;
+            table.add_row([
+                format!("{} Hz", row.rate_hz),
+                cell(published.mean_relative_error_percent, published.sigma_m),
+                tracked(&row.paper_method),
+                tracked(&row.ours),
+                row.limit.map_or_else(|| "—".to_owned(), |limit| format!("{limit:.2} %")),
+            ]);
+        }
+        table.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_seed_gives_the_same_report_at_any_number_of_threads() {
+        let options = RunOptions { trials: Some(1), seed: 3, scalar: None };
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let report = run(options).unwrap();
+        assert_eq!(report, alone.install(|| run(options)).unwrap());
+        assert_ne!(report, run(RunOptions { seed: 4, ..options }).unwrap());
+    }
+}

@@ -1,0 +1,106 @@
+//! Measured footprints: where the foot stood, and when.
+
+use std::path::Path;
+
+use super::log::{Log, microseconds};
+use crate::Error;
+use crate::text::{Header, TextFile};
+
+/// How far beyond the ends of a log a footprint may lie, µs: a log that was averaged or rewritten
+/// in milliseconds ends a few samples early, while the foot stands.
+const SLACK_US: u64 = 100_000;
+
+/// Farther than any ruler reaches, m.
+const FARTHEST_POSITION: f64 = 1e8;
+
+/// Where the foot stood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Footprint {
+    /// Time of the log's clock, µs.
+    pub time_us: u64,
+    /// Horizontal position, m, in any right-handed frame with z up.
+    pub position: [f64; 2],
+}
+
+/// Reads footprints: CSV with columns `t,x,y` (s, m); others, such as `sample_index`, are ignored.
+/// They are joined to the log by `t`.
+///
+/// # Errors
+/// The file, the line, and what was expected there; also if `t` lies beyond the `log`, which then
+/// belongs to another walk.
+pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
+    parse(&TextFile::read(path)?, log)
+}
+
+fn parse(file: &TextFile, log: &Log) -> Result<Vec<Footprint>, Error> {
+    let mut lines = file.lines();
+    let Some(first) = lines.next() else {
+        return Err(file.error("expected footprints, found an empty file"));
+    };
+    let header = Header::new(first);
+    let columns = header.require(["t", "x", "y"])?;
+    let mut footprints: Vec<Footprint> = Vec::new();
+    for line in lines {
+        let fields = header.fields(&line)?;
+        let t = line.number("t", fields[columns[0]])?;
+        let position =
+            [line.number("x", fields[columns[1]])?, line.number("y", fields[columns[2]])?];
+        if position.iter().any(|value| value.abs() > FARTHEST_POSITION) {
+            return Err(line.error("expected a position in metres, found one beyond the earth"));
+        }
+        let time_us = microseconds(t);
+        let logged = log.start_us().saturating_sub(SLACK_US)..=log.end_us() + SLACK_US;
+        if t < 0.0 || !logged.contains(&time_us) {
+            let (start, end) = (log.start_us() as f64 * 1e-6, log.end_us() as f64 * 1e-6);
+            return Err(line.error(format!(
+                "expected a time within the log, {start:.3} to {end:.3} s, found {t:.3} s"
+            )));
+        }
+        if footprints.last().is_some_and(|last| time_us < last.time_us) {
+            return Err(line
+                .error("expected a time not before that of the line above, found an earlier one"));
+        }
+        footprints.push(Footprint { time_us, position });
+    }
+    if footprints.len() < 2 {
+        return Err(file.error("expected at least two footprints"));
+    }
+    Ok(footprints)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::systems::pedestrian::Sample;
+
+    fn read(text: &str) -> Result<Vec<Footprint>, String> {
+        let still =
+            |time_us| Sample { time_us, specific_force: [0.0, 0.0, 9.8], angular_rate: [0.0; 3] };
+        let log = Log { samples: vec![still(0), still(2_000_000)], ..Log::default() };
+        let file = TextFile::from_bytes(Path::new("feet"), text.as_bytes().to_vec());
+        file.and_then(|file| parse(&file, &log)).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn footprints_are_read() {
+        let footprints = read("sample_index,t,x,y\n0,0.5,1,2\n9,2.05,3,4\n").unwrap();
+        assert_eq!(footprints[1], Footprint { time_us: 2_050_000, position: [3.0, 4.0] });
+    }
+
+    #[test]
+    fn broken_footprints_are_located() {
+        for (text, expected) in [
+            ("", "found an empty file"),
+            ("t,x\n", "line 1: expected a header with a column y"),
+            ("t,x,y\n0,0,0\n", "at least two footprints"),
+            ("t,x,y\n0,0,0\n3,0,0\n", "line 3: expected a time within the log, 0.000 to 2.000 s"),
+            ("t,x,y\n-1,0,0\n", "line 2: expected a time within the log"),
+            ("t,x,y\n1,0,0\n0,0,0\n", "line 3: expected a time not before"),
+            ("t,x,y\n1,0,zero\n", "line 2: expected a finite number in column y"),
+            ("t,x,y\n1,0,1e9\n", "line 2: expected a position in metres"),
+        ] {
+            let complaint = read(text).unwrap_err();
+            assert!(complaint.contains(expected), "{complaint} / {expected}");
+        }
+    }
+}
