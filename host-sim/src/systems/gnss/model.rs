@@ -6,18 +6,6 @@ use nalgebra::Vector3;
 
 use crate::Error;
 
-impl From<files::Error> for Error {
-    fn from(error: files::Error) -> Self {
-        match error {
-            files::Error::Read { path, source } => Self::Read { path, source },
-            files::Error::File { path, problem } => Self::File { path, problem },
-            files::Error::Line { path, line, problem } => Self::Line { path, line, problem },
-            // The readers may come to have other errors, each of them a whole sentence.
-            other => Self::Usage(other.to_string()),
-        }
-    }
-}
-
 /// Observations of one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Epoch {
@@ -27,6 +15,17 @@ pub struct Epoch {
     pub power_failure: bool,
     /// The satellites, each once.
     pub satellites: Vec<Observed>,
+}
+
+/// An error of a reader, in the same words.
+pub fn error(error: files::Error) -> Error {
+    match error {
+        files::Error::Read { path, source } => Error::Read { path, source },
+        files::Error::File { path, problem } => Error::File { path, problem },
+        files::Error::Line { path, line, problem } => Error::Line { path, line, problem },
+        // The readers may come to have other errors, each of them a whole sentence.
+        other => Error::Usage(other.to_string()),
+    }
 }
 
 /// An epoch of a file.

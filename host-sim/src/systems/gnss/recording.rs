@@ -7,7 +7,7 @@ use kestirim_gnss_files::{
 };
 use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
 
-use super::model::{self, Epoch, patterns};
+use super::model::{self, Epoch, error, patterns};
 use super::products::Products;
 use super::sky::{Day, MIDNIGHT, UTC_MINUS_GPS};
 use crate::Error;
@@ -59,12 +59,14 @@ impl Recording {
             || Observations::read(files.observations),
             || rayon::join(|| Orbits::read(files.orbits), clocks),
         );
-        let (observations, orbits, clocks) = (observations?, orbits?, clocks?);
-        let antennas = Antennas::read(files.antennas, &observations.antenna)?;
+        let observations = observations.map_err(error)?;
+        let (orbits, clocks) = (orbits.map_err(error)?, clocks.map_err(error)?);
+        let antennas = Antennas::read(files.antennas, &observations.antenna).map_err(error)?;
         let loading = match files.ocean_loading {
             Some(path) => {
                 let place = observations.approximate_position;
-                Some(StationLoading::read(path, &observations.marker, place)?)
+                let loading = StationLoading::read(path, &observations.marker, place);
+                Some(loading.map_err(error)?)
             }
             None => None,
         };
