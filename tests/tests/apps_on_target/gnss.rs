@@ -1,16 +1,10 @@
 //! The receiver of carrier phases: a u-blox module and a modem with products on serial ports, the station's place as
 //! telemetry.
 
-use std::path::Path;
-
 use anyhow::{Result, bail, ensure};
 use gnss_app::{STATES, site};
-use host_sim::systems::gnss::files::antex::Antennas;
-use host_sim::systems::gnss::files::lines::Text;
-use host_sim::systems::gnss::files::rinex_clock::Clocks;
-use host_sim::systems::gnss::files::rinex_obs;
-use host_sim::systems::gnss::files::sp3::Orbits;
 use host_sim::systems::gnss::products::Products;
+use kestirim_gnss_files::{self as files, Antennas, Clocks, Orbits, Text};
 use kestirim_ppp_filter::{PppFilter, Sighting, Slipped, Solution};
 use kestirim_telemetry::{GlobalPosition, Message};
 use kestirim_tests::ppp::{OUTLIERS, START, station};
@@ -29,14 +23,15 @@ const CLOSE: f64 = 2.5;
 
 /// What the host's own readers and filter make of the same files and observations.
 fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
-    let text = |text: String| Text::unpack(Path::new("file"), text.into_bytes());
+    let text = |text: String| Text::unpack("file", text.into_bytes());
     let orbits = Orbits::parse(&[text(orbits())?])?;
     let clocks = Clocks::parse(&[text(clocks(epochs.len()))?])?;
-    let products = Products::new(START, &orbits, Some(&clocks), &Antennas::default());
+    let start = files::GpsTime::new(START.day(), START.second());
+    let products = Products::new(start, &orbits, Some(&clocks), &Antennas::default());
     let mut filter = PppFilter::new(site::config());
     let solve = |epoch: &Observed| {
         let sighting = |sighting: &Sighting<'_>| {
-            let observed = rinex_obs::Observed {
+            let observed = files::Observed {
                 prn: sighting.satellite,
                 code: sighting.code.map(Some),
                 phase: sighting.phase.map(Some),

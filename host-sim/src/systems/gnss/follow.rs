@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::accuracy::Fix;
-use super::files::rinex_obs::Epoch;
+use super::model::Epoch;
 use super::options::STATES;
 use super::outage::{Outage, Outages, Unused};
 use super::products::Unusable;

@@ -1,8 +1,8 @@
 //! GNSS receivers at a fixed or moving place.
 //!
 //! `sky` makes observations, and `experiment` repeats the paper's tables on them.
-//! `files` reads observations and what services tell of satellites; `products` and `recording` put together what
-//! a filter needs. `follow` feeds one and counts what becomes of the observations, `accuracy` compares with the
+//! `kestirim-gnss-files` reads the files, and `model` gives what they hold the types of the observation model;
+//! `products` and `recording` put together what a filter needs. `follow` feeds one and counts what becomes of the observations, `accuracy` compares with the
 //! truth; `session` runs one filter or all for a [replay](replay::Replay) and for the `explorer`. `chapter` is the
 //! system's part of the report; `figures` and `streams` show what a filter made of a recording.
 //!
@@ -15,8 +15,8 @@ pub mod comparison;
 pub mod experiment;
 pub mod explorer;
 pub mod figures;
-pub mod files;
 pub mod follow;
+pub mod model;
 pub mod options;
 pub mod outage;
 pub mod parts;

@@ -1,14 +1,11 @@
 //! Precise products as the filter wants them: a satellite's orbit, clock and antenna at an instant.
 
+use kestirim_gnss_files::{self as files, Antenna, Antennas, Clocks, Observed, Orbits};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Pattern, SatelliteState};
+use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
 use kestirim_ppp_filter::Sighting;
-use nalgebra::Vector3;
 
-use super::files::antex::{Antenna, Antennas};
-use super::files::rinex_clock::Clocks;
-use super::files::rinex_obs::Observed;
-use super::files::sp3::Orbits;
+use super::model::{clock_sample, orbit_sample, patterns};
 
 /// Clocks are bridged over the interval of the coarsest products, s.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
@@ -47,7 +44,7 @@ impl Products {
     /// Products for observations that begin at `start`: clocks from `clocks` if there are any, from
     /// the orbit files otherwise.
     pub fn new(
-        start: GpsTime,
+        start: files::GpsTime,
         orbits: &Orbits,
         clocks: Option<&Clocks>,
         antennas: &Antennas,
@@ -57,25 +54,17 @@ impl Products {
             // A sample of a manoeuvre or of a jumping clock belongs to neither side.
             let samples = orbits.satellite(prn);
             let steady = samples.iter().filter(|sample| !sample.manoeuvre);
-            let orbit = steady.map(|sample| {
-                OrbitSample::from_ecef(reference, sample.time, &Vector3::from(sample.position))
-            });
+            let orbit = steady.map(|sample| orbit_sample(reference, sample));
             let clock = match clocks {
                 Some(clocks) => clocks
                     .satellite(prn)
                     .iter()
-                    .map(|sample| ClockSample {
-                        second: sample.time.since(reference),
-                        bias: sample.bias,
-                    })
+                    .map(|sample| clock_sample(reference, sample.time, sample.bias))
                     .collect(),
                 None => samples
                     .iter()
                     .filter(|sample| !sample.clock_event)
-                    .filter_map(|sample| {
-                        let second = sample.time.since(reference);
-                        Some(ClockSample { second, bias: sample.clock? })
-                    })
+                    .filter_map(|sample| Some(clock_sample(reference, sample.time, sample.clock?)))
                     .collect(),
             };
             let antenna = antennas.satellite(prn, start).cloned();
@@ -132,13 +121,5 @@ impl Products {
             },
             antenna: satellite.antenna.as_ref().and_then(patterns),
         })
-    }
-}
-
-/// An antenna's phase centres on L1 and L2, if both are known.
-pub fn patterns(antenna: &Antenna) -> Option<[Pattern<'_>; 2]> {
-    match &antenna.frequencies {
-        [Some(first), Some(second)] => Some([first.pattern(), second.pattern()]),
-        _ => None,
     }
 }

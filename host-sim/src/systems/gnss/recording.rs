@@ -2,16 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, Receiver};
+use kestirim_gnss_files::{
+    Antenna, Antennas, Clocks, Observations, Orbits, StationLoading, Warning,
+};
+use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
 
-use super::files::antex::Antennas;
-use super::files::blq::StationLoading;
-use super::files::rinex_clock::Clocks;
-use super::files::rinex_obs::{Epoch, Observations};
-use super::files::sp3::Orbits;
-use super::files::time::leap_seconds;
-use super::products::{Products, patterns};
-use super::sky::{Day, MIDNIGHT};
+use super::model::{self, Epoch, error, patterns};
+use super::products::Products;
+use super::sky::{Day, MIDNIGHT, UTC_MINUS_GPS};
 use crate::Error;
 use crate::text::printable_path;
 
@@ -33,10 +31,15 @@ pub struct Files<'a> {
 /// What a receiver recorded, and all that must be known for a position.
 #[derive(Debug)]
 pub struct Recording {
-    observations: Observations,
+    epochs: Vec<Epoch>,
+    approximate_position: Option<[f64; 3]>,
+    /// The antenna's reference point above, east and north of the marker, m.
+    antenna_delta_hen: [f64; 3],
     products: Products,
-    antennas: Antennas,
-    loading: Option<StationLoading>,
+    antenna: Option<Antenna>,
+    loading: Option<OceanLoading>,
+    /// UTC ahead of GPS time, s.
+    utc_minus_gps: f64,
     /// Midnight before the first epoch.
     pub midnight: GpsTime,
     /// The first and the last time of an orbit, s since the midnight.
@@ -56,12 +59,14 @@ impl Recording {
             || Observations::read(files.observations),
             || rayon::join(|| Orbits::read(files.orbits), clocks),
         );
-        let (mut observations, mut orbits, mut clocks) = (observations?, orbits?, clocks?);
-        let mut antennas = Antennas::read(files.antennas, &observations.antenna)?;
-        let mut loading = match files.ocean_loading {
+        let observations = observations.map_err(error)?;
+        let (orbits, clocks) = (orbits.map_err(error)?, clocks.map_err(error)?);
+        let antennas = Antennas::read(files.antennas, &observations.antenna).map_err(error)?;
+        let loading = match files.ocean_loading {
             Some(path) => {
                 let place = observations.approximate_position;
-                Some(StationLoading::read(path, &observations.marker, place)?)
+                let loading = StationLoading::read(path, &observations.marker, place);
+                Some(loading.map_err(error)?)
             }
             None => None,
         };
@@ -71,14 +76,16 @@ impl Recording {
                 problem: "expected observations of GPS satellites, found none".to_owned(),
             });
         };
-        let mut warnings = std::mem::take(&mut observations.warnings);
-        warnings.append(&mut orbits.warnings);
-        if let Some(clocks) = &mut clocks {
-            warnings.append(&mut clocks.warnings);
+        let mut warnings = Vec::new();
+        let mut warn = |more: &[Warning]| warnings.extend(more.iter().map(Warning::to_string));
+        warn(&observations.warnings);
+        warn(&orbits.warnings);
+        if let Some(clocks) = &clocks {
+            warn(&clocks.warnings);
         }
-        warnings.append(&mut antennas.warnings);
-        match &mut loading {
-            Some(loading) => warnings.append(&mut loading.warnings),
+        warn(&antennas.warnings);
+        match &loading {
+            Some(loading) => warn(&loading.warnings),
             None if corrections.has(Correction::OceanLoading) => warnings.push(
                 "the load of the oceans' tides is not corrected, up to some centimetres (--blq)"
                     .to_owned(),
@@ -100,23 +107,39 @@ impl Recording {
         }
         let times = orbits.satellites().filter_map(|prn| {
             let samples = orbits.satellite(prn);
-            Some([samples.first()?.time, samples.last()?.time].map(|time| time.since(midnight)))
+            let ends = [samples.first()?.time, samples.last()?.time];
+            Some(ends.map(|time| model::time(time).since(midnight)))
         });
         let orbits_span = times
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [first, last]| {
                 [a.min(first), b.max(last)]
             });
         let products = Products::new(start, &orbits, clocks.as_ref(), &antennas);
-        Ok(Self { observations, products, antennas, loading, midnight, orbits_span, warnings })
+        let loading = loading.and_then(|station| station.loading);
+        Ok(Self {
+            epochs: observations.epochs.into_iter().map(model::epoch).collect(),
+            approximate_position: observations.approximate_position,
+            antenna_delta_hen: observations.antenna_delta_hen,
+            products,
+            antenna: antennas.receiver,
+            loading: loading.as_ref().map(model::ocean_loading),
+            utc_minus_gps: -start.leap_seconds(),
+            midnight,
+            orbits_span,
+            warnings,
+        })
     }
 
     /// A synthetic day: antennas are points, and oceans have no tides.
     pub fn of_day(day: Day) -> Self {
         Self {
-            observations: Observations { epochs: day.epochs, ..Observations::default() },
+            epochs: day.epochs,
+            approximate_position: None,
+            antenna_delta_hen: [0.0; 3],
             products: day.products,
-            antennas: Antennas::default(),
+            antenna: None,
             loading: None,
+            utc_minus_gps: UTC_MINUS_GPS,
             midnight: MIDNIGHT,
             orbits_span: [f64::NEG_INFINITY, f64::INFINITY],
             warnings: Vec::new(),
@@ -127,8 +150,7 @@ impl Recording {
     pub fn epochs(&self, until: Option<f64>) -> &[Epoch] {
         // A receiver's clock is some milliseconds off at most.
         let last = until.map_or(f64::INFINITY, |until| until + 1e-2);
-        let epochs = &self.observations.epochs;
-        &epochs[..epochs.partition_point(|epoch| self.seconds(epoch) <= last)]
+        &self.epochs[..self.epochs.partition_point(|epoch| self.seconds(epoch) <= last)]
     }
 
     /// Seconds since the midnight before the first epoch.
@@ -138,7 +160,7 @@ impl Recording {
 
     /// Where the file says that the marker is, ECEF, m.
     pub const fn approximate_position(&self) -> Option<[f64; 3]> {
-        self.observations.approximate_position
+        self.approximate_position
     }
 
     /// Orbits, clocks and antennas of satellites.
@@ -148,12 +170,12 @@ impl Recording {
 
     /// What is known of the receiver, of which some `corrections` are applied.
     pub fn receiver(&self, corrections: Corrections) -> Receiver<'_> {
-        let [up, east, north] = self.observations.antenna_delta_hen;
+        let [up, east, north] = self.antenna_delta_hen;
         Receiver {
-            antenna: self.antennas.receiver.as_ref().and_then(patterns),
+            antenna: self.antenna.as_ref().and_then(patterns),
             eccentricity: [east, north, up],
-            ocean_loading: self.loading.as_ref().and_then(|station| station.loading.as_ref()),
-            ut1_minus_gps: -leap_seconds(self.observations.epochs[0].time),
+            ocean_loading: self.loading.as_ref(),
+            ut1_minus_gps: self.utc_minus_gps,
             corrections,
         }
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use kestirim_ppp_filter::Motion;
 use nalgebra::Vector3;
 
-use super::files::rinex_obs::Epoch;
+use super::model::Epoch;
 use super::options::{self, Choice, Mode, PROCESS_NOISE, Setup, mask, place, process_noise, time};
 use super::parts::{Part, all_but};
 use super::recording::{Files, Recording};

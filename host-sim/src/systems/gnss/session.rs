@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use super::accounts::{Circumstances, Report};
 use super::comparison::Comparison;
-use super::files::rinex_obs::Epoch;
 use super::follow::{Followed, Tally, follow};
+use super::model::Epoch;
 use super::options::{FilterKind, Mode, Setup};
 use super::recording::{Recording, names};
 use crate::metrics::median;

@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::{Direction, FREQUENCY, Geodetic, Troposphere};
 use rand_core::Rng;
 
 use super::noise::Wander;
-use super::{INTERVAL_S, MIDNIGHT};
+use super::times::{INTERVAL_S, MIDNIGHT};
 use crate::random::{normal, uniform};
 
 /// How fast the zenith wet delay walks, m/√s: 4 mm in an hour.

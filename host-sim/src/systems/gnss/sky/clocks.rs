@@ -3,8 +3,7 @@
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use rand_core::Rng;
 
-use super::products::{LAST, SAMPLES};
-use super::{EPOCHS, INTERVAL_S};
+use super::times::{EPOCHS, INTERVAL_S, LAST, SAMPLES};
 use crate::random::{normal, uniform};
 
 /// How fast the clocks of satellites walk, m/√s: from the newest to the oldest rubidium.

@@ -1,10 +1,11 @@
 //! What goes wrong beyond noise.
 
+use kestirim_gnss_files::Observed;
 use kestirim_gnss_ppp::WAVELENGTH;
 use rand_core::Rng;
 
 use crate::random::uniform;
-use crate::systems::gnss::files::rinex_obs::{Epoch, Observed};
+use crate::systems::gnss::model::Epoch;
 
 /// How often what goes wrong. Errors are equal on both carriers unless said otherwise: differences between them
 /// would give them away.

@@ -1,7 +1,7 @@
 //! A synthetic sky: what a receiver at a known place observes in a day, and the products of that day.
 //!
 //! `constellation` has the orbits, `clocks` those of the satellites and of the receiver, `products` what a service
-//! knows of both, `atmosphere` what delays the signals, `noise` and `faults` what disturbs them; `receiver` puts
+//! knows of both, both at the `times` of a day, `atmosphere` what delays the signals, `noise` and `faults` what disturbs them; `receiver` puts
 //! the observations together, and `score` says how good a solution is.
 //!
 //! The observations come from a forward model of their own: Kepler's orbits, the light's way in the frame that does
@@ -19,25 +19,17 @@ mod noise;
 mod products;
 mod receiver;
 pub mod score;
+mod times;
 
-use kestirim_gnss_ppp::GpsTime;
 use nalgebra::Vector3;
 
 pub use self::faults::Rates;
 use self::products::Services;
 use self::receiver::Station;
-use super::files::rinex_obs::Epoch;
+pub use self::times::{EPOCHS, INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
+use super::model::Epoch;
 use super::products::Products;
 use crate::random::stream;
-
-/// Time between epochs and between samples of the satellites' clocks, s.
-pub const INTERVAL_S: f64 = 30.0;
-/// Epochs of a day.
-pub const EPOCHS: u32 = 2880;
-/// UTC ahead of GPS time, s.
-pub const UTC_MINUS_GPS: f64 = -18.0;
-/// The midnight from which all days run: 1 September 2019, the paper's first.
-pub const MIDNIGHT: GpsTime = GpsTime::new_in_day(58_727, 0.0);
 
 /// Streams of randomness of a day: faults have their own, so that the same day can be had without them.
 const STREAMS: u64 = 2;

@@ -2,7 +2,7 @@
 
 use rand_core::Rng;
 
-use super::INTERVAL_S;
+use super::times::INTERVAL_S;
 use crate::random::normal;
 
 /// A number that wanders about zero with unit variance (a Gauss–Markov process), from epoch to epoch.

@@ -10,14 +10,10 @@ use rand_core::Rng;
 use super::clocks::SatelliteClock;
 use super::constellation::Kepler;
 use super::noise::Wander;
-use super::{INTERVAL_S, MIDNIGHT};
+use super::times::{INTERVAL_S, LAST, MIDNIGHT, SAMPLES};
 use crate::random::{normal, uniform};
 use crate::systems::gnss::products::{Products, Satellite};
 
-/// Products begin so many samples of the clocks before midnight, and end as many after the next: two hours.
-pub(super) const LAST: f64 = 240.0;
-/// Samples of a clock.
-pub(super) const SAMPLES: usize = 2880 + 2 * 240 + 1;
 /// Samples of a clock to one of an orbit: 15 minutes.
 const TO_ORBIT: usize = 30;
 /// Errors of a final orbit, m: radially, along the track and across it.

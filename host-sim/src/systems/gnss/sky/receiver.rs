@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use kestirim_gnss_files::Observed;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{
     Bodies, BodyAxes, Direction, FREQUENCY, Geodetic, WAVELENGTH, carried_along, shapiro_delay,
@@ -14,9 +15,9 @@ use super::atmosphere::{Air, Ionosphere, Wave};
 use super::clocks::ReceiverClock;
 use super::noise::{Spread, Wander};
 use super::products::{Services, Spacecraft};
-use super::{INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
+use super::times::{INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
 use crate::random::{normal, uniform};
-use crate::systems::gnss::files::rinex_obs::{Epoch, Observed};
+use crate::systems::gnss::model::Epoch;
 
 /// Lowest elevation at which the receiver tracks, rad.
 const HORIZON: f64 = 0.087;

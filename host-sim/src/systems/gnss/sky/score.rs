@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::INTERVAL_S;
+use super::times::INTERVAL_S;
 
 /// Epochs of the first hour, which does not count among the RMS.
 const FIRST_HOUR: usize = 120;

@@ -5,13 +5,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use super::antex::Antennas;
-use super::blq::StationLoading;
-use super::lines::Text;
-use super::rinex_clock::Clocks;
-use super::rinex_obs::Observations;
-use super::samples;
-use super::sp3::Orbits;
+use crate::{Antennas, Clocks, Observations, Orbits, StationLoading, Text, samples};
 
 /// Reads bytes as every format; each complaint is one line.
 fn read(bytes: Vec<u8>) {

@@ -2,50 +2,48 @@
 
 use std::path::Path;
 
-use kestirim_gnss_ppp::{GpsTime, Pattern};
 use memchr::memmem::Finder;
 
-use super::fields::gps_satellite;
-use super::lines::{Line, Lines, Text};
-use crate::Error;
+use crate::error::{Error, Warning};
+use crate::fields::gps_satellite;
+use crate::text::{Line, Lines, Text};
+use crate::time::GpsTime;
 
 /// Beyond any calibration's grid.
 const MOST_ANGLES: f64 = 400.0;
 
-/// The phase centre of an antenna on one frequency.
+/// The phase centre of an antenna on one frequency: an offset, and a table of variations.
+///
+/// The table has one row of zenith angles (receivers) or nadir angles (satellites) without azimuth and, if the antenna
+/// was calibrated so, one such row for each azimuth.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PhaseCentre {
-    offset: [f64; 3],
-    first: f64,
-    step: f64,
-    mean: Vec<f64>,
-    azimuth_step: f64,
-    by_azimuth: Vec<f64>,
-}
-
-impl PhaseCentre {
-    /// As the observation model takes it.
-    pub fn pattern(&self) -> Pattern<'_> {
-        Pattern {
-            offset: self.offset,
-            first: self.first,
-            step: self.step,
-            mean: &self.mean,
-            azimuth_step: self.azimuth_step,
-            by_azimuth: &self.by_azimuth,
-        }
-    }
+    /// The mean phase centre from the antenna's reference point, m: north, east and up of a receiver's; X, Y and Z of
+    /// the satellite's body, from its centre of mass, of a satellite's.
+    pub offset: [f64; 3],
+    /// The first angle of a row, degrees (`ZEN1`).
+    pub first: f64,
+    /// The step between the angles of a row, degrees (`DZEN`).
+    pub step: f64,
+    /// The variations without azimuth, m (`NOAZI`).
+    pub mean: Vec<f64>,
+    /// The step between the azimuths, degrees (`DAZI`); zero without them.
+    pub azimuth_step: f64,
+    /// The rows of the azimuths from 0° to 360° one after the other, each as long as `mean`, m; or empty.
+    pub by_azimuth: Vec<f64>,
 }
 
 /// An antenna.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antenna {
-    /// Type, and radome of a receiver's, as in the file.
+    /// Its type, and the radome of a receiver's, as in the file.
     pub name: String,
-    /// The phase centres on L1 and L2.
+    /// The phase centres on L1 and L2, where the file has them.
     pub frequencies: [Option<PhaseCentre>; 2],
-    valid_from: Option<GpsTime>,
-    valid_until: Option<GpsTime>,
+    /// The first instant at which a satellite has this antenna; none if it always had.
+    pub valid_from: Option<GpsTime>,
+    /// The last instant at which a satellite has this antenna; none if it still has.
+    pub valid_until: Option<GpsTime>,
 }
 
 impl Antenna {
@@ -59,18 +57,19 @@ impl Antenna {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antennas {
     satellites: Vec<(u8, Antenna)>,
-    /// The receiver's, or the one that comes nearest to it.
+    /// The receiver's, or else the same type without a radome.
     pub receiver: Option<Antenna>,
     /// What a user should know of the file.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Antennas {
-    /// Reads a file for a receiver whose antenna's type and radome stand as in a RINEX header.
+    /// Reads a file for a receiver whose antenna's type and radome stand as in a RINEX header
+    /// ([`Observations::antenna`](crate::Observations::antenna)).
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
-    pub fn read(path: &Path, receiver: &str) -> Result<Self, Error> {
+    /// [`Error`]: the file, the line, what was expected there and what was found.
+    pub fn read(path: impl AsRef<Path>, receiver: &str) -> Result<Self, Error> {
         Self::parse(&Text::read(path)?, receiver)
     }
 
@@ -246,5 +245,4 @@ fn row(line: &Line<'_>, angles: usize, values: &mut Vec<f64>) -> Result<(), Erro
 }
 
 #[cfg(test)]
-#[path = "antex_tests.rs"]
 mod tests;

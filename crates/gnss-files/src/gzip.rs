@@ -1,4 +1,4 @@
-//! Unpacking.
+//! Files read into memory, and gzip unpacked.
 
 use std::fs::File;
 use std::io::{self, BufRead, Read};
@@ -6,16 +6,16 @@ use std::path::Path;
 
 use flate2::bufread::GzDecoder;
 
-use crate::Error;
+use crate::error::Error;
 
 /// No file of any use unpacks to more, bytes.
-pub(super) const LARGEST: usize = 1 << 30;
+pub(crate) const LARGEST: usize = 1 << 30;
 
 /// Reads a file.
 ///
 /// # Errors
 /// [`Error::Read`] if it cannot be read, [`Error::File`] if it is too large.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| {
         bytes.reserve(file.metadata()?.len().min(LARGEST as u64) as usize);
@@ -33,17 +33,17 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 /// [`Error::File`] if it cannot be unpacked.
-pub(super) fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
-    let complaint = |problem: String| Error::File { path: path.to_path_buf(), problem };
+pub(crate) fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
+    let error = |problem: String| Error::File { path: path.to_path_buf(), problem };
     let refused = match &*bytes {
-        [0x1f, 0x8b, ..] => return gunzip(&bytes).map_err(complaint),
+        [0x1f, 0x8b, ..] => return gunzip(&bytes).map_err(error),
         [0x1f, 0x9d, ..] => "compress (.Z): unpack it with gzip -d first",
         [b'P', b'K', 3, 4, ..] => "zip: unpack it first",
         [b'B', b'Z', b'h', ..] => "bzip2: unpack it first",
         [0xfd, b'7', b'z', b'X', b'Z', ..] => "xz: unpack it first",
         _ => return Ok(bytes),
     };
-    Err(complaint(format!("expected plain text or gzip, found a file packed with {refused}")))
+    Err(error(format!("expected plain text or gzip, found a file packed with {refused}")))
 }
 
 /// Unpacks the members of a gzip file, one after the other; what follows them and is none is left out, as

@@ -2,32 +2,44 @@
 
 use std::path::Path;
 
-use kestirim_gnss_ppp::{Geodetic, OceanLoading};
-
-use super::fields::{blank_separated, decimal};
-use super::lines::{Line, Text};
-use crate::Error;
+use crate::error::{Error, Warning};
+use crate::fields::{blank_separated, decimal};
+use crate::text::{Line, Text};
 
 /// Stations no farther apart than this are one place, degrees.
 const SAME_PLACE: f64 = 0.1;
 /// The waves of a line.
 const WAVES: usize = 11;
 
-/// The ocean loading of a station.
+/// The displacement of a station by the load of the ocean's tides: eleven waves
+/// (M2 S2 N2 K2 K1 O1 P1 Q1 Mf Mm Ssa).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OceanLoading {
+    /// Amplitudes, m: radially up, tangentially west, tangentially south.
+    pub amplitude: [[f64; WAVES]; 3],
+    /// Phase lags behind Greenwich, degrees, in the same order.
+    pub lag: [[f64; WAVES]; 3],
+}
+
+/// The ocean loading of a station, looked up in a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StationLoading {
-    /// None if the file does not know the station.
+    /// The loading; none if the file does not know the station.
     pub loading: Option<OceanLoading>,
     /// What a user should know of the file.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl StationLoading {
     /// Looks a station up by the first four letters of its marker's name, or else by its place (ECEF, m).
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
-    pub fn read(path: &Path, marker: &str, position: Option<[f64; 3]>) -> Result<Self, Error> {
+    /// [`Error`]: the file, the line, what was expected there and what was found.
+    pub fn read(
+        path: impl AsRef<Path>,
+        marker: &str,
+        position: Option<[f64; 3]>,
+    ) -> Result<Self, Error> {
         Self::parse(&Text::read(path)?, marker, position)
     }
 
@@ -37,10 +49,7 @@ impl StationLoading {
     /// As [`Self::read`].
     pub fn parse(text: &Text, marker: &str, position: Option<[f64; 3]>) -> Result<Self, Error> {
         let stations = stations(text)?;
-        let place = position.map(|position| {
-            let place = Geodetic::from_ecef(&position.into());
-            [place.longitude.to_degrees(), place.latitude.to_degrees()]
-        });
+        let place = position.map(longitude_latitude);
         let near = |station: &Station| Some(distance(place?, station.place?) < SAME_PLACE);
         let wanted = four_letters(marker.as_bytes());
         let named = |station: &&Station| station.name == wanted && wanted[0] != b' ';
@@ -138,7 +147,16 @@ fn four_letters(name: &[u8]) -> [u8; 4] {
     letters
 }
 
-/// Degrees, on a sphere without its poles.
+/// Geodetic longitude and latitude (WGS 84) of an ECEF position, degrees. The latitude is exact on the ellipsoid, and
+/// 0.001° off at most within 20 km of it: less than matters here.
+fn longitude_latitude([x, y, z]: [f64; 3]) -> [f64; 2] {
+    /// The square of the ellipsoid's first eccentricity.
+    const ECCENTRICITY_SQUARED: f64 = 6.694_379_990_14e-3;
+    let latitude = z.atan2((1.0 - ECCENTRICITY_SQUARED) * x.hypot(y));
+    [y.atan2(x).to_degrees(), latitude.to_degrees()]
+}
+
+/// The distance between two longitudes and latitudes, degrees, on a sphere without its poles.
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let east = (a[0] - b[0] + 540.0).rem_euclid(360.0) - 180.0;
     (east * a[1].to_radians().cos()).hypot(a[1] - b[1])
@@ -146,13 +164,17 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::{loading, text};
     use super::*;
+    use crate::samples::{loading, sentences, text};
 
     fn place(longitude: f64) -> [f64; 3] {
         let (longitude, latitude) = (f64::to_radians(longitude), f64::to_radians(50.0));
-        let place = Geodetic { latitude, longitude, height: 10.0 };
-        place.to_ecef().into()
+        // Radius of curvature in the prime vertical, 10 m above the ellipsoid.
+        let (sine, cosine) = latitude.sin_cos();
+        let normal = 6_378_137.0 / (1.0 - 6.694_379_990_14e-3 * sine * sine).sqrt();
+        let equatorial = (normal + 10.0) * cosine;
+        let up = (normal * (1.0 - 6.694_379_990_14e-3) + 10.0) * sine;
+        [equatorial * longitude.cos(), equatorial * longitude.sin(), up]
     }
 
     #[test]
@@ -161,7 +183,7 @@ mod tests {
             let found = StationLoading::parse(&text(loading()), "here00XXX", place)?;
             let loading = found.loading.expect("it is there");
             assert_eq!((loading.amplitude[2][1], loading.lag[0][10]), (2.01, 3.1));
-            assert_eq!(found.warnings, [""; 0]);
+            assert_eq!(sentences(&found.warnings), [""; 0]);
         }
         Ok(())
     }
@@ -170,7 +192,10 @@ mod tests {
     fn a_station_is_found_by_its_place() -> Result<(), Error> {
         let found = StationLoading::parse(&text(loading()), "ELSE", Some(place(1.0)))?;
         assert!(found.loading.is_some());
-        assert_eq!(found.warnings, ["file: does not know station \"ELSE\": THER is at its place"]);
+        assert_eq!(
+            sentences(&found.warnings),
+            ["file: does not know station \"ELSE\": THER is at its place"]
+        );
         Ok(())
     }
 
@@ -180,7 +205,7 @@ mod tests {
         for (name, place) in names {
             let found = StationLoading::parse(&text(loading()), name, place)?;
             assert_eq!(found.loading, None);
-            assert!(found.warnings[0].ends_with("its ocean loading is left out"));
+            assert!(sentences(&found.warnings)[0].ends_with("its ocean loading is left out"));
         }
         Ok(())
     }

@@ -1,29 +1,27 @@
-use super::super::samples::{antennas, text};
-use super::super::time::from_calendar;
 use super::*;
+use crate::samples::{antennas, sentences, text};
 
 const RECEIVER: &str = "ANT  TYPE       DOME";
 
 #[test]
 fn patterns_are_read_in_metres() -> Result<(), Error> {
     let antennas = Antennas::parse(&text(antennas()), RECEIVER)?;
-    assert_eq!(antennas.warnings, [""; 0]);
+    assert_eq!(sentences(&antennas.warnings), [""; 0]);
     let receiver = antennas.receiver.expect("it is there");
     assert_eq!(receiver.name, RECEIVER);
     let [Some(_), Some(l2)] = &receiver.frequencies else { panic!("two frequencies") };
-    let pattern = l2.pattern();
-    assert_eq!(pattern.offset, [1.5e-3, -2.5e-3, 0.1]);
-    assert_eq!((pattern.first, pattern.step, pattern.azimuth_step), (0.0, 5.0, 180.0));
-    assert_eq!(pattern.mean, [1e-3, 2e-3, -3.25e-3]);
-    assert_eq!(pattern.by_azimuth.len(), 9);
-    assert_eq!(pattern.by_azimuth[3..6], [4e-3, 5e-3, 6e-3]);
+    assert_eq!(l2.offset, [1.5e-3, -2.5e-3, 0.1]);
+    assert_eq!((l2.first, l2.step, l2.azimuth_step), (0.0, 5.0, 180.0));
+    assert_eq!(l2.mean, [1e-3, 2e-3, -3.25e-3]);
+    assert_eq!(l2.by_azimuth.len(), 9);
+    assert_eq!(l2.by_azimuth[3..6], [4e-3, 5e-3, 6e-3]);
     Ok(())
 }
 
 #[test]
 fn satellites_change_their_numbers() -> Result<(), Error> {
     let antennas = Antennas::parse(&text(antennas()), RECEIVER)?;
-    let at = |year| from_calendar([year, 1, 1, 0, 0], 0.0).expect("a day");
+    let at = |year| GpsTime::from_calendar([year, 1, 1, 0, 0], 0.0).expect("a day");
     assert_eq!(antennas.satellite(5, at(2000)), None);
     assert_eq!(
         antennas.satellite(5, at(2010)).and_then(|one| one.valid_until).map(GpsTime::day),
@@ -39,10 +37,13 @@ fn satellites_change_their_numbers() -> Result<(), Error> {
 fn an_unknown_radome_or_antenna_is_told() -> Result<(), Error> {
     let near = Antennas::parse(&text(antennas()), "ANT  TYPE       SNOW")?;
     assert_eq!(near.receiver.expect("one without radome").name, "ANT  TYPE       NONE");
-    assert!(near.warnings[0].contains("\"ANT  TYPE       SNOW\": it is taken without its radome"));
+    assert!(
+        sentences(&near.warnings)[0]
+            .contains("\"ANT  TYPE       SNOW\": it is taken without its radome")
+    );
     let far = Antennas::parse(&text(antennas()), "TIN CAN")?;
     assert_eq!(far.receiver, None);
-    assert!(far.warnings[0].contains("\"TIN CAN\": it is left out"));
+    assert!(sentences(&far.warnings)[0].contains("\"TIN CAN\": it is left out"));
     Ok(())
 }
 

@@ -6,9 +6,9 @@
 mod arcs;
 
 use self::arcs::{Satellite, repair};
-use super::fields::integer;
-use super::lines::{Line, Lines, Text};
-use crate::Error;
+use crate::error::Error;
+use crate::fields::integer;
+use crate::text::{Line, Lines, Text};
 
 /// More satellites or observables than any file has.
 const MOST: usize = 999;
@@ -17,7 +17,7 @@ const MOST: usize = 999;
 const CUT: &[u8] = b"> cut off";
 
 /// Whether a text is compressed so.
-pub(super) fn is_compressed(bytes: &[u8]) -> bool {
+pub(crate) fn is_compressed(bytes: &[u8]) -> bool {
     bytes.get(60..).is_some_and(|label| label.starts_with(b"CRINEX VERS"))
 }
 
@@ -26,7 +26,7 @@ pub(super) fn is_compressed(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// The line of the compressed file, and what was expected there.
-pub(super) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> {
+pub(crate) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> {
     let mut lines = text.lines();
     let mut decoder = Decoder::default();
     if let Some(first) = lines.next() {

@@ -1,8 +1,8 @@
 use std::path::Path;
 
-use super::super::rinex_obs::Observations;
-use super::super::samples::{compressed_2, compressed_3, observations_3, text};
 use super::*;
+use crate::observations::Observations;
+use crate::samples::{compressed_2, compressed_3, observations_3, sentences, text};
 
 fn unpacked(text: &Text) -> Vec<&[u8]> {
     text.lines().map(|line| line.bytes).collect()
@@ -54,7 +54,7 @@ fn a_file_cut_off_keeps_whole_epochs() {
     for cut in [third + 20, third + 51, file.len() - 3, file.len() - 1] {
         let observations = Observations::parse(&text(&file[..cut])).expect("two epochs");
         assert_eq!(observations.epochs.len(), 2, "{cut}");
-        let [warning] = &observations.warnings[..] else { panic!("{:?}", observations.warnings) };
+        let [warning] = &sentences(&observations.warnings)[..] else { panic!("one warning") };
         assert!(warning.contains("cut off"), "{warning}");
     }
 }

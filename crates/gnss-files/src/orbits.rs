@@ -2,28 +2,29 @@
 
 use std::path::Path;
 
-use kestirim_gnss_ppp::GpsTime;
-
-use super::fields::gps_satellite;
-use super::lines::{Line, Text};
-use super::satellites::PerSatellite;
-use crate::Error;
+use crate::error::{Error, Warning};
+use crate::fields::gps_satellite;
+use crate::satellites::PerSatellite;
+use crate::text::{Line, Text};
+use crate::time::GpsTime;
 
 /// What stands for a clock that is not known, µs.
 const NO_CLOCK: f64 = 999_999.0;
 
-/// Where a satellite was, in an earth-fixed frame.
+/// The position of a satellite and its clock at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrbitSample {
-    /// When.
+    /// The instant.
     pub time: GpsTime,
-    /// Centre of mass, m.
+    /// Centre of mass, m, in the file's Earth-fixed frame (ECEF; an ITRF or IGS frame).
     pub position: [f64; 3],
-    /// What the satellite's clock is ahead of GPS time, s, without the relativity of its orbit's eccentricity.
+    /// The satellite's clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity; none if the
+    /// file does not know it.
     pub clock: Option<f64>,
-    /// The clock jumped between the sample before and this one.
+    /// Whether the clock jumped between the sample before and this one.
     pub clock_event: bool,
-    /// The satellite was moved between the sample before and this one: nothing may be interpolated there.
+    /// Whether the satellite was manoeuvred between the sample before and this one: an interpolation across it is
+    /// wrong.
     pub manoeuvre: bool,
 }
 
@@ -32,16 +33,17 @@ pub struct OrbitSample {
 pub struct Orbits {
     samples: PerSatellite<OrbitSample>,
     /// What a user should know of the files.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Orbits {
-    /// Reads files in any order. Where two tell of the same instant, the one that begins later is believed.
+    /// Reads files in any order, such as those of three days. Where two hold the same instant, that of the file that
+    /// begins later is taken.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// [`Error`]: the file, the line, what was expected there and what was found.
     pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, Error> {
-        let texts: Result<Vec<_>, _> = paths.iter().map(|path| Text::read(path.as_ref())).collect();
+        let texts: Result<Vec<_>, _> = paths.iter().map(Text::read).collect();
         Self::parse(&texts?)
     }
 
@@ -65,19 +67,21 @@ impl Orbits {
         Ok(orbits)
     }
 
-    /// The samples of a satellite in the order of time; none of one that the files do not know. Samples may
-    /// be missing between others.
+    /// The samples of a satellite in the order of time, perhaps with gaps; none of one that the files do not know.
     pub fn satellite(&self, prn: u8) -> &[OrbitSample] {
         self.samples.of(prn)
     }
 
-    /// The satellites there are.
+    /// The numbers of the satellites in the files.
     pub fn satellites(&self) -> impl Iterator<Item = u8> {
         self.samples.numbers()
     }
 }
 
-fn parse_file(text: &Text, warnings: &mut Vec<String>) -> Result<PerSatellite<OrbitSample>, Error> {
+fn parse_file(
+    text: &Text,
+    warnings: &mut Vec<Warning>,
+) -> Result<PerSatellite<OrbitSample>, Error> {
     let mut lines = text.lines();
     let first = lines.next().filter(|line| matches!(line.bytes, [b'#', b'a'..=b'd', ..]));
     let first = first.ok_or_else(|| text.wrong_kind("orbits (SP3)"))?;
@@ -159,8 +163,8 @@ fn position(line: &Line<'_>, time: GpsTime) -> Result<Option<OrbitSample>, Error
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::{orbits, text};
     use super::*;
+    use crate::samples::{orbits, sentences, text};
 
     fn complaint(file: &str) -> String {
         Orbits::parse(&[text(file)]).expect_err(file).to_string()
@@ -177,7 +181,7 @@ mod tests {
         assert_eq!((second.time, second.clock), (GpsTime::new(58_849, 900.0), None));
         assert!(second.clock_event && second.manoeuvre);
         let warning = "file: holds 1 predicted positions, worse than computed ones";
-        assert_eq!(orbits.warnings, [warning]);
+        assert_eq!(sentences(&orbits.warnings), [warning]);
         Ok(())
     }
 
@@ -225,7 +229,7 @@ mod tests {
         let file = orbits();
         let cut = Orbits::parse(&[text(&file[..file.len() - 60])])?;
         assert_eq!(cut.satellite(5).len(), 1);
-        assert!(cut.warnings[0].contains("no EOF"), "{:?}", cut.warnings);
+        assert!(sentences(&cut.warnings)[0].contains("no EOF"), "{:?}", cut.warnings);
         Ok(())
     }
 }

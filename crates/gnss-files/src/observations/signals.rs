@@ -1,9 +1,7 @@
-//! Which of a satellite's signals are taken.
+//! The choice among a satellite's signals.
 
 use std::collections::BTreeMap;
 use std::fmt;
-
-use super::Observed;
 
 /// The trackings of L1 and of L2, the best first: the clocks of satellites refer to W, which P and Y are
 /// too.
@@ -11,12 +9,12 @@ const TRACKINGS: [&[u8]; 2] = [b"WPYCXSLMN", b"WPYLSXCDMN"];
 /// The trackings of phases where that of the code has none.
 const PHASE_TRACKINGS: [&[u8]; 2] = [b"CWPYXSLMN", b"WPYLSXCDMN"];
 
-/// Code or phase on L1 or L2, tracked in some way.
+/// A code or phase on L1 or L2 with its tracking, displayed as RINEX 3 names it: `C1W`, `L2W`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Signal {
-    phase: bool,
+    pub(super) phase: bool,
     /// 0 for L1, 1 for L2.
-    band: usize,
+    pub(super) band: usize,
     tracking: u8,
 }
 
@@ -73,7 +71,7 @@ impl Seen {
     }
 }
 
-/// The signals taken from a satellite, the same all the time: between them are biases of up to some metres.
+/// The signals taken from a satellite, the same in all epochs: between signals are biases of up to some metres.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Signals {
     /// Codes on L1 and L2.
@@ -101,21 +99,6 @@ impl Signals {
             chosen.phase[band] = best(true, band, tracking, PHASE_TRACKINGS[band]);
         }
         chosen
-    }
-
-    /// Takes the chosen ones from all of an epoch.
-    pub(super) fn take(&self, prn: u8, raw: &[Raw]) -> Observed {
-        let mut observed = Observed { prn, ..Observed::default() };
-        for &Raw { signal, value, lock_lost } in raw {
-            let band = signal.band;
-            if signal.phase && self.phase[band] == Some(signal) {
-                observed.phase[band] = Some(value);
-                observed.loss_of_lock[band] = lock_lost;
-            } else if !signal.phase && self.code[band] == Some(signal) {
-                observed.code[band] = Some(value);
-            }
-        }
-        observed
     }
 
     /// Sentences about codes to which the clocks of satellites do not refer.

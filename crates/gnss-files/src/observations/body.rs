@@ -1,16 +1,14 @@
-//! What an observation file tells of its epochs.
+//! The epochs of an observation file.
 
-use kestirim_gnss_ppp::GpsTime;
-
-use super::super::fields::gps_satellite;
-use super::super::lines::{Line, Lines, Text};
-use super::super::time::full_year;
 use super::header::Header;
-use super::signals::{Raw, Seen};
-use super::{Epoch, Observations, Signals};
-use crate::Error;
+use super::record::{Epoch, Observations, Observed};
+use super::signals::{Raw, Seen, Signals};
+use crate::error::{Error, Warning};
+use crate::fields::gps_satellite;
+use crate::text::{Line, Lines, Text};
+use crate::time::{GpsTime, full_year};
 
-/// What a file holds, with all the signals it tells of.
+/// The epochs of a file with all their signals.
 #[derive(Debug, Default)]
 pub(super) struct Body {
     header: Header,
@@ -21,7 +19,7 @@ pub(super) struct Body {
     moved: bool,
     backwards: usize,
     doubled: usize,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 #[derive(Debug)]
@@ -191,7 +189,7 @@ impl Body {
             let mut satellites = Vec::with_capacity(epoch.end - record);
             for &(prn, end) in &self.records[record..epoch.end] {
                 let chosen = signals.get(&prn).copied().unwrap_or_default();
-                satellites.push(chosen.take(prn, &self.raw[start..end]));
+                satellites.push(Observed::of(prn, &chosen, &self.raw[start..end]));
                 start = end;
             }
             record = epoch.end;

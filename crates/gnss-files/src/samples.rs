@@ -3,27 +3,32 @@
 use std::iter;
 use std::path::Path;
 
-use super::lines::Text;
+use crate::error::Warning;
+use crate::text::Text;
 
 /// A line of a header.
-pub(super) fn header(content: &str, label: &str) -> String {
+pub(crate) fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")
 }
 
-pub(super) fn text(content: impl AsRef<[u8]>) -> Text {
+pub(crate) fn text(content: impl AsRef<[u8]>) -> Text {
     Text::unpack(Path::new("file"), content.as_ref().to_vec()).expect("nothing is packed")
 }
 
-pub(super) fn lines(lines: &[&str]) -> String {
+pub(crate) fn sentences(warnings: &[Warning]) -> Vec<String> {
+    warnings.iter().map(Warning::to_string).collect()
+}
+
+pub(crate) fn lines(lines: &[&str]) -> String {
     lines.iter().flat_map(|line| [*line, "\n"]).collect()
 }
 
 /// Three epochs of RINEX 3: a satellite that comes, a blank phase, a lost lock, another system, an event.
-pub(super) fn observations_3() -> String {
+pub(crate) fn observations_3() -> String {
     observations_3_header() + &observations_3_body()
 }
 
-pub(super) fn observations_3_header() -> String {
+pub(crate) fn observations_3_header() -> String {
     [
         header("     3.04           OBSERVATION DATA    M", "RINEX VERSION / TYPE"),
         header("HERE00XXX", "MARKER NAME"),
@@ -57,7 +62,7 @@ fn observations_3_body() -> String {
 }
 
 /// The same epochs as Hatanaka compresses them.
-pub(super) fn compressed_3() -> String {
+pub(crate) fn compressed_3() -> String {
     let front = [
         header("3.0                 COMPACT RINEX FORMAT", "CRINEX VERS   / TYPE"),
         header("BY HAND                                 01-Jan-20 00:00", "CRINEX PROG / DATE"),
@@ -82,7 +87,7 @@ pub(super) fn compressed_3() -> String {
 }
 
 /// RINEX 2 with thirteen satellites, six observables and two epochs.
-pub(super) fn observations_2() -> String {
+pub(crate) fn observations_2() -> String {
     let front = [
         header("     2.11           OBSERVATION DATA    M (MIXED)", "RINEX VERSION / TYPE"),
         header("HERE", "MARKER NAME"),
@@ -111,7 +116,7 @@ pub(super) fn observations_2() -> String {
     front.concat() + &body
 }
 
-pub(super) fn compressed_2() -> String {
+pub(crate) fn compressed_2() -> String {
     let front = [
         header("1.0                 COMPACT RINEX FORMAT", "CRINEX VERS   / TYPE"),
         header("BY HAND                                 01-Jan-20 00:00", "CRINEX PROG / DATE"),
@@ -134,7 +139,7 @@ pub(super) fn compressed_2() -> String {
     front.concat() + &body
 }
 
-pub(super) fn orbits() -> String {
+pub(crate) fn orbits() -> String {
     lines(&[
         "#cP2020  1  1  0  0  0.00000000       2 ORBIT IGS14 FIT  ME",
         "## 2086 259200.00000000   900.00000000 58849 0.0000000000000",
@@ -156,7 +161,7 @@ pub(super) fn orbits() -> String {
     ])
 }
 
-pub(super) fn clocks() -> String {
+pub(crate) fn clocks() -> String {
     let front = [
         header("     3.00           C                   G", "RINEX VERSION / TYPE"),
         header("   GPS", "TIME SYSTEM ID"),
@@ -172,7 +177,7 @@ pub(super) fn clocks() -> String {
     front.concat() + &body
 }
 
-pub(super) fn antennas() -> String {
+pub(crate) fn antennas() -> String {
     let row = |name: &str, values: [f64; 3]| {
         let [a, b, c] = values;
         format!("{name:>8}{a:8.2}{b:8.2}{c:8.2}\n")
@@ -236,7 +241,7 @@ pub(super) fn antennas() -> String {
     .concat()
 }
 
-pub(super) fn loading() -> String {
+pub(crate) fn loading() -> String {
     let mut file = lines(&["$$ Ocean loading displacement", "$$", "  HERE"]);
     file += "$$ Here,                  RADI TANG  lon/lat:  358.0000   50.0000   10.000\n";
     for row in 0..6 {

@@ -1,8 +1,8 @@
 //! Numbers and texts as differences from those before.
 
-use super::super::fields::large_integer;
-use super::super::lines::Line;
-use crate::Error;
+use crate::error::Error;
+use crate::fields::large_integer;
+use crate::text::Line;
 
 /// The highest order of differences in the format.
 const HIGHEST_ORDER: usize = 5;

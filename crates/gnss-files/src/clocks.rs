@@ -2,23 +2,21 @@
 
 use std::path::Path;
 
-use kestirim_gnss_ppp::GpsTime;
-
-use super::fields::{blank_separated, decimal, gps_satellite, integer};
-use super::lines::{Line, Lines, Text};
-use super::satellites::PerSatellite;
-use super::time::from_calendar;
-use crate::Error;
+use crate::error::{Error, Warning};
+use crate::fields::{blank_separated, decimal, gps_satellite, integer};
+use crate::satellites::PerSatellite;
+use crate::text::{Line, Lines, Text};
+use crate::time::GpsTime;
 
 /// A bias as large as this stands for one that is not known, s.
 const NO_BIAS: f64 = 0.9;
 
-/// What a satellite's clock was ahead of GPS time.
+/// The clock of a satellite at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClockSample {
-    /// When.
+    /// The instant.
     pub time: GpsTime,
-    /// By how much, s, without the relativity of its orbit's eccentricity.
+    /// The satellite's clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity.
     pub bias: f64,
 }
 
@@ -27,16 +25,17 @@ pub struct ClockSample {
 pub struct Clocks {
     samples: PerSatellite<ClockSample>,
     /// What a user should know of the files.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Clocks {
-    /// Reads files in any order. Where two tell of the same instant, the one that begins later is believed.
+    /// Reads files in any order, such as those of three days. Where two hold the same instant, that of the file that
+    /// begins later is taken.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// [`Error`]: the file, the line, what was expected there and what was found.
     pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, Error> {
-        let texts: Result<Vec<_>, _> = paths.iter().map(|path| Text::read(path.as_ref())).collect();
+        let texts: Result<Vec<_>, _> = paths.iter().map(Text::read).collect();
         Self::parse(&texts?)
     }
 
@@ -57,7 +56,7 @@ impl Clocks {
         self.samples.of(prn)
     }
 
-    /// The samples of a satellite before and after a time, or twice the one at that time.
+    /// The samples of a satellite before and after a time, or twice the one at that time; none outside of the samples.
     pub fn around(&self, prn: u8, time: GpsTime) -> Option<[&ClockSample; 2]> {
         let samples = self.satellite(prn);
         let after = samples.partition_point(|sample| sample.time < time);
@@ -66,13 +65,16 @@ impl Clocks {
         Some([&samples[earlier], later])
     }
 
-    /// The satellites there are.
+    /// The numbers of the satellites in the files.
     pub fn satellites(&self) -> impl Iterator<Item = u8> {
         self.samples.numbers()
     }
 }
 
-fn parse_file(text: &Text, warnings: &mut Vec<String>) -> Result<PerSatellite<ClockSample>, Error> {
+fn parse_file(
+    text: &Text,
+    warnings: &mut Vec<Warning>,
+) -> Result<PerSatellite<ClockSample>, Error> {
     let mut lines = text.lines();
     header(text, &mut lines)?;
     let mut samples = PerSatellite::default();
@@ -144,15 +146,15 @@ fn record(bytes: &[u8]) -> Option<(u8, ClockSample)> {
     for field in &mut calendar {
         *field = integer(fields.next()?)?;
     }
-    let time = from_calendar(calendar, decimal(fields.next()?)?)?;
+    let time = GpsTime::from_calendar(calendar, decimal(fields.next()?)?)?;
     let bias = decimal(fields.nth(1)?)?;
     Some((prn, ClockSample { time, bias }))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples::{clocks, header, text};
     use super::*;
+    use crate::samples::{clocks, header, sentences, text};
 
     fn complaint(file: &str) -> String {
         Clocks::parse(&[text(file)]).expect_err(file).to_string()
@@ -216,7 +218,7 @@ mod tests {
         let cut = Clocks::parse(&[text(&file[..file.len() - 8])])?;
         assert_eq!(cut.satellite(5).len(), 1);
         assert_eq!(
-            cut.warnings,
+            sentences(&cut.warnings),
             ["file, line 8: the file ends within this line, which is left out"]
         );
         Ok(())

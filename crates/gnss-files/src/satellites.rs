@@ -1,13 +1,13 @@
 //! Samples of each GPS satellite.
 
-use kestirim_gnss_ppp::GpsTime;
+use crate::time::GpsTime;
 
 /// Times nearer than this are the same instant written twice, s.
 const SAME: f64 = 1e-3;
 
 /// Samples by the number of the satellite.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct PerSatellite<S>(Vec<Vec<S>>);
+pub(crate) struct PerSatellite<S>(Vec<Vec<S>>);
 
 impl<S> Default for PerSatellite<S> {
     fn default() -> Self {
@@ -16,7 +16,7 @@ impl<S> Default for PerSatellite<S> {
 }
 
 impl<S> PerSatellite<S> {
-    pub(super) fn push(&mut self, prn: u8, sample: S) {
+    pub(crate) fn push(&mut self, prn: u8, sample: S) {
         let place = usize::from(prn);
         if self.0.len() <= place {
             self.0.resize_with(place + 1, Vec::new);
@@ -24,21 +24,21 @@ impl<S> PerSatellite<S> {
         self.0[place].push(sample);
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.iter().all(Vec::is_empty)
     }
 
-    pub(super) fn of(&self, prn: u8) -> &[S] {
+    pub(crate) fn of(&self, prn: u8) -> &[S] {
         self.0.get(usize::from(prn)).map_or(&[], Vec::as_slice)
     }
 
-    pub(super) fn numbers(&self) -> impl Iterator<Item = u8> {
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = u8> {
         (0..=u8::MAX).zip(&self.0).filter(|(_, samples)| !samples.is_empty()).map(|(prn, _)| prn)
     }
 
     /// Puts the samples of files together in the order of time. Of two of the same instant that of the file
     /// that begins later stays, `complete`d by the other.
-    pub(super) fn merge(
+    pub(crate) fn merge(
         mut files: Vec<Self>,
         time: impl Fn(&S) -> GpsTime,
         mut complete: impl FnMut(&S, &mut S),

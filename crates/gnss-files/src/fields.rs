@@ -10,7 +10,7 @@ const POWERS: [f64; 23] = [
 
 /// The double nearest to a decimal number, whose exponent may be marked E or, as Fortran writes it, D.
 /// None if there is anything else, or if it is beyond all doubles.
-pub(super) fn decimal(field: &[u8]) -> Option<f64> {
+pub(crate) fn decimal(field: &[u8]) -> Option<f64> {
     let (negative, digits) = signed(field);
     let (mut mantissa, mut count, mut decimals, mut exponent) = (0_u64, 0, None, 0);
     for (i, &byte) in digits.iter().enumerate() {
@@ -52,12 +52,12 @@ fn slowly(digits: &[u8]) -> Option<f64> {
 }
 
 /// An integer; none if there is anything else.
-pub(super) fn integer(field: &[u8]) -> Option<i32> {
+pub(crate) fn integer(field: &[u8]) -> Option<i32> {
     large_integer(field)?.try_into().ok()
 }
 
 /// An integer; none if there is anything else.
-pub(super) fn large_integer(field: &[u8]) -> Option<i64> {
+pub(crate) fn large_integer(field: &[u8]) -> Option<i64> {
     let (negative, digits) = signed(field);
     let mut number = 0_i64;
     for &byte in digits {
@@ -76,12 +76,12 @@ fn signed(field: &[u8]) -> (bool, &[u8]) {
 }
 
 /// The fields between blanks.
-pub(super) fn blank_separated(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn blank_separated(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     bytes.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty())
 }
 
 /// The number of a GPS satellite called `G05`, `G 5` or, where GPS goes without saying, ` 5`.
-pub(super) fn gps_satellite(name: &[u8]) -> Option<u8> {
+pub(crate) fn gps_satellite(name: &[u8]) -> Option<u8> {
     let digits = name.strip_prefix(b"G").unwrap_or(name);
     let number = integer(digits.trim_ascii())?;
     u8::try_from(number).ok().filter(|number| (1..=99).contains(number))

@@ -1,9 +1,9 @@
-//! What an observation file tells before its observations.
+//! The header of an observation file.
 
-use super::super::fields::{blank_separated, decimal};
-use super::super::lines::{Line, Lines, Text};
 use super::signals::Signal;
-use crate::Error;
+use crate::error::Error;
+use crate::fields::{blank_separated, decimal};
+use crate::text::{Line, Lines, Text};
 
 /// A column of observations of GPS satellites that is of use.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,30 @@
+#![doc = include_str!("../README.md")]
+
+mod antennas;
+mod clocks;
+mod crinex;
+mod error;
+mod fields;
+mod gzip;
+mod kind;
+mod observations;
+mod ocean_loading;
+mod open;
+mod orbits;
+mod satellites;
+mod text;
+mod time;
+
+#[cfg(test)]
+mod mutations;
+#[cfg(test)]
+mod samples;
+
+pub use antennas::{Antenna, Antennas, PhaseCentre};
+pub use clocks::{ClockSample, Clocks};
+pub use error::{Error, Warning};
+pub use observations::{Epoch, Observations, Observed, Signal, Signals};
+pub use ocean_loading::{OceanLoading, StationLoading};
+pub use orbits::{OrbitSample, Orbits};
+pub use text::Text;
+pub use time::GpsTime;

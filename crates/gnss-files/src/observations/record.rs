@@ -1,0 +1,69 @@
+//! Observations as they are given out.
+
+use std::collections::BTreeMap;
+
+use super::signals::{Raw, Signals};
+use crate::error::Warning;
+use crate::time::GpsTime;
+
+/// Observations of GPS satellites on L1 and L2 by one receiver.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Observations {
+    /// The name of the station's marker.
+    pub marker: String,
+    /// The receiver's type.
+    pub receiver: String,
+    /// Type and radome of the antenna in 20 columns, as an ANTEX file names it.
+    pub antenna: String,
+    /// The marker's approximate position: ECEF, m.
+    pub approximate_position: Option<[f64; 3]>,
+    /// The antenna's reference point above, east and north of the marker, m.
+    pub antenna_delta_hen: [f64; 3],
+    /// The epochs in the order of time.
+    pub epochs: Vec<Epoch>,
+    /// The signals taken from each satellite, by its number.
+    pub signals: BTreeMap<u8, Signals>,
+    /// What a user should know of the file.
+    pub warnings: Vec<Warning>,
+}
+
+/// Observations of one instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Epoch {
+    /// The instant by the receiver's clock.
+    pub time: GpsTime,
+    /// Whether the receiver was without power since the epoch before.
+    pub power_failure: bool,
+    /// The satellites in the order of the file, each once.
+    pub satellites: Vec<Observed>,
+}
+
+/// Observations of one satellite in one epoch, on L1 and L2.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Observed {
+    /// The satellite's number (PRN).
+    pub prn: u8,
+    /// Pseudoranges, m.
+    pub code: [Option<f64>; 2],
+    /// Carrier phases, cycles.
+    pub phase: [Option<f64>; 2],
+    /// Whether the receiver lost the phase since the epoch before (bit 0 of the loss-of-lock indicator).
+    pub loss_of_lock: [bool; 2],
+}
+
+impl Observed {
+    /// The observations of the chosen signals among all those of a satellite in an epoch.
+    pub(super) fn of(prn: u8, signals: &Signals, raw: &[Raw]) -> Self {
+        let mut observed = Self { prn, ..Self::default() };
+        for &Raw { signal, value, lock_lost } in raw {
+            let band = signal.band;
+            if signal.phase && signals.phase[band] == Some(signal) {
+                observed.phase[band] = Some(value);
+                observed.loss_of_lock[band] = lock_lost;
+            } else if !signal.phase && signals.code[band] == Some(signal) {
+                observed.code[band] = Some(value);
+            }
+        }
+        observed
+    }
+}

@@ -1,0 +1,34 @@
+//! Files opened and unpacked.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::text::Text;
+use crate::{crinex, gzip};
+
+impl Text {
+    /// Reads a file and unpacks it, as [`Self::unpack`].
+    ///
+    /// # Errors
+    /// [`Error::Read`] if the file cannot be read; otherwise as [`Self::unpack`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        Self::unpack(path, gzip::read(path)?)
+    }
+
+    /// Takes the contents of a file, named `path` in errors and warnings: plain text, gzip, Compact RINEX, or
+    /// Compact RINEX in gzip.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the contents are packed in another way, damaged, or larger than 1 GiB; [`Error::Line`] if
+    /// a line of Compact RINEX is damaged.
+    pub fn unpack(path: impl AsRef<Path>, bytes: Vec<u8>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let text = Self::new(path, gzip::unpack(path, bytes)?);
+        if crinex::is_compressed(text.bytes()) {
+            let bytes = crinex::decompress(&text, gzip::LARGEST)?;
+            return Ok(Self::new(path, bytes));
+        }
+        Ok(text)
+    }
+}

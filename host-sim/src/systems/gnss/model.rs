@@ -1,0 +1,74 @@
+//! The data of files as the observation model takes them: `kestirim-gnss-files` to `kestirim-gnss-ppp`, bit for bit.
+
+use kestirim_gnss_files::{self as files, Observed};
+use kestirim_gnss_ppp::{ClockSample, GpsTime, OceanLoading, OrbitSample, Pattern};
+use nalgebra::Vector3;
+
+use crate::Error;
+
+/// Observations of one instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Epoch {
+    /// The instant by the receiver's clock.
+    pub time: GpsTime,
+    /// Whether the receiver was without power since the epoch before.
+    pub power_failure: bool,
+    /// The satellites, each once.
+    pub satellites: Vec<Observed>,
+}
+
+/// An error of a reader, in the same words.
+pub fn error(error: files::Error) -> Error {
+    match error {
+        files::Error::Read { path, source } => Error::Read { path, source },
+        files::Error::File { path, problem } => Error::File { path, problem },
+        files::Error::Line { path, line, problem } => Error::Line { path, line, problem },
+        // The readers may come to have other errors, each of them a whole sentence.
+        other => Error::Usage(other.to_string()),
+    }
+}
+
+/// An epoch of a file.
+pub fn epoch(epoch: files::Epoch) -> Epoch {
+    let files::Epoch { time: instant, power_failure, satellites } = epoch;
+    Epoch { time: time(instant), power_failure, satellites }
+}
+
+/// An instant.
+pub const fn time(time: files::GpsTime) -> GpsTime {
+    GpsTime::new_in_day(time.day(), time.second())
+}
+
+/// A sample of an orbit that counts from `reference`.
+pub fn orbit_sample(reference: GpsTime, sample: &files::OrbitSample) -> OrbitSample {
+    OrbitSample::from_ecef(reference, time(sample.time), &Vector3::from(sample.position))
+}
+
+/// A sample of a clock that counts from `reference`.
+pub fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f64) -> ClockSample {
+    ClockSample { second: time(instant).since(reference), bias }
+}
+
+/// An antenna's phase centres on L1 and L2, if both are known.
+pub fn patterns(antenna: &files::Antenna) -> Option<[Pattern<'_>; 2]> {
+    match &antenna.frequencies {
+        [Some(first), Some(second)] => Some([pattern(first), pattern(second)]),
+        _ => None,
+    }
+}
+
+fn pattern(centre: &files::PhaseCentre) -> Pattern<'_> {
+    Pattern {
+        offset: centre.offset,
+        first: centre.first,
+        step: centre.step,
+        mean: &centre.mean,
+        azimuth_step: centre.azimuth_step,
+        by_azimuth: &centre.by_azimuth,
+    }
+}
+
+/// A station's ocean loading.
+pub const fn ocean_loading(loading: &files::OceanLoading) -> OceanLoading {
+    OceanLoading { amplitude: loading.amplitude, lag: loading.lag }
+}
