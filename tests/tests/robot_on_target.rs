@@ -4,9 +4,7 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result};
-use kestirim_adaptive_kalman::{
-    AdaptiveKalman, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise,
-};
+use kestirim_adaptive_kalman::{AdaptiveKalman, Learning, ProcessNoise, PublishedAdaptiveKalman};
 use kestirim_kalman::Covariance;
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_tests::common_scenario::{Ekf, anchors, expected, motion, start};
@@ -36,8 +34,8 @@ fn aekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
         [1e-4, 1e-4, 2.5e-2, 2.5e-2].map(number),
         [position, position, velocity, velocity],
     );
-    let noise = MeasurementNoise::new(number(0.01), learning(2.5e-3, 4.0));
-    let mut filter = AdaptiveKalman::new(start::<T>(), process, [noise; 4]);
+    let learning = [learning(2.5e-3, 4.0); 4];
+    let mut filter = AdaptiveKalman::new(start::<T>(), process, [number(0.01); 4], learning);
     let step = |row: &[f64; 4]| {
         filter.predict(&motion(0.0)).expect("a finite state");
         for (index, (anchor, &range)) in anchors::<T>().iter().zip(row).enumerate() {
@@ -49,14 +47,14 @@ fn aekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
     ranges.iter().map(step).collect()
 }
 
-fn printed<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
+fn published<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
     let number = T::from_f64;
     let mut from = start::<T>();
     from.covariance = Covariance::from_variances(&[1e-4, 1e-4, 0.0, 0.0].map(number));
     let (q, r) = (Covariance::from_variances(&[number(3e-5); 4]), [number(0.1); 4]);
     let forgetting = number(0.95);
     let noise = Covariance::from_variances(&r);
-    let mut filter = PrintedAdaptiveKalman::new(from, q, noise, forgetting, forgetting).unwrap();
+    let mut filter = PublishedAdaptiveKalman::new(from, q, noise, forgetting, forgetting).unwrap();
     let step = |row: &[f64; 4]| {
         filter.predict(&motion(0.0)).expect("a finite state");
         let mean = filter.estimate().mean;
@@ -131,7 +129,7 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &Steps) -> Result<Ou
 struct Budgets {
     /// A prediction and four ranges, in `f32` and in fixed point.
     ekf: [f64; 2],
-    /// The same with both adaptations, and as printed.
+    /// The same with both adaptations, and as published.
     aekf: [f64; 2],
     /// A range with gate and Huber, in the plane and in space, in `f32`.
     update: [f64; 2],
@@ -151,7 +149,7 @@ fn check_four_ranges(images: &Images, budgets: Budgets) -> Result<()> {
         ("ekf4-ranges4-q12-20", ekf::<Q12_20>(&ranges), budgets.ekf[1]),
         ("aekf4-ranges4-f32", aekf::<f32>(&ranges), budgets.aekf[0]),
         ("aekf4-ranges4-q12-20", aekf::<Q12_20>(&ranges), f64::INFINITY),
-        ("aekf4-printed-f32", printed::<f32>(&ranges), budgets.aekf[1]),
+        ("aekf4-published-f32", published::<f32>(&ranges), budgets.aekf[1]),
     ];
     for (image, host, budget) in cases {
         let output = agree(images, image, &stream, &host)?;

@@ -1,4 +1,4 @@
-use crate::{Error, MeasurementNoise, ProcessNoise};
+use crate::{Error, Learning, MeasurementNoise, ProcessNoise};
 use kestirim_kalman::{Gaussian, Innovation, Process, SparseRow};
 use kestirim_scalar::Scalar;
 
@@ -12,16 +12,29 @@ pub struct AdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     predicted: Gaussian<T, N>,
     process_noise: ProcessNoise<T, N>,
     measurement_noise: [MeasurementNoise<T>; M],
+    measurement_learning: [Learning<T>; M],
 }
 
 impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
-    /// Starts from an estimate and the noise to be adapted.
+    /// Starts from an estimate, the process noise, and of each measurement a variance (its unit squared),
+    /// moved into the limits of how it is learnt.
     pub fn new(
         estimate: Gaussian<T, N>,
         process_noise: ProcessNoise<T, N>,
-        measurement_noise: [MeasurementNoise<T>; M],
+        variances: [T; M],
+        measurement_learning: [Learning<T>; M],
     ) -> Self {
-        Self { estimate, predicted: estimate, process_noise, measurement_noise }
+        let mut measurement_noise = variances.map(MeasurementNoise::new);
+        for (noise, learning) in measurement_noise.iter_mut().zip(&measurement_learning) {
+            *noise = MeasurementNoise::new(learning.limited(noise.variance()));
+        }
+        Self {
+            estimate,
+            predicted: estimate,
+            process_noise,
+            measurement_noise,
+            measurement_learning,
+        }
     }
 
     /// The estimate.
@@ -69,9 +82,10 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         innovation: T,
     ) -> Result<Innovation<T>, Error> {
         let noise = self.measurement_noise.get_mut(index).ok_or(Error::NoSuchMeasurement)?;
+        let learning = self.measurement_learning.get(index).ok_or(Error::NoSuchMeasurement)?;
         let weighed = self.estimate.weigh(row, innovation, noise.variance())?;
         let report = self.estimate.correct(&weighed)?;
-        noise.learn(&weighed);
+        noise.learn(learning, &weighed);
         Ok(report)
     }
 

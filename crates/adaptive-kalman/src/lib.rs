@@ -5,12 +5,12 @@ mod adaptive;
 mod error;
 mod learning;
 mod measurement_noise;
-mod printed;
 mod process_noise;
+mod published;
 
 pub use adaptive::AdaptiveKalman;
 pub use error::Error;
 pub use learning::Learning;
-pub use measurement_noise::{MeasurementNoise, learnt};
-pub use printed::PrintedAdaptiveKalman;
+pub use measurement_noise::MeasurementNoise;
 pub use process_noise::ProcessNoise;
+pub use published::PublishedAdaptiveKalman;

@@ -13,18 +13,19 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeasurementNoise<T> {
     variance: T,
-    learning: Learning<T>,
 }
 
 impl<T: Scalar> MeasurementNoise<T> {
-    /// A variance to start from, moved into its limits.
-    pub fn new(variance: T, learning: Learning<T>) -> Self {
-        Self { variance: learning.limited(variance), learning }
+    /// A variance to start from, in the measurement's unit squared. How it is learnt is told each time: many
+    /// sensors may share a [`Learning`].
+    #[inline]
+    pub const fn new(variance: T) -> Self {
+        Self { variance }
     }
 
     /// R, in the measurement's unit squared.
     #[inline]
-    pub fn variance(&self) -> T {
+    pub const fn variance(&self) -> T {
         self.variance
     }
 
@@ -33,23 +34,22 @@ impl<T: Scalar> MeasurementNoise<T> {
     /// Only where the other measurements alone determine the state is there anything to learn from:
     /// a measurement that the estimate must follow always fits it.
     #[inline]
-    pub fn learn<const N: usize>(&mut self, weighed: &Weighed<T, N>) {
-        let square = weighed.innovation() * weighed.innovation();
-        self.variance = learnt(self.variance, &self.learning, weighed, square);
+    pub fn learn<const N: usize>(&mut self, learning: &Learning<T>, weighed: &Weighed<T, N>) {
+        self.learn_square(learning, weighed, weighed.innovation() * weighed.innovation());
     }
-}
 
-/// [`MeasurementNoise::learn`] for who keeps variances and learning apart: the variance after one more
-/// measurement, of whose ν² only `square` is believed. Where a gate left it out, γ S is enough: one wild
-/// value then teaches little, and many in a row the same in the end.
-#[inline(always)]
-pub fn learnt<T: Scalar, const N: usize>(
-    variance: T,
-    learning: &Learning<T>,
-    weighed: &Weighed<T, N>,
-    square: T,
-) -> T {
-    let share = weighed.by_variance(weighed.noise());
-    let sample = T::mac(T::accumulator(), square * share, share);
-    learning.learn(variance, T::finish(T::mac(sample, weighed.spread(), share)))
+    /// [`MeasurementNoise::learn`] where only `square` is believed of ν². Of a measurement that a gate left
+    /// out, γ S is enough: one wild value then teaches little, and many in a row the same in the end.
+    #[inline(always)]
+    pub fn learn_square<const N: usize>(
+        &mut self,
+        learning: &Learning<T>,
+        weighed: &Weighed<T, N>,
+        square: T,
+    ) {
+        let share = weighed.by_variance(weighed.noise());
+        let sample = T::mac(T::accumulator(), square * share, share);
+        let sample = T::finish(T::mac(sample, weighed.spread(), share));
+        self.variance = learning.learn(self.variance, sample);
+    }
 }

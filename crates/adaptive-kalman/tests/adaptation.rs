@@ -1,7 +1,7 @@
-//! What is learnt, what is never lost, and what the printed form does, in every scalar.
+//! What is learnt, what is never lost, and what the published form does, in every scalar.
 
 use kestirim_adaptive_kalman::{
-    AdaptiveKalman, Error, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise,
+    AdaptiveKalman, Error, Learning, ProcessNoise, PublishedAdaptiveKalman,
 };
 use kestirim_kalman::{Covariance, Error as Refusal, Gaussian, Process, SparseRow};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -24,11 +24,11 @@ fn row<T: Scalar>(index: usize) -> SparseRow<T, 2> {
 
 fn adaptive<T: Scalar>() -> AdaptiveKalman<T, 2, 4> {
     let n = T::from_f64;
-    let noise = MeasurementNoise::new(n(0.01), Learning::new(n(0.95), n(0.0025), n(4.0)).unwrap());
+    let learning = Learning::new(n(0.95), n(0.0025), n(4.0)).unwrap();
     let process =
         ProcessNoise::new([n(1e-4); 2], [Learning::new(n(0.95), n(1e-5), n(0.01)).unwrap(); 2]);
     let start = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[n(1.0), n(1.0)]));
-    AdaptiveKalman::new(start, process, [noise; 4])
+    AdaptiveKalman::new(start, process, [n(0.01); 4], [learning; 4])
 }
 
 /// Feeds 400 epochs in which measurement 3 reads 1 m too much, and returns where the filter ends.
@@ -125,11 +125,16 @@ proptest! {
     }
 }
 
-fn printed<T: Scalar>(p0: f64, q0: f64, r0: f64, alpha_r: f64) -> PrintedAdaptiveKalman<T, 2, 4> {
+fn published<T: Scalar>(
+    p0: f64,
+    q0: f64,
+    r0: f64,
+    alpha_r: f64,
+) -> PublishedAdaptiveKalman<T, 2, 4> {
     let n = T::from_f64;
     let start = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[n(p0); 2]));
     let (q, r) = (Covariance::from_variances(&[n(q0); 2]), Covariance::from_variances(&[n(r0); 4]));
-    PrintedAdaptiveKalman::new(start, q, r, n(0.95), n(alpha_r)).unwrap()
+    PublishedAdaptiveKalman::new(start, q, r, n(0.95), n(alpha_r)).unwrap()
 }
 
 fn rows<T: Scalar>() -> SMatrix<T, 4, 2> {
@@ -137,8 +142,8 @@ fn rows<T: Scalar>() -> SMatrix<T, 4, 2> {
 }
 
 #[test]
-fn one_printed_step_is_the_papers_equations() {
-    let mut filter = printed::<f64>(0.5, 0.01, 0.2, 0.7);
+fn one_published_step_is_the_papers_equations() {
+    let mut filter = published::<f64>(0.5, 0.01, 0.2, 0.7);
     let innovation = vector![0.3, -0.2, 0.5, 0.1];
     let (p, r) = (matrix![0.5, 0.0; 0.0, 0.5], SMatrix::<f64, 4, 4>::identity() * 0.2);
     filter.update(&rows(), &innovation).unwrap();
@@ -158,8 +163,8 @@ fn one_printed_step_is_the_papers_equations() {
 }
 
 #[test]
-fn the_printed_form_is_refused_when_it_turns_indefinite() {
-    let mut filter = printed::<f32>(0.5, 0.01, 0.01, 0.7);
+fn the_published_form_is_refused_when_it_turns_indefinite() {
+    let mut filter = published::<f32>(0.5, 0.01, 0.01, 0.7);
     filter.update(&rows(), &SVector::zeros()).unwrap();
     let before = filter;
     let refused = filter.update(&rows(), &SVector::zeros());
@@ -169,7 +174,7 @@ fn the_printed_form_is_refused_when_it_turns_indefinite() {
 
 fn check_frozen<T: Scalar>() {
     // The place is 0.5 m from the start, and everything says so, for 50 epochs.
-    let (mut filter, h) = (printed::<T>(1e-4, 3e-5, 0.1, 0.95), rows::<T>());
+    let (mut filter, h) = (published::<T>(1e-4, 3e-5, 0.1, 0.95), rows::<T>());
     let truth = vector![0.3, -0.4].map(T::from_f64);
     for _ in 0..50 {
         filter.predict(&Still).unwrap();
@@ -182,7 +187,7 @@ fn check_frozen<T: Scalar>() {
 }
 
 #[test]
-fn the_printed_form_stays_where_it_was_started_and_feels_well() {
+fn the_published_form_stays_where_it_was_started_and_feels_well() {
     check_frozen::<f64>();
     check_frozen::<f32>();
 }

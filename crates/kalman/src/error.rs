@@ -17,6 +17,8 @@ pub enum Error {
     /// The covariance does not settle: a state that grows is not observed, or one so slow that the
     /// iterations ran out.
     NotConverged,
+    /// A measurement's model has no derivative at this mean, or none that can be trusted.
+    NotLinearisable,
 }
 
 impl fmt::Display for Error {
@@ -25,6 +27,7 @@ impl fmt::Display for Error {
             Self::NotFinite => "a number is not finite",
             Self::NotPositive => "a variance is not positive",
             Self::NotConverged => "the covariance does not settle",
+            Self::NotLinearisable => "a measurement cannot be linearised at this state",
             Self::IndexOutOfRange => "a measurement row names a state that does not exist",
         })
     }

@@ -103,19 +103,32 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(())
     }
 
-    /// Takes in the measurement z of a model, linear or linearised, with noise variance R.
+    /// Takes in a measurement of noise variance R, by its model, linear or not.
     ///
     /// # Errors
-    /// As [`Gaussian::update`].
+    /// As [`Gaussian::weigh_observation`]; the estimate is untouched.
     #[inline]
-    pub fn observe<const K: usize>(
+    pub fn observe(
         &mut self,
-        model: &impl Observation<T, N, K>,
-        measured: T,
+        observation: &impl Observation<T, N>,
         variance: T,
     ) -> Result<Innovation<T>, Error> {
-        let (expected, row) = model.expect(&self.mean)?;
-        self.update(&row, measured - expected, variance)
+        let weighed = self.weigh_observation(observation, variance)?;
+        self.correct(&weighed)
+    }
+
+    /// Weighs a measurement of noise variance R, by its model, and changes nothing.
+    ///
+    /// # Errors
+    /// As [`Observation::linearise`] and [`Gaussian::update`].
+    #[inline(always)]
+    pub fn weigh_observation(
+        &self,
+        observation: &impl Observation<T, N>,
+        variance: T,
+    ) -> Result<Weighed<T, N>, Error> {
+        let (innovation, row) = observation.linearise(&self.mean)?;
+        self.weigh_entries(row.as_ref(), innovation, variance)
     }
 
     /// One scalar measurement with innovation ν = z − h(x), sparse row h = ∂h/∂x and variance R.

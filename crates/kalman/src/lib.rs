@@ -19,7 +19,7 @@ pub use error::Error;
 pub use gate::{Gate, Verdict};
 pub use gaussian::Gaussian;
 pub use innovation::{Innovation, Weighed};
-pub use model::{Linear, Observation, Process};
+pub use model::{Linear, LinearObservation, Observation, Process};
 pub use motion::ConstantVelocity;
 pub use row::SparseRow;
 pub use steady_state::{SteadyState, steady_state};

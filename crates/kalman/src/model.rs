@@ -12,13 +12,20 @@ pub trait Process<T: Scalar, const N: usize> {
     fn advance(&self, estimate: &mut Gaussian<T, N>);
 }
 
-/// What a scalar measurement of N states shows, of which it touches K.
-pub trait Observation<T: Scalar, const N: usize, const K: usize> {
-    /// h(x) and the row ∂h/∂x.
+/// A scalar measurement of N states: what was measured, and by which model.
+///
+/// A type a sensor, with the measured value z and whatever else h(x) needs. The noise is no part of it: it
+/// belongs to who weighs, and may be learnt.
+pub trait Observation<T: Scalar, const N: usize> {
+    /// ∂h/∂x as pairs of a state's index and the derivative by it; what is not named is zero. Usually a
+    /// [`SparseRow`].
+    type Row: AsRef<[(usize, T)]>;
+
+    /// ν = z − h(x) and the row ∂h/∂x. The difference is the model's, so that angles can be wrapped.
     ///
     /// # Errors
-    /// Whatever keeps the model from an expectation at this x.
-    fn expect(&self, mean: &SVector<T, N>) -> Result<(T, SparseRow<T, K>), Error>;
+    /// [`Error::NotLinearisable`], or whatever else keeps the model from an expectation at this x.
+    fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error>;
 }
 
 /// The linear process x ← F x with noise Q.
@@ -47,10 +54,22 @@ impl<T: Scalar, const N: usize> Process<T, N> for Linear<'_, T, N> {
     }
 }
 
-/// A linear measurement is its row.
-impl<T: Scalar, const N: usize, const K: usize> Observation<T, N, K> for SparseRow<T, K> {
+/// The linear measurement z = h·x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct LinearObservation<T, const K: usize> {
+    /// h.
+    pub row: SparseRow<T, K>,
+    /// z, in the measurement's unit.
+    pub measured: T,
+}
+
+impl<T: Scalar, const N: usize, const K: usize> Observation<T, N> for LinearObservation<T, K> {
+    type Row = SparseRow<T, K>;
+
     #[inline]
-    fn expect(&self, mean: &SVector<T, N>) -> Result<(T, SparseRow<T, K>), Error> {
-        Ok((self.dot(mean).ok_or(Error::IndexOutOfRange)?, *self))
+    fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, SparseRow<T, K>), Error> {
+        let expected = self.row.dot(mean).ok_or(Error::IndexOutOfRange)?;
+        Ok((self.measured - expected, self.row))
     }
 }

@@ -35,3 +35,10 @@ impl<T: Scalar, const K: usize> SparseRow<T, K> {
         Some(T::finish(sum))
     }
 }
+
+impl<T, const K: usize> AsRef<[(usize, T)]> for SparseRow<T, K> {
+    #[inline(always)]
+    fn as_ref(&self) -> &[(usize, T)] {
+        &self.entries
+    }
+}

@@ -62,10 +62,13 @@ fn a_block_with_impossible_noise_is_refused() {
     assert_eq!(ours, start);
 }
 
-/// A pendulum's angle and rate, and the height of its bob.
+/// A pendulum's angle and rate.
 struct Pendulum {
     dt: f64,
 }
+
+/// The height of its bob as measured.
+struct Height<T>(T);
 
 impl<T: Scalar> Process<T, 2> for Pendulum {
     fn advance(&self, estimate: &mut Gaussian<T, 2>) {
@@ -80,10 +83,12 @@ impl<T: Scalar> Process<T, 2> for Pendulum {
     }
 }
 
-impl<T: Scalar> Observation<T, 2, 1> for Pendulum {
-    fn expect(&self, mean: &SVector<T, 2>) -> Result<(T, SparseRow<T, 1>), Error> {
+impl<T: Scalar> Observation<T, 2> for Height<T> {
+    type Row = SparseRow<T, 1>;
+
+    fn linearise(&self, mean: &SVector<T, 2>) -> Result<(T, SparseRow<T, 1>), Error> {
         let (sin, cos) = mean[0].sin_cos();
-        Ok((T::ONE - cos, SparseRow::new([(0, sin)])))
+        Ok((self.0 - (T::ONE - cos), SparseRow::new([(0, sin)])))
     }
 }
 
@@ -97,7 +102,7 @@ fn check_extended<T: Scalar>(tolerance: f64) {
         rate -= model.dt * angle.sin();
         angle += model.dt * rate;
         ours.advance(&model).unwrap();
-        ours.observe(&model, T::from_f64(1.0 - angle.cos()), T::from_f64(1e-3)).unwrap();
+        ours.observe(&Height(T::from_f64(1.0 - angle.cos())), T::from_f64(1e-3)).unwrap();
     }
     let error = (ours.mean[0].to_f64() - angle).hypot(ours.mean[1].to_f64() - rate);
     assert!(error < tolerance, "{error}");

@@ -73,7 +73,7 @@ pub struct Adaptive<T> {
     pub c1: T,
     /// How a falls between them.
     pub descent: Descent,
-    /// The smallest a (the paper prints 0, by which (13) cannot divide).
+    /// The smallest a (published as 0, by which (13) cannot divide).
     pub floor: T,
     /// Before or after the weights.
     pub order: Order,

@@ -63,7 +63,7 @@ impl<T: Scalar> Robust<T> {
         let weight = Weight::TTest {
             alpha0: T::from_f64(0.1),
             alpha1: T::from_f64(0.01),
-            descent: Descent::Printed,
+            descent: Descent::Published,
         };
         Self { weight, ..Self::igg3() }
     }
@@ -78,20 +78,20 @@ impl<T: Scalar> Robust<T> {
         Self { adaptive: Some(Adaptive::new(block)), ..Self::iterative_igg3() }
     }
 
-    /// The same filter by the letter of the paper: σ̂0 of (17), the bracket of (15) and (21) without its
+    /// The same filter as published: σ̂0 of (17), the bracket of (15) and (21) without its
     /// square, the discrepancy of (22).
     #[must_use]
-    pub fn printed(self) -> Self {
+    pub fn published(self) -> Self {
         let weight = match self.weight {
-            Weight::Igg3 { k0, k1, .. } => Weight::Igg3 { k0, k1, descent: Descent::Printed },
+            Weight::Igg3 { k0, k1, .. } => Weight::Igg3 { k0, k1, descent: Descent::Published },
             Weight::TTest { alpha0, alpha1, .. } => {
-                Weight::TTest { alpha0, alpha1, descent: Descent::Printed }
+                Weight::TTest { alpha0, alpha1, descent: Descent::Published }
             }
             huber @ Weight::Huber { .. } => huber,
         };
         let adaptive = self.adaptive.map(|adaptive| Adaptive {
             discrepancy: Discrepancy::Innovation,
-            descent: Descent::Printed,
+            descent: Descent::Published,
             ..adaptive
         });
         Self { weight, scale: Scale::Epoch, adaptive, ..self }

@@ -6,8 +6,8 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Descent {
-    /// k0/s · (k1 − s)/(k1 − k0), as the paper prints it (15, 19, 21).
-    Printed,
+    /// k0/s · (k1 − s)/(k1 − k0), as published (15, 19, 21).
+    Published,
     /// k0/s · ((k1 − s)/(k1 − k0))², the original (Yang, Song and Xu 2002), without a kink at k1.
     Squared,
 }
@@ -79,7 +79,7 @@ impl<T: Scalar> Weight<T> {
     pub fn factor(&self, statistic: T, (inner, outer): (T, T)) -> T {
         match *self {
             Self::Huber { .. } if statistic > inner => inner / statistic,
-            Self::Huber { .. } => Descent::Printed.factor(statistic, inner, outer),
+            Self::Huber { .. } => Descent::Published.factor(statistic, inner, outer),
             Self::Igg3 { descent, .. } | Self::TTest { descent, .. } => {
                 descent.factor(statistic, inner, outer)
             }

@@ -82,8 +82,8 @@ fn the_innovations_drown_in_the_clock() {
     let robust = adaptive(Discrepancy::Innovation, Order::AfterWeights);
     let (_, summary) = update(&robust, [0.3, -0.2], 0.0);
     assert!(summary.discrepancy < 0.5 && summary.adaptive_factor == 1.0, "{summary:?}");
-    let printed = update(&Robust::adaptive(Block::new(0, 2)).printed(), [0.3, -0.2], 0.0).1;
-    assert_eq!(printed.adaptive_factor, 1.0);
+    let published = update(&Robust::adaptive(Block::new(0, 2)).published(), [0.3, -0.2], 0.0).1;
+    assert_eq!(published.adaptive_factor, 1.0);
     // In units of the prediction alone, the same jump is a large one.
     let robust = adaptive(Discrepancy::Prediction, Order::ByMajority);
     assert_eq!(update(&robust, [0.3, -0.2], 0.0).1.adaptive_factor, 0.05);

@@ -41,7 +41,7 @@ fn inputs() -> impl Strategy<Value = Vec<Input>> {
 
 fn robust<T: Scalar>() -> impl Strategy<Value = Robust<T>> {
     let number = |value: f64| T::from_f64(value);
-    let descent = prop_oneof![Just(Descent::Printed), Just(Descent::Squared)];
+    let descent = prop_oneof![Just(Descent::Published), Just(Descent::Squared)];
     let weight =
         (0..3, 1.0..3.0f64, 0.0..3.0f64, descent).prop_map(move |(kind, k, more, descent)| {
             match kind {

@@ -14,9 +14,9 @@ fn gamma<T: Scalar>(weight: &Weight<T>, statistic: f64) -> f64 {
 }
 
 fn check_values<T: Scalar>(tolerance: f64) {
-    // Eq. 15 as printed and as Yang, Song and Xu (2002) have it, by hand: at 4, 2.5/4 · 2/3.5.
+    // Eq. 15 as published and as Yang, Song and Xu (2002) have it, by hand: at 4, 2.5/4 · 2/3.5.
     let cases = [
-        (igg3(Descent::Printed), [1.0, 1.0, 0.625 * 2.0 / 3.5, 0.0, 0.0]),
+        (igg3(Descent::Published), [1.0, 1.0, 0.625 * 2.0 / 3.5, 0.0, 0.0]),
         (igg3(Descent::Squared), [1.0, 1.0, 0.625 * 4.0 / 12.25, 0.0, 0.0]),
         (Weight::Huber { k: T::from_f64(2.5) }, [1.0, 1.0, 0.625, 2.5 / 6.0, 2.5 / 100.0]),
     ];
@@ -120,7 +120,7 @@ fn thresholds_are_scipys() {
 
 #[test]
 fn a_t_test_of_two_has_no_thresholds() {
-    let weight = Weight::TTest { alpha0: 0.1, alpha1: 0.01, descent: Descent::Printed };
+    let weight = Weight::TTest { alpha0: 0.1, alpha1: 0.01, descent: Descent::Published };
     assert_eq!(weight.thresholds(2), None);
     assert_eq!(weight.thresholds(0), None);
     let (inner, outer) = weight.thresholds(10).expect("eight degrees of freedom");
@@ -128,7 +128,7 @@ fn a_t_test_of_two_has_no_thresholds() {
 }
 
 fn weight() -> impl Strategy<Value = Weight<f64>> {
-    let descent = prop_oneof![Just(Descent::Printed), Just(Descent::Squared)];
+    let descent = prop_oneof![Just(Descent::Published), Just(Descent::Squared)];
     let thresholds = (0.1..5.0f64, 0.0..5.0f64, 0.001..0.5f64, 0.01..1.0f64, descent, 0..3);
     thresholds.prop_map(|(k, more, alpha0, share, descent, kind)| match kind {
         0 => Weight::Huber { k },

@@ -30,5 +30,5 @@ pub use range::{ExpectedRange, expected_range};
 pub use room::Room;
 pub use survey::{Survey, survey};
 pub use timestamp::{METRES_PER_TICK, SPEED_OF_LIGHT, TICKS_PER_SECOND, Ticks, Timestamp};
-pub use trilateration::Trilateration;
+pub use trilateration::{Trilateration, trilaterate};
 pub use two_way::{DoubleSided, SingleSided};

@@ -1,7 +1,10 @@
-use crate::Error;
 use crate::symmetric::{MOST, NormalEquations};
+use crate::{Error, Observation};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
+
+/// A pivot smaller than this share of the largest: the anchors do not determine the position.
+const LEAST_PIVOT: f64 = 1e-4;
 
 /// Linear trilateration (the paper's eqs 3–7): the first anchor's sphere subtracted from the others', and
 /// the pseudo-inverse, which depends on the anchors alone, computed once.
@@ -24,20 +27,21 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
     /// [`Error::DegenerateGeometry`] if they stand in a line (D = 2) or a plane (D = 3).
     pub fn new(anchors: [SVector<T, 3>; A]) -> Result<Self, Error> {
         const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
-        if A <= D {
+        let Some(&first) = anchors.first().filter(|_| A > D) else {
             return Err(Error::TooFewRanges);
-        }
+        };
         if !anchors.iter().flat_map(|anchor| anchor.iter()).all(|entry| entry.is_finite()) {
             return Err(Error::NotFinite);
         }
         let mut equations = NormalEquations::new(D);
         for anchor in &anchors {
-            equations.add(&row::<T, D>(anchor, &anchors), T::ZERO, T::ONE);
+            equations.add(&row::<T, D>(anchor, &first), T::ZERO, T::ONE);
         }
-        let factors = equations.factorised(T::from_f64(1e-4)).ok_or(Error::DegenerateGeometry)?;
+        let least = T::from_f64(LEAST_PIVOT);
+        let factors = equations.factorised(least).ok_or(Error::DegenerateGeometry)?;
         let mut pseudo_inverse = [[T::ZERO; A]; D];
         for (index, anchor) in anchors.iter().enumerate() {
-            let column = factors.solve(&row::<T, D>(anchor, &anchors));
+            let column = factors.solve(&row::<T, D>(anchor, &first));
             for (line, entry) in pseudo_inverse.iter_mut().zip(column) {
                 line[index] = entry;
             }
@@ -50,26 +54,13 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
     /// # Errors
     /// [`Error::NotFinite`].
     pub fn position(&self, ranges: &[T; A], height: T) -> Result<SVector<T, D>, Error> {
-        let mut position = self.anchors.first().map_or(SVector::zeros(), |first| {
-            SVector::<T, D>::from_fn(|axis, _| first.data.0[0][axis])
-        });
-        let (Some(&first), Some(first_range)) = (self.anchors.first(), ranges.first()) else {
+        let (Some(first), Some(&first_range)) = (self.anchors.first(), ranges.first()) else {
             return Err(Error::TooFewRanges);
         };
+        let mut position = SVector::<T, D>::from_fn(|axis, _| first.data.0[0][axis]);
         let mut right = [T::ZERO; A];
         for ((right, anchor), &range) in right.iter_mut().zip(&self.anchors).zip(ranges) {
-            // d₀² − dᵢ² + |aᵢ − a₀|² relative to a₀, products of differences: squares of tens of
-            // metres would leave the range of fixed point.
-            let mut sum = (*first_range - range) * (*first_range + range);
-            for axis in 0..3 {
-                let apart = anchor.data.0[0][axis] - first.data.0[0][axis];
-                sum += apart * apart;
-                if axis >= D {
-                    let tag = height - first.data.0[0][axis];
-                    sum -= T::TWO * apart * tag;
-                }
-            }
-            *right = sum * T::HALF;
+            *right = right_side::<T, D>((first, first_range), (anchor, range), height);
         }
         for (coordinate, line) in position.iter_mut().zip(&self.pseudo_inverse) {
             *coordinate += T::dot(line, &right);
@@ -79,13 +70,66 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
     }
 }
 
-/// aᵢ − a₀, half of the paper's row: the other half stands on the right.
-fn row<T: Scalar, const D: usize>(anchor: &SVector<T, 3>, anchors: &[SVector<T, 3>]) -> [T; MOST] {
-    let mut row = [T::ZERO; MOST];
-    if let Some(first) = anchors.first() {
-        for axis in 0..D {
-            row[axis] = anchor.data.0[0][axis] - first.data.0[0][axis];
+/// [`Trilateration`] among anchors of which it is known only now which are heard, so that nothing can be
+/// prepared; variances are not read.
+///
+/// # Errors
+/// As [`Trilateration::new`] and [`Trilateration::position`].
+pub fn trilaterate<T: Scalar, const D: usize>(
+    observations: &[Observation<T>],
+    height: T,
+) -> Result<SVector<T, D>, Error> {
+    const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
+    let Some(first) = observations.first().filter(|_| observations.len() > D) else {
+        return Err(Error::TooFewRanges);
+    };
+    let mut equations = NormalEquations::new(D);
+    for observation in observations {
+        if !observation.anchor.iter().all(|entry| entry.is_finite()) {
+            return Err(Error::NotFinite);
         }
+        equations.add(&row::<T, D>(&observation.anchor, &first.anchor), T::ZERO, T::ONE);
+    }
+    let least = T::from_f64(LEAST_PIVOT);
+    let factors = equations.factorised(least).ok_or(Error::DegenerateGeometry)?;
+    let mut sums: [_; D] = core::array::from_fn(|_| T::accumulator());
+    for observation in observations {
+        let column = factors.solve(&row::<T, D>(&observation.anchor, &first.anchor));
+        let other = (&observation.anchor, observation.range);
+        let right = right_side::<T, D>((&first.anchor, first.range), other, height);
+        sums = core::array::from_fn(|axis| T::mac(sums[axis], column[axis], right));
+    }
+    let place = &first.anchor.data.0[0];
+    let position = SVector::<T, D>::from_fn(|axis, _| place[axis] + T::finish(sums[axis]));
+    let finite = position.iter().all(|coordinate| coordinate.is_finite());
+    if finite { Ok(position) } else { Err(Error::NotFinite) }
+}
+
+/// Half of d₀² − dᵢ² + |aᵢ − a₀|², relative to a₀ and without what the known height makes of it. Products of
+/// differences: squares of tens of metres would leave the range of fixed point.
+#[inline(always)]
+fn right_side<T: Scalar, const D: usize>(
+    (first, first_range): (&SVector<T, 3>, T),
+    (anchor, range): (&SVector<T, 3>, T),
+    height: T,
+) -> T {
+    let mut sum = (first_range - range) * (first_range + range);
+    for axis in 0..3 {
+        let apart = anchor.data.0[0][axis] - first.data.0[0][axis];
+        sum += apart * apart;
+        if axis >= D {
+            let tag = height - first.data.0[0][axis];
+            sum -= T::TWO * apart * tag;
+        }
+    }
+    sum * T::HALF
+}
+
+/// aᵢ − a₀, half of the paper's row: the other half stands on the right.
+fn row<T: Scalar, const D: usize>(anchor: &SVector<T, 3>, first: &SVector<T, 3>) -> [T; MOST] {
+    let mut row = [T::ZERO; MOST];
+    for axis in 0..D {
+        row[axis] = anchor.data.0[0][axis] - first.data.0[0][axis];
     }
     row
 }

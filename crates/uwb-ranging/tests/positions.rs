@@ -3,6 +3,7 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     Error, Huber, Observation, Room, Solver, Trilateration, dilution_of_precision, expected_range,
+    trilaterate,
 };
 use nalgebra::{SVector, Vector2, Vector3};
 use proptest::prelude::*;
@@ -35,6 +36,8 @@ fn check_exact<T: Scalar>(tag: [f64; 3], tolerance: f64) {
     let plane = Trilateration::<T, 4, 2>::new(places(CORNERS)).unwrap();
     let ranges = CORNERS.map(|place| distance(place, tag));
     let ours = plane.position(&ranges.map(T::from_f64), T::from_f64(tag[2])).unwrap();
+    let unprepared = trilaterate::<T, 2>(&observations(CORNERS, ranges), T::from_f64(tag[2]));
+    assert_eq!(unprepared, Ok(ours));
     assert!((ours.map(T::to_f64) - Vector2::new(tag[0], tag[1])).norm() < tolerance, "{ours:?}");
 
     let solver = Solver::new(T::from_f64(tag[2]));
@@ -45,6 +48,7 @@ fn check_exact<T: Scalar>(tag: [f64; 3], tolerance: f64) {
     let space = Trilateration::<T, 5, 3>::new(places(SPATIAL)).unwrap();
     let ranges = SPATIAL.map(|place| distance(place, tag));
     let ours = space.position(&ranges.map(T::from_f64), T::ZERO).unwrap();
+    assert_eq!(trilaterate::<T, 3>(&observations(SPATIAL, ranges), T::ZERO), Ok(ours));
     assert!((ours.map(T::to_f64) - Vector3::from(tag)).norm() < 5.0 * tolerance, "{ours:?}");
     let fix = solver.solve::<3>(&observations(SPATIAL, ranges), None).unwrap();
     assert!((fix.position.map(T::to_f64) - Vector3::from(tag)).norm() < 5e-3);
@@ -74,6 +78,9 @@ proptest! {
             };
             if let Ok(fix) = solver.solve::<2>(&observations, None) {
                 prop_assert!(fix.position.iter().all(|x| x.is_finite()));
+            }
+            if let Ok(position) = trilaterate::<T, 2>(&observations, T::ONE) {
+                prop_assert!(position.iter().all(|x| x.is_finite()));
             }
             let plane = Trilateration::<T, 4, 2>::new(places(CORNERS)).unwrap();
             if let Ok(position) = plane.position(&ranges.map(T::from_f64), T::ONE) {

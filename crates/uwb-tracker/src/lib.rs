@@ -2,19 +2,24 @@
 #![no_std]
 
 mod config;
+mod epoch;
 mod error;
 mod health;
 mod link;
+mod measurement;
 mod motion;
+mod published;
 mod sample;
 mod start;
 mod stillness;
 mod tracker;
 
 pub use config::Config;
+pub use epoch::{EpochMethod, EpochSolver};
 pub use error::Error;
 pub use health::{Health, State};
 pub use link::Anchor;
+pub use published::{PublishedConfig, PublishedOutcome, PublishedTracker};
 pub use sample::{InertialSample, OdometrySample, Outcome, RangeSample, Report};
 pub use tracker::{
     CalibratedPlaneTracker, CalibratedSpaceTracker, PlaneTracker, SpaceTracker, Tracker,

@@ -1,4 +1,5 @@
-use crate::Config;
+use crate::{Config, Error};
+use kestirim_adaptive_kalman::MeasurementNoise;
 use kestirim_kalman::Gate;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -13,11 +14,22 @@ pub struct Anchor<T: Scalar> {
     pub bias: T,
 }
 
+impl<T: Scalar> Anchor<T> {
+    /// Refuses an anchor that is nowhere.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let numbers = self.position.iter().chain([&self.bias]);
+        if numbers.copied().all(T::is_finite) { Ok(()) } else { Err(Error::NotFinite) }
+    }
+}
+
+/// A range older than this says nothing about now (µs).
+pub(crate) const FRESH_US: u64 = 1_000_000;
+
 /// An anchor and what its ranges have been like.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<T: Scalar> {
     pub(crate) anchor: Anchor<T>,
-    pub(crate) variance: T,
+    pub(crate) noise: MeasurementNoise<T>,
     pub(crate) gate: Gate<T>,
     /// From this time on a range is new (µs); 0 if none came yet.
     next_us: u64,
@@ -28,14 +40,11 @@ pub(crate) struct Link<T: Scalar> {
 impl<T: Scalar> Link<T> {
     /// After so many ranges in a row that do not fit, one is believed all the same.
     const PATIENCE: u16 = 20;
-    /// A range older than this says nothing about now (µs).
-    const FRESH_US: u64 = 1_000_000;
 
     pub(crate) fn new(anchor: Anchor<T>, config: &Config<T>) -> Self {
-        let variance = config.range_sigma * config.range_sigma;
         Self {
             anchor,
-            variance,
+            noise: MeasurementNoise::new(config.range_sigma * config.range_sigma),
             gate: Gate::new(config.gate.unwrap_or(T::MAX), Self::PATIENCE),
             next_us: 0,
             range: T::ZERO,
@@ -46,7 +55,7 @@ impl<T: Scalar> Link<T> {
     #[inline]
     pub(crate) fn fresh(&self, time_us: u64) -> Option<T> {
         let age_us = time_us.saturating_add(1).saturating_sub(self.next_us);
-        (self.next_us > 0 && age_us <= Self::FRESH_US).then_some(self.range)
+        (self.next_us > 0 && age_us <= FRESH_US).then_some(self.range)
     }
 
     /// From when on a range is new (µs).

@@ -1,3 +1,4 @@
+use crate::Error;
 use kestirim_kalman::Innovation;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -13,6 +14,22 @@ pub struct RangeSample<T> {
     pub anchor: usize,
     /// The distance, m; a little below zero is possible, and meant.
     pub range: T,
+}
+
+impl<T: Scalar> RangeSample<T> {
+    /// What no radio measures, m.
+    const SHORTEST: f64 = -1.0;
+    const LONGEST: f64 = 200.0;
+
+    /// Refuses what no radio measures.
+    #[inline]
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let plausible = T::from_f64(Self::SHORTEST)..=T::from_f64(Self::LONGEST);
+        if plausible.contains(&self.range) {
+            return Ok(());
+        }
+        Err(if self.range.is_finite() { Error::ImplausibleRange } else { Error::NotFinite })
+    }
 }
 
 /// What an IMU says about the motion of the tag.

@@ -21,7 +21,7 @@ const COMMON: [&str; 13] = [
     "peer-minikalman-q16-16",
     "aekf4-ranges4-f32",
     "aekf4-ranges4-q12-20",
-    "aekf4-printed-f32",
+    "aekf4-published-f32",
     "robust4-ranges4-f32",
     "robust4-ranges4-q12-20",
 ];

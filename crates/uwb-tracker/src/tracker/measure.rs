@@ -1,13 +1,11 @@
 //! What a range makes of the estimate.
 
 use super::Tracker;
+use crate::measurement::Range;
 use crate::start::start;
-use crate::{Anchor, Config, Error, Outcome, RangeSample, Report};
-use kestirim_adaptive_kalman::learnt;
-use kestirim_kalman::{Gaussian, Verdict, Weighed};
+use crate::{Config, Error, Outcome, RangeSample, Report};
+use kestirim_kalman::{Verdict, Weighed};
 use kestirim_scalar::Scalar;
-use kestirim_uwb_ranging::{ExpectedRange, expected_range};
-use nalgebra::SVector;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// After so many tries to begin, ranges that contradict each other are accepted, too.
@@ -25,10 +23,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             return Ok(self.collect(sample, range));
         };
         let observes_bias = N > 2 * D && self.heard as usize >= D + 2;
-        let (row, expected) =
-            predicted_range::<T, D, N>(estimate, &self.config, &link.anchor, observes_bias);
-        let row = row.get(..N - D).unwrap_or(&row);
-        let weighed = estimate.weigh_entries(row, range - expected, link.variance)?;
+        let observation = Range::<T, D> {
+            measured: range,
+            anchor: &link.anchor.position,
+            height: self.config.height,
+            observes_bias,
+        };
+        let weighed = estimate.weigh_observation(&observation, link.noise.variance())?;
         let seen = weighed.report();
 
         let mut gate = link.gate;
@@ -58,7 +59,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         // A range that the estimate has to follow fits whatever it is worth.
         let redundant = self.heard as usize > D + usize::from(observes_bias);
         if redundant && let Some(learning) = &self.config.learning {
-            link.variance = learnt(link.variance, learning, &weighed, square);
+            link.noise.learn_square(learning, &weighed, square);
         }
         if outcome == Outcome::Rejected {
             self.reject();
@@ -111,29 +112,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.counters.nis = T::ONE;
         true
     }
-}
-
-/// The row ∂h/∂x and the range that is expected.
-#[inline]
-fn predicted_range<T: Scalar, const D: usize, const N: usize>(
-    estimate: &Gaussian<T, N>,
-    config: &Config<T>,
-    anchor: &Anchor<T>,
-    observes_bias: bool,
-) -> ([(usize, T); 4], T) {
-    let mean = &estimate.mean.data.0[0];
-    let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
-    let ExpectedRange { distance, direction } =
-        expected_range(&position, config.height, &anchor.position);
-    let mut row = [(0, T::ZERO); 4];
-    for axis in 0..D {
-        row[axis] = (axis, direction[axis]);
-    }
-    if N == 2 * D {
-        return (row, distance);
-    }
-    row[D] = (2 * D, if observes_bias { T::ONE } else { T::ZERO });
-    (row, if observes_bias { distance + mean[2 * D] } else { distance })
 }
 
 /// The noise that Huber gives a range beyond his threshold: S grows to S |ν|/(k √S).

@@ -40,9 +40,6 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// What no radio measures, m.
-    const SHORTEST: f64 = -1.0;
-    const LONGEST: f64 = 200.0;
     /// What nothing that carries a tag does, m/s² …
     const LARGEST_ACCELERATION: f64 = 500.0;
     /// … and m/s, or rad/s.
@@ -61,10 +58,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         const { assert!(N == 2 * D || N == 2 * D + 1, "positions, velocities and perhaps a bias") };
         let mut links = Vec::new();
         for anchor in anchors {
-            let numbers = anchor.position.iter().chain([&anchor.bias]);
-            if !numbers.copied().all(T::is_finite) {
-                return Err(Error::NotFinite);
-            }
+            anchor.check()?;
             links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
         }
         Ok(Self {
@@ -102,7 +96,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
 
     /// The standard deviation that is attributed to an anchor's ranges at present, m.
     pub fn range_sigma(&self, anchor: usize) -> Option<T> {
-        self.links.get(anchor).map(|link| link.variance.sqrt())
+        self.links.get(anchor).map(|link| link.noise.variance().sqrt())
     }
 
     /// Sets the tag's height in two dimensions, m.
@@ -184,11 +178,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     #[inline]
     fn check(&self, sample: &RangeSample<T>) -> Result<T, Error> {
         let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
-        let plausible = T::from_f64(Self::SHORTEST)..=T::from_f64(Self::LONGEST);
-        if !plausible.contains(&sample.range) {
-            let finite = sample.range.is_finite();
-            return Err(if finite { Error::ImplausibleRange } else { Error::NotFinite });
-        }
+        sample.check()?;
         if sample.time_us < link.next_us() {
             let again = sample.time_us == link.next_us() - 1;
             return Err(if again { Error::Duplicate } else { Error::OutOfOrder });

@@ -1,6 +1,7 @@
 //! How the estimate follows the time, and whether the tag stands meanwhile.
 
 use super::Tracker;
+use crate::measurement::{Speed, Standstill};
 use crate::{Error, OdometrySample, motion};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
@@ -49,15 +50,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.doubt_standing();
         }
         if let Some(mut estimate) = self.estimate {
-            let still = self.is_still(time_us) && motion::may_stand::<T, D, N>(&estimate);
+            let still = self.is_still(time_us) && Standstill::agrees::<T, D, N>(&estimate);
             let interval = T::from_micro(elapsed.min(Self::LOST_US) as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
             if still {
-                motion::stand_still::<T, D, N>(&mut estimate)?;
+                Standstill::correct::<T, D, N>(&mut estimate)?;
             } else if let Some(wheels) = self.fresh_wheels(time_us)
                 && wheels.turn_rate.abs() < T::from_f64(Self::TURNING)
             {
-                motion::drive::<T, D, N>(&mut estimate, wheels.speed)?;
+                Speed::<T, D> { measured: wheels.speed }.correct(&mut estimate)?;
             }
             let variances = estimate.covariance.variances();
             let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);

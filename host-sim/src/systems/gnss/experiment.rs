@@ -46,7 +46,7 @@ struct Case {
 /// falls: one of the tables shows it.
 fn cases() -> Vec<Case> {
     let printed =
-        |estimator: Estimator| Estimator { robust: estimator.robust.printed(), ..estimator };
+        |estimator: Estimator| Estimator { robust: estimator.robust.published(), ..estimator };
     let standing = Motion::Static;
     let moving = Motion::Kinematic { process_noise: PROCESS_NOISE };
     let case = |table, filter, motion, estimator, published| Case {

@@ -108,7 +108,7 @@ impl FilterKind {
             Self::Default => Estimator::guarded(motion),
         };
         if printed && self.is_printed() {
-            Estimator { robust: ours.robust.printed(), ..ours }
+            Estimator { robust: ours.robust.published(), ..ours }
         } else {
             ours
         }

@@ -14,7 +14,7 @@ use super::feed::{self, Company, Epoch};
 use super::follow::{self, Follow};
 use super::limit::{Knowledge, mean_error_limit};
 use super::options::{self, Setup, TrackerKind};
-use super::printed::{Beginning, Constants};
+use super::published::{Beginning, Noise};
 use super::ranges::RangeRow;
 use super::scenario::{self, EPOCHS, Office};
 use crate::system::{RunOptions, ScalarKind};
@@ -127,11 +127,11 @@ impl Day {
         }
         let way = scenario::line();
         let rows = office.measure(&mut rng, &way);
-        let honest = |constants| Beginning { start: None, constants };
+        let honest = |noise| Beginning { start: None, noise };
         let followers = [
             follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
-            follow::build_printed(&plain, honest(Constants::PLAIN))?,
-            follow::build_printed(&plain, honest(Constants::ADAPTIVE))?,
+            follow::build_published(&plain, honest(Noise::Fixed))?,
+            follow::build_published(&plain, honest(Noise::Adapted))?,
             follow::build(&plain)?,
             follow::build(&calibrated)?,
         ];
@@ -150,14 +150,14 @@ fn trackers(
     // Beside the point, every day in another direction: turned by the golden angle.
     let angle = 2.399_963_229_728_653 * trial as f64;
     let beside = [place[0] + 0.1 * angle.cos(), place[1] + 0.1 * angle.sin()];
-    let printed = |start, constants| follow::build_printed(plain, Beginning { start, constants });
+    let published = |start, noise| follow::build_published(plain, Beginning { start, noise });
     Ok([
         follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
-        printed(Some(place), Constants::PLAIN)?,
-        printed(Some(place), Constants::ADAPTIVE)?,
-        printed(None, Constants::PLAIN)?,
-        printed(None, Constants::ADAPTIVE)?,
-        printed(Some(beside), Constants::ADAPTIVE)?,
+        published(Some(place), Noise::Fixed)?,
+        published(Some(place), Noise::Adapted)?,
+        published(None, Noise::Fixed)?,
+        published(None, Noise::Adapted)?,
+        published(Some(beside), Noise::Adapted)?,
         follow::build(plain)?,
         follow::build(calibrated)?,
     ])

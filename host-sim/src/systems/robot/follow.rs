@@ -4,7 +4,7 @@ use kestirim_adaptive_kalman::Learning;
 use kestirim_kalman::Covariance;
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_tracker::{
-    Anchor, Config, InertialSample, OdometrySample, Outcome, RangeSample, Tracker,
+    Anchor, Config, EpochMethod, InertialSample, OdometrySample, Outcome, RangeSample, Tracker,
 };
 use nalgebra::SVector;
 
@@ -12,7 +12,7 @@ use super::anchors::MOST;
 use super::each_epoch::EachEpoch;
 use super::motion::{Inertial, Wheels};
 use super::options::{Dimensions, Setup, TrackerKind};
-use super::printed::{Beginning, Printed};
+use super::published::{Beginning, Published};
 use super::tuning::Tuning;
 use crate::Error;
 use crate::system::ScalarKind;
@@ -91,8 +91,8 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
     let plain = |config| tuning.map_or(config, |tuning| tuning.of_any(config));
     let robust = |config| tuning.map_or(config, |tuning| tuning.of_the_robust(config));
     Ok(match setup.tracker {
-        TrackerKind::Lsq => Box::new(EachEpoch::<T, D>::new(setup, true)),
-        TrackerKind::Nls => Box::new(EachEpoch::<T, D>::new(setup, false)),
+        TrackerKind::Lsq => Box::new(EachEpoch::<T, D>::new(setup, EpochMethod::Trilateration)?),
+        TrackerKind::Nls => Box::new(EachEpoch::<T, D>::new(setup, EpochMethod::LeastSquares)?),
         TrackerKind::Ekf => {
             Box::new(Recursive::<T, D, N>::new(setup, plain(Config::plain(height)))?)
         }
@@ -102,7 +102,7 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
             let config = Config { learning, ..Config::plain(height) };
             Box::new(Recursive::<T, D, N>::new(setup, plain(config))?)
         }
-        TrackerKind::AekfPrinted => Printed::<T, D, N>::boxed(setup, Beginning::HONEST)?,
+        TrackerKind::AekfPrinted => Published::<T, D, N>::boxed(setup, Beginning::HONEST)?,
         TrackerKind::Default if setup.biases.is_some() => {
             Box::new(Recursive::<T, D, N>::new(setup, robust(Config::calibrated(height)))?)
         }
@@ -135,11 +135,11 @@ pub fn build_changed(
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_printed(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
+pub fn build_published(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
     match setup.scalar {
-        ScalarKind::F32 => Printed::<f32, 2, 4>::boxed(setup, beginning),
-        ScalarKind::F64 => Printed::<f64, 2, 4>::boxed(setup, beginning),
-        ScalarKind::Fixed => Printed::<Q12_20, 2, 4>::boxed(setup, beginning),
+        ScalarKind::F32 => Published::<f32, 2, 4>::boxed(setup, beginning),
+        ScalarKind::F64 => Published::<f64, 2, 4>::boxed(setup, beginning),
+        ScalarKind::Fixed => Published::<Q12_20, 2, 4>::boxed(setup, beginning),
     }
 }
 
@@ -153,15 +153,8 @@ struct Recursive<T: Scalar, const D: usize, const N: usize> {
 
 impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
     fn new(setup: &Setup, config: Config<T>) -> Result<Self, Error> {
-        let places = setup.anchors.iter().enumerate();
-        let anchors: Vec<_> = places
-            .map(|(index, place)| Anchor {
-                position: SVector::from(place.map(T::from_f64)),
-                bias: T::from_f64(setup.bias(index)),
-            })
-            .collect();
-        let tracker = Tracker::new(Config { room: setup.room(), ..config }, &anchors)
-            .map_err(|error| Error::Usage(format!("these anchors cannot be used: {error}")))?;
+        let config = Config { room: setup.room(), ..config };
+        let tracker = Tracker::new(config, &anchors(setup)).map_err(refused)?;
         let pushed = matches!(setup.tracker, TrackerKind::Ekf | TrackerKind::Aekf);
         Ok(Self { tracker, height_m: setup.height_m, pushed })
     }
@@ -205,14 +198,36 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     fn end_epoch(&mut self, _: u64) {}
 
     fn position(&self) -> Option<[f64; 3]> {
-        let position = self.tracker.position()?;
-        let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
-        Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(self.height_m)])
+        place(&self.tracker.position()?, self.height_m)
     }
 
     fn spread(&self) -> Option<[f64; 3]> {
         self.tracker.estimate().and_then(|estimate| of_the_plane(&estimate.covariance))
     }
+}
+
+/// The anchors in another number type.
+pub(super) fn anchors<T: Scalar>(setup: &Setup) -> Vec<Anchor<T>> {
+    let places = setup.anchors.iter().enumerate();
+    let anchor = |(index, place): (usize, &[f64; 3])| Anchor {
+        position: SVector::from(place.map(T::from_f64)),
+        bias: T::from_f64(setup.bias(index)),
+    };
+    places.map(anchor).collect()
+}
+
+/// A tracker that cannot be made.
+pub(super) fn refused(error: kestirim_uwb_tracker::Error) -> Error {
+    Error::Usage(format!("these anchors cannot be used: {error}"))
+}
+
+/// A position in two or three dimensions, m.
+pub(super) fn place<T: Scalar, const D: usize>(
+    position: &SVector<T, D>,
+    height_m: f64,
+) -> Option<[f64; 3]> {
+    let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
+    Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(height_m)])
 }
 
 /// Variance of x, covariance and variance of y: of the first two states of any filter.

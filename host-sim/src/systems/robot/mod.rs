@@ -20,7 +20,7 @@ pub mod limit;
 pub mod motion;
 pub mod options;
 pub mod points;
-pub mod printed;
+pub mod published;
 pub mod ranges;
 pub mod recording;
 pub mod replay;

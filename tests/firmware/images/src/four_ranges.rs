@@ -14,7 +14,7 @@ use support::Class;
 
 use crate::replay::Tracker;
 use crate::stream::Ranges;
-pub use adaptive::{Aekf, Printed};
+pub use adaptive::{Aekf, Published};
 pub use robust::Robust;
 
 /// What a scalar is called in tables.

@@ -1,7 +1,7 @@
 //! Everything of `kestirim-adaptive-kalman`.
 
 use kestirim_adaptive_kalman::{
-    AdaptiveKalman, Error, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise, learnt,
+    AdaptiveKalman, Error, Learning, MeasurementNoise, ProcessNoise, PublishedAdaptiveKalman,
 };
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -26,13 +26,14 @@ fn noises<T: Scalar, const N: usize>() {
     keep(ProcessNoise::variances(&process));
     keep(ProcessNoise::covariance(&process));
     ProcessNoise::learn(any(&mut process), &matrix());
-    let mut noise = any(MeasurementNoise::new(number(), learning));
+    let mut noise = any(MeasurementNoise::new(number()));
     keep(MeasurementNoise::variance(&noise));
     let estimate = any(Gaussian::<T, N>::new(matrix(), covariance()));
     let row = any(SparseRow::new([(whole(), number())]));
     let Ok(weighed) = estimate.weigh(&row, number(), number()) else { return };
-    MeasurementNoise::learn(any(&mut noise), &weighed);
-    keep(learnt(number(), &learning, &weighed, number()));
+    MeasurementNoise::learn(any(&mut noise), &learning, &weighed);
+    MeasurementNoise::learn_square(any(&mut noise), &learning, &weighed, number());
+    keep(noise);
 }
 
 fn filters<T: Scalar, const D: usize, const N: usize, const M: usize>() {
@@ -40,7 +41,8 @@ fn filters<T: Scalar, const D: usize, const N: usize, const M: usize>() {
     let mut filter = any(AdaptiveKalman::<T, N, M>::new(
         Gaussian::new(matrix(), covariance()),
         ProcessNoise::new(numbers(), [learning; N]),
-        [MeasurementNoise::new(number(), learning); M],
+        numbers(),
+        [learning; M],
     ));
     let motion = any(ConstantVelocity::<T, D>::new(number(), number()));
     let row = any(SparseRow::new([(any(0), number()), (whole(), number())]));
@@ -56,16 +58,16 @@ fn filters<T: Scalar, const D: usize, const N: usize, const M: usize>() {
     keep(AdaptiveKalman::measurement_noise(&filter));
 }
 
-fn printed<T: Scalar, const D: usize, const N: usize, const M: usize>() {
+fn published<T: Scalar, const D: usize, const N: usize, const M: usize>() {
     let estimate = Gaussian::<T, N>::new(matrix(), covariance());
     let noise = covariance::<T, M>();
-    let filter = PrintedAdaptiveKalman::new(estimate, covariance(), noise, number(), number());
+    let filter = PublishedAdaptiveKalman::new(estimate, covariance(), noise, number(), number());
     let Ok(mut filter) = any(filter) else { return };
     let motion = any(ConstantVelocity::<T, D>::new(number(), number()));
-    try_on(&mut filter, |filter| PrintedAdaptiveKalman::predict(filter, &motion));
-    try_on(&mut filter, |filter| PrintedAdaptiveKalman::update(filter, &matrix(), &matrix()));
-    keep(PrintedAdaptiveKalman::estimate(&filter));
-    keep(PrintedAdaptiveKalman::measurement_noise(&filter));
+    try_on(&mut filter, |filter| PublishedAdaptiveKalman::predict(filter, &motion));
+    try_on(&mut filter, |filter| PublishedAdaptiveKalman::update(filter, &matrix(), &matrix()));
+    keep(PublishedAdaptiveKalman::estimate(&filter));
+    keep(PublishedAdaptiveKalman::measurement_noise(&filter));
 }
 
 fn all_of<T: Scalar>() {
@@ -74,8 +76,8 @@ fn all_of<T: Scalar>() {
         noises::<T, 9>,
         filters::<T, 2, 4, 4>,
         filters::<T, 3, 9, 7>,
-        printed::<T, 2, 4, 4>,
-        printed::<T, 3, 9, 5>,
+        published::<T, 2, 4, 4>,
+        published::<T, 3, 9, 5>,
     ]);
 }
 

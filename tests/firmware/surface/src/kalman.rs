@@ -1,8 +1,8 @@
 //! Everything of `kestirim-kalman`.
 
 use kestirim_kalman::{
-    BlockInnovation, ConstantVelocity, Covariance, Gate, Gaussian, Innovation, Linear, Observation,
-    Process, SparseRow, SteadyState, Weighed, steady_state,
+    BlockInnovation, ConstantVelocity, Covariance, Gate, Gaussian, Innovation, Linear,
+    LinearObservation, Observation, Process, SparseRow, SteadyState, Weighed, steady_state,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -62,8 +62,11 @@ fn updates<T: Scalar, const N: usize, const K: usize>() {
     let row = row::<T, K>();
     keep(SparseRow::entries(&row));
     keep(SparseRow::dot(&row, &state.mean));
-    keep(<SparseRow<T, K> as Observation<T, N, K>>::expect(&row, &state.mean));
-    try_on(&mut state, |state| Gaussian::observe(state, &row, number(), number()));
+    keep(SparseRow::as_ref(&row));
+    let observation = any(LinearObservation { row, measured: number() });
+    keep(<LinearObservation<T, K> as Observation<T, N>>::linearise(&observation, &state.mean));
+    try_on(&mut state, |state| Gaussian::observe(state, &observation, number()));
+    keep(Gaussian::weigh_observation(&state, &observation, number()));
     try_on(&mut state, |state| Gaussian::update(state, &row, number(), number()));
     try_on(&mut state, |state| Gaussian::update_component::<1>(state, number(), number()));
     let entries = [(whole(), number()); K];

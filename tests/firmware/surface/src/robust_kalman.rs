@@ -16,7 +16,7 @@ fn block() -> Block {
 }
 
 fn descent() -> Descent {
-    one_of([Descent::Printed, Descent::Squared])
+    one_of([Descent::Published, Descent::Squared])
 }
 
 /// Any configuration.
@@ -58,7 +58,7 @@ fn presets<T: Scalar>() {
     keep::<Robust<T>>(Robust::t_test());
     keep::<Robust<T>>(Robust::iterative_igg3());
     keep::<Robust<T>>(Robust::adaptive(block()));
-    keep::<Robust<T>>(Robust::printed(any(robust())));
+    keep::<Robust<T>>(Robust::published(any(robust())));
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
 }
 

@@ -4,7 +4,7 @@ use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     AntennaDelay, Calibration, Channel, ClockOffset, DataRate, DoubleSided, Huber, LevelBias,
     Observation, Quartiles, Room, SingleSided, Solver, Ticks, Timestamp, Trilateration,
-    dilution_of_precision, expected_range, survey,
+    dilution_of_precision, expected_range, survey, trilaterate,
 };
 
 use super::values::{
@@ -94,6 +94,7 @@ fn solvers<T: Scalar, const D: usize>() {
     let observation = Observation { anchor: matrix(), range: number(), variance: number() };
     let observations = any([observation; 4]);
     keep(Solver::solve::<D>(&solver, slice(&observations), maybe(matrix())));
+    keep(trilaterate::<T, D>(slice(&observations), number()));
 }
 
 fn anchors<T: Scalar, const A: usize>() {

@@ -1,13 +1,15 @@
 //! Everything of `kestirim-uwb-tracker`.
 
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_uwb_ranging::Room;
+use kestirim_uwb_ranging::{Room, Solver};
 use kestirim_uwb_tracker::{
-    Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Tracker,
+    Anchor, Config, EpochMethod, EpochSolver, Error, InertialSample, OdometrySample,
+    PublishedConfig, PublishedTracker, RangeSample, Tracker,
 };
 
 use super::values::{
-    any, call_each, keep, matrix, maybe, number, numbers, option, rounds, slice, try_on, whole,
+    any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice, try_on,
+    whole,
 };
 
 fn configs<T: Scalar>() {
@@ -36,8 +38,7 @@ fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     let tracker = Tracker::<T, D, N, A>::new(config(), slice(&anchors));
     let Ok(mut tracker) = any(tracker) else { return };
     for _ in 0..rounds() {
-        let range = any(RangeSample { time_us: whole(), anchor: whole(), range: number() });
-        try_on(&mut tracker, |tracker| Tracker::range(tracker, &range));
+        try_on(&mut tracker, |tracker| Tracker::range(tracker, &sample()));
         let push = maybe(numbers());
         let inertial = any(InertialSample { time_us: whole(), acceleration: matrix(), push });
         try_on(&mut tracker, |tracker| Tracker::inertial(tracker, &inertial));
@@ -53,6 +54,51 @@ fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     keep(Tracker::health(&tracker, whole()));
 }
 
+fn sample<T: Scalar>() -> RangeSample<T> {
+    any(RangeSample { time_us: whole(), anchor: whole(), range: number() })
+}
+
+fn epochs<T: Scalar, const D: usize, const A: usize>() {
+    let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
+    let method = one_of([EpochMethod::Trilateration, EpochMethod::LeastSquares]);
+    let room = maybe(Room { low: numbers(), high: numbers() });
+    let solver = any(Solver { room, ..Solver::new(number()) });
+    let solver = EpochSolver::<T, A>::new(method, solver, slice(&anchors));
+    let Ok(mut solver) = any(solver) else { return };
+    for _ in 0..rounds() {
+        try_on(&mut solver, |solver| EpochSolver::range(solver, &sample()));
+        try_on(&mut solver, |solver| EpochSolver::set_height(solver, number()));
+    }
+    keep(EpochSolver::height(&solver));
+    keep(EpochSolver::position::<D>(&solver, whole(), maybe(matrix())));
+}
+
+fn published<T: Scalar, const D: usize, const N: usize, const A: usize>() {
+    keep::<PublishedConfig<T, D>>(PublishedConfig::plain(number()));
+    let config = any(PublishedConfig::<T, D>::adaptive(number()));
+    let config = any(PublishedConfig {
+        start: maybe(matrix()),
+        position_variance: number(),
+        process_variance: number(),
+        range_variance: number(),
+        forgetting: number(),
+        ..config
+    });
+    let anchors = any([Anchor { position: matrix(), bias: number() }; A]);
+    let tracker = PublishedTracker::<T, D, N, A>::new(config, &anchors);
+    let Ok(mut tracker) = any(tracker) else { return };
+    for _ in 0..rounds() {
+        for _ in 0..A {
+            try_on(&mut tracker, |tracker| PublishedTracker::range(tracker, &sample()));
+        }
+        PublishedTracker::push(any(&mut tracker), maybe(numbers()));
+        keep(PublishedTracker::end_epoch(any(&mut tracker), whole()));
+        try_on(&mut tracker, |tracker| PublishedTracker::set_height(tracker, number()));
+    }
+    keep(PublishedTracker::position(&tracker));
+    keep(PublishedTracker::estimate(&tracker));
+}
+
 fn all_of<T: Scalar>() {
     call_each([
         configs::<T>,
@@ -60,6 +106,10 @@ fn all_of<T: Scalar>() {
         tracks::<T, 2, 5, 9>,
         tracks::<T, 3, 6, 4>,
         tracks::<T, 3, 7, 9>,
+        epochs::<T, 2, 4>,
+        epochs::<T, 3, 9>,
+        published::<T, 2, 4, 4>,
+        published::<T, 3, 6, 5>,
     ]);
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::follow::{self, Follow};
 use super::super::options::{Setup, TrackerKind};
-use super::super::printed::{Beginning, Constants};
+use super::super::published::{Beginning, Noise};
 use super::super::recording::{Recording, Truth};
 use super::super::trace::{Trace, trace};
 use crate::Error;
@@ -29,13 +29,12 @@ impl Day {
         let plain = Setup::of_the_office(scalar);
         let calibrated = Setup { biases: recording.biases.clone(), ..plain.clone() };
         let unfiltered = Setup { tracker: TrackerKind::Lsq, ..plain.clone() };
-        let kinds = [Constants::PLAIN, Constants::ADAPTIVE];
-        let honest = kinds.map(|constants| {
-            let beginning = Beginning { start: None, constants };
-            trace(&recording, &plain, |setup| follow::build_printed(setup, beginning))
+        let kinds = [Noise::Fixed, Noise::Adapted];
+        let honest = kinds.map(|noise| {
+            let beginning = Beginning { start: None, noise };
+            trace(&recording, &plain, |setup| follow::build_published(setup, beginning))
         });
-        let from_the_truth =
-            kinds.map(|constants| each_from_its_truth(&recording, &plain, constants));
+        let from_the_truth = kinds.map(|noise| each_from_its_truth(&recording, &plain, noise));
         let [ekf, aekf] = honest;
         let [true_ekf, true_aekf] = from_the_truth;
         Ok(Self {
@@ -53,14 +52,14 @@ impl Day {
 fn each_from_its_truth(
     recording: &Recording,
     setup: &Setup,
-    constants: Constants,
+    noise: Noise,
 ) -> Result<Vec<Trace>, Error> {
     let starts: Vec<_> = recording.parts.iter().map(|part| start(part.truth.as_ref())).collect();
     let next = std::cell::Cell::new(0);
     trace(recording, setup, |setup| -> Result<Box<dyn Follow>, Error> {
         let part = next.replace(next.get() + 1);
         let start = starts.get(part).copied().flatten();
-        follow::build_printed(setup, Beginning { start, constants })
+        follow::build_published(setup, Beginning { start, noise })
     })
 }
 

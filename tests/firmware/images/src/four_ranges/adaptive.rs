@@ -1,8 +1,6 @@
 //! The common scenario with the adaptive filters.
 
-use kestirim_adaptive_kalman::{
-    AdaptiveKalman, Learning, MeasurementNoise, PrintedAdaptiveKalman, ProcessNoise,
-};
+use kestirim_adaptive_kalman::{AdaptiveKalman, Learning, ProcessNoise, PublishedAdaptiveKalman};
 use kestirim_kalman::{Covariance, SparseRow};
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::ExpectedRange;
@@ -33,8 +31,8 @@ impl<T: Scalar> Default for Aekf<T> {
         let (position, velocity) = (learning(1e-5, 1e-2), learning(1e-3, 1e-1));
         let (p, v) = (T::from_f64(1e-4), T::from_f64(2.5e-2));
         let process = ProcessNoise::new([p, p, v, v], [position, position, velocity, velocity]);
-        let noise = MeasurementNoise::new(scenario.range_variance, learning(2.5e-3, 4.0));
-        let filter = AdaptiveKalman::new(scenario.estimate(), process, [noise; 4]);
+        let (ranges, limits) = ([scenario.range_variance; 4], [learning(2.5e-3, 4.0); 4]);
+        let filter = AdaptiveKalman::new(scenario.estimate(), process, ranges, limits);
         Self { scenario, filter }
     }
 }
@@ -70,13 +68,13 @@ impl<T: Named> Tracker for Aekf<T> {
     }
 }
 
-/// The adaptive filter as the paper prints it, with constants that keep its R positive.
-pub struct Printed<T: Scalar> {
+/// The adaptive filter as published, with constants that keep its R positive.
+pub struct Published<T: Scalar> {
     scenario: Scenario<T>,
-    filter: PrintedAdaptiveKalman<T, 4, 4>,
+    filter: PublishedAdaptiveKalman<T, 4, 4>,
 }
 
-impl<T: Scalar> Default for Printed<T> {
+impl<T: Scalar> Default for Published<T> {
     fn default() -> Self {
         let forgetting = T::from_f64(0.95);
         let (q, r) = ([T::from_f64(3e-5); 4], [T::from_f64(0.1); 4]);
@@ -84,7 +82,7 @@ impl<T: Scalar> Default for Printed<T> {
         let mut start = scenario.estimate();
         let position = T::from_f64(1e-4);
         start.covariance = Covariance::from_variances(&[position, position, T::ZERO, T::ZERO]);
-        let filter = PrintedAdaptiveKalman::new(
+        let filter = PublishedAdaptiveKalman::new(
             start,
             Covariance::from_variances(&q),
             Covariance::from_variances(&r),
@@ -98,8 +96,8 @@ impl<T: Scalar> Default for Printed<T> {
     }
 }
 
-impl<T: Named> Tracker for Printed<T> {
-    const NAME: &str = "aekf4-printed";
+impl<T: Named> Tracker for Published<T> {
+    const NAME: &str = "aekf4-published";
     const SCALAR: &str = T::NAME;
     type Record = Ranges;
     type Input = [T; 4];

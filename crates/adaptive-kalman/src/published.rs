@@ -3,7 +3,7 @@ use kestirim_kalman::{BlockInnovation, Covariance, Gaussian, Process};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The adaptive filter with eqs 18 and 19 as the paper prints them. **Unsafe to navigate by**: use
+/// The adaptive filter with eqs 18 and 19 as published. **Unsafe to navigate by**: use
 /// [`AdaptiveKalman`](crate::AdaptiveKalman).
 ///
 /// `R ← α_R R + (1 − α_R)(ν νᵀ − H P⁻ Hᵀ)` (18),
@@ -17,7 +17,7 @@ use nalgebra::{SMatrix, SVector};
 /// healthy NIS. That is how a filter started at the surveyed point "measures" it to 2 cm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PrintedAdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
+pub struct PublishedAdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     estimate: Gaussian<T, N>,
     process_noise: Covariance<T, N>,
     measurement_noise: Covariance<T, M>,
@@ -25,7 +25,7 @@ pub struct PrintedAdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     forgetting_measurement: T,
 }
 
-impl<T: Scalar, const N: usize, const M: usize> PrintedAdaptiveKalman<T, N, M> {
+impl<T: Scalar, const N: usize, const M: usize> PublishedAdaptiveKalman<T, N, M> {
     /// Starts from x̂₀, P₀, Q₀ (a step), R₀ and the forgetting factors of eqs 19 and 18.
     ///
     /// # Errors

@@ -1,0 +1,121 @@
+//! Positions from the ranges of one moment, without memory: the paper's "unfiltered".
+
+use crate::link::FRESH_US;
+use crate::{Anchor, Error, RangeSample};
+use heapless::Vec;
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{Error as NoPosition, Observation, Solver, trilaterate};
+use nalgebra::SVector;
+
+/// How the ranges of one moment become a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum EpochMethod {
+    /// Linear trilateration (the paper's eqs 3–7); of the solver only the height is read.
+    Trilateration,
+    /// Nonlinear least squares, all ranges with the same weight.
+    LeastSquares,
+}
+
+/// The freshest range of each of up to A anchors, and the position that they make by themselves.
+///
+/// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
+#[derive(Clone, Debug)]
+pub struct EpochSolver<T: Scalar, const A: usize> {
+    method: EpochMethod,
+    solver: Solver<T>,
+    anchors: Vec<Anchor<T>, A>,
+    /// When each anchor was last heard (µs), and its range, freed of its bias, m.
+    last: [Option<(u64, T)>; A],
+}
+
+impl<T: Scalar, const A: usize> EpochSolver<T, A> {
+    /// Variance of a range, m². All have the same: it only tells ranges that agree from ranges that do not.
+    const VARIANCE: f64 = 0.01;
+
+    /// A solver for these anchors, none of which has been heard.
+    ///
+    /// # Errors
+    /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
+    pub fn new(
+        method: EpochMethod,
+        solver: Solver<T>,
+        anchors: &[Anchor<T>],
+    ) -> Result<Self, Error> {
+        for anchor in anchors {
+            anchor.check()?;
+        }
+        let anchors = Vec::from_slice(anchors).map_err(|_| Error::TooManyAnchors)?;
+        Ok(Self { method, solver, anchors, last: [None; A] })
+    }
+
+    /// The tag's height in two dimensions, m.
+    pub fn height(&self) -> T {
+        self.solver.height
+    }
+
+    /// Sets the tag's height in two dimensions, m.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the height is as it was.
+    pub fn set_height(&mut self, height: T) -> Result<(), Error> {
+        if !height.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        self.solver.height = height;
+        Ok(())
+    }
+
+    /// Keeps a range as its anchor's last.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchAnchor`], [`Error::NotFinite`], [`Error::ImplausibleRange`], [`Error::Duplicate`] or
+    /// [`Error::OutOfOrder`]; the anchor's last range is as it was.
+    pub fn range(&mut self, sample: &RangeSample<T>) -> Result<(), Error> {
+        let anchor = self.anchors.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        let last = self.last.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        sample.check()?;
+        match last {
+            Some((heard_us, _)) if *heard_us == sample.time_us => Err(Error::Duplicate),
+            Some((heard_us, _)) if *heard_us > sample.time_us => Err(Error::OutOfOrder),
+            _ => {
+                *last = Some((sample.time_us, sample.range - anchor.bias));
+                Ok(())
+            }
+        }
+    }
+
+    /// The position (m) that the ranges of no more than a second before `time_us` make. Least squares looks
+    /// near `start`, too, where one is given.
+    ///
+    /// # Errors
+    /// [`kestirim_uwb_ranging::Error`]: these ranges make none.
+    pub fn position<const D: usize>(
+        &self,
+        time_us: u64,
+        start: Option<SVector<T, D>>,
+    ) -> Result<SVector<T, D>, NoPosition> {
+        let mut observations = Vec::<Observation<T>, A>::new();
+        for (anchor, last) in self.anchors.iter().zip(&self.last) {
+            let Some((heard_us, range)) = *last else { continue };
+            if time_us.saturating_sub(heard_us) > FRESH_US {
+                continue;
+            }
+            let variance = T::from_f64(Self::VARIANCE);
+            // There are no more anchors than places.
+            let _ = observations.push(Observation { anchor: anchor.position, range, variance });
+        }
+        match self.method {
+            EpochMethod::Trilateration => trilaterate(&observations, self.solver.height),
+            EpochMethod::LeastSquares => {
+                self.solver.solve(&observations, start).map(|fix| fix.position)
+            }
+        }
+    }
+
+    /// The anchors and the last range of each, freed of its bias, m.
+    pub(crate) fn heard(&self) -> impl Iterator<Item = (&Anchor<T>, Option<T>)> {
+        self.anchors.iter().zip(self.last.iter().map(|last| last.map(|(_, range)| range)))
+    }
+}

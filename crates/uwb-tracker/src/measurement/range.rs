@@ -1,0 +1,56 @@
+use kestirim_kalman::{Error, Observation};
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{ExpectedRange, expected_range};
+use nalgebra::SVector;
+
+/// A range to an anchor: the slant distance and what all ranges are too long by.
+///
+/// Physics: h(x) = |p − a| + b, with the tag's position p, the anchor's place a and the common bias b, which
+/// is zero where it is not observed.
+///
+/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = 1, nothing else.
+///
+/// Source: the paper's eq. 10; the common bias as the clock bias of a GNSS receiver's pseudorange (Kaplan and
+/// Hegarty 2017, 2.5.2).
+pub(crate) struct Range<'a, T: Scalar, const D: usize> {
+    /// The measured distance, freed of the anchor's own bias, m.
+    pub(crate) measured: T,
+    /// The anchor's place in the room's axes, m.
+    pub(crate) anchor: &'a SVector<T, 3>,
+    /// The tag's height in two dimensions, m.
+    pub(crate) height: T,
+    /// Whether enough anchors are heard to tell a common bias from a distance.
+    pub(crate) observes_bias: bool,
+}
+
+/// ∂h/∂x of a [`Range`]: D directions, and the common bias where it is a state.
+pub(crate) struct RangeRow<T, const D: usize, const N: usize>([(usize, T); 4]);
+
+impl<T, const D: usize, const N: usize> AsRef<[(usize, T)]> for RangeRow<T, D, N> {
+    #[inline(always)]
+    fn as_ref(&self) -> &[(usize, T)] {
+        self.0.get(..N - D).unwrap_or(&self.0)
+    }
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Range<'_, T, D> {
+    type Row = RangeRow<T, D, N>;
+
+    #[inline(always)]
+    fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error> {
+        let mean = &mean.data.0[0];
+        let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
+        let ExpectedRange { distance, direction } =
+            expected_range(&position, self.height, self.anchor);
+        let mut row = [(0, T::ZERO); 4];
+        for axis in 0..D {
+            row[axis] = (axis, direction[axis]);
+        }
+        if N == 2 * D {
+            return Ok((self.measured - distance, RangeRow(row)));
+        }
+        row[D] = (2 * D, if self.observes_bias { T::ONE } else { T::ZERO });
+        let expected = if self.observes_bias { distance + mean[2 * D] } else { distance };
+        Ok((self.measured - expected, RangeRow(row)))
+    }
+}

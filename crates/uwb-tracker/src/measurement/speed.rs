@@ -1,0 +1,59 @@
+use super::CONTRADICTION;
+use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// How fast the wheels turn: the size of the velocity, along itself.
+///
+/// Physics: h(x) = |v|. A robot on wheels drives straight on; forwards and backwards are the same.
+///
+/// Jacobian: ∂h/∂v = v/|v|, nothing else. Where the estimate does not know which way the robot drives, there
+/// is none.
+///
+/// Source: wheel odometry (Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4), of which the turn is left out.
+pub(crate) struct Speed<T, const D: usize> {
+    /// The mean speed of the wheels, m/s.
+    pub(crate) measured: T,
+}
+
+impl<T: Scalar, const D: usize> Speed<T, D> {
+    /// The wheels slip, and the tag is not between them, m/s.
+    const SIGMA: f64 = 0.1;
+    /// A velocity this small has no direction, m/s.
+    const LEAST: f64 = 0.02;
+
+    /// Takes it in, unless the velocity has no direction yet or contradicts it.
+    #[inline]
+    pub(crate) fn correct<const N: usize>(
+        &self,
+        estimate: &mut Gaussian<T, N>,
+    ) -> Result<(), Error> {
+        let variance = T::from_f64(Self::SIGMA * Self::SIGMA);
+        let weighed = match estimate.weigh_observation(self, variance) {
+            Err(Error::NotLinearisable) => return Ok(()),
+            weighed => weighed?,
+        };
+        if !weighed.exceeds(T::from_f64(CONTRADICTION)) {
+            estimate.correct(&weighed)?;
+        }
+        Ok(())
+    }
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Speed<T, D> {
+    type Row = SparseRow<T, D>;
+
+    #[inline]
+    fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error> {
+        let velocity: [T; D] =
+            core::array::from_fn(|axis| mean.data.0[0].get(D + axis).copied().unwrap_or(T::ZERO));
+        let (size, measured) = (T::norm(&velocity), self.measured.abs());
+        // Which way it drives must be known before how fast helps.
+        if size < measured * T::HALF || size <= T::from_f64(Self::LEAST) {
+            return Err(Error::NotLinearisable);
+        }
+        let divisor = size.divisor();
+        let row = core::array::from_fn(|axis| (D + axis, velocity[axis].divided_by(divisor)));
+        Ok((measured - size, SparseRow::new(row)))
+    }
+}

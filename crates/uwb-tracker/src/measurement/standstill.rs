@@ -1,0 +1,56 @@
+use super::CONTRADICTION;
+use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
+
+/// Standing still: one component of the velocity is measured to be zero.
+///
+/// Physics: h(x) = vᵢ, z = 0.
+///
+/// Jacobian: ∂h/∂vᵢ = 1, nothing else.
+///
+/// Source: the zero-velocity update of inertial navigation (Groves 2013, 15.3).
+pub(crate) struct Standstill {
+    /// The index of vᵢ among the states.
+    index: usize,
+}
+
+impl Standstill {
+    /// A standing tag moves by no more than this, m/s.
+    const SIGMA: f64 = 0.015;
+
+    /// Takes in that all D components of the velocity are zero.
+    #[inline]
+    pub(crate) fn correct<T: Scalar, const D: usize, const N: usize>(
+        estimate: &mut Gaussian<T, N>,
+    ) -> Result<(), Error> {
+        for index in D..2 * D {
+            estimate.observe(&Self { index }, T::from_f64(Self::SIGMA * Self::SIGMA))?;
+        }
+        Ok(())
+    }
+
+    /// Whether the velocity may be zero: no component is clearly beyond what is not known of it.
+    #[inline]
+    pub(crate) fn agrees<T: Scalar, const D: usize, const N: usize>(
+        estimate: &Gaussian<T, N>,
+    ) -> bool {
+        let variances = estimate.covariance.variances();
+        let pairs = estimate.mean.iter().zip(variances.iter()).skip(D).take(D);
+        let mut standing = pairs.map(|(&velocity, &variance)| {
+            let spread = variance + T::from_f64(Self::SIGMA * Self::SIGMA);
+            velocity * velocity <= spread * T::from_f64(CONTRADICTION)
+        });
+        standing.all(|standing| standing)
+    }
+}
+
+impl<T: Scalar, const N: usize> Observation<T, N> for Standstill {
+    type Row = SparseRow<T, 1>;
+
+    #[inline]
+    fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error> {
+        let velocity = mean.data.0[0].get(self.index).copied().unwrap_or(T::ZERO);
+        Ok((-velocity, SparseRow::new([(self.index, T::ONE)])))
+    }
+}

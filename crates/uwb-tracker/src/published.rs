@@ -1,0 +1,208 @@
+//! The paper's adaptive filter, equation by equation, with an epoch of all anchors at a time.
+
+use crate::{Anchor, EpochMethod, EpochSolver, Error, RangeSample};
+use kestirim_adaptive_kalman::{Error as Refusal, PublishedAdaptiveKalman};
+use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian};
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{Error as NoPosition, Solver, expected_range};
+use nalgebra::{SMatrix, SVector};
+
+/// What the paper leaves open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PublishedConfig<T: Scalar, const D: usize> {
+    /// The first position, m; without one the filter begins at its first trilateration.
+    pub start: Option<SVector<T, D>>,
+    /// Height of the tag in two dimensions, m.
+    pub height: T,
+    /// Variance of the first position, m²; the first velocity is zero, and certain.
+    pub position_variance: T,
+    /// Variance that each state gains a step, m² and (m/s)².
+    pub process_variance: T,
+    /// Variance of a range to begin with, m².
+    pub range_variance: T,
+    /// Forgetting factor of eqs 18 and 19; 1 adapts nothing and leaves the plain filter.
+    pub forgetting: T,
+}
+
+impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
+    /// With these the paper's table comes out of biased ranges, if the filter is started at the truth. With
+    /// everyday ones eq. 18 makes R indefinite.
+    pub fn adaptive(height: T) -> Self {
+        Self {
+            start: None,
+            height,
+            position_variance: T::from_f64(1e-4),
+            process_variance: T::from_f64(3e-5),
+            range_variance: T::from_f64(0.1),
+            forgetting: T::from_f64(0.95),
+        }
+    }
+
+    /// The same without adaptation.
+    pub fn plain(height: T) -> Self {
+        Self { forgetting: T::ONE, ..Self::adaptive(height) }
+    }
+}
+
+/// What became of an epoch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum PublishedOutcome {
+    /// Not every anchor has been heard: the epoch goes on.
+    Incomplete,
+    /// Its ranges make no first position.
+    NoPosition(NoPosition),
+    /// It made the first position.
+    Started,
+    /// It was taken in.
+    Taken,
+    /// A step of the filter was refused, as when eq. 18 has made R indefinite: its ranges are left out.
+    Refused(Refusal),
+}
+
+/// The paper's filter of N states in D dimensions for A anchors. **Unsafe to navigate by**: see
+/// [`PublishedAdaptiveKalman`], and use [`Tracker`](crate::Tracker).
+///
+/// The states are D coordinates (m) in the room's axes and their velocities (m/s): N = 2 D.
+#[derive(Clone, Debug)]
+pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
+    config: PublishedConfig<T, D>,
+    /// The anchors' ranges, and the first position.
+    ranges: EpochSolver<T, A>,
+    /// Which anchors were heard in this epoch.
+    heard: [bool; A],
+    filter: Option<PublishedAdaptiveKalman<T, N, A>>,
+    /// When the filter's estimate holds (µs).
+    time_us: u64,
+    push: Option<[T; D]>,
+}
+
+impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker<T, D, N, A> {
+    /// A filter for these anchors, which does not know yet where it is.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn new(config: PublishedConfig<T, D>, anchors: &[Anchor<T>; A]) -> Result<Self, Error> {
+        const { assert!(N == 2 * D, "positions and velocities") };
+        let solver = Solver::new(config.height);
+        Ok(Self {
+            config,
+            ranges: EpochSolver::new(EpochMethod::Trilateration, solver, anchors)?,
+            heard: [false; A],
+            filter: None,
+            time_us: 0,
+            push: None,
+        })
+    }
+
+    /// Sets the tag's height in two dimensions, m.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`]; the height is as it was.
+    pub fn set_height(&mut self, height: T) -> Result<(), Error> {
+        self.ranges.set_height(height)
+    }
+
+    /// Keeps a range for the epoch that [`PublishedTracker::end_epoch`] ends.
+    ///
+    /// # Errors
+    /// As [`EpochSolver::range`].
+    pub fn range(&mut self, sample: &RangeSample<T>) -> Result<(), Error> {
+        let heard = self.heard.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        self.ranges.range(sample)?;
+        *heard = true;
+        Ok(())
+    }
+
+    /// Sets the acceleration without gravity in the room's axes (m/s²) that drives the predictions from now on
+    /// (the paper's eq. 9).
+    pub fn push(&mut self, push: Option<[T; D]>) {
+        self.push = push;
+    }
+
+    /// Ends the epoch at `time_us` (µs since the same moment as the ranges): when every anchor was heard, its
+    /// ranges make the first position or are taken in at once.
+    pub fn end_epoch(&mut self, time_us: u64) -> PublishedOutcome {
+        if !self.heard.iter().all(|&heard| heard) {
+            return PublishedOutcome::Incomplete;
+        }
+        self.heard = [false; A];
+        let elapsed_us = time_us.saturating_sub(self.time_us);
+        if let Some(mut filter) = self.filter {
+            self.time_us = time_us;
+            let taken = self.step(&mut filter, elapsed_us);
+            self.filter = Some(filter);
+            return taken.map_or_else(PublishedOutcome::Refused, |()| PublishedOutcome::Taken);
+        }
+        let position = match self.config.start {
+            Some(start) => start,
+            None => match self.ranges.position(time_us, None) {
+                Ok(position) => position,
+                Err(error) => return PublishedOutcome::NoPosition(error),
+            },
+        };
+        match self.begin(&position) {
+            Ok(filter) => {
+                self.time_us = time_us;
+                self.filter = Some(filter);
+                PublishedOutcome::Started
+            }
+            Err(error) => PublishedOutcome::Refused(error),
+        }
+    }
+
+    /// Where the tag is, m; none before the first position.
+    pub fn position(&self) -> Option<SVector<T, D>> {
+        let estimate = self.estimate()?;
+        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))
+    }
+
+    /// Mean and covariance of all states; none before the first position.
+    pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
+        self.filter.as_ref().map(PublishedAdaptiveKalman::estimate)
+    }
+
+    fn begin(&self, position: &SVector<T, D>) -> Result<PublishedAdaptiveKalman<T, N, A>, Refusal> {
+        let config = &self.config;
+        let mut mean = SVector::<T, N>::zeros();
+        let mut variances = [T::ZERO; N];
+        for axis in 0..D {
+            mean.data.0[0][axis] = position.data.0[0][axis];
+            variances[axis] = config.position_variance;
+        }
+        PublishedAdaptiveKalman::new(
+            Gaussian::new(mean, Covariance::from_variances(&variances)),
+            Covariance::from_variances(&[config.process_variance; N]),
+            Covariance::from_variances(&[config.range_variance; A]),
+            config.forgetting,
+            config.forgetting,
+        )
+    }
+
+    /// Predicts over `elapsed_us` (µs) and takes in the ranges of all anchors; a prediction stays where the
+    /// ranges are refused.
+    fn step(
+        &self,
+        filter: &mut PublishedAdaptiveKalman<T, N, A>,
+        elapsed_us: u64,
+    ) -> Result<(), Refusal> {
+        let interval = T::from_micro(elapsed_us.min(i32::MAX as u64) as i32);
+        let motion = ConstantVelocity::<T, D>::new(interval, T::ZERO);
+        filter.predict(&ConstantVelocity { acceleration: self.push, ..motion })?;
+        let mean = &filter.estimate().mean.data.0[0];
+        let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
+        let mut rows = SMatrix::<T, A, N>::zeros();
+        let mut innovation = SVector::<T, A>::zeros();
+        let innovations = innovation.data.0[0].iter_mut().enumerate();
+        for ((index, innovation), (anchor, range)) in innovations.zip(self.ranges.heard()) {
+            let expected = expected_range(&position, self.ranges.height(), &anchor.position);
+            *innovation = range.unwrap_or(expected.distance) - expected.distance;
+            for axis in 0..D {
+                rows.data.0[axis][index] = expected.direction[axis];
+            }
+        }
+        filter.update(&rows, &innovation).map(|_| ())
+    }
+}
