@@ -29,8 +29,7 @@ fn flights_without_noise_are_those_of_the_reference() {
             [(Kind::Luenberger(MIDDLE), "luenberger"), (Kind::Matched(Noise::SENSORS), "kalman_ss")]
         {
             let off = SVector::from(START) - start;
-            let mut estimator =
-                kind.estimator::<f64, 4>(&plant, &c, &start, &off).expect("a gain");
+            let mut estimator = kind.estimator::<f64, 4>(&plant, &c, &start, &off).expect("a gain");
             let flight = fly(plant, START.into(), inputs, Noise::NONE, stream(0, 0));
             for (sample, now) in flight.take(1001).enumerate() {
                 let there = &samples[sample.to_string()];
