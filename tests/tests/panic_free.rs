@@ -14,8 +14,9 @@ use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Target};
 /// A program that panics and computes with doubles, so that symbols are known to be seen.
 const CONTROL: &str = "control";
 
-/// Crates whose only scalar is `f64`.
-const IN_DOUBLES: [&str; 4] = ["gnss-ppp", "observer-design", "ppp-filter", "uav-longitudinal"];
+/// Crates whose only scalar is `f64`, or that design in it.
+const IN_DOUBLES: [&str; 5] =
+    ["gnss-ppp", "observer-design", "ppp-filter", "uav-estimator", "uav-longitudinal"];
 
 /// The programs, by the files they are made of.
 fn programs() -> Result<Vec<String>> {

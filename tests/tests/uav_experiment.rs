@@ -2,7 +2,6 @@
 
 use host_sim::random::stream;
 use host_sim::systems::uav::design::{Kind, MIDDLE};
-use host_sim::systems::uav::estimator::Estimator;
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::responses::responses;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START, fly};
@@ -30,8 +29,7 @@ fn flights_without_noise_are_those_of_the_reference() {
             [(Kind::Luenberger(MIDDLE), "luenberger"), (Kind::Matched(Noise::SENSORS), "kalman_ss")]
         {
             let off = SVector::from(START) - start;
-            let mut estimator =
-                Estimator::<f64, 4>::new(&kind, &plant, &c, &start, &off).expect("a gain");
+            let mut estimator = kind.estimator::<f64, 4>(&plant, &c, &start, &off).expect("a gain");
             let flight = fly(plant, START.into(), inputs, Noise::NONE, stream(0, 0));
             for (sample, now) in flight.take(1001).enumerate() {
                 let there = &samples[sample.to_string()];
@@ -48,7 +46,7 @@ fn flights_without_noise_are_those_of_the_reference() {
                     );
                     compared += 1;
                 }
-                assert!(estimator.step(&now.u, &now.y));
+                assert!(estimator.step(&now.u, &now.measured(&c)).is_ok());
             }
         }
     }

@@ -1,8 +1,8 @@
 use crate::carried::Carried;
-use crate::dense::{less_identity, negative};
-use crate::increment::{Increment, IntegerIncrement};
+use crate::dense::less_identity;
+use crate::full_order::{FullOrder, FullOrderGains};
+use crate::increment::IntegerIncrement;
 use crate::integers::{and_magnitudes, exponents, larger};
-use crate::rows::{IntegerRows, Rows};
 use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
@@ -12,8 +12,7 @@ use nalgebra::{SMatrix, SVector};
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentGains<const N: usize, const M: usize, const P: usize> {
-    step: IntegerIncrement<N, M, P>,
-    unseen: IntegerRows<P, N>,
+    core: FullOrderGains<N, M, P>,
 }
 
 impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
@@ -27,10 +26,7 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
             exponents(and_magnitudes(and_magnitudes([0.0; N], &state), b)),
             exponents(and_magnitudes([0.0; N], k)),
         );
-        Self {
-            step: IntegerIncrement::with(exponents, &state, b, k),
-            unseen: IntegerRows::new(&negative(c)),
-        }
+        Self { core: FullOrderGains::new(IntegerIncrement::with(exponents, &state, b, k), c) }
     }
 }
 
@@ -46,17 +42,17 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
-        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
-    ))
+    serde(
+        transparent,
+        bound(
+            serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+            deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+        )
+    )
 )]
 pub struct CurrentObserver<T: Scalar, const N: usize, const M: usize, const P: usize> {
-    estimate: Carried<T, N>,
-    /// A − I, B and K.
-    step: Increment<T, N, M, P>,
-    /// −C.
-    unseen: Rows<T, P, N>,
+    /// Its step is of A − I, B and K.
+    core: FullOrder<T, N, M, P>,
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<T, N, M, P> {
@@ -66,11 +62,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
     #[inline]
     pub fn new(gains: &CurrentGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
-        Ok(Self {
-            estimate: Carried::new(start)?,
-            step: Increment::new(&gains.step)?,
-            unseen: Rows::new(&gains.unseen)?,
-        })
+        Ok(Self { core: FullOrder::new(&gains.core, start)? })
     }
 
     /// Starts again at this state.
@@ -79,14 +71,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn reset(&mut self, start: &SVector<T, N>) -> Result<(), Error> {
-        self.estimate = Carried::new(start)?;
-        Ok(())
+        self.core.reset(start)
     }
 
     /// x̂ after the last prediction or correction.
     #[inline]
     pub const fn estimate(&self) -> &SVector<T, N> {
-        &self.estimate.value
+        &self.core.estimate.value
     }
 
     /// Moves on by one interval, over which these inputs were applied.
@@ -95,7 +86,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn predict(&mut self, input: &SVector<T, M>) -> Result<(), Error> {
-        self.estimate = self.predicted(input)?;
+        self.core.estimate = self.predicted(input)?;
         Ok(())
     }
 
@@ -105,8 +96,8 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn correct(&mut self, measured: &SVector<T, P>) -> Result<SVector<T, P>, Error> {
-        let (estimate, innovation) = self.corrected(&self.estimate, measured)?;
-        self.estimate = estimate;
+        let (estimate, innovation) = self.corrected(&self.core.estimate, measured)?;
+        self.core.estimate = estimate;
         Ok(innovation)
     }
 
@@ -122,7 +113,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         measured: &SVector<T, P>,
     ) -> Result<SVector<T, P>, Error> {
         let (estimate, innovation) = self.corrected(&self.predicted(input)?, measured)?;
-        self.estimate = estimate;
+        self.core.estimate = estimate;
         Ok(innovation)
     }
 
@@ -131,7 +122,8 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         if !T::all_finite(&input.data.0[0]) {
             return Err(Error::NotFinite);
         }
-        self.estimate.advanced(&self.step.driven(&self.estimate, input), &self.step.shifts)
+        let FullOrder { estimate, step, .. } = &self.core;
+        estimate.advanced(&step.driven(estimate, input), &step.shifts)
     }
 
     #[inline(always)]
@@ -140,13 +132,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         prior: &Carried<T, N>,
         measured: &SVector<T, P>,
     ) -> Result<(Carried<T, N>, SVector<T, P>), Error> {
-        let innovation = self.unseen.added(measured, &prior.value);
+        let innovation = self.core.innovation(prior, measured);
         // A rail may hide in a difference.
         if !(T::all_finite(&measured.data.0[0]) && T::all_finite(&innovation.data.0[0])) {
             return Err(Error::NotFinite);
         }
         let mut sums = prior.sums();
-        self.step.and_output(&mut sums, &innovation);
-        Ok((prior.advanced(&sums, &self.step.shifts)?, innovation))
+        self.core.step.and_output(&mut sums, &innovation);
+        Ok((prior.advanced(&sums, &self.core.step.shifts)?, innovation))
     }
 }

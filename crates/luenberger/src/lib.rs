@@ -7,6 +7,7 @@ mod current;
 mod dense;
 mod disturbance;
 mod error;
+mod full_order;
 mod increment;
 mod integers;
 mod plant;

@@ -1,7 +1,6 @@
-use crate::carried::Carried;
-use crate::dense::{less_identity, less_product, negative};
-use crate::increment::{Increment, IntegerIncrement};
-use crate::rows::{IntegerRows, Rows};
+use crate::dense::{less_identity, less_product};
+use crate::full_order::{FullOrder, FullOrderGains};
+use crate::increment::IntegerIncrement;
 use crate::{Error, Plant};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
@@ -11,8 +10,7 @@ use nalgebra::{SMatrix, SVector};
 /// In a `const` it costs a target no double-precision arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictorGains<const N: usize, const M: usize, const P: usize> {
-    step: IntegerIncrement<N, M, P>,
-    unseen: IntegerRows<P, N>,
+    core: FullOrderGains<N, M, P>,
 }
 
 impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
@@ -21,7 +19,7 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
     pub const fn new(plant: &Plant<N, M, P>, l: &SMatrix<f64, N, P>) -> Self {
         let (b, c, l) = (&plant.b.data.0, &plant.c.data.0, &l.data.0);
         let state = less_product(&less_identity(&plant.a.data.0), l, c);
-        Self { step: IntegerIncrement::new(&state, b, l), unseen: IntegerRows::new(&negative(c)) }
+        Self { core: FullOrderGains::new(IntegerIncrement::new(&state, b, l), c) }
     }
 }
 
@@ -39,17 +37,17 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
-        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
-    ))
+    serde(
+        transparent,
+        bound(
+            serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+            deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+        )
+    )
 )]
 pub struct Predictor<T: Scalar, const N: usize, const M: usize, const P: usize> {
-    estimate: Carried<T, N>,
-    /// A − I − L C, B and L.
-    step: Increment<T, N, M, P>,
-    /// −C.
-    unseen: Rows<T, P, N>,
+    /// Its step is of A − I − L C, B and L.
+    core: FullOrder<T, N, M, P>,
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, M, P> {
@@ -59,11 +57,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
     #[inline]
     pub fn new(gains: &PredictorGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
-        Ok(Self {
-            estimate: Carried::new(start)?,
-            step: Increment::new(&gains.step)?,
-            unseen: Rows::new(&gains.unseen)?,
-        })
+        Ok(Self { core: FullOrder::new(&gains.core, start)? })
     }
 
     /// Starts again at this state.
@@ -72,21 +66,20 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn reset(&mut self, start: &SVector<T, N>) -> Result<(), Error> {
-        self.estimate = Carried::new(start)?;
-        Ok(())
+        self.core.reset(start)
     }
 
     /// x̂, the state at the time of the next measurement.
     #[inline]
     pub const fn estimate(&self) -> &SVector<T, N> {
-        &self.estimate.value
+        &self.core.estimate.value
     }
 
     /// y − C x̂, by which [`Predictor::step`] with this measurement would correct. The step itself does without
     /// it.
     #[inline]
     pub fn innovation(&self, measured: &SVector<T, P>) -> SVector<T, P> {
-        self.unseen.added(measured, &self.estimate.value)
+        self.core.innovation(&self.core.estimate, measured)
     }
 
     /// Moves on with what the actuators applied and the sensors measured at the estimate's time.
@@ -95,7 +88,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     /// [`Error::NotFinite`]; the estimate is untouched.
     #[inline]
     pub fn step(&mut self, input: &SVector<T, M>, measured: &SVector<T, P>) -> Result<(), Error> {
-        self.estimate = self.step.advanced(&self.estimate, input, measured)?;
+        self.core.estimate = self.core.step.advanced(&self.core.estimate, input, measured)?;
         Ok(())
     }
 

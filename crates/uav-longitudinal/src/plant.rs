@@ -41,7 +41,7 @@ pub fn navion() -> StateSpace {
     )
 }
 
-/// From rows, as they are printed.
+/// From rows, as they are published.
 fn model(a: [[f64; 4]; 4], b: [[f64; 2]; 4]) -> StateSpace {
     StateSpace {
         a: SMatrix::<f64, 4, 4>::from(a).transpose(),

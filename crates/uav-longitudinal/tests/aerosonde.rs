@@ -35,9 +35,9 @@ fn difference(ours: &StateSpace, other: &StateSpace) -> f64 {
 fn p1_is_computed_to_the_last_digit_of_the_card() -> Result<(), Error> {
     let trim = Airframe::aerosonde().trim(&CLIMB)?;
     let found = [trim.state[0], trim.state[3], trim.input[0], trim.input[1]];
-    let printed = [-0.015_872_081_6, 0.053_941_088_5, -0.034_697_218_0, 0.540_071_902_2];
-    for (found, printed) in found.iter().zip(printed) {
-        assert!((found - printed).abs() <= 0.5e-10, "{found} {printed}");
+    let published = [-0.015_872_081_6, 0.053_941_088_5, -0.034_697_218_0, 0.540_071_902_2];
+    for (found, published) in found.iter().zip(published) {
+        assert!((found - published).abs() <= 0.5e-10, "{found} {published}");
     }
     let worst = difference(&aerosonde()?, &card());
     assert!(worst < 3e-14, "{worst}");

@@ -1,17 +1,18 @@
 //! Pole placement.
 
 mod polish;
+mod problem;
 mod several;
 mod single;
 
 use crate::Error;
-use crate::eigenvalues::eigenvalues_extended;
 use crate::extended::Extended;
-use crate::number::{Square, Times, extend, extend_complex, finite, norm, round, round_complex};
+use crate::number::{Square, round};
 use crate::observability::least_visible;
-use crate::pair::{Merging, Pair};
-use crate::poles::{arrange, is_nearly_zero, multiplicity, pair_up, size};
+use crate::pair::Pair;
+use crate::poles::{arrange, multiplicity};
 use nalgebra::{Complex, SMatrix};
+use problem::{Checked, Problem};
 
 /// A gain and what it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,28 +98,6 @@ pub fn place<const N: usize, const P: usize>(
     Ok(Placement { gain: checked.gain, poles: in_order, error: checked.error, visibility })
 }
 
-/// A gain, and the poles that it gives.
-#[derive(Clone, Copy)]
-struct Checked<const N: usize, const P: usize> {
-    gain: SMatrix<f64, N, P>,
-    /// In the order of the wanted ones.
-    placed: [Complex<f64>; N],
-    /// By how much they are off.
-    offsets: [Complex<f64>; N],
-    /// By how much the worst is off beside its size.
-    error: f64,
-    /// The same, but of poles that are as good as zero beside the size of the system.
-    loss: f64,
-}
-
-struct Problem<'a, const N: usize, const P: usize> {
-    a: &'a Square<f64, N>,
-    c: &'a SMatrix<f64, P, N>,
-    pair: &'a Pair<N>,
-    merging: &'a Merging<N, P>,
-    poles: &'a [Complex<f64>; N],
-}
-
 impl<const N: usize, const P: usize> Problem<'_, N, P> {
     /// Rounds a gain of the balanced pair and makes the best of the rounding. Where more poles coincide than there
     /// are outputs they have no derivative, and the nearest gain is as good as any.
@@ -129,53 +108,6 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
         }
         let polished = polish::polish(self, &nearest).and_then(|gain| self.check(&gain).ok());
         Ok(polished.filter(|polished| polished.error < nearest.error).unwrap_or(nearest))
-    }
-
-    /// Where the poles are.
-    fn check(&self, gain: &SMatrix<f64, N, P>) -> Result<Checked<N, P>, Error> {
-        if !finite(gain) {
-            return Err(Error::NotFinite);
-        }
-        let values = eigenvalues_extended(&self.closed(gain))?;
-        let offsets_from = |pole| values.map(|value| round_complex(value - extend_complex(pole)));
-        let offsets = self.poles.map(offsets_from);
-        let partners = pair_up(&offsets.map(|row| row.map(size)));
-        let mut checked = Checked {
-            gain: *gain,
-            placed: *self.poles,
-            offsets: *self.poles,
-            error: 0.0,
-            loss: 0.0,
-        };
-        for wanted in 0..N {
-            let partner = partners[wanted];
-            if let (Some(&value), Some(&offset)) =
-                (values.get(partner), offsets[wanted].get(partner))
-            {
-                checked.placed[wanted] = round_complex(value);
-                checked.offsets[wanted] = offset;
-                let pole = self.poles[wanted];
-                let error = size(offset) / self.reference(pole);
-                let nearly_zero = is_nearly_zero(pole, self.system());
-                let loss = if nearly_zero { size(offset) / self.system() } else { error };
-                (checked.error, checked.loss) = (checked.error.max(error), checked.loss.max(loss));
-            }
-        }
-        Ok(checked)
-    }
-
-    /// A − L C on the balanced scale.
-    fn closed(&self, gain: &SMatrix<f64, N, P>) -> Square<Extended, N> {
-        self.pair.balanced(&(extend(self.a) - extend(gain).times(&extend(self.c))))
-    }
-
-    /// What the error of a pole is measured by: its own size, or that of the system if it should be zero.
-    fn reference(&self, pole: Complex<f64>) -> f64 {
-        if size(pole) > 0.0 { size(pole) } else { self.system() }
-    }
-
-    fn system(&self) -> f64 {
-        norm(&self.pair.dynamics).max(f64::MIN_POSITIVE)
     }
 
     /// Poles wanted more often than there are outputs: a first gain makes all modes visible in one combination of

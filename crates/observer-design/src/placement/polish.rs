@@ -3,7 +3,7 @@
 //! Poles that lie close together feel the last bit of every gain. There are more gains than poles, or at least
 //! as many: among the doubles around the exact gain some place the poles far better than the nearest ones.
 
-use super::{Checked, Problem};
+use super::problem::{Checked, Problem};
 use crate::eigenvalues::eigenvector;
 use crate::extended::Extended;
 use crate::number::{Times, complex, extend, extend_complex, round_complex};

@@ -5,9 +5,11 @@ mod case;
 mod report;
 mod rust;
 mod sized;
+mod solution;
 
-pub use answer::{Answer, Answered, Solution};
+pub use answer::{Answer, Answered};
 pub use report::Report;
+pub use solution::Solution;
 
 use std::path::{Path, PathBuf};
 

@@ -5,7 +5,8 @@ use std::fmt;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::answer::{Answer, Answered, Solution};
+use super::answer::{Answer, Answered};
+use super::solution::Solution;
 use crate::output;
 
 /// The answers, section by section, in the order of the program.

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 
 use nalgebra::DMatrix;
 
-use super::Report;
-use super::answer::{Answer, Solution};
+use super::answer::Answer;
+use super::report::Report;
+use super::solution::Solution;
 
 /// Writes every matrix as an array of rows. Refused cases become comments.
 pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {

@@ -3,8 +3,8 @@
 use kestirim_observer_design::{self as design, Complex, Error, Mode};
 use nalgebra::{DMatrix, SMatrix};
 
-use super::answer::Solution;
 use super::case::Problem;
+use super::solution::Solution;
 
 /// The most states the program was built for.
 pub(super) const MOST_STATES: usize = 12;

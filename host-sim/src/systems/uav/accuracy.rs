@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::design::{FAST, Family, Kind, MIDDLE, SLOW};
-use super::estimator::Estimator;
 use super::plant::{Outputs, Plant, with_outputs};
 use super::scenario::{INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START, fly};
 use crate::system::ScalarKind;
@@ -174,22 +173,21 @@ fn flights<T: Scalar<Accumulator: Sync> + Sync, const P: usize>(
     let plant = cell.plant.discrete(INTERVAL_S);
     let (truth, start) = (SVector::from(START), cell.start());
     let new = |kind: &Kind| {
-        Estimator::<T, P>::new(kind, &plant, c, &start, &(truth - start))
+        kind.estimator::<T, P>(&plant, c, &start, &(truth - start))
             .expect("an estimator of the table")
     };
     let estimators: Vec<_> = cell.kinds.iter().map(new).collect();
     let fly = |index| {
-        let mut flying: Vec<_> =
-            estimators.iter().map(|it| (it.clone(), Outcome::default())).collect();
+        let mut flying: Vec<_> = estimators.iter().map(|it| (*it, Outcome::default())).collect();
         let samples = fly(plant, truth, cell.inputs, cell.noise, stream(seed, index));
         for (number, sample) in samples.take(cell.settling() + SAMPLES).enumerate() {
-            let measured = c * sample.y;
+            let measured = sample.measured(c);
             for (estimator, outcome) in &mut flying {
                 if number >= cell.settling() {
                     let error = sample.x - estimator.estimate();
                     outcome.squares += error.component_mul(&error);
                 }
-                outcome.refused += u32::from(!estimator.step(&sample.u, &measured));
+                outcome.refused += u32::from(estimator.step(&sample.u, &measured).is_err());
             }
         }
         flying.into_iter().map(|(_, outcome)| outcome).collect()

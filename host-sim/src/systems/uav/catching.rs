@@ -4,7 +4,6 @@ use nalgebra::SVector;
 use serde::Serialize;
 
 use super::design::{FAST, Family, Kind, MIDDLE, SLOW};
-use super::estimator::Impossible;
 use super::plant::{Outputs, Plant};
 use super::scenario::{FAR, INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START};
 use super::trip::{Moment, Trip};
@@ -37,7 +36,7 @@ impl Chase {
     ///
     /// # Errors
     /// Why there is no such estimator.
-    pub fn errors(&self, scalar: ScalarKind) -> Result<Errors, Impossible> {
+    pub fn errors(&self, scalar: ScalarKind) -> Result<Errors, kestirim_uav_estimator::Error> {
         let errors = self.trip().follow(&self.kind, scalar, 0)?;
         Ok(errors.iter().map(Moment::error).collect())
     }

@@ -1,6 +1,8 @@
 //! Gains: what each estimator of the thesis is.
 
-use kestirim_observer_design::{Complex, Discrete, Error, place, riccati};
+use kestirim_observer_design::{Complex, Discrete, Error, riccati};
+use kestirim_scalar::Scalar;
+use kestirim_uav_estimator::{Error as EstimatorError, Estimator, Step, observer_gain};
 use nalgebra::{SMatrix, SVector};
 use serde::Serialize;
 
@@ -68,9 +70,30 @@ impl Kind {
                 Ok(riccati(&plant.a, c, &q, &r)?.predictor_gain)
             }
             Self::Luenberger(poles) => {
-                luenberger(plant, c, poles.map(|re| Complex { re, im: 0.0 }), INTERVAL_S)
+                let poles = poles.map(|re| Complex { re, im: 0.0 });
+                observer_gain(plant, c, &discrete(poles, INTERVAL_S))
             }
         }
+    }
+
+    /// The estimator at work, from a start that is `off` from the truth; only a time-varying filter is told.
+    ///
+    /// # Errors
+    /// Why it does not exist.
+    pub fn estimator<T: Scalar, const P: usize>(
+        &self,
+        plant: &Discrete<4, 2>,
+        c: &SMatrix<f64, P, 4>,
+        start: &SVector<f64, 4>,
+        off: &SVector<f64, 4>,
+    ) -> Result<Estimator<T, P>, EstimatorError> {
+        if let Self::TimeVarying(noise) = self {
+            let step = Step { transition: *plant, noise: noise.process(plant) };
+            let row = |output: usize| std::array::from_fn(|state| c[(output, state)]);
+            let sigmas = SVector::from_fn(|output, _| noise.of_output(&row(output)));
+            return Estimator::time_varying(&step, c, &sigmas, start, off);
+        }
+        Estimator::constant_gain(plant, c, &self.gain(plant, c)?, start)
     }
 }
 
@@ -86,30 +109,36 @@ pub enum Family {
     Luenberger,
 }
 
-/// The gain of an observer with these poles (1/s) at an interval (s).
-///
-/// Where every state is measured and the poles are real, L = A − diag(eᵖʰ): each pole is that of one state's error,
-/// which none of the others disturbs. This is what the thesis' times to catch tell of; else the poles are placed
-/// where nothing is sensitive.
-///
-/// # Errors
-/// Why there is none.
-pub fn luenberger<const P: usize>(
-    plant: &Discrete<4, 2>,
-    c: &SMatrix<f64, P, 4>,
-    poles: [Complex<f64>; 4],
-    interval: f64,
-) -> Result<SMatrix<f64, 4, P>, Error> {
-    let discrete = poles.map(|pole| {
+/// Poles of discrete time at an interval (s), of poles in 1/s.
+pub fn discrete(poles: [Complex<f64>; 4], interval: f64) -> [Complex<f64>; 4] {
+    poles.map(|pole| {
         let size = (pole.re * interval).exp();
         let (sin, cos) = (pole.im * interval).sin_cos();
         Complex { re: size * cos, im: size * sin }
-    });
-    // The identity, or one whose transpose is its inverse just as well.
-    let every_state = P == 4 && c.transpose() * c == SMatrix::<f64, 4, 4>::identity();
-    if every_state && poles.iter().all(|pole| pole.im == 0.0) {
-        let errors = SMatrix::from_diagonal(&SVector::from(discrete.map(|pole| pole.re)));
-        return Ok((plant.a - errors) * c.transpose());
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::stream;
+    use crate::systems::uav::plant::Plant;
+    use crate::systems::uav::scenario::{Inputs, START, fly};
+
+    #[test]
+    fn a_time_varying_filter_settles_at_the_steady_one() {
+        let plant = Plant::P3.discrete(INTERVAL_S);
+        let c = kestirim_uav_longitudinal::rate_airspeed_and_pitch();
+        let (start, off) = (SVector::from(START), SVector::from([0.1, 0.1, 5.0, 0.1]));
+        let new = |kind: Kind| kind.estimator::<f64, 3>(&plant, &c, &start, &off).unwrap();
+        let mut varying = new(Kind::TimeVarying(Noise::SENSORS));
+        let mut steady = new(Kind::Matched(Noise::SENSORS));
+        let flight = fly(plant, START.into(), Inputs::Sine, Noise::SENSORS, stream(1, 0));
+        for sample in flight.take(8000) {
+            let measured = sample.measured(&c);
+            varying.step(&sample.u, &measured).unwrap();
+            steady.step(&sample.u, &measured).unwrap();
+        }
+        assert!((varying.estimate() - steady.estimate()).amax() < 1e-8);
     }
-    Ok(place(&plant.a, c, &discrete)?.gain)
 }

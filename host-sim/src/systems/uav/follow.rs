@@ -1,13 +1,19 @@
 //! Estimates along a recorded flight.
 
-use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant};
 use kestirim_observer_design::Complex;
+use kestirim_uav_estimator::{self as uav, Error, FlightFilter, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
-use super::design::luenberger;
+use super::design::discrete;
 use super::log::{Flight, Sample};
-use super::model::Model;
-use super::online::{Filter, Steps};
+use super::model::{MOST_OUTPUTS, Model};
+use super::scenario::Noise;
+
+/// Intervals of a log of which the steps are kept.
+const KEPT: usize = 512;
+
+/// A Kalman filter with room for as many outputs as a model may have.
+pub type Filter = FlightFilter<f64, MOST_OUTPUTS, KEPT>;
 
 /// An estimate, after its line was taken in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +33,24 @@ pub struct Followed {
     pub innovations: Vec<Vec<f64>>,
 }
 
+impl Followed {
+    fn new(flight: &Flight) -> Self {
+        Self { estimates: Vec::new(), innovations: vec![Vec::new(); flight.outputs.len()] }
+    }
+
+    fn add(
+        &mut self,
+        t_us: i64,
+        state: SVector<f64, 4>,
+        innovations: impl IntoIterator<Item = Option<f64>>,
+    ) {
+        for (all, innovation) in self.innovations.iter_mut().zip(innovations) {
+            all.extend(innovation);
+        }
+        self.estimates.push(Estimate { t_us, state });
+    }
+}
+
 /// Standard deviations of white noise: of δe, δt, and of each of the log's outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
@@ -36,19 +60,44 @@ pub struct Assumed {
     pub outputs: Vec<f64>,
 }
 
-/// By a Kalman filter that starts at what the first line measures.
+impl Assumed {
+    /// Of usual sensors. What a file's C mixes of the states is as noisy as the mixture of their sensors.
+    pub fn of_sensors(model: &Model, outputs: &[usize]) -> Self {
+        let mixed = |&output: &usize| Noise::SENSORS.of_output(&model.outputs[output].1);
+        Self { inputs: Noise::SENSORS.inputs, outputs: outputs.iter().map(mixed).collect() }
+    }
+}
+
+/// A Kalman filter of these outputs of a model, measured every `usual` seconds.
+///
+/// # Errors
+/// Why there is none.
+pub fn filter(
+    model: &Model,
+    outputs: &[usize],
+    assumed: &Assumed,
+    usual: f64,
+) -> Result<Box<Filter>, Error> {
+    // Outputs that are never measured fill the rest.
+    let sigma = |output: usize| assumed.outputs.get(output).copied().unwrap_or(1.0);
+    let noise = uav::Noise {
+        inputs: assumed.inputs.into(),
+        outputs: SVector::from_fn(|output, _| sigma(output)),
+    };
+    Ok(Box::new(Filter::new(&model.dynamics, &rows(model, outputs), &noise, usual)?))
+}
+
+/// By a Kalman filter whose estimate the first lines decide.
 ///
 /// # Errors
 /// In words: why it cannot.
 pub fn kalman(model: &Model, flight: &Flight, assumed: &Assumed) -> Result<Followed, String> {
-    let mut filter = Filter::new(model, &flight.outputs, assumed, flight.interval_s);
-    let mut followed = empty(flight);
+    let mut filter = filter(model, &flight.outputs, assumed, flight.interval_s).map_err(words)?;
+    let mut followed = Followed::new(flight);
     for sample in &flight.samples {
-        let innovations = filter.take(sample)?;
-        for (all, innovation) in followed.innovations.iter_mut().zip(innovations) {
-            all.extend(innovation);
-        }
-        followed.estimates.push(Estimate { t_us: sample.t_us, state: filter.state() });
+        let innovations = filter.take(&sized(sample)).map_err(words)?;
+        let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
+        followed.add(sample.t_us, filter.filter().estimate(), innovations);
     }
     Ok(followed)
 }
@@ -68,76 +117,45 @@ pub fn observer(
         3 => observer_of::<3>(model, flight, poles),
         _ => observer_of::<4>(model, flight, poles),
     }
+    .map_err(words)
 }
 
 fn observer_of<const P: usize>(
     model: &Model,
     flight: &Flight,
     poles: [Complex<f64>; 4],
-) -> Result<Followed, String> {
-    let mut steps = Steps::new(model, flight.interval_s, [0.0; 2]);
-    let usual_us = (flight.interval_s * 1e6).round() as i64;
-    let (plant, _) = steps.over(usual_us)?;
-    let rows = rows(model, flight);
-    let c = SMatrix::<f64, P, 4>::from_fn(|output, state| rows[output][state]);
-    let predictor = luenberger(&plant, &c, poles, flight.interval_s).map_err(|e| e.to_string())?;
-    // The same poles where the estimate is to have seen its own line.
-    let backwards = plant.a.try_inverse().ok_or("the model's transition has no inverse")?;
-    let gains = CurrentGains::new(&Plant { a: plant.a, b: plant.b, c }, &(backwards * predictor));
-    let mut observer =
-        CurrentObserver::<f64, 4, 2, P>::new(&gains, &start(&rows, &flight.samples[0]))
-            .map_err(words)?;
-    let mut followed = empty(flight);
-    let mut before: Option<&Sample> = None;
+) -> Result<Followed, Error> {
+    let c = rows::<P>(model, &flight.outputs);
+    let usual = flight.interval_s;
+    let mut observer = Box::new(FlightObserver::<f64, P, KEPT>::new(
+        &model.dynamics,
+        &c,
+        &discrete(poles, usual),
+        usual,
+    )?);
+    let mut followed = Followed::new(flight);
     for sample in &flight.samples {
-        if let Some(before) = before {
-            let input = SVector::from(before.input);
-            let interval_us = sample.t_us - before.t_us;
-            if interval_us == usual_us {
-                observer.predict(&input).map_err(words)?;
-            } else {
-                let (step, _) = steps.over(interval_us)?;
-                let there = step.a * observer.estimate() + step.b * input;
-                observer.reset(&there).map_err(words)?;
-            }
-        }
-        // What was not measured is what was expected.
-        let expected = c * observer.estimate();
-        let measured = SVector::<f64, P>::from_fn(|output, _| {
-            sample.measured[output].unwrap_or(expected[output])
-        });
-        let innovation = observer.correct(&measured).map_err(words)?;
-        for (output, innovations) in followed.innovations.iter_mut().enumerate() {
-            innovations.extend(sample.measured[output].map(|_| innovation[output]));
-        }
-        followed.estimates.push(Estimate { t_us: sample.t_us, state: *observer.estimate() });
-        before = Some(sample);
+        let innovations = observer.take(&sized(sample))?;
+        followed.add(sample.t_us, observer.estimate(), innovations);
     }
     Ok(followed)
 }
 
-fn words(error: kestirim_luenberger::Error) -> String {
-    error.to_string()
+/// Rows of C that the log has; zero beyond.
+fn rows<const P: usize>(model: &Model, outputs: &[usize]) -> SMatrix<f64, P, 4> {
+    let row = |place: usize| outputs.get(place).map_or([0.0; 4], |&output| model.outputs[output].1);
+    SMatrix::from_fn(|place, state| row(place)[state])
 }
 
-fn empty(flight: &Flight) -> Followed {
-    Followed { estimates: Vec::new(), innovations: vec![Vec::new(); flight.outputs.len()] }
-}
-
-/// Rows of C that the log has.
-fn rows(model: &Model, flight: &Flight) -> Vec<[f64; 4]> {
-    flight.outputs.iter().map(|&output| model.outputs[output].1).collect()
-}
-
-/// States that the first line measures by themselves; of the others nothing is known.
-fn start(rows: &[[f64; 4]], first: &Sample) -> SVector<f64, 4> {
-    let mut start = SVector::zeros();
-    for (row, measured) in rows.iter().zip(&first.measured) {
-        let single = row.iter().filter(|part| **part != 0.0).count() == 1;
-        let state = row.iter().position(|part| *part != 0.0);
-        if let (true, Some(state), Some(measured)) = (single, state, measured) {
-            start[state] = measured / row[state];
-        }
+/// A line with room for P outputs.
+pub fn sized<const P: usize>(sample: &Sample) -> uav::Sample<P> {
+    uav::Sample {
+        time_us: sample.t_us,
+        input: sample.input.into(),
+        measured: std::array::from_fn(|output| sample.measured.get(output).copied().flatten()),
     }
-    start
+}
+
+fn words(error: Error) -> String {
+    error.to_string()
 }

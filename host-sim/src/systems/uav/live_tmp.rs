@@ -4,11 +4,10 @@ use kestirim_telemetry::{Flight, Message};
 
 use super::{Estimator, Outcome};
 use crate::Error;
-use crate::commands::live::options::Live;
-use crate::systems::uav::follow::Assumed;
+use crate::live::options::Live;
+use crate::systems::uav::follow::{Assumed, Filter, filter, sized};
 use crate::systems::uav::log::{LARGEST, Sample};
 use crate::systems::uav::model::Model;
-use crate::systems::uav::online::Filter;
 
 /// What a [`Flight`] measures, by the names of a model's outputs.
 const MEASURED: [&str; 3] = ["q", "V", "theta"];
@@ -22,6 +21,8 @@ pub(in crate::live) struct Plan {
     /// Of the model, and where each stands in a [`Flight`].
     outputs: Vec<(usize, usize)>,
     origin: ([f64; 4], [f64; 2]),
+    /// As it starts.
+    filter: Box<Filter>,
 }
 
 impl Plan {
@@ -42,14 +43,16 @@ impl Plan {
             return Err(Error::File { path: path.clone(), problem });
         }
         let origin = model.origin(options.absolute)?;
-        Ok(Self { model, outputs, origin })
+        let measured: Vec<_> = outputs.iter().map(|(output, _)| *output).collect();
+        let assumed = Assumed::of_sensors(&model, &measured);
+        // What the interval is, the second sample tells.
+        let filter = filter(&model, &measured, &assumed, 0.0)
+            .map_err(|error| Error::File { path: path.clone(), problem: error.to_string() })?;
+        Ok(Self { model, outputs, origin, filter })
     }
 
     pub(super) fn build(&self) -> Aeroplane {
-        let outputs: Vec<_> = self.outputs.iter().map(|(output, _)| *output).collect();
-        let assumed = Assumed::of_sensors(&self.model, &outputs);
-        // What the interval is, the second sample tells.
-        let filter = Filter::new(&self.model, &outputs, &assumed, 0.0);
+        let filter = self.filter.clone();
         Aeroplane { plan: self.clone(), filter, last_us: None, usual_s: f64::INFINITY }
     }
 
@@ -73,7 +76,7 @@ impl Plan {
 #[derive(Debug)]
 pub(super) struct Aeroplane {
     plan: Plan,
-    filter: Filter,
+    filter: Box<Filter>,
     last_us: Option<i64>,
     usual_s: f64,
 }
@@ -89,7 +92,7 @@ impl Aeroplane {
                 self.filter.set_usual(interval_s);
             }
         }
-        self.filter.take(&sample).ok()?;
+        self.filter.take(&sized(&sample)).ok()?;
         self.last_us = Some(sample.t_us);
         Some(())
     }
@@ -105,7 +108,7 @@ impl Estimator for Aeroplane {
 
     fn state(&self) -> Option<[f64; 4]> {
         self.last_us?;
-        let state = self.filter.state().data.0[0];
+        let state: [f64; 4] = self.filter.filter().estimate().into();
         Some(std::array::from_fn(|i| state[i] + self.plan.origin.0[i]))
     }
 }

@@ -1,8 +1,9 @@
 //! The longitudinal motion of a fixed-wing aircraft, seen by Luenberger observers and Kalman filters.
 //!
-//! `plant` has the aircraft and what of them is measured, `scenario` flies them; `design` finds gains, `estimator`
-//! runs them in any scalar. `experiment` repeats the thesis: `responses` (its chapter 5), `catching` and
-//! `accuracy` (chapter 6), `claims` (chapter 7). `log` and `model` read what a [replay](replay::Replay) needs.
+//! `plant` has the aircraft and what of them is measured, `scenario` flies them; `design` finds gains, which
+//! `kestirim-uav-estimator` runs in any scalar. `experiment` repeats the thesis: `responses` (its chapter 5),
+//! `catching` and `accuracy` (chapter 6), `claims` (chapter 7). `log` and `model` read what a
+//! [replay](replay::Replay) needs, `follow` runs the estimators along it.
 //!
 //! States α, q, V, θ and inputs δe, δt are deviations from the flight that the model was linearised at; rad,
 //! rad/s, m/s.
@@ -18,13 +19,11 @@ pub mod catching;
 pub mod chapter;
 pub mod claims;
 pub mod design;
-pub mod estimator;
 pub mod experiment;
 pub mod explorer;
 pub mod follow;
 pub mod log;
 pub mod model;
-pub mod online;
 pub mod options;
 pub mod plant;
 pub mod recording;

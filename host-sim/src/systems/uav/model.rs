@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use kestirim_observer_design::{Discrete, discrete_noise, zero_order_hold};
-use kestirim_uav_longitudinal::{Airframe, SteadyFlight};
-use nalgebra::{SMatrix, SVector};
+use kestirim_observer_design::Discrete;
+use kestirim_uav_estimator::Dynamics;
+use kestirim_uav_longitudinal::{Airframe, StateSpace, SteadyFlight};
+use nalgebra::SMatrix;
 use serde::Deserialize;
 
 use super::plant::Plant;
@@ -13,31 +14,21 @@ use crate::text::{TextFile, printable};
 
 /// Names of the states, which are the columns of a log where a model has no C.
 pub const STATE_COLUMNS: [&str; 4] = ["alpha", "q", "V", "theta"];
-/// Steps of a discrete model that an interval of a log may take.
-const MOST_STEPS: f64 = 1e5;
 /// Columns of a log that no output can have.
 const TAKEN: [&str; 3] = ["t", "delta_e", "delta_t"];
 /// More outputs than states say nothing new.
-const MOST_OUTPUTS: usize = 4;
+pub const MOST_OUTPUTS: usize = 4;
 
 /// What an estimator needs to know of an aircraft.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    dynamics: Dynamics,
+    /// How it flies.
+    pub dynamics: Dynamics,
     /// What could be measured: a column of the log, and its row of C.
     pub outputs: Vec<(String, [f64; 4])>,
     /// State and input of the flight that deviations are counted from.
     pub trim: Option<([f64; 4], [f64; 2])>,
 }
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Dynamics {
-    Continuous { a: SMatrix<f64, 4, 4>, b: SMatrix<f64, 4, 2> },
-    Discrete { step: Discrete<4, 2>, interval: f64 },
-}
-
-/// What a model does in an interval: transition, and covariance of the noise.
-pub type Step = (Discrete<4, 2>, SMatrix<f64, 4, 4>);
 
 /// A model file.
 #[derive(Debug, Deserialize)]
@@ -74,8 +65,7 @@ impl Model {
     }
 
     fn of(plant: Plant) -> Self {
-        let model = plant.model();
-        let dynamics = Dynamics::Continuous { a: model.a, b: model.b };
+        let dynamics = Dynamics::Continuous(plant.model());
         Self { dynamics, outputs: states(), trim: None }
     }
 
@@ -116,7 +106,7 @@ impl Model {
         let a = SMatrix::<f64, 4, 4>::from(contents.a).transpose();
         let b = SMatrix::<f64, 2, 4>::from(contents.b).transpose();
         let dynamics = match contents.h {
-            None => Dynamics::Continuous { a, b },
+            None => Dynamics::Continuous(StateSpace { a, b }),
             Some(interval) if interval > 0.0 => {
                 Dynamics::Discrete { step: Discrete { a, b }, interval }
             }
@@ -128,39 +118,23 @@ impl Model {
         Ok(Self { dynamics, outputs, trim: contents.trim.map(|trim| (trim.x, trim.u)) })
     }
 
-    /// What happens in `interval` seconds, where white noise of these standard deviations a `sample` (s) reaches
-    /// the inputs.
+    /// What is taken from values: nothing, or of `absolute` ones the model's trim.
     ///
     /// # Errors
-    /// In words: why it does not happen.
-    pub fn over(&self, interval: f64, sample: f64, noise: [f64; 2]) -> Result<Step, String> {
-        let variances = SMatrix::from_diagonal(&SVector::from(noise.map(|sigma| sigma * sigma)));
-        match self.dynamics {
-            Dynamics::Continuous { a, b } => {
-                let density = b * variances * b.transpose() * sample;
-                let transition = zero_order_hold(&a, &b, interval).map_err(|e| e.to_string())?;
-                let noise = discrete_noise(&a, &density, interval).map_err(|e| e.to_string())?;
-                Ok((transition, noise))
-            }
-            Dynamics::Discrete { step, interval: own } => {
-                let count = (interval / own).round();
-                if !(1.0..=MOST_STEPS).contains(&count)
-                    || (interval - count * own).abs() > 0.1 * own
-                {
-                    return Err(format!(
-                        "the model is for intervals of {own} s, the log has one of {interval} s"
-                    ));
-                }
-                let mut all = Discrete { a: SMatrix::identity(), b: SMatrix::zeros() };
-                let mut spread = SMatrix::zeros();
-                let once = step.b * variances * step.b.transpose();
-                for _ in 0..count as u64 {
-                    all = Discrete { a: step.a * all.a, b: step.a * all.b + step.b };
-                    spread = step.a * spread * step.a.transpose() + once;
-                }
-                Ok((all, spread))
-            }
+    /// [`Error::Usage`] if it has none.
+    pub fn origin(&self, absolute: bool) -> Result<([f64; 4], [f64; 2]), Error> {
+        match (absolute, self.trim) {
+            (false, _) => Ok(([0.0; 4], [0.0; 2])),
+            (true, Some(trim)) => Ok(trim),
+            (true, None) => Err(Error::Usage(
+                "--absolute needs a model with a trim: P1, or a file that has one".to_owned(),
+            )),
         }
+    }
+
+    /// What an output measures of a state.
+    pub fn output(&self, output: usize, state: &[f64; 4]) -> f64 {
+        self.outputs[output].1.iter().zip(state).map(|(part, state)| part * state).sum()
     }
 }
 

@@ -88,6 +88,12 @@ impl Noise {
         let outputs = SVector::from(self.outputs.map(|sigma| sigma * sigma));
         c * SMatrix::from_diagonal(&outputs) * c.transpose()
     }
+
+    /// Standard deviation of an output that mixes the states by this row of C.
+    pub fn of_output(&self, row: &[f64; 4]) -> f64 {
+        let parts = row.iter().zip(&self.outputs);
+        parts.fold(0.0, |sum: f64, (part, sigma)| sum.hypot(part * sigma))
+    }
 }
 
 const HALF_A_DEGREE: f64 = 0.5 * std::f64::consts::PI / 180.0;
@@ -101,6 +107,13 @@ pub struct Sample {
     pub u: SVector<f64, 2>,
     /// All states as measured.
     pub y: SVector<f64, 4>,
+}
+
+impl Sample {
+    /// Outputs y = C x as measured.
+    pub fn measured<const P: usize>(&self, c: &SMatrix<f64, P, 4>) -> [Option<f64>; P] {
+        <[f64; P]>::from(c * self.y).map(Some)
+    }
 }
 
 /// A flight from `start`, sample by sample, without end.

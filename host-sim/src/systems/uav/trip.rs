@@ -1,10 +1,10 @@
 //! An estimator beside its plant, sample by sample.
 
 use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_uav_estimator::Error;
 use nalgebra::{SMatrix, SVector};
 
 use super::design::Kind;
-use super::estimator::{Estimator, Impossible};
 use super::plant::{Outputs, Plant, with_outputs};
 use super::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
 use crate::system::ScalarKind;
@@ -50,12 +50,7 @@ impl Trip {
     ///
     /// # Errors
     /// Why there is no such estimator.
-    pub fn follow(
-        &self,
-        kind: &Kind,
-        scalar: ScalarKind,
-        seed: u64,
-    ) -> Result<Vec<Moment>, Impossible> {
+    pub fn follow(&self, kind: &Kind, scalar: ScalarKind, seed: u64) -> Result<Vec<Moment>, Error> {
         match scalar {
             ScalarKind::F32 => with_outputs!(self.outputs, follow::<f32, _>, self, kind, seed),
             ScalarKind::F64 => with_outputs!(self.outputs, follow::<f64, _>, self, kind, seed),
@@ -69,17 +64,17 @@ fn follow<T: Scalar, const P: usize>(
     trip: &Trip,
     kind: &Kind,
     seed: u64,
-) -> Result<Vec<Moment>, Impossible> {
+) -> Result<Vec<Moment>, Error> {
     let plant = trip.plant.discrete(INTERVAL_S);
     let (truth, start) = (SVector::from(trip.truth), SVector::from(trip.start));
-    let mut estimator = Estimator::<T, P>::new(kind, &plant, c, &start, &(truth - start))?;
+    let mut estimator = kind.estimator::<T, P>(&plant, c, &start, &(truth - start))?;
     let flight = fly(plant, truth, trip.inputs, trip.noise, stream(seed, 0));
     Ok(flight
         .take(trip.samples)
         .map(|sample| {
             let estimate = estimator.estimate();
             // Where fixed point is at its rails, the estimate stays, and so does its error.
-            estimator.step(&sample.u, &(c * sample.y));
+            let _ = estimator.step(&sample.u, &sample.measured(c));
             Moment { sample, estimate }
         })
         .collect())

@@ -25,6 +25,7 @@ pub mod robust_kalman;
 pub mod scalar;
 pub mod scalar_f64;
 pub mod telemetry;
+pub mod uav_estimator;
 pub mod uav_longitudinal;
 pub mod user_locator;
 pub mod uwb_ranging;

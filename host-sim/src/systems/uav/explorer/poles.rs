@@ -1,6 +1,7 @@
 //! Poles of continuous time, from the matrices of discrete time.
 
 use kestirim_observer_design::{Complex, Discrete, eigenvalues, riccati};
+use kestirim_uav_estimator::Step;
 use nalgebra::SMatrix;
 
 /// Of x⁺ = A x at this interval (s), 1/s; none where an eigenvalue is zero or none was found.
@@ -16,9 +17,7 @@ pub(super) fn of(a: &SMatrix<f64, 4, 4>, interval: f64) -> Vec<[f64; 2]> {
 /// The filter that a time-varying one settles at.
 pub(super) struct Settled<'a> {
     /// What it filters.
-    pub(super) plant: Discrete<4, 2>,
-    /// Covariance of the process' noise.
-    pub(super) q: SMatrix<f64, 4, 4>,
+    pub(super) step: Step,
     /// Rows of C.
     pub(super) outputs: &'a [[f64; 4]],
     /// Standard deviations of their noise.
@@ -45,8 +44,9 @@ impl Settled<'_> {
         for (output, sigma) in self.sigmas.iter().take(P).enumerate() {
             r[(output, output)] = sigma * sigma;
         }
-        let gain = riccati(&self.plant.a, &c, &self.q, &r).map(|filter| filter.predictor_gain);
-        gain.map(|gain| of(&(self.plant.a - gain * c), self.interval)).unwrap_or_default()
+        let Step { transition: Discrete { a, .. }, noise } = &self.step;
+        let gain = riccati(a, &c, noise, &r).map(|filter| filter.predictor_gain);
+        gain.map(|gain| of(&(a - gain * c), self.interval)).unwrap_or_default()
     }
 }
 

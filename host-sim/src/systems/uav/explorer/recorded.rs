@@ -94,15 +94,20 @@ impl Explorer for Recorded {
         let end = seconds(end, begin);
         answer.figures.push(figures::error(error(&kalman), error(&luenberger), end));
         let interval = recording.flight.interval_s;
-        let (plant, q) = recording.model.over(interval, interval, inputs).map_err(failed)?;
+        let step = recording.model.dynamics.over(interval, interval, &inputs.into());
+        let step = step.map_err(|error| failed(error.to_string()))?;
         let outputs: Vec<_> =
             recording.flight.outputs.iter().map(|&o| recording.model.outputs[o].1).collect();
         let sigmas = recording.assumed(Some(inputs), None).outputs;
         let (outputs, sigmas) = (&outputs[..], &sigmas[..]);
-        let filter = poles::Settled { plant, q, outputs, sigmas, interval }.poles();
+        let filter = poles::Settled { step, outputs, sigmas, interval }.poles();
         let observer = poles.map(|pole| [pole, 0.0]);
         let observer = if luenberger.estimates.is_empty() { &[][..] } else { &observer[..] };
-        answer.figures.push(figures::poles(&poles::of(&plant.a, interval), &filter, observer));
+        answer.figures.push(figures::poles(
+            &poles::of(&step.transition.a, interval),
+            &filter,
+            observer,
+        ));
         Ok(answer)
     }
 }

@@ -5,7 +5,6 @@ use nalgebra::SMatrix;
 use super::super::accuracy::settled;
 use super::super::catching::caught;
 use super::super::design::Kind;
-use super::super::estimator::Impossible;
 use super::super::plant::{Outputs, Plant, STATE_UNITS, STATES, with_outputs};
 use super::super::report::{shown, times};
 use super::super::scenario::{INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START};
@@ -219,7 +218,7 @@ fn poles_of<const P: usize>(c: &SMatrix<f64, P, 4>, asked: &Asked) -> Figure {
 /// Settled errors by Lyapunov's equation, were Q/R or the poles different.
 fn against<const P: usize>(c: &SMatrix<f64, P, 4>, asked: &Asked) -> Figure {
     let plant = asked.trip.plant.discrete(INTERVAL_S);
-    let worst = |kind: &Kind| -> Result<f64, Impossible> {
+    let worst = |kind: &Kind| -> Result<f64, kestirim_observer_design::Error> {
         let best = settled(c, &plant, &Kind::Matched(asked.assumed), &asked.assumed)?;
         let errors = settled(c, &plant, kind, &asked.assumed)?;
         Ok(errors.iter().zip(best).map(|(error, best)| error / best).fold(0.0, f64::max))

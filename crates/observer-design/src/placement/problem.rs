@@ -1,0 +1,81 @@
+//! A system with the poles that are wanted of it, and how good a gain is at them.
+
+use crate::Error;
+use crate::eigenvalues::eigenvalues_extended;
+use crate::extended::Extended;
+use crate::number::{Square, Times, extend, extend_complex, finite, norm, round_complex};
+use crate::pair::{Merging, Pair};
+use crate::poles::{is_nearly_zero, pair_up, size};
+use nalgebra::{Complex, SMatrix};
+
+/// A gain, and the poles that it gives.
+#[derive(Clone, Copy)]
+pub(super) struct Checked<const N: usize, const P: usize> {
+    pub(super) gain: SMatrix<f64, N, P>,
+    /// In the order of the wanted ones.
+    pub(super) placed: [Complex<f64>; N],
+    /// By how much they are off.
+    pub(super) offsets: [Complex<f64>; N],
+    /// By how much the worst is off beside its size.
+    pub(super) error: f64,
+    /// The same, but of poles that are as good as zero beside the size of the system.
+    pub(super) loss: f64,
+}
+
+/// A system of which poles are wanted.
+pub(super) struct Problem<'a, const N: usize, const P: usize> {
+    pub(super) a: &'a Square<f64, N>,
+    pub(super) c: &'a SMatrix<f64, P, N>,
+    pub(super) pair: &'a Pair<N>,
+    pub(super) merging: &'a Merging<N, P>,
+    pub(super) poles: &'a [Complex<f64>; N],
+}
+
+impl<const N: usize, const P: usize> Problem<'_, N, P> {
+    /// Where the poles are.
+    pub(super) fn check(&self, gain: &SMatrix<f64, N, P>) -> Result<Checked<N, P>, Error> {
+        if !finite(gain) {
+            return Err(Error::NotFinite);
+        }
+        let values = eigenvalues_extended(&self.closed(gain))?;
+        let offsets_from = |pole| values.map(|value| round_complex(value - extend_complex(pole)));
+        let offsets = self.poles.map(offsets_from);
+        let partners = pair_up(&offsets.map(|row| row.map(size)));
+        let mut checked = Checked {
+            gain: *gain,
+            placed: *self.poles,
+            offsets: *self.poles,
+            error: 0.0,
+            loss: 0.0,
+        };
+        for wanted in 0..N {
+            let partner = partners[wanted];
+            if let (Some(&value), Some(&offset)) =
+                (values.get(partner), offsets[wanted].get(partner))
+            {
+                checked.placed[wanted] = round_complex(value);
+                checked.offsets[wanted] = offset;
+                let pole = self.poles[wanted];
+                let error = size(offset) / self.reference(pole);
+                let nearly_zero = is_nearly_zero(pole, self.system());
+                let loss = if nearly_zero { size(offset) / self.system() } else { error };
+                (checked.error, checked.loss) = (checked.error.max(error), checked.loss.max(loss));
+            }
+        }
+        Ok(checked)
+    }
+
+    /// A − L C on the balanced scale.
+    pub(super) fn closed(&self, gain: &SMatrix<f64, N, P>) -> Square<Extended, N> {
+        self.pair.balanced(&(extend(self.a) - extend(gain).times(&extend(self.c))))
+    }
+
+    /// What the error of a pole is measured by: its own size, or that of the system if it should be zero.
+    pub(super) fn reference(&self, pole: Complex<f64>) -> f64 {
+        if size(pole) > 0.0 { size(pole) } else { self.system() }
+    }
+
+    fn system(&self) -> f64 {
+        norm(&self.pair.dynamics).max(f64::MIN_POSITIVE)
+    }
+}

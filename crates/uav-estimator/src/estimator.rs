@@ -1,0 +1,121 @@
+use kestirim_luenberger::{Plant, Predictor, PredictorGains};
+use kestirim_observer_design::Discrete;
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+use crate::{Error, KalmanFilter, Step, Transition};
+
+/// An estimator of samples at one rate, in predictor form: its estimate is what is expected of a sample before the
+/// sample is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Estimator<T: Scalar, const P: usize> {
+    /// With a constant gain: a Luenberger observer or a steady-state Kalman filter.
+    ConstantGain(Predictor<T, 4, 2, P>),
+    /// With the gain of a Kalman filter that starts from P₀.
+    TimeVarying {
+        /// The filter.
+        filter: KalmanFilter<T, P>,
+        /// What happens between two samples.
+        transition: Transition<T>,
+    },
+}
+
+impl<T: Scalar, const P: usize> Estimator<T, P> {
+    /// x̂⁺ = A x̂ + B u + L (y − C x̂) from this state: L is that of an [`observer_gain`](crate::observer_gain), or
+    /// the `predictor_gain` of a [`riccati`](kestirim_observer_design::riccati).
+    ///
+    /// # Errors
+    /// [`Error::Observer`].
+    pub fn constant_gain(
+        plant: &Discrete<4, 2>,
+        c: &SMatrix<f64, P, 4>,
+        gain: &SMatrix<f64, 4, P>,
+        start: &SVector<f64, 4>,
+    ) -> Result<Self, Error> {
+        if !start.iter().copied().all(f64::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        let gains = PredictorGains::new(&Plant { a: plant.a, b: plant.b, c: *c }, gain);
+        Ok(Self::ConstantGain(Predictor::new(&gains, &start.map(T::from_f64))?))
+    }
+
+    /// A [`KalmanFilter`] of outputs y = C x whose noise has these standard deviations, from a state whose errors
+    /// have standard deviations `start_sigmas`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn time_varying(
+        step: &Step,
+        c: &SMatrix<f64, P, 4>,
+        sigmas: &SVector<f64, P>,
+        start: &SVector<f64, 4>,
+        start_sigmas: &SVector<f64, 4>,
+    ) -> Result<Self, Error> {
+        let filter = KalmanFilter::new(c, sigmas, start, start_sigmas)?;
+        Ok(Self::TimeVarying { filter, transition: Transition::new(step) })
+    }
+
+    /// x̂: α (rad), q (rad/s), V (m/s), θ (rad) at the time of the next sample.
+    pub fn estimate(&self) -> SVector<f64, 4> {
+        match self {
+            Self::ConstantGain(observer) => observer.estimate().map(T::to_f64),
+            Self::TimeVarying { filter, .. } => filter.estimate(),
+        }
+    }
+
+    /// Standard deviations of the estimate's errors; an observer with a constant gain knows none
+    /// ([`error_covariance`](kestirim_observer_design::error_covariance) tells those it settles at).
+    pub fn sigma(&self) -> Option<SVector<f64, 4>> {
+        match self {
+            Self::ConstantGain(_) => None,
+            Self::TimeVarying { filter, .. } => Some(filter.sigma()),
+        }
+    }
+
+    /// Moves on with the inputs δe (rad), δt and the outputs of one sample; what was not measured is taken for what
+    /// was expected.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::Observer`] or [`Error::Estimate`]; the estimator is as it was.
+    pub fn step(
+        &mut self,
+        input: &SVector<f64, 2>,
+        measured: &[Option<f64>; P],
+    ) -> Result<(), Error> {
+        let numbers = input.iter().chain(measured.iter().flatten());
+        if !numbers.copied().all(f64::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        match self {
+            Self::ConstantGain(observer) => {
+                let measured = completed(observer, measured);
+                Ok(observer.step(&input.map(T::from_f64), &measured)?)
+            }
+            Self::TimeVarying { filter, transition } => {
+                let mut next = *filter;
+                next.correct(measured)?;
+                next.predict(transition, input)?;
+                *filter = next;
+                Ok(())
+            }
+        }
+    }
+}
+
+/// What was measured, and what is expected of the outputs that were not.
+fn completed<T: Scalar, const P: usize>(
+    observer: &Predictor<T, 4, 2, P>,
+    measured: &[Option<f64>; P],
+) -> SVector<T, P> {
+    let mut all = SVector::<T, P>::zeros();
+    if measured.iter().any(Option::is_none) {
+        all = -observer.innovation(&all);
+    }
+    for (value, measured) in all.data.0[0].iter_mut().zip(measured) {
+        if let Some(measured) = measured {
+            *value = T::from_f64(*measured);
+        }
+    }
+    all
+}

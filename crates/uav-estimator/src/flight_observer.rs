@@ -1,0 +1,135 @@
+use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant};
+use kestirim_observer_design::{Complex, Discrete};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+use crate::transitions::{Transitions, interval_us};
+use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
+
+/// A Luenberger observer along a flight: samples at a usual interval, with gaps between them and outputs that are
+/// missing.
+///
+/// Over a gap the model is moved on by the gap's length; an output that is missing is taken for what was expected of
+/// it. The estimate has seen the newest sample (the current form). It begins with the states that the first sample
+/// measures by themselves, and zero for the others. Its error when it has settled is told by
+/// [`error_covariance`](kestirim_observer_design::error_covariance).
+///
+/// Steps of L other intervals than the usual one are kept: see [`FlightFilter`](crate::FlightFilter).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
+    observer: CurrentObserver<T, 4, 2, P>,
+    c: SMatrix<f64, P, 4>,
+    usual_us: i64,
+    transitions: Transitions<Discrete<4, 2>, L>,
+    /// Time (µs) and input of the sample before.
+    before: Option<(i64, SVector<f64, 2>)>,
+}
+
+impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
+    /// An observer of this model and outputs y = C x, measured every `usual` seconds, with these poles of discrete
+    /// time ([`observer_gain`]).
+    ///
+    /// # Errors
+    /// [`Error::Design`], [`Error::Singular`], [`Error::WrongInterval`], [`Error::Observer`].
+    pub fn new(
+        dynamics: &Dynamics,
+        c: &SMatrix<f64, P, 4>,
+        poles: &[Complex<f64>; 4],
+        usual: f64,
+    ) -> Result<Self, Error> {
+        let usual_us = libm::round(usual * 1e6) as i64;
+        let transitions = Transitions::new(*dynamics, usual, SVector::zeros());
+        let plant = transitions.over(usual_us, transition)?;
+        let gain = current_gain(&plant, &observer_gain(&plant, c, poles)?)?;
+        let gains = CurrentGains::new(&Plant { a: plant.a, b: plant.b, c: *c }, &gain);
+        let observer = CurrentObserver::new(&gains, &SVector::zeros())?;
+        Ok(Self { observer, c: *c, usual_us, transitions, before: None })
+    }
+
+    /// x̂: α (rad), q (rad/s), V (m/s), θ (rad) at the time of the last sample.
+    pub fn estimate(&self) -> SVector<f64, 4> {
+        self.observer.estimate().map(T::to_f64)
+    }
+
+    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it, in its unit.
+    ///
+    /// # Errors
+    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
+    /// [`Error::Observer`]; the observer is as it was.
+    pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<f64>; P], Error> {
+        let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
+        if !numbers.copied().all(f64::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        let mut next = self.observer;
+        let mut bridged = None;
+        if let Some((before_us, input)) = &self.before {
+            let interval_us = interval_us(*before_us, sample.time_us)?;
+            if interval_us == self.usual_us {
+                next.predict(&input.map(T::from_f64))?;
+            } else {
+                let step = self.transitions.over(interval_us, transition)?;
+                let there = step.a * next.estimate().map(T::to_f64) + step.b * input;
+                next.reset(&finite(&there)?)?;
+                bridged = Some((interval_us, step));
+            }
+        } else {
+            next.reset(&finite(&self.measured_states(&sample.measured))?)?;
+        }
+        let innovation = next.correct(&self.completed(&next, &sample.measured))?;
+        self.observer = next;
+        self.before = Some((sample.time_us, sample.input));
+        if let Some((interval_us, step)) = &bridged {
+            self.transitions.keep(*interval_us, step);
+        }
+        let mut innovations = [None; P];
+        for output in 0..P {
+            innovations[output] =
+                sample.measured[output].map(|_| innovation.data.0[0][output].to_f64());
+        }
+        Ok(innovations)
+    }
+
+    /// What was measured, and what is expected of the outputs that were not.
+    fn completed(
+        &self,
+        observer: &CurrentObserver<T, 4, 2, P>,
+        measured: &[Option<f64>; P],
+    ) -> SVector<T, P> {
+        let mut all = self.c * observer.estimate().map(T::to_f64);
+        for (value, measured) in all.data.0[0].iter_mut().zip(measured) {
+            *value = measured.unwrap_or(*value);
+        }
+        all.map(T::from_f64)
+    }
+
+    /// States that outputs measure by themselves, and zero for the others.
+    fn measured_states(&self, measured: &[Option<f64>; P]) -> SVector<f64, 4> {
+        let mut states = SVector::<f64, 4>::zeros();
+        for output in 0..P {
+            let row = self.c.data.0.map(|column| column[output]);
+            let single = row.iter().filter(|part| **part != 0.0).count() == 1;
+            let Some(measured) = measured[output].filter(|_| single) else { continue };
+            for (state, part) in states.data.0[0].iter_mut().zip(row) {
+                if part != 0.0 {
+                    *state = measured / part;
+                }
+            }
+        }
+        states
+    }
+}
+
+/// A state in this scalar, if it is one.
+fn finite<T: Scalar>(state: &SVector<f64, 4>) -> Result<SVector<T, 4>, Error> {
+    if state.iter().copied().all(f64::is_finite) {
+        Ok(state.map(T::from_f64))
+    } else {
+        Err(Error::NotFinite)
+    }
+}
+
+fn transition(step: &Step) -> Discrete<4, 2> {
+    step.transition
+}

@@ -1,0 +1,194 @@
+use core::array::from_fn;
+
+use kestirim_kalman::{Covariance, Gaussian, Innovation, SparseRow};
+use kestirim_scalar::Scalar;
+use nalgebra::{SMatrix, SVector};
+
+use crate::{Error, Step};
+
+/// Units of the states (rad, rad/s, m/s, rad) inside the filter: in these, fixed point holds the smallest and the
+/// largest variance of a flight. Powers of two, so that floats do not notice.
+const UNITS: [f64; 4] = [1.0 / 256.0, 1.0 / 256.0, 0.25, 1.0 / 256.0];
+
+/// A [`Step`] in the scalar and the units of a [`KalmanFilter`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Transition<T: Scalar> {
+    a: SMatrix<T, 4, 4>,
+    b: SMatrix<T, 4, 2>,
+    noise: Covariance<T, 4>,
+}
+
+impl<T: Scalar> Transition<T> {
+    /// The same step, converted once.
+    pub fn new(step: &Step) -> Self {
+        let (units, in_units) = units();
+        let noise = in_units * step.noise * in_units;
+        Self {
+            a: (in_units * step.transition.a * units).map(T::from_f64),
+            b: (in_units * step.transition.b).map(T::from_f64),
+            noise: Covariance::from_lower_triangle(&noise.map(T::from_f64)),
+        }
+    }
+}
+
+/// A Kalman filter with time-varying gain of α, q, V and θ, with P outputs of which each may be missing.
+///
+/// What goes in and comes out is in `f64` and SI units; inside, all arithmetic is in `T`, in units in which Q16.16
+/// holds a flight's variances. Outputs are taken in one after the other, so their noise must be independent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct KalmanFilter<T: Scalar, const P: usize> {
+    state: Gaussian<T, 4>,
+    /// Rows of C as columns, and the variances of their noise: both in the outputs' units inside.
+    rows: SMatrix<T, 4, P>,
+    variances: SVector<T, P>,
+    /// Of the outputs: powers of two.
+    units: SVector<f64, P>,
+}
+
+impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
+    /// A filter of outputs y = C x whose noise has these standard deviations; it starts at a state whose errors
+    /// have standard deviations `start_sigmas`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn new(
+        c: &SMatrix<f64, P, 4>,
+        sigmas: &SVector<f64, P>,
+        start: &SVector<f64, 4>,
+        start_sigmas: &SVector<f64, 4>,
+    ) -> Result<Self, Error> {
+        let (units, in_units) = units();
+        let seen = c * units;
+        let mut rows = SMatrix::<T, 4, P>::zeros();
+        let mut variances = SVector::<T, P>::zeros();
+        let mut output_units = SVector::<f64, P>::zeros();
+        for output in 0..P {
+            let row: [f64; 4] = from_fn(|state| seen.data.0[state][output]);
+            let unit = power_of_two(row.iter().fold(0.0, |sum, part| sum + part.abs()));
+            let sigma = sigmas.data.0[0][output];
+            rows.data.0[output] = row.map(|part| T::from_f64(part / unit));
+            variances.data.0[0][output] = T::from_f64(sigma * sigma / (unit * unit));
+            output_units.data.0[0][output] = unit;
+        }
+        let known = (in_units * start_sigmas).map(|sigma| T::from_f64(sigma * sigma));
+        let mean = (in_units * start).map(T::from_f64);
+        let given = c.iter().chain(sigmas).chain(start).chain(start_sigmas);
+        if !(given.copied().all(f64::is_finite)
+            && T::all_finite(&mean.data.0[0])
+            && T::all_finite(&known.data.0[0])
+            && T::all_finite(&variances.data.0[0]))
+        {
+            return Err(Error::NotFinite);
+        }
+        let state = Gaussian::new(mean, Covariance::from_variances(&known.data.0[0]));
+        Ok(Self { state, rows, variances, units: output_units })
+    }
+
+    /// x̂: α (rad), q (rad/s), V (m/s), θ (rad).
+    pub fn estimate(&self) -> SVector<f64, 4> {
+        SVector::from(from_fn::<_, 4, _>(|i| self.state.mean.data.0[0][i].to_f64() * UNITS[i]))
+    }
+
+    /// P, the covariance of the estimate's error, in the states' units.
+    pub fn covariance(&self) -> SMatrix<f64, 4, 4> {
+        let (units, _) = units();
+        units * self.state.covariance.to_matrix().map(T::to_f64) * units
+    }
+
+    /// Standard deviations of the estimate's errors: rad, rad/s, m/s, rad.
+    pub fn sigma(&self) -> SVector<f64, 4> {
+        let variances = self.state.covariance.variances();
+        SVector::from(from_fn::<_, 4, _>(|i| {
+            libm::sqrt(variances.data.0[0][i].to_f64().max(0.0)) * UNITS[i]
+        }))
+    }
+
+    /// Moves on by a step with these inputs δe (rad) and δt.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    pub fn predict(
+        &mut self,
+        transition: &Transition<T>,
+        input: &SVector<f64, 2>,
+    ) -> Result<(), Error> {
+        if !input.iter().copied().all(f64::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        let mut next = self.state;
+        next.predict(&transition.a, &transition.noise)?;
+        let input = input.map(T::from_f64);
+        let [elevator, throttle] = &transition.b.data.0;
+        for (mean, (&elevator, &throttle)) in
+            next.mean.data.0[0].iter_mut().zip(elevator.iter().zip(throttle))
+        {
+            *mean += T::dot(&[elevator, throttle], &input.data.0[0]);
+        }
+        if !T::all_finite(&next.mean.data.0[0]) {
+            return Err(Error::NotFinite);
+        }
+        self.state = next;
+        Ok(())
+    }
+
+    /// Takes in the outputs that were measured, and answers with what each said beyond what was expected of it: the
+    /// innovation in the output's unit, its variance and NIS.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    pub fn correct(
+        &mut self,
+        measured: &[Option<f64>; P],
+    ) -> Result<[Option<Innovation<f64>>; P], Error> {
+        let mut next = self.state;
+        let mut innovations = [None; P];
+        for output in 0..P {
+            let Some(measured) = measured[output] else { continue };
+            if !measured.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            let unit = self.units.data.0[0][output];
+            let parts = &self.rows.data.0[output];
+            let row = SparseRow::<T, 4>::new(from_fn(|state| (state, parts[state])));
+            let measured = T::from_f64(measured / unit);
+            let innovation = next.observe(&row, measured, self.variances.data.0[0][output])?;
+            innovations[output] = Some(Innovation {
+                innovation: innovation.innovation.to_f64() * unit,
+                variance: innovation.variance.to_f64() * (unit * unit),
+                nis: innovation.nis.to_f64(),
+            });
+        }
+        self.state = next;
+        Ok(innovations)
+    }
+}
+
+/// The units on a diagonal, and their inverse.
+fn units() -> (SMatrix<f64, 4, 4>, SMatrix<f64, 4, 4>) {
+    let units = SVector::from(UNITS);
+    (SMatrix::from_diagonal(&units), SMatrix::from_diagonal(&units.map(f64::recip)))
+}
+
+/// The power of two below a size; 1 where there is none.
+fn power_of_two(size: f64) -> f64 {
+    const EXPONENT: u64 = 0x7FF << 52;
+    if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }
+}

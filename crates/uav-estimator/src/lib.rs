@@ -1,0 +1,21 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod dynamics;
+mod error;
+mod estimator;
+mod flight_filter;
+mod flight_observer;
+mod gain;
+mod kalman_filter;
+mod sample;
+mod transitions;
+
+pub use dynamics::{Dynamics, Step};
+pub use error::Error;
+pub use estimator::Estimator;
+pub use flight_filter::FlightFilter;
+pub use flight_observer::FlightObserver;
+pub use gain::{current_gain, observer_gain};
+pub use kalman_filter::{KalmanFilter, Transition};
+pub use sample::{Noise, Sample};

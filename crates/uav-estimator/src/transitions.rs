@@ -1,0 +1,65 @@
+use nalgebra::SVector;
+
+use crate::{Dynamics, Error, Step};
+
+/// No gap is longer, in usual intervals.
+const LONGEST_GAP: f64 = 1e6;
+
+/// Steps of a model over the intervals between samples; the last one for each remainder of the interval's
+/// microseconds by L is kept.
+///
+/// Intervals that jitter by less than L µs have a place each, so that nothing is computed twice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct Transitions<S, const L: usize> {
+    dynamics: Dynamics,
+    /// s.
+    usual: f64,
+    /// Standard deviations of the inputs' noise a usual interval.
+    noise: SVector<f64, 2>,
+    known: [Option<(i64, S)>; L],
+}
+
+impl<S: Copy, const L: usize> Transitions<S, L> {
+    pub(crate) const fn new(dynamics: Dynamics, usual: f64, noise: SVector<f64, 2>) -> Self {
+        Self { dynamics, usual, noise, known: [None; L] }
+    }
+
+    /// With another usual interval, s.
+    pub(crate) fn set_usual(&mut self, usual: f64) {
+        self.usual = usual;
+        self.known = [None; L];
+    }
+
+    /// What happens in so many microseconds, in the form that `form` gives it.
+    pub(crate) fn over(&self, interval_us: i64, form: impl FnOnce(&Step) -> S) -> Result<S, Error> {
+        if let Some(Some((known_us, step))) = self.known.get(Self::place(interval_us))
+            && *known_us == interval_us
+        {
+            return Ok(*step);
+        }
+        let interval = interval_us as f64 / 1e6;
+        if interval > LONGEST_GAP * self.usual {
+            return Err(Error::Gap(interval));
+        }
+        Ok(form(&self.dynamics.over(interval, self.usual, &self.noise)?))
+    }
+
+    /// Keeps what was computed for an interval.
+    pub(crate) fn keep(&mut self, interval_us: i64, step: &S) {
+        if let Some(place) = self.known.get_mut(Self::place(interval_us)) {
+            *place = Some((interval_us, *step));
+        }
+    }
+
+    fn place(interval_us: i64) -> usize {
+        const { assert!(L > 0, "one step at least is kept") };
+        (interval_us as u64 % L as u64) as usize
+    }
+}
+
+/// The time between two samples, µs.
+pub(crate) fn interval_us(before_us: i64, now_us: i64) -> Result<i64, Error> {
+    let interval = now_us.checked_sub(before_us).filter(|interval| *interval > 0);
+    interval.ok_or(Error::OutOfOrder)
+}

@@ -1,0 +1,119 @@
+//! Everything of `kestirim-uav-estimator`.
+
+use kestirim_observer_design::{Complex, Discrete};
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_uav_estimator::{
+    Dynamics, Error, Estimator, FlightFilter, FlightObserver, KalmanFilter, Noise, Sample, Step,
+    Transition, current_gain, observer_gain,
+};
+use kestirim_uav_longitudinal::StateSpace;
+
+use super::values::{
+    any, call_each, keep, matrix, number, option, rounds, try_on, whole, yes_or_no,
+};
+
+fn plant() -> Discrete<4, 2> {
+    any(Discrete { a: matrix(), b: matrix() })
+}
+
+fn step() -> Step {
+    any(Step { transition: plant(), noise: matrix() })
+}
+
+fn dynamics() -> Dynamics {
+    any(if yes_or_no() {
+        Dynamics::Continuous(StateSpace { a: matrix(), b: matrix() })
+    } else {
+        Dynamics::Discrete { step: plant(), interval: number() }
+    })
+}
+
+fn measured<const P: usize>() -> [Option<f64>; P] {
+    any([(); P].map(|()| option()))
+}
+
+/// Intervals of some microseconds and of any.
+fn sample<const P: usize>(time_us: &mut i64) -> Sample<P> {
+    *time_us = time_us.wrapping_add(whole::<u64>() as i64);
+    any(Sample { time_us: *time_us, input: matrix(), measured: measured() })
+}
+
+fn poles() -> [Complex<f64>; 4] {
+    any([(); 4].map(|()| Complex { re: number(), im: 0.0 }))
+}
+
+fn designs<const P: usize>() {
+    keep(Dynamics::over(&dynamics(), number(), number(), &matrix()));
+    keep(observer_gain::<P>(&plant(), &matrix(), &poles()));
+    keep(current_gain::<P>(&plant(), &matrix()));
+}
+
+fn errors() {
+    keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
+    keep::<Error>(From::from(any(kestirim_luenberger::Error::NotFinite)));
+    keep::<Error>(From::from(any(kestirim_observer_design::Error::NotFinite)));
+}
+
+fn filters<T: Scalar, const P: usize>() {
+    let filter = KalmanFilter::<T, P>::new(&matrix(), &matrix(), &matrix(), &matrix());
+    let Ok(mut filter) = any(filter) else { return };
+    for _ in 0..rounds() {
+        let transition = any(Transition::new(&step()));
+        try_on(&mut filter, |filter| KalmanFilter::predict(filter, &transition, &matrix()));
+        try_on(&mut filter, |filter| KalmanFilter::correct(filter, &measured()));
+    }
+    keep(KalmanFilter::estimate(&filter));
+    keep(KalmanFilter::covariance(&filter));
+    keep(KalmanFilter::sigma(&filter));
+}
+
+fn estimators<T: Scalar, const P: usize>() {
+    let estimator = if yes_or_no() {
+        Estimator::<T, P>::constant_gain(&plant(), &matrix(), &matrix(), &matrix())
+    } else {
+        Estimator::<T, P>::time_varying(&step(), &matrix(), &matrix(), &matrix(), &matrix())
+    };
+    let Ok(mut estimator) = any(estimator) else { return };
+    for _ in 0..rounds() {
+        try_on(&mut estimator, |estimator| Estimator::step(estimator, &matrix(), &measured()));
+    }
+    keep(Estimator::estimate(&estimator));
+    keep(Estimator::sigma(&estimator));
+}
+
+fn flight_filters<T: Scalar, const P: usize>() {
+    let noise = any(Noise::<P> { inputs: matrix(), outputs: matrix() });
+    let filter = FlightFilter::<T, P, 2>::new(&dynamics(), &matrix(), &noise, number());
+    let Ok(mut filter) = any(filter) else { return };
+    let mut time_us = 0;
+    for _ in 0..rounds() {
+        try_on(&mut filter, |filter| FlightFilter::take(filter, &sample(&mut time_us)));
+    }
+    FlightFilter::set_usual(any(&mut filter), number());
+    try_on(&mut filter, |filter| FlightFilter::take(filter, &sample(&mut time_us)));
+    keep(FlightFilter::filter(&filter));
+}
+
+fn flight_observers<T: Scalar, const P: usize>() {
+    let observer = FlightObserver::<T, P, 2>::new(&dynamics(), &matrix(), &poles(), number());
+    let Ok(mut observer) = any(observer) else { return };
+    let mut time_us = 0;
+    for _ in 0..rounds() {
+        try_on(&mut observer, |observer| FlightObserver::take(observer, &sample(&mut time_us)));
+    }
+    keep(FlightObserver::estimate(&observer));
+}
+
+fn all_of<T: Scalar>() {
+    call_each([
+        filters::<T, 3>,
+        estimators::<T, 3>,
+        flight_filters::<T, 3>,
+        flight_observers::<T, 3>,
+    ]);
+}
+
+/// Calls it all.
+pub fn run() {
+    call_each([designs::<3>, designs::<4>, errors, all_of::<f32>, all_of::<f64>, all_of::<Q16_16>]);
+}
