@@ -124,9 +124,9 @@ fn check<T: Scalar>() {
     }
     // The mean and the deviation of three others are little to go by.
     assert!(t_test < 0.9 * plain, "{t_test} of {plain}");
-    println!("by the letter of the paper");
-    let printed = Robust::<T>::iterative_igg3().printed();
-    let masked = drive(&printed, 10.0, 1 << 40);
+    println!("the published equations");
+    let published = Robust::<T>::iterative_igg3().published();
+    let masked = drive(&published, 10.0, 1 << 40);
     println!("{masked:?}");
     assert!(masked.caught.0 < masked.caught.1 / 4, "outliers hide behind eq. 17: {masked:?}");
 }

@@ -11,7 +11,7 @@ use host_sim::systems::gnss::files::rinex_clock::Clocks;
 use host_sim::systems::gnss::files::rinex_obs;
 use host_sim::systems::gnss::files::sp3::Orbits;
 use host_sim::systems::gnss::products::Products;
-use kestirim_ppp_filter::{PppFilter, Sighting, Slipped, Solution};
+use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Slipped, Solution};
 use kestirim_telemetry::{GlobalPosition, Message};
 use kestirim_tests::ppp::{OUTLIERS, START, station};
 use nalgebra::Vector3;
@@ -35,7 +35,7 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
     let products = Products::new(START, &orbits, Some(&clocks), &Antennas::default());
     let mut filter = PppFilter::new(site::config());
     let solve = |epoch: &Observed| {
-        let sighting = |sighting: &Sighting<'_>| {
+        let sighting = |sighting: &SatelliteObservation<'_>| {
             let observed = rinex_obs::Observed {
                 prn: sighting.satellite,
                 code: sighting.code.map(Some),
@@ -43,7 +43,7 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 loss_of_lock: [false, sighting.lock_lost],
             };
             let sighting = products.sighting(epoch.time(), &observed).expect("there are products");
-            Sighting { antenna: site::satellite_antenna(), ..sighting }
+            SatelliteObservation { antenna: site::satellite_antenna(), ..sighting }
         };
         let sightings: Vec<_> = epoch.sightings.iter().map(sighting).collect();
         Ok(filter.process(epoch.time(), &site::receiver(), &sightings)?)
