@@ -2,7 +2,7 @@
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
-    Block, Decision, Huber, Igg3, Measurement, Reason, Reweighting, Robust, Scale, TTest, Weight,
+    Block, Decision, Huber, Measurement, Reason, Reweighting, Robust, Scale, Weight,
     WeightFunction, jump,
 };
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};

@@ -53,7 +53,8 @@ pub struct Published<T: Scalar> {
 impl<T: Scalar> Default for Published<T> {
     fn default() -> Self {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
-        let locator = PublishedLocator::new(channel(), &city(), PublishedSettings::thesis(), &mut rng);
+        let locator =
+            PublishedLocator::new(channel(), &city(), PublishedSettings::thesis(), &mut rng);
         Self { locator, rng, moments: None }
     }
 }
