@@ -8,7 +8,7 @@ use crate::{Error, IntegerWeights, Resample};
 /// # Errors
 /// Those of [`IntegerWeights::new`].
 pub(crate) fn count<R: Rng + ?Sized>(
-    resampler: &impl Resample,
+    resampler: impl Resample,
     weights: &mut [u32],
     draws: u32,
     rng: &mut R,
@@ -55,7 +55,7 @@ pub fn offspring<T: Scalar, R: Rng + ?Sized>(
         }
     }
     let draws = counts.len() as u32;
-    count(&resampler, counts, draws, rng)
+    count(resampler, counts, draws, rng)
 }
 
 /// The largest weight, if all of them are weights.

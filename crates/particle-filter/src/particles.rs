@@ -154,7 +154,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
             self.scratch[index] = offspring::part(self.weights.of(index), offspring::bits(N));
         }
         let parts = self.scratch.get_mut(..before).ok_or(Error::TooMany)?;
-        offspring::count(&resampler, parts, count as u32, rng)?;
+        offspring::count(resampler, parts, count as u32, rng)?;
         self.multiply(before, count);
         self.weights.equalise(count);
         Ok(())

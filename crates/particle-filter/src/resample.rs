@@ -13,7 +13,7 @@ use crate::uniform::Uniform;
 pub trait Resample {
     /// Replaces each weight by its number of offspring. They should sum up to the number of draws: particles for
     /// which offspring are missing stay where they are, offspring beyond the last are left out.
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, rng: &mut R);
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R);
 }
 
 /// Weights of particles as integers, to be replaced by numbers of offspring: not all zero, and few and small enough
@@ -88,7 +88,7 @@ pub enum Resampler {
 
 impl Resample for Resampler {
     #[inline(always)]
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, rng: &mut R) {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
         match self {
             Self::Multinomial => Multinomial.replace(weights, rng),
             Self::Residual => Residual.replace(weights, rng),
@@ -100,7 +100,7 @@ impl Resample for Resampler {
 
 impl Resample for Multinomial {
     #[inline(always)]
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, rng: &mut R) {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
         let (weights, total, draws) = weights.into_parts();
         independently(weights, draws, total, |weight| (0, u64::from(weight)), rng);
     }
@@ -108,7 +108,7 @@ impl Resample for Multinomial {
 
 impl Resample for Residual {
     #[inline(always)]
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, rng: &mut R) {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
         let (weights, total, draws) = weights.into_parts();
         let shares = Shares::new(total, draws);
         let whole: u64 = weights.iter().map(|&weight| shares.of(weight.into()).0).sum();
@@ -121,7 +121,7 @@ impl Resample for Residual {
 
 impl Resample for Stratified {
     #[inline(always)]
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, rng: &mut R) {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
         let (weights, total, draws) = weights.into_parts();
         let (mut last, mut offset) = (u64::MAX, 0);
         one_in_each(weights, &Shares::new(total, draws), |stratum| {
@@ -136,7 +136,7 @@ impl Resample for Stratified {
 
 impl Resample for Systematic {
     #[inline(always)]
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, rng: &mut R) {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
         let (weights, total, draws) = weights.into_parts();
         let offset = scaled(total, rng.next_u32());
         one_in_each(weights, &Shares::new(total, draws), |_| offset);

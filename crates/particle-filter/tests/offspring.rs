@@ -88,7 +88,7 @@ fn drawn(law: impl Resample) -> Result<[u32; N], Error> {
 struct First;
 
 impl Resample for First {
-    fn replace<R: Rng + ?Sized>(&self, weights: IntegerWeights<'_>, _: &mut R) {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, _: &mut R) {
         let (counts, _, draws) = weights.into_parts();
         counts.fill(0);
         counts[0] = draws;

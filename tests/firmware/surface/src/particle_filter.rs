@@ -54,7 +54,7 @@ fn draws<T: Scalar>() {
         keep(IntegerWeights::into_parts(weights));
     }
     if let Ok(weights) = any(IntegerWeights::new(counts, whole())) {
-        Resample::replace(&resampler(), weights, &mut AnyRng);
+        Resample::replace(resampler(), weights, &mut AnyRng);
     }
     keep(kld_count(whole(), number::<T>(), number(), whole()));
 }
