@@ -156,6 +156,9 @@ fn wrong_input_is_refused_with_a_sentence() {
     };
     assert!(with("--truth", "x,y\n1,2\n3,4\n").contains("line 3"));
     assert!(with("--area", "x,y\n1,2\n3,4\n").contains("square metre"));
+    let corner = |k: u32| format!("{k},{}\n", k * k);
+    let many = "x,y\n".to_owned() + &(0..5000).map(corner).collect::<String>();
+    assert!(with("--area", &many).contains("4096 corners"));
     assert!(refusal(&["replay", "drone", "--log", &log, "--track", &log]).contains("overwrite"));
     let both = ["replay", "drone", "--log", &log, "--free-space", "--environment", "urban"];
     assert!(refusal(&both).contains("--environment"));

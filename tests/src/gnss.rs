@@ -6,7 +6,7 @@ use host_sim::systems::gnss::accuracy::{Accuracy, Fix};
 use host_sim::systems::gnss::options::STATES;
 use host_sim::systems::gnss::recording::{Files, Recording};
 use kestirim_gnss_ppp::{Corrections, sagnac};
-use kestirim_ppp_filter::{Config, PppFilter, Sighting};
+use kestirim_ppp_filter::{Config, PppFilter, SatelliteObservation};
 use nalgebra::Vector3;
 
 /// A station's day.
@@ -88,7 +88,7 @@ impl Station {
         config: Config,
         corrections: Corrections,
         away: impl Fn(f64) -> Vector3<f64>,
-        mut spoil: impl FnMut(f64, &mut Sighting<'_>),
+        mut spoil: impl FnMut(f64, &mut SatelliteObservation<'_>),
     ) -> Vec<Fix> {
         let receiver = recording.receiver(corrections);
         let marker = Vector3::from(self.truth);
@@ -97,12 +97,12 @@ impl Station {
         for epoch in recording.epochs(Some(self.until)) {
             let t = recording.seconds(epoch);
             let known = |observed| recording.products().sighting(epoch.time, observed).ok();
-            let mut sightings: Vec<_> = epoch.satellites.iter().filter_map(known).collect();
-            for sighting in &mut sightings {
-                move_receiver(sighting, &marker, &(marker + away(t)));
-                spoil(t, sighting);
+            let mut observations: Vec<_> = epoch.satellites.iter().filter_map(known).collect();
+            for observation in &mut observations {
+                move_receiver(observation, &marker, &(marker + away(t)));
+                spoil(t, observation);
             }
-            if let Ok(solution) = filter.process(epoch.time, &receiver, &sightings) {
+            if let Ok(solution) = filter.process(epoch.time, &receiver, &observations) {
                 fixes.push(Fix { t, position: solution.position });
             }
         }
@@ -129,17 +129,21 @@ impl Station {
 }
 
 /// Adds to a satellite's codes and phases, m.
-pub fn lengthen(sighting: &mut Sighting<'_>, code: f64, phase: f64) {
+pub fn lengthen(observation: &mut SatelliteObservation<'_>, code: f64, phase: f64) {
     for carrier in 0..2 {
-        sighting.code[carrier] += code;
-        sighting.phase[carrier] += phase / kestirim_gnss_ppp::WAVELENGTH[carrier];
+        observation.code[carrier] += code;
+        observation.phase[carrier] += phase / kestirim_gnss_ppp::WAVELENGTH[carrier];
     }
 }
 
 /// What the receiver would have observed elsewhere.
-fn move_receiver(sighting: &mut Sighting<'_>, from: &Vector3<f64>, to: &Vector3<f64>) {
-    let satellite = sighting.state.position;
+fn move_receiver(
+    observation: &mut SatelliteObservation<'_>,
+    from: &Vector3<f64>,
+    to: &Vector3<f64>,
+) {
+    let satellite = observation.state.position;
     let range = |place: &Vector3<f64>| (satellite - place).norm() + sagnac(&satellite, place);
     let farther = range(to) - range(from);
-    lengthen(sighting, farther, farther);
+    lengthen(observation, farther, farther);
 }

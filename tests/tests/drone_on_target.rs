@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
 use kestirim_particle_filter::{Particles, Region, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_user_locator::{PrintedLocator, PrintedSettings};
+use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use target_bench::streams::{Encode, Records, circle};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
@@ -29,8 +29,8 @@ fn channel<T: Scalar>() -> Channel<T> {
 fn estimates<T: Scalar, const L: usize>(records: &Records) -> Vec<[f32; 3]> {
     let region = Region::new([T::ZERO; 2], [T::from_f64(2000.0); 2]).expect("a city");
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
-    let settings = PrintedSettings::thesis();
-    let mut locator = PrintedLocator::<T, L>::new(channel(), &region, settings, &mut rng);
+    let settings = PublishedSettings::thesis();
+    let mut locator = PublishedLocator::<T, L>::new(channel(), &region, settings, &mut rng);
     let step = |record: &[f32; 4]| {
         let [x, y, height, loss] = record.map(T::from_f32);
         let measurement = Measurement::new([x, y], height, loss).expect("a measurement");

@@ -7,7 +7,7 @@ use host_sim::metrics::rms;
 use host_sim::systems::gnss::accuracy::Accuracy;
 use host_sim::systems::gnss::recording::Recording;
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
-use kestirim_ppp_filter::{Config, Estimator, Motion, Sighting};
+use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -86,7 +86,7 @@ fn faults_of_other_days() {
         for seed in 1..=3 {
             let mut dice = Xoshiro256PlusPlus::seed_from_u64(seed);
             let mut slips = [0.0; 33];
-            let spoil = |t: f64, sighting: &mut Sighting<'_>| {
+            let spoil = |t: f64, sighting: &mut SatelliteObservation<'_>| {
                 spoil(t, sighting, &mut dice, &mut slips);
             };
             let config = Config::new(Motion::Static);
@@ -103,7 +103,7 @@ fn faults_of_other_days() {
 /// detector sees, and 10 m on the codes of three satellites for a quarter of an hour, twice.
 fn spoil(
     t: f64,
-    sighting: &mut Sighting<'_>,
+    sighting: &mut SatelliteObservation<'_>,
     dice: &mut Xoshiro256PlusPlus,
     slips: &mut [f64; 33],
 ) {

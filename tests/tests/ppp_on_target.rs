@@ -26,7 +26,7 @@ fn config(estimator: Option<Estimator>) -> Config {
 fn on_host(config: Config) -> Result<Vec<Told>> {
     let mut filter = Filter::new(config);
     let solve = |epoch: Epoch| {
-        let solution = filter.process(epoch.time, &receiver(), &epoch.sightings)?;
+        let solution = filter.process(epoch.time, &receiver(), &epoch.observations)?;
         let [x, y, z] = solution.position.data.0[0];
         let treated = |is: fn(&SatelliteReport) -> bool| {
             solution.satellites.iter().filter(|report| is(report)).count() as i64

@@ -97,7 +97,7 @@ impl<T: Scalar> Channel<T> {
     /// The same channel with no deviation below `sigma` (dB).
     ///
     /// Right below the drone the model's shadowing is a tenth of a decibel, which no radio measures. A filter
-    /// that believes it breaks on the first decibel that the model does not know of.
+    /// that trusts it diverges on the first decibel of unmodelled error.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; [`Error::NotPositive`] if it is not above zero.
@@ -140,7 +140,7 @@ impl<T: Scalar> Channel<T> {
     /// Logarithm of the density (per dB) of a measured loss if the user is there (eq. 2.11).
     ///
     /// Beyond 127 standard deviations it does not fall any further. Without branches, so that a loop over
-    /// particles becomes vector instructions, and never underflowing as the printed sum of densities does.
+    /// particles becomes vector instructions, and never underflowing as the published sum of densities does.
     /// What is not finite in `user` gives what is not finite.
     #[inline(always)]
     pub fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {

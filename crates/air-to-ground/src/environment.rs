@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-/// What lies between drone and user, beyond free space: one of two kinds of propagation.
+/// Loss and shadowing beyond free space of one kind of propagation: with or without a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -13,7 +13,7 @@ pub struct Propagation<T> {
     pub sigma_decay: T,
 }
 
-/// What is built on the ground.
+/// Propagation constants of a kind of built environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,9 +22,9 @@ pub struct Environment<T> {
     pub a: T,
     /// b of the same, per degree.
     pub b: T,
-    /// With a line of sight.
+    /// Propagation with a line of sight.
     pub line_of_sight: Propagation<T>,
-    /// Without.
+    /// Propagation without a line of sight.
     pub obstructed: Propagation<T>,
 }
 

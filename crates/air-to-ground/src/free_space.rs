@@ -1,4 +1,4 @@
-//! Received levels over open ground, from a transmitter whose power nobody knows.
+//! Received levels over open ground, from a transmitter of unknown power.
 
 use kestirim_scalar::Scalar;
 
@@ -12,30 +12,30 @@ const SCALE: f64 = 3.5;
 const LEAST_SCALE: f64 = 0.5;
 /// Place, level and antennas are fitted, too: so many measurements do not count for the scale.
 const FITTED: usize = 4;
-/// What a dipole still receives along its axis.
+/// Power gain of a dipole along its axis, relative to its largest.
 const NULL_FILL: f64 = 0.1;
 /// The level's curvature is never taken for less than this share of that of perfect data.
 const LEAST_CURVATURE: f64 = 0.05;
 
-/// How many of a link's two antennas are upright dipoles, which are deaf upwards and downwards.
+/// How many of a link's two antennas are upright dipoles, whose pattern has nulls upwards and downwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Antennas {
-    /// None: all directions alike.
+    /// No dipole: the gain is the same in all directions.
     Isotropic,
-    /// One end.
+    /// A dipole at one end.
     OneDipole,
-    /// Both ends.
+    /// Dipoles at both ends.
     TwoDipoles,
 }
 
 impl Antennas {
-    /// All there are.
+    /// All values.
     pub const ALL: [Self; 3] = [Self::Isotropic, Self::OneDipole, Self::TwoDipoles];
 }
 
-/// What is known of the level before.
+/// Prior distribution of the level at one metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -50,8 +50,8 @@ pub struct LevelPrior<T> {
 /// antennas + noise.
 ///
 /// The noise has Student's distribution (ν = 3, scale 3.5 dB or what [`FreeSpace::fitted`] finds); which antennas there are is not known either, so
-/// that all three kinds are averaged. Shadowing is alike along tens of metres, therefore measurements are no
-/// independent witnesses: their likelihood is raised to a power, (1 − ρ)/(1 + ρ) for neighbours of correlation
+/// that all three kinds are averaged. Shadowing is alike along tens of metres, therefore measurements are not
+/// independent: their likelihood is raised to a power, (1 − ρ)/(1 + ρ) for neighbours of correlation
 /// ρ, wherever its width matters. At most 128 measurements are read. A composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -62,10 +62,10 @@ pub struct FreeSpace<T> {
     scale: T,
 }
 
-/// So many measurements are read at most.
+/// Most measurements that are read.
 const MOST: usize = 128;
 
-/// What measurements have to do with a place, whatever the level and the antennas.
+/// Geometry of the measurements seen from a place.
 struct Sight<T> {
     /// Received level beyond one of 0 dB at one metre, dB.
     excess: [T; MOST],
@@ -117,7 +117,7 @@ struct Fit<T> {
 }
 
 impl<T: Scalar> FreeSpace<T> {
-    /// A channel of which this is known of the level; all levels are alike if nothing is.
+    /// A channel with a prior of its level; without one, all levels are equally likely.
     pub fn new(level: Option<LevelPrior<T>>) -> Self {
         Self { level, scale: T::from_f64(SCALE) }
     }

@@ -1,6 +1,6 @@
 use crate::Measurement;
 
-/// What a filter asks of a channel.
+/// The likelihood of a measurement, as a filter needs it of a channel.
 pub trait Likelihood<T> {
     /// Logarithm of the density (per dB) of what was measured if the user (m, in the plane of the measurements)
     /// is there. It may lack a constant.

@@ -2,7 +2,7 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// A path loss measured from the air: numbers that a channel can do something with.
+/// A path loss measured from the air, checked to be plausible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -33,19 +33,19 @@ impl<T: Scalar> Measurement<T> {
         Ok(Self { place, height, loss })
     }
 
-    /// Where the drone was, m.
+    /// Horizontal place of the drone, m.
     #[inline(always)]
     pub fn place(&self) -> [T; 2] {
         self.place
     }
 
-    /// How far above the user it flew, m.
+    /// Height of the drone above the user, m.
     #[inline(always)]
     pub fn height(&self) -> T {
         self.height
     }
 
-    /// What it measured, dB.
+    /// Measured path loss, dB.
     #[inline(always)]
     pub fn loss(&self) -> T {
         self.loss

@@ -2,7 +2,7 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// What a rotor craft needs to stay in the air and to get ahead (the thesis' section 2.2.4).
+/// Power and energy model of a rotorcraft (the thesis' section 2.2.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

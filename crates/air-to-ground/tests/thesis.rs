@@ -3,7 +3,7 @@
 use kestirim_air_to_ground::{Channel, Environment, Error, Measurement, Rotor};
 use std::f64::consts::PI;
 
-/// The paper's equations, one by one.
+/// The published equations, one by one.
 fn density(environment: &Environment<f64>, distance: f64, height: f64, loss: f64) -> f64 {
     let theta = (height / distance).atan().to_degrees();
     let slant = (height * height + distance * distance).sqrt();
@@ -97,7 +97,7 @@ fn circle(points: f64, stop_s: f64) -> (f64, f64) {
 }
 
 #[test]
-fn the_energies_follow_from_the_printed_formulas() -> Result<(), Error> {
+fn the_energies_follow_from_the_published_formulas() -> Result<(), Error> {
     let rotor = Rotor::<f64>::base_station();
     let speed = 40.0 / 3.6;
     assert!((rotor.power(0.0)? - 1021.75).abs() < 0.01);

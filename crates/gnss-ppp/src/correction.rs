@@ -47,7 +47,7 @@ pub struct Corrections {
 }
 
 impl Corrections {
-    /// Everything that is known.
+    /// All corrections.
     pub const ALL: Self = Self { left_out: 0 };
 
     /// These, without one.

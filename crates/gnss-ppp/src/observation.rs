@@ -1,4 +1,4 @@
-//! What a receiver should observe of a satellite, free of the ionosphere.
+//! The ionosphere-free observation model of a satellite.
 
 use crate::constants::SPEED_OF_LIGHT;
 use crate::signal::{NARROW_LANE, ionosphere_free};
@@ -25,10 +25,10 @@ pub struct SatelliteState {
     pub clock_distance: f64,
 }
 
-/// What a receiver should observe of a satellite.
+/// Modelled observation of a satellite.
 ///
 /// P = range + c·dt + m·Z and L = P + `wind_up` + ambiguity with the receiver's clock c·dt, the wet zenith delay
-/// Z and its mapping m (the paper's 1 and 2), all in m.
+/// Z and its mapping m (published as 1 and 2), all in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// Distance between the phase centres with all that delays the signal but the receiver's clock,

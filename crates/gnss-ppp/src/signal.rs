@@ -1,4 +1,4 @@
-//! The two carriers of GPS and what is made of them.
+//! The two carriers of GPS and their linear combinations.
 
 use crate::constants::SPEED_OF_LIGHT;
 

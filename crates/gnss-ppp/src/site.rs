@@ -4,7 +4,7 @@ use crate::{
 };
 use nalgebra::{Matrix3, Vector3};
 
-/// What is known of a receiver besides its position.
+/// Properties of a receiver besides its position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Receiver<'a> {
     /// Its antenna on L1 and L2, where known.
@@ -15,7 +15,7 @@ pub struct Receiver<'a> {
     pub ocean_loading: Option<&'a OceanLoading>,
     /// UT1 (or UTC) ahead of GPS time, s: the leap seconds since 1980, negated.
     pub ut1_minus_gps: f64,
-    /// What of all that, and of the rest of the model, is applied.
+    /// Corrections that are applied.
     pub corrections: Corrections,
 }
 

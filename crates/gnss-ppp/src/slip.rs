@@ -3,14 +3,14 @@
 use crate::GpsTime;
 use crate::signal::{geometry_free, melbourne_wuebbena};
 
-/// Why a satellite's ambiguity is not what it was.
+/// Reason of a cycle slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Slip {
     /// It was not observed for too long.
     Gap,
-    /// The receiver says that it lost lock.
+    /// The receiver reports a loss of lock.
     LossOfLock,
     /// The geometry-free phase jumped.
     GeometryFree,
@@ -19,7 +19,7 @@ pub enum Slip {
     MelbourneWuebbena,
 }
 
-/// From when on a jump is a slip.
+/// Thresholds of the slip detection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -49,7 +49,7 @@ impl Default for SlipLimits {
     }
 }
 
-/// What is remembered of one satellite's arc (Blewitt 1990).
+/// State of the slip detection in one satellite's arc (Blewitt 1990).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -150,8 +150,8 @@ impl Arc {
         }
     }
 
-    /// Whether the wide lane is not where it was: after a slip, or for an outlier of the code. What
-    /// else contradicts then, as a phase that does not fit, has an ally.
+    /// Whether the wide lane is not where it was: after a slip, or for an outlier of the code. A second sign,
+    /// such as a phase that does not fit, confirms the slip.
     pub const fn is_suspicious(&self) -> bool {
         self.off > 0
     }

@@ -74,7 +74,7 @@ mod tests {
 
     /// The field of a right-handed wave turns clockwise seen from its source. A receiver below the satellite
     /// that turns with it, from north over east, sees each cycle later: its phase grows, as with the range. So
-    /// it does if the satellite turns the other way.
+    /// it does if the satellite turns in the opposite sense.
     #[test]
     fn turning_antennas_count_cycles() {
         let position = Vector3::x() * 26e6;

@@ -3,12 +3,8 @@
 
 use kestirim_scalar::Scalar;
 
-use crate::weights::Weights;
-
 /// Particles of a block.
 pub(crate) const BLOCK: usize = 32;
-/// Sums are kept in so many lanes, so that they become vector instructions, and round alike everywhere.
-const LANES: usize = 4;
 
 /// Coordinates of the points of a block.
 pub(crate) type Block<T, const D: usize> = [[T; BLOCK]; D];
@@ -91,42 +87,4 @@ pub(crate) fn gather<T: Scalar, const D: usize>(block: &[&[T; BLOCK]; D], index:
         }
     }
     point
-}
-
-/// Σ aᵢ·bᵢ of R × C pairs of factors, which `factors` has for each weight (the largest is one) and its point.
-#[inline(always)]
-pub(crate) fn sums<T: Scalar, const D: usize, const N: usize, const R: usize, const C: usize>(
-    weights: &Weights<T, N>,
-    points: &impl Points<T, D>,
-    factors: impl Fn(T, [T; D]) -> [[(T, T); C]; R],
-) -> [[T; C]; R] {
-    let mut lanes = [[[T::accumulator(); LANES]; C]; R];
-    let mut room = [[T::ZERO; BLOCK]; D];
-    let mut weight = [T::ZERO; BLOCK];
-    let mut base = 0;
-    while let Some(logs) = weights.block(base) {
-        let block = points.load(base, logs.len(), &mut room);
-        for (weight, &log) in weight.iter_mut().zip(logs) {
-            *weight = log.exp();
-        }
-        // What is not used of the last block has no weight.
-        weight.iter_mut().skip(logs.len()).for_each(|weight| *weight = T::ZERO);
-        let mut first = 0;
-        while first < logs.len() && first <= BLOCK - LANES {
-            for lane in 0..LANES {
-                let pairs = factors(weight[first + lane], gather(&block, first + lane));
-                for row in 0..R {
-                    for column in 0..C {
-                        let (a, b) = pairs[row][column];
-                        lanes[row][column][lane] = T::mac(lanes[row][column][lane], a, b);
-                    }
-                }
-            }
-            first += LANES;
-        }
-        base += BLOCK;
-    }
-    lanes.map(|row| {
-        row.map(|[a, b, c, d]| (T::finish(a) + T::finish(b)) + (T::finish(c) + T::finish(d)))
-    })
 }

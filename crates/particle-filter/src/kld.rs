@@ -1,4 +1,4 @@
-//! How many particles are needed: Fox's sampling by Kullback–Leibler divergence.
+//! The number of particles by Fox's KLD sampling (Kullback–Leibler divergence).
 
 use kestirim_scalar::Scalar;
 

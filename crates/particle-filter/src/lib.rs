@@ -12,6 +12,7 @@ mod particles;
 mod point_mass;
 mod random;
 mod region;
+mod resample;
 mod sequence;
 #[cfg(feature = "serde")]
 mod serialize;
@@ -21,10 +22,13 @@ mod weights;
 pub use error::Error;
 pub use kld::kld_count;
 pub use moments::Moments;
-pub use offspring::{Resampler, offspring};
+pub use offspring::offspring;
 pub use particles::Particles;
 pub use point_mass::PointMass;
 pub use rand_xoshiro::Xoshiro128PlusPlus;
 pub use region::Region;
+pub use resample::{
+    IntegerWeights, Multinomial, Resample, Resampler, Residual, Stratified, Systematic,
+};
 pub use sequence::Start;
 pub use weights::Update;

@@ -1,11 +1,10 @@
-//! Where the cloud is densest.
+//! The mode of the cloud.
 
 use kestirim_scalar::Scalar;
 
-use crate::blocks::sums;
 use crate::{Error, Particles};
 
-/// So many particles are tried as places of the mode.
+/// Number of particles that are tried as places of the mode.
 const CANDIDATES: usize = 32;
 /// Mean shift converges linearly; so many steps take it to a hundredth of the bandwidth.
 const STEPS: usize = 12;
@@ -34,9 +33,9 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
             (height * weight, offset)
         };
         let density = |centre: &[T; D]| {
-            let [[sum]] = sums(&self.weights, &self.states, |weight, state| {
-                [[(kernel(centre, weight, state).0, T::ONE)]]
-            });
+            let [[sum]] = self
+                .weights
+                .sums(&self.states, |weight, state| [[(kernel(centre, weight, state).0, T::ONE)]]);
             sum
         };
         let mut mode = self.at(self.weights.heaviest().min(N - 1));
@@ -51,7 +50,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         }
         for _ in 0..STEPS {
             let heights = density(&mode).max(T::EPSILON).divisor();
-            let [shift] = sums(&self.weights, &self.states, |weight, state| {
+            let [shift] = self.weights.sums(&self.states, |weight, state| {
                 let (height, offset) = kernel(&mode, weight, state);
                 [offset.map(|offset| (height, offset))]
             });

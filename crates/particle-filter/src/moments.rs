@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-use crate::blocks::{BLOCK, Points, sums};
+use crate::blocks::{BLOCK, Points};
 use crate::weights::{Weights, never};
 
 /// Weighted mean of a set of points, and how they spread about it.
@@ -26,7 +26,7 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
         let mean = mean(weights, points, centre);
         // In units of the box's sides, of which all squares are numbers.
         let unit = reach.map(|reach| (reach + reach).max(T::EPSILON).divisor());
-        let mut factor = sums(weights, points, |weight, point| {
+        let mut factor = weights.sums(points, |weight, point| {
             let mut pairs = [[(T::ZERO, T::ZERO); D]; D];
             let mut from_mean = [T::ZERO; D];
             for row in 0..D {
@@ -93,7 +93,7 @@ pub(crate) fn mean<T: Scalar, const D: usize, const N: usize>(
     centre: [T; D],
 ) -> [T; D] {
     let share = weights.sum().recip();
-    let [offset] = sums(weights, points, |weight, point| {
+    let [offset] = weights.sums(points, |weight, point| {
         let mut pairs = [(weight * share, T::ZERO); D];
         for axis in 0..D {
             pairs[axis].1 = point[axis] - centre[axis];

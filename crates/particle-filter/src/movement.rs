@@ -1,4 +1,4 @@
-//! What keeps particles apart: jitter, a kernel that shrinks with the cloud, Metropolis moves; and motion.
+//! Motion, and measures against impoverishment: jitter, a kernel that shrinks with the cloud, Metropolis moves.
 
 use kestirim_scalar::Scalar;
 use rand_core::Rng;
@@ -6,7 +6,7 @@ use rand_core::Rng;
 use crate::random::{normal_point, uniform};
 use crate::{Error, Particles};
 
-/// So many proposals are judged at a time.
+/// Number of proposals that are judged at a time.
 const BLOCK: usize = 16;
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
@@ -40,7 +40,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
 
     /// Jitter with a kernel of the cloud's own shape, which shrinks with it, and towards the mean, so that
     /// mean and covariance stay: Liu and West's kernel with Silverman's width times `scale` (1 suits a
-    /// normal posterior; rings and crescents want less). To be called after resampling.
+    /// normal posterior; rings and crescents need less). To be called after resampling.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::NotPositive`] for such a scale; nothing has changed then.
@@ -67,8 +67,8 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         Ok(())
     }
 
-    /// One Metropolis move of each particle: a step of the cloud's own shape times `scale`, taken if the
-    /// posterior likes it. Returns how many were taken.
+    /// One Metropolis move of each particle: a step of the cloud's own shape times `scale`, accepted by
+    /// the ratio of the posteriors. Returns how many were accepted.
     ///
     /// `log_posterior` of a state may lack a constant; a static problem's is the sum over the stored
     /// measurements. After resampling, a few moves make the offspring of one particle different, without

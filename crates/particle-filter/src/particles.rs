@@ -3,10 +3,10 @@ use rand_core::Rng;
 
 use crate::blocks::Mapped;
 use crate::moments::mean;
-use crate::offspring::{self, Resampler};
+use crate::offspring;
 use crate::sequence::{Steps, placed};
 use crate::weights::Weights;
-use crate::{Error, Moments, Region, Start, Update};
+use crate::{Error, Moments, Region, Resample, Start, Update};
 
 /// A weighted cloud of up to N states of D coordinates.
 ///
@@ -82,7 +82,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         self.weights.count()
     }
 
-    /// Never: there is at least one particle.
+    /// Always false: there is at least one particle.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -127,11 +127,11 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
     /// Replaces the particles by their offspring, of equal weight.
     ///
     /// # Errors
-    /// None that a set of particles could be in; nothing has changed then.
+    /// None for any set of particles; nothing has changed then.
     #[inline]
     pub fn resample<R: Rng + ?Sized>(
         &mut self,
-        resampler: Resampler,
+        resampler: impl Resample,
         rng: &mut R,
     ) -> Result<(), Error> {
         self.resample_to(self.len(), resampler, rng)
@@ -145,7 +145,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
     pub fn resample_to<R: Rng + ?Sized>(
         &mut self,
         count: usize,
-        resampler: Resampler,
+        resampler: impl Resample,
         rng: &mut R,
     ) -> Result<(), Error> {
         check(count, N)?;

@@ -9,7 +9,7 @@ use crate::{Error, Moments, Region, Update};
 
 /// A posterior on up to N fixed points: the golden lattice in a box of D dimensions.
 ///
-/// For a small static problem nothing beats it: its points never wander off, so that it needs no randomness, and
+/// The most accurate filter of this crate for small static problems: its points are fixed, so that it needs no randomness, and
 /// the mean over a smooth posterior is right to many digits as soon as the lattice is finer than the
 /// posterior. When it no longer is, [`PointMass::finer`] lays another where the weight is; that takes the
 /// measurements once more. Points are computed, not stored: 4·N bytes in single precision.
@@ -43,7 +43,7 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         self.weights.count()
     }
 
-    /// Never: there is at least one point.
+    /// Always false: there is at least one point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -2,7 +2,7 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// A box with its sides along the axes: where the state can be.
+/// A box with its sides along the axes: the support of a prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

@@ -5,7 +5,7 @@ use rand_core::Rng;
 
 use crate::random::uniform;
 
-/// How a box is filled with particles.
+/// Initial distribution of particles in a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -1,9 +1,12 @@
 use kestirim_scalar::Scalar;
 
 use crate::Error;
-use crate::blocks::{BLOCK, Block, Points, gather, sums};
+use crate::blocks::{BLOCK, Block, Points, gather};
 
-/// What an update has to tell.
+/// Lanes of a sum, which make vector instructions of it and the same rounding everywhere.
+const LANES: usize = 4;
+
+/// Result of an update.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -134,6 +137,44 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         Ok(Update { effective: self.effective(), log_evidence })
     }
 
+    /// Σ aᵢ·bᵢ of R × C pairs of factors, which `factors` has for each weight (the largest is one) and its point.
+    #[inline(always)]
+    pub(crate) fn sums<const D: usize, const R: usize, const C: usize>(
+        &self,
+        points: &impl Points<T, D>,
+        factors: impl Fn(T, [T; D]) -> [[(T, T); C]; R],
+    ) -> [[T; C]; R] {
+        let mut lanes = [[[T::accumulator(); LANES]; C]; R];
+        let mut room = [[T::ZERO; BLOCK]; D];
+        let mut weight = [T::ZERO; BLOCK];
+        let mut base = 0;
+        while let Some(logs) = self.block(base) {
+            let block = points.load(base, logs.len(), &mut room);
+            for (weight, &log) in weight.iter_mut().zip(logs) {
+                *weight = log.exp();
+            }
+            // What is not used of the last block has no weight.
+            weight.iter_mut().skip(logs.len()).for_each(|weight| *weight = T::ZERO);
+            let mut first = 0;
+            while first < logs.len() && first <= BLOCK - LANES {
+                for lane in 0..LANES {
+                    let pairs = factors(weight[first + lane], gather(&block, first + lane));
+                    for row in 0..R {
+                        for column in 0..C {
+                            let (a, b) = pairs[row][column];
+                            lanes[row][column][lane] = T::mac(lanes[row][column][lane], a, b);
+                        }
+                    }
+                }
+                first += LANES;
+            }
+            base += BLOCK;
+        }
+        lanes.map(|row| {
+            row.map(|[a, b, c, d]| (T::finish(a) + T::finish(b)) + (T::finish(c) + T::finish(d)))
+        })
+    }
+
     /// Subtracts the largest logarithm from all.
     #[inline(always)]
     fn normalise(&mut self, largest: T) {
@@ -144,7 +185,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
             *log = if *log > never { value } else { never };
         }
         let [[sum, square_sum]] =
-            sums(self, &Nowhere, |weight, []| [[(weight, T::ONE), (weight, weight)]]);
+            self.sums(&Nowhere, |weight, []| [[(weight, T::ONE), (weight, weight)]]);
         self.sum = sum;
         self.square_sum = square_sum;
     }

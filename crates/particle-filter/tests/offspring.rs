@@ -1,6 +1,9 @@
 //! The laws of resampling: unbiased, within their bounds, and total on any weights.
 
-use kestirim_particle_filter::{Error, Resampler, Xoshiro128PlusPlus, offspring};
+use kestirim_particle_filter::{
+    Error, IntegerWeights, Multinomial, Resample, Resampler, Residual, Stratified, Systematic,
+    Xoshiro128PlusPlus, offspring,
+};
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
@@ -73,6 +76,34 @@ fn all_laws_are_unbiased_and_none_varies_more_than_the_multinomial() -> Result<(
     check_unbiased::<f32>()?;
     check_unbiased::<Q16_16>()?;
     check_unbiased::<Q12_20>()
+}
+
+fn drawn(law: impl Resample) -> Result<[u32; N], Error> {
+    let mut counts = [0; N];
+    offspring(law, &uneven(), &mut counts, &mut Xoshiro128PlusPlus::seed_from_u64(6))?;
+    Ok(counts)
+}
+
+/// A user's own law: all offspring are the first particle's.
+struct First;
+
+impl Resample for First {
+    fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, _: &mut R) {
+        let (counts, _, draws) = weights.into_parts();
+        counts.fill(0);
+        counts[0] = draws;
+    }
+}
+
+#[test]
+fn laws_are_types_too_and_a_users_own_is_asked() -> Result<(), Error> {
+    assert_eq!(drawn(Multinomial)?, drawn(Resampler::Multinomial)?);
+    assert_eq!(drawn(Residual)?, drawn(Resampler::Residual)?);
+    assert_eq!(drawn(Stratified)?, drawn(Resampler::Stratified)?);
+    assert_eq!(drawn(Systematic)?, drawn(Resampler::Systematic)?);
+    let own = drawn(First)?;
+    assert_eq!((own[0], own[1..].iter().sum::<u32>()), (N as u32, 0));
+    Ok(())
 }
 
 #[test]

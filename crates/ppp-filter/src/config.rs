@@ -1,4 +1,4 @@
-//! How the filter sees its sensors.
+//! Settings of the filter.
 
 use crate::Estimator;
 use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
@@ -8,9 +8,9 @@ use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Motion {
-    /// It stands still.
+    /// A receiver at rest.
     Static,
-    /// It moves: each coordinate walks randomly.
+    /// A moving receiver, whose coordinates are random walks.
     Kinematic {
         /// Variance added per second to each coordinate, m²/s.
         process_noise: f64,
@@ -18,7 +18,7 @@ pub enum Motion {
 }
 
 /// Standard deviation of an ionosphere-free observation: σ² = a² + b²·cos²E at the elevation E (the
-/// paper's weighting). The combination is three times as noisy as one carrier.
+/// published weighting). The combination is three times as noisy as one carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -56,12 +56,12 @@ pub struct Config {
     pub wet_delay: f64,
     /// Variance per second by which the wet zenith delay walks, m²/s.
     pub wet_delay_walk: f64,
-    /// From when on a jump of the combinations is a slip.
+    /// Thresholds of the slip detection.
     pub slips: SlipLimits,
     /// For how long the errors of an observation stay alike (multipath, troposphere, orbits), s: the
     /// covariances that are reported count as one what was observed within.
     pub correlation_time: f64,
-    /// What is done about observations that do not fit.
+    /// Treatment of observations that do not fit.
     pub estimator: Estimator,
 }
 
@@ -99,7 +99,7 @@ impl Config {
     }
 
     /// The settings for geodetic receivers with final products of the IGS, which our results are made
-    /// with: the paper's (Table 1), but for the estimator, and slips that a code outlier cannot fake.
+    /// with: the published ones (Table 1), but for the estimator, and slips that a code outlier cannot imitate.
     pub fn new(motion: Motion) -> Self {
         Self {
             motion,

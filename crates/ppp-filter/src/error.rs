@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why an epoch has no solution. The filter is as it was before the call.
+/// Reason for which an epoch has no solution. The filter is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -13,7 +13,7 @@ pub enum Error {
     PoorGeometry,
     /// The epoch is not later than the one before.
     TimeNotAdvancing,
-    /// The position moves on with each look at the observations: they contradict each other.
+    /// The iteration of the position does not converge: the observations contradict each other.
     Contradictory,
     /// A setting is negative or not finite: see [`Config`](crate::Config) and
     /// [`Robust`](kestirim_robust_kalman::Robust).

@@ -1,18 +1,20 @@
 use crate::Motion;
-use kestirim_robust_kalman::{Adaptive, Block, Descent, Order, Reweighting, Robust, Scale, Weight};
+use kestirim_robust_kalman::{
+    Adaptive, Block, Descent, Igg3, Order, Reweighting, Robust, Scale, Weight,
+};
 
 /// The three coordinates among the states.
 pub(crate) const POSITION: Block = Block::new(0, 3);
 
-/// What is done about observations that do not fit.
+/// Treatment of observations that do not fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimator {
     /// How an epoch's observations are weighted.
     pub robust: Robust<f64>,
-    /// After how many epochs without a say of its phase a satellite's ambiguity is taken for another
-    /// one. Without patience phases are not watched at all: no slip by the wide lane, no noise learnt.
+    /// After how many epochs in which its phase was rejected a satellite's ambiguity begins anew. With none,
+    /// phases are not monitored at all: no slip by the wide lane, no noise estimated.
     pub patience: Option<u8>,
 }
 
@@ -32,12 +34,12 @@ impl Estimator {
         Self { robust: Robust::t_test(), patience: None }
     }
 
-    /// IKF: IGG III on the worst observation, again and again.
+    /// IKF: IGG III on the worst observation, repeated.
     pub fn iterative_igg3() -> Self {
         Self { robust: Robust::iterative_igg3(), patience: None }
     }
 
-    /// The paper's UKF (uyarlı, adaptive): IKF and an adaptive factor on the position.
+    /// The published UKF (uyarlı, adaptive): IKF and an adaptive factor on the position.
     pub fn adaptive() -> Self {
         Self { robust: Robust::adaptive(POSITION), patience: None }
     }
@@ -68,7 +70,7 @@ impl Estimator {
             }
         };
         let robust = Robust {
-            weight: Weight::Igg3 { k0, k1, descent: Descent::Squared },
+            weight: Weight::Igg3(Igg3 { k0, k1, descent: Descent::Squared }),
             scale: Scale::Unit,
             reweighting: Reweighting::WorstFirst { most: usize::MAX },
             least_redundancy: 0.01,

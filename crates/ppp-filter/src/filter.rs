@@ -1,6 +1,6 @@
 use crate::running::Running;
 use crate::start::code_position;
-use crate::{Config, Error, Sighting, Solution};
+use crate::{Config, Error, SatelliteObservation, Solution};
 use kestirim_gnss_ppp::{GpsTime, Receiver};
 
 /// A precise point positioning filter of N states: room for N − 5 satellites at a time (see
@@ -14,7 +14,7 @@ pub struct PppFilter<const N: usize> {
 }
 
 impl<const N: usize> PppFilter<N> {
-    /// A filter that has seen nothing yet.
+    /// A filter before its first epoch.
     pub const fn new(config: Config) -> Self {
         const { assert!(N >= crate::states(4), "no position from fewer than four satellites") };
         Self { config, running: None }
@@ -33,7 +33,7 @@ impl<const N: usize> PppFilter<N> {
         &mut self,
         time: GpsTime,
         receiver: &Receiver<'_>,
-        sightings: &[Sighting<'_>],
+        observations: &[SatelliteObservation<'_>],
     ) -> Result<Solution<N>, Error> {
         if !self.config.is_valid() {
             return Err(Error::InvalidConfiguration);
@@ -43,9 +43,9 @@ impl<const N: usize> PppFilter<N> {
                 running.advance(time, &self.config)?;
                 running
             }
-            None => Running::start(time, &code_position(sightings)?, &self.config),
+            None => Running::start(time, &code_position(observations)?, &self.config),
         };
-        let solution = next.observe(receiver, sightings, &self.config);
+        let solution = next.observe(receiver, observations, &self.config);
         if solution.is_ok() {
             self.running = Some(next);
         }

@@ -1,7 +1,7 @@
 //! One satellite's two observations, linearised.
 
 use crate::states::{CLOCK, COMMON, WET};
-use crate::{Config, Motion, Sighting, Slipped};
+use crate::{Config, Motion, SatelliteObservation, Slipped};
 use kestirim_gnss_ppp::{Expected, Site, ionosphere_free, ionosphere_free_phase};
 use nalgebra::{SVector, Vector3};
 
@@ -28,16 +28,16 @@ pub(crate) struct Line {
 
 impl Line {
     pub(crate) fn new(
-        sighting: &Sighting<'_>,
+        observation: &SatelliteObservation<'_>,
         expected: Expected,
         state: usize,
         slipped: Option<Slipped>,
         config: &Config,
     ) -> Self {
         let sine = libm::sin(expected.direction.elevation);
-        let clock = config.clock_variance(&sighting.state);
+        let clock = config.clock_variance(&observation.state);
         let mut line = Self {
-            satellite: sighting.satellite,
+            satellite: observation.satellite,
             state,
             slipped,
             expected,
@@ -48,7 +48,7 @@ impl Line {
             clock_variance: clock,
             phase_noise: 1.0,
         };
-        line.compare(sighting);
+        line.compare(observation);
         line
     }
 
@@ -61,18 +61,20 @@ impl Line {
     }
 
     /// Expects the same observations at another place.
-    pub(crate) fn relinearise(&mut self, sighting: &Sighting<'_>, site: &Site<'_>) {
+    pub(crate) fn relinearise(&mut self, observation: &SatelliteObservation<'_>, site: &Site<'_>) {
         let wind_up = Some(self.expected.wind_up_cycles);
-        if let Some(expected) = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up) {
+        if let Some(expected) =
+            site.expect(&observation.state, observation.antenna.as_ref(), wind_up)
+        {
             self.expected = expected;
-            self.compare(sighting);
+            self.compare(observation);
         }
     }
 
-    fn compare(&mut self, sighting: &Sighting<'_>) {
+    fn compare(&mut self, observation: &SatelliteObservation<'_>) {
         let Expected { range, wind_up, .. } = self.expected;
-        self.code = ionosphere_free(sighting.code) - range;
-        self.phase = ionosphere_free_phase(sighting.phase) - range - wind_up;
+        self.code = ionosphere_free(observation.code) - range;
+        self.phase = ionosphere_free_phase(observation.phase) - range - wind_up;
     }
 
     /// The row of the phase; that of the code ends before the ambiguity.

@@ -1,4 +1,4 @@
-//! What a filter says of an epoch.
+//! The solution of an epoch.
 
 use crate::collected::collected;
 use crate::running::{Decisions, Lines, Running};

@@ -3,10 +3,10 @@
 use crate::channel::Channel;
 use crate::collected::collected;
 use crate::line::{Line, Row};
+use crate::phase_monitor::{PhaseMonitor, is_judged};
 use crate::start::CodePosition;
 use crate::states::{CLOCK, COMMON, WET};
-use crate::watch::{Watch, is_judged};
-use crate::{Config, Error, Motion, Sighting, Slipped, Solution};
+use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution};
 use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
 use kestirim_kalman::{Covariance, Gaussian};
@@ -24,14 +24,14 @@ const WET_DELAY: f64 = 0.1;
 /// A receiver that was found farther than this from where the model was linearised is looked at
 /// again from there, m: at 20 000 km, 100 m are worth 0.2 mm.
 const LINEAR: f64 = 100.0;
-/// How often, before the observations are given up.
+/// Most relinearisations of an epoch.
 const RELINEARISATIONS: usize = 5;
 
 /// Of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
 
-/// What is used of an epoch.
-pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a Sighting<'b>, Line), N>;
+/// Observations of an epoch that are used.
+pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a SatelliteObservation<'b>, Line), N>;
 /// Of each line's code and phase.
 pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 
@@ -46,7 +46,7 @@ pub(crate) struct Running<const N: usize> {
 }
 
 impl<const N: usize> Running<N> {
-    /// Begins where the codes of an epoch have it.
+    /// Starts at the position of an epoch's codes.
     pub(crate) fn start(time: GpsTime, start: &CodePosition, config: &Config) -> Self {
         let mut mean = SVector::<f64, N>::zeros();
         let mut variances = [0.0; N];
@@ -87,11 +87,11 @@ impl<const N: usize> Running<N> {
     pub(crate) fn observe(
         &mut self,
         receiver: &Receiver<'_>,
-        sightings: &[Sighting<'_>],
+        observations: &[SatelliteObservation<'_>],
         config: &Config,
     ) -> Result<Solution<N>, Error> {
         let mut site = Site::new(receiver, &self.position(), self.time);
-        let mut lines = self.lines(&site, sightings, config);
+        let mut lines = self.lines(&site, observations, config);
         if lines.len() < 4 {
             return Err(Error::TooFewSatellites);
         }
@@ -103,7 +103,7 @@ impl<const N: usize> Running<N> {
         }
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
-        self.listen(&lines, &decisions, config);
+        self.monitor(&lines, &decisions, config);
         Ok(self.solution(&site, &lines, &decisions, config))
     }
 
@@ -128,8 +128,8 @@ impl<const N: usize> Running<N> {
                 return Ok(());
             }
             *site = Site::new(receiver, &found, self.time);
-            for (sighting, line) in &mut *lines {
-                line.relinearise(sighting, site);
+            for (observation, line) in &mut *lines {
+                line.relinearise(observation, site);
             }
             linearised = found;
         }
@@ -166,14 +166,14 @@ impl<const N: usize> Running<N> {
         Ok(())
     }
 
-    /// Remembers how the phases behaved. What all of them show at once is none's own noise.
-    fn listen(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>, config: &Config) {
+    /// Updates the phases' monitors. An error common to all phases is no noise of any one.
+    fn monitor(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>, config: &Config) {
         let judged = decisions.iter().map(|[_, phase]| phase).filter(|phase| is_judged(phase));
         let squares: Vec<f64, N> = collected(judged.map(|it| it.standardised * it.standardised));
         let common = (median(&squares, |square| *square) / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
-                channel.watch.listen(phase, line, common, config.motion);
+                channel.monitor.update(phase, line, common, config.motion);
             }
         }
     }
@@ -182,34 +182,34 @@ impl<const N: usize> Running<N> {
     fn lines<'a, 'b>(
         &mut self,
         site: &Site<'_>,
-        sightings: &'a [Sighting<'b>],
+        observations: &'a [SatelliteObservation<'b>],
         config: &Config,
     ) -> Lines<'a, 'b, N> {
         let mut lines = Vec::new();
-        for sighting in sightings {
-            if lines.iter().any(|(_, line): &(_, Line)| line.satellite == sighting.satellite) {
+        for observation in observations {
+            if lines.iter().any(|(_, line): &(_, Line)| line.satellite == observation.satellite) {
                 continue;
             }
-            let known = self.find(sighting.satellite);
+            let known = self.find(observation.satellite);
             let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
-            let expected = site.expect(&sighting.state, sighting.antenna.as_ref(), wind_up);
+            let expected = site.expect(&observation.state, observation.antenna.as_ref(), wind_up);
             let Some(expected) = expected else { continue };
             let above = expected.direction.elevation >= config.elevation_mask;
             if !above && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
                 *place = None;
             }
-            if !above || !sighting.is_finite() {
+            if !above || !observation.is_finite() {
                 continue;
             }
-            let Some(state) = known.or_else(|| self.free(sightings)) else { continue };
-            let slipped = self.track(state, sighting, &expected, config);
-            let mut line = Line::new(sighting, expected, state, slipped, config);
+            let Some(state) = known.or_else(|| self.free(observations)) else { continue };
+            let slipped = self.track(state, observation, &expected, config);
+            let mut line = Line::new(observation, expected, state, slipped, config);
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
             {
-                line.learn(channel.watch.noise(), config.motion);
+                line.learn(channel.monitor.noise(), config.motion);
             }
-            if lines.push((sighting, line)).is_err() {
+            if lines.push((observation, line)).is_err() {
                 break;
             }
         }
@@ -220,11 +220,11 @@ impl<const N: usize> Running<N> {
     fn track(
         &mut self,
         state: usize,
-        sighting: &Sighting<'_>,
+        observation: &SatelliteObservation<'_>,
         expected: &Expected,
         config: &Config,
     ) -> Option<Slipped> {
-        let Sighting { satellite, phase, code, lock_lost, .. } = *sighting;
+        let SatelliteObservation { satellite, phase, code, lock_lost, .. } = *observation;
         let time = self.time;
         let place = self.channels.get_mut(state)?;
         let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
@@ -232,7 +232,7 @@ impl<const N: usize> Running<N> {
                 satellite,
                 arc: Arc::begin(time, phase, code),
                 wind_up: expected.wind_up_cycles,
-                watch: Watch::NEW,
+                monitor: PhaseMonitor::NEW,
             });
             return Some(Slipped::New);
         };
@@ -241,11 +241,11 @@ impl<const N: usize> Running<N> {
         let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
         let slipped = slip.map(Slipped::Seen).or_else(|| {
             let patience = config.estimator.patience?;
-            channel.watch.contradicts(patience).then_some(Slipped::Contradicted)
+            channel.monitor.contradicts(patience).then_some(Slipped::Contradicted)
         });
         if slipped.is_some() {
             channel.arc.restart(time, phase, code);
-            channel.watch.begin();
+            channel.monitor.begin();
         }
         slipped
     }
@@ -260,11 +260,11 @@ impl<const N: usize> Running<N> {
     }
 
     /// A state that is no satellite's, or that of the satellite unseen for longest.
-    fn free(&self, sightings: &[Sighting<'_>]) -> Option<usize> {
+    fn free(&self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
         let unseen = |state: usize| match self.channel(state) {
             None => Some(f64::INFINITY),
             Some(Channel { satellite, .. })
-                if sightings.iter().any(|sighting| sighting.satellite == *satellite) =>
+                if observations.iter().any(|observation| observation.satellite == *satellite) =>
             {
                 None
             }
@@ -280,7 +280,7 @@ impl<const N: usize> Running<N> {
     }
 }
 
-/// By counting: what sorts brings its panics along.
+/// By counting: sorting would bring panics along.
 fn median<T, const N: usize>(items: &Vec<T, N>, value: impl Fn(&T) -> f64) -> f64 {
     let values = || items.iter().map(&value);
     let middle = items.len() / 2;

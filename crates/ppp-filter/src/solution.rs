@@ -3,20 +3,20 @@ use kestirim_gnss_ppp::{Direction, GpsTime, Slip};
 use kestirim_robust_kalman::Decision;
 use nalgebra::{Matrix3, Vector3};
 
-/// Why a satellite's ambiguity was begun anew.
+/// Reason for which a satellite's ambiguity began anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Slipped {
     /// The satellite was not observed before.
     New,
-    /// Its own observations show it.
+    /// A slip in its own observations.
     Seen(Slip),
     /// Its phase contradicted all others for several epochs.
     Contradicted,
 }
 
-/// How far the solution is to be trusted.
+/// Quality of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -29,14 +29,14 @@ pub enum Health {
     Unchecked,
 }
 
-/// What became of one satellite's observations.
+/// Decisions about one satellite's observations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SatelliteReport {
     /// Which GPS satellite (PRN).
     pub satellite: u8,
-    /// Where it stands.
+    /// Direction in the receiver's sky.
     pub direction: Direction,
     /// Weight, residual and reason of the code.
     pub code: Decision<f64>,
@@ -46,12 +46,12 @@ pub struct SatelliteReport {
     pub slipped: Option<Slipped>,
 }
 
-/// Where the receiver is, from one epoch.
+/// Solution of one epoch.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution<const N: usize> {
-    /// When, by the receiver's clock.
+    /// Time of the epoch by the receiver's clock.
     pub time: GpsTime,
     /// The marker, ECEF, m, free of tides.
     pub position: Vector3<f64>,
@@ -63,9 +63,9 @@ pub struct Solution<const N: usize> {
     pub clock: f64,
     /// Wet zenith delay, m.
     pub wet_delay: f64,
-    /// How far to trust it.
+    /// Quality of the solution.
     pub health: Health,
-    /// What became of each satellite above the elevation mask.
+    /// Decisions about each satellite above the elevation mask.
     pub satellites: Vec<SatelliteReport, N>,
 }
 

@@ -1,6 +1,6 @@
 //! The first position, from the codes alone.
 
-use crate::{Error, Sighting};
+use crate::{Error, SatelliteObservation};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{eccentricity_clock, ionosphere_free, sagnac};
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
@@ -29,21 +29,23 @@ const LARGEST_RESIDUAL: f64 = 15.0;
 
 /// Least squares on the ionosphere-free codes, begun at the Earth's centre; the worst code is
 /// dropped while its residual is not believable and five others remain.
-pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, Error> {
-    let sightings = sightings.get(..32).unwrap_or(sightings);
+pub(crate) fn code_position(
+    observations: &[SatelliteObservation<'_>],
+) -> Result<CodePosition, Error> {
+    let observations = observations.get(..32).unwrap_or(observations);
     // A satellite that is there twice counts once; from no place are more than 32 seen.
     let mut dropped = 0_u32;
-    for (index, sighting) in sightings.iter().enumerate() {
-        let before = sightings.get(..index).unwrap_or(&[]);
-        if before.iter().any(|other| other.satellite == sighting.satellite) {
+    for (index, observation) in observations.iter().enumerate() {
+        let before = observations.get(..index).unwrap_or(&[]);
+        if before.iter().any(|other| other.satellite == observation.satellite) {
             dropped |= 1 << index;
         }
     }
     loop {
         let used = |index: usize| dropped & (1 << index) == 0;
-        let solution = least_squares(sightings, used)?;
+        let solution = least_squares(observations, used)?;
         let misfits = || {
-            let known = sightings.iter().enumerate().filter(|&(index, _)| used(index));
+            let known = observations.iter().enumerate().filter(|&(index, _)| used(index));
             known.filter_map(|(index, it)| Some((index, compare(it, &solution)?.0.abs())))
         };
         match misfits().max_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -56,7 +58,7 @@ pub(crate) fn code_position(sightings: &[Sighting<'_>]) -> Result<CodePosition, 
 }
 
 fn least_squares(
-    sightings: &[Sighting<'_>],
+    observations: &[SatelliteObservation<'_>],
     used: impl Fn(usize) -> bool,
 ) -> Result<CodePosition, Error> {
     let mut solution = CodePosition { position: Vector3::zeros(), clock: 0.0 };
@@ -64,11 +66,11 @@ fn least_squares(
     for _ in 0..ITERATIONS {
         let mut step = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[prior; 4]));
         let mut count = 0;
-        for (index, sighting) in sightings.iter().enumerate() {
+        for (index, observation) in observations.iter().enumerate() {
             if !used(index) {
                 continue;
             }
-            let Some((misfit, sight)) = compare(sighting, &solution) else { continue };
+            let Some((misfit, sight)) = compare(observation, &solution) else { continue };
             let row = SparseRow::new([(0, -sight.x), (1, -sight.y), (2, -sight.z), (3, 1.0)]);
             let innovation = misfit - row.dot(&step.mean).unwrap_or(0.0);
             step.update(&row, innovation, 1.0).map_err(|_| Error::PoorGeometry)?;
@@ -89,10 +91,13 @@ fn least_squares(
 }
 
 /// Observed less computed, m, and the unit vector from the receiver to the satellite.
-fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vector3<f64>)> {
+fn compare(
+    observation: &SatelliteObservation<'_>,
+    solution: &CodePosition,
+) -> Option<(f64, Vector3<f64>)> {
     /// Zenith delay of the troposphere that is not known yet, m.
     const ZENITH_DELAY: f64 = 2.4;
-    let state = &sighting.state;
+    let state = &observation.state;
     let line = state.position - solution.position;
     let distance = line.norm();
     let sight = line / distance;
@@ -107,6 +112,6 @@ fn compare(sighting: &Sighting<'_>, solution: &CodePosition) -> Option<(f64, Vec
     let computed = distance + sagnac(&state.position, &solution.position) + solution.clock
         - SPEED_OF_LIGHT * clock
         + troposphere;
-    let misfit = ionosphere_free(sighting.code) - computed;
+    let misfit = ionosphere_free(observation.code) - computed;
     (misfit + sight.sum()).is_finite().then_some((misfit, sight))
 }

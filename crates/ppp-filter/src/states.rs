@@ -1,4 +1,4 @@
-//! Which state stands where: three coordinates (ECEF, m), the receiver's clock (m), the wet zenith
+//! Order of the states: three coordinates (ECEF, m), the receiver's clock (m), the wet zenith
 //! delay (m), and an ambiguity (m) for each satellite.
 
 /// The receiver's clock.

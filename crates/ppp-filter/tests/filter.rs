@@ -4,8 +4,8 @@ mod sky;
 
 use kestirim_gnss_ppp::Receiver;
 use kestirim_ppp_filter::{
-    Config, Deviation, Error, Estimator, Motion, PppFilter, SatelliteReport, Sighting, Slipped,
-    Solution, states,
+    Config, Deviation, Error, Estimator, Motion, PppFilter, SatelliteObservation, SatelliteReport,
+    Slipped, Solution, states,
 };
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -21,23 +21,23 @@ fn filter(motion: Motion) -> PppFilter<N> {
 fn step<const N: usize>(
     filter: &mut PppFilter<N>,
     seconds: f64,
-    sightings: &[Sighting<'_>],
+    observations: &[SatelliteObservation<'_>],
 ) -> Result<Solution<N>, Error> {
-    filter.process(START.plus(seconds), &Receiver::default(), sightings)
+    filter.process(START.plus(seconds), &Receiver::default(), observations)
 }
 
 /// Epochs every half minute up to `until`, as `change` makes them.
 fn run<const N: usize>(
     filter: &mut PppFilter<N>,
     until: f64,
-    change: impl Fn(f64, &mut Vec<Sighting<'static>>),
+    change: impl Fn(f64, &mut Vec<SatelliteObservation<'static>>),
 ) -> Vec<Solution<N>> {
     let epochs = (0..).map(|k| 30.0 * f64::from(k)).take_while(|&seconds| seconds <= until);
     epochs
         .map(|seconds| {
-            let mut sightings = observe(seconds, &marker());
-            change(seconds, &mut sightings);
-            step(filter, seconds, &sightings).expect("a solution")
+            let mut observations = observe(seconds, &marker());
+            change(seconds, &mut observations);
+            step(filter, seconds, &observations).expect("a solution")
         })
         .collect()
 }
@@ -73,9 +73,9 @@ fn a_clean_sky_is_fixed_to_millimetres() {
 #[test]
 fn a_slip_that_no_detector_sees_is_found_by_the_filter() {
     let victim = highest();
-    let slip = |seconds: f64, sightings: &mut Vec<Sighting<'static>>| {
+    let slip = |seconds: f64, observations: &mut Vec<SatelliteObservation<'static>>| {
         if seconds >= 1800.0 {
-            spoil(sightings, victim, 0.0, 0.3);
+            spoil(observations, victim, 0.0, 0.3);
         }
     };
     let ours = run(&mut filter(Motion::Static), 3600.0, slip);
@@ -97,9 +97,9 @@ fn a_slip_that_no_detector_sees_is_found_by_the_filter() {
 #[test]
 fn an_outlier_is_left_out_and_told() {
     let victim = highest();
-    let solutions = run(&mut filter(Motion::Static), 1860.0, |seconds, sightings| {
+    let solutions = run(&mut filter(Motion::Static), 1860.0, |seconds, observations| {
         if seconds == 1800.0 {
-            spoil(sightings, victim, 20.0, -0.5);
+            spoil(observations, victim, 20.0, -0.5);
         }
     });
     let report = |epoch: usize| {
@@ -116,9 +116,9 @@ fn an_outlier_is_left_out_and_told() {
 #[test]
 fn a_step_is_motion() {
     let step = Vector3::new(0.6, -0.6, 0.53);
-    let solutions = run(&mut filter(SLOW), 2400.0, |seconds, sightings| {
+    let solutions = run(&mut filter(SLOW), 2400.0, |seconds, observations| {
         if seconds >= 1800.0 {
-            *sightings = observe(seconds, &(marker() + step));
+            *observations = observe(seconds, &(marker() + step));
         }
     });
     for solution in &solutions[60..] {
@@ -146,14 +146,17 @@ fn an_epoch_without_a_solution_leaves_no_trace() {
     let mut disturbed = filter(Motion::Static);
     run(&mut disturbed, 600.0, |_, _| {});
     let mut undisturbed = disturbed;
-    let sightings = observe(630.0, &marker());
-    assert_eq!(step(&mut disturbed, 630.0, &sightings[..3]).unwrap_err(), Error::TooFewSatellites);
-    assert_eq!(step(&mut disturbed, 600.0, &sightings).unwrap_err(), Error::TimeNotAdvancing);
-    assert_eq!(step(&mut disturbed, f64::NAN, &sightings).unwrap_err(), Error::TimeNotAdvancing);
+    let observations = observe(630.0, &marker());
+    assert_eq!(
+        step(&mut disturbed, 630.0, &observations[..3]).unwrap_err(),
+        Error::TooFewSatellites
+    );
+    assert_eq!(step(&mut disturbed, 600.0, &observations).unwrap_err(), Error::TimeNotAdvancing);
+    assert_eq!(step(&mut disturbed, f64::NAN, &observations).unwrap_err(), Error::TimeNotAdvancing);
     let [a, b] =
         [&mut disturbed, &mut undisturbed].map(|it| step(it, 660.0, &observe(660.0, &marker())));
     assert_eq!(a.unwrap(), b.unwrap());
-    let start = step(&mut filter(Motion::Static), 0.0, &sightings[..3]);
+    let start = step(&mut filter(Motion::Static), 0.0, &observations[..3]);
     assert_eq!(start.unwrap_err(), Error::TooFewSatellites);
 }
 
@@ -162,13 +165,13 @@ fn what_is_no_observation_is_left_out() {
     let (mut spoilt, mut clean) = (filter(Motion::Static), filter(Motion::Static));
     for epoch in 0..20 {
         let seconds = 30.0 * f64::from(epoch);
-        let mut sightings = observe(seconds, &marker());
-        let without = sightings[1..].to_vec();
-        sightings[0].phase[1] = f64::NAN;
+        let mut observations = observe(seconds, &marker());
+        let without = observations[1..].to_vec();
+        observations[0].phase[1] = f64::NAN;
         // A satellite twice.
-        sightings.push(Sighting { code: [2e7; 2], ..sightings[2] });
+        observations.push(SatelliteObservation { code: [2e7; 2], ..observations[2] });
         let solutions =
-            [step(&mut spoilt, seconds, &sightings), step(&mut clean, seconds, &without)];
+            [step(&mut spoilt, seconds, &observations), step(&mut clean, seconds, &without)];
         let [spoilt, clean] = solutions.map(Result::unwrap);
         let heard = |solution: &Solution<N>| {
             solution.satellites.iter().map(|it| it.satellite).collect::<Vec<_>>()
@@ -216,9 +219,9 @@ fn settings_that_are_none_are_refused() {
 #[test]
 fn a_satellite_that_was_away_begins_anew() {
     let mut filter = filter(Motion::Static);
-    let away = |seconds: f64, sightings: &mut Vec<Sighting<'static>>| {
+    let away = |seconds: f64, observations: &mut Vec<SatelliteObservation<'static>>| {
         if (600.0..1200.0).contains(&seconds) {
-            sightings.remove(0);
+            observations.remove(0);
         }
     };
     let solutions = run(&mut filter, 1500.0, away);
@@ -238,19 +241,19 @@ proptest! {
         let mut filter = filter(SLOW);
         let mut seconds = 0.0;
         for (epoch, step_by) in steps.into_iter().enumerate() {
-            let mut sightings = observe(30.0 * epoch as f64, &marker());
+            let mut observations = observe(30.0 * epoch as f64, &marker());
             for &(place, which, value, satellite) in changes.iter().skip(epoch * 5).take(5) {
-                let Some(sighting) = sightings.get_mut(place) else { continue };
+                let Some(observation) = observations.get_mut(place) else { continue };
                 match which {
-                    0 => sighting.code[0] = value,
-                    1 => sighting.phase[1] = value,
-                    2 => sighting.satellite = satellite,
-                    3 => sighting.state.position.x = value,
-                    4 => sighting.state.velocity.y = value,
-                    _ => sighting.state.clock = value,
+                    0 => observation.code[0] = value,
+                    1 => observation.phase[1] = value,
+                    2 => observation.satellite = satellite,
+                    3 => observation.state.position.x = value,
+                    4 => observation.state.velocity.y = value,
+                    _ => observation.state.clock = value,
                 }
             }
-            if let Ok(solution) = step(&mut filter, seconds + step_by, &sightings) {
+            if let Ok(solution) = step(&mut filter, seconds + step_by, &observations) {
                 seconds += step_by;
                 prop_assert!(solution.position.iter().all(|value| value.is_finite()));
                 prop_assert!(solution.covariance.iter().all(|value| value.is_finite()));

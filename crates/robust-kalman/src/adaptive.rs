@@ -25,13 +25,13 @@ impl Block {
     }
 }
 
-/// By what the prediction is judged.
+/// Statistic by which the prediction is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Discrepancy {
-    /// √(εᵀε / tr Qε) (22, whose root is printed around the trace alone). It drowns in whatever has
-    /// the largest prior, such as a receiver's clock.
+    /// √(εᵀε / tr Qε) (22, whose root is published around the trace alone). It is dominated by the state of
+    /// the largest prior variance, such as a receiver's clock.
     Innovation,
     /// √(dᵀ C⁻¹ d / count): d is how far the epoch alone, with all that is known of the *other* states,
     /// puts the block from its prediction, C the covariance of that distance. 1 on average.
@@ -46,10 +46,10 @@ pub enum Discrepancy {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
-    /// After the measurements have their weights, as in the paper: no outlier is taken for motion, but
+    /// After the measurements have their weights, as published: no outlier is taken for motion, but
     /// a motion that all measurements show may be taken for outliers.
     AfterWeights,
-    /// Before: the other way round.
+    /// Before: no motion is taken for outliers, but an outlier may be taken for motion.
     BeforeWeights,
     /// After, unless more than a third of the measurements would lose weight: then it was motion, and
     /// they are judged anew when the block has been put in doubt.
@@ -65,7 +65,7 @@ pub enum Order {
 pub struct Adaptive<T> {
     /// The states in doubt.
     pub block: Block,
-    /// By what they are judged.
+    /// Statistic by which they are judged.
     pub discrepancy: Discrepancy,
     /// Up to c0 the prediction is believed; usually 1.5 to 3.
     pub c0: T,
@@ -75,13 +75,13 @@ pub struct Adaptive<T> {
     pub descent: Descent,
     /// The smallest a (published as 0, by which (13) cannot divide).
     pub floor: T,
-    /// Before or after the weights.
+    /// Order of factor and weights.
     pub order: Order,
 }
 
 impl<T: Scalar> Adaptive<T> {
-    /// What has worked: the block's own discrepancy between 3 and 8, as it is sharper than the paper's; no
-    /// less than 0.05.
+    /// Defaults: the block's own discrepancy between 3 and 8, as it is sharper than the published one; no
+    /// factor below 0.05.
     pub fn new(block: Block) -> Self {
         Self {
             block,

@@ -1,4 +1,4 @@
-//! What an epoch says about a jump of a few states, beside the update itself.
+//! Least-squares estimate of a jump of a few states from one epoch.
 
 use crate::{Block, Measurement};
 use kestirim_kalman::{Gaussian, Weighed};

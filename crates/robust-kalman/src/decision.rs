@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-/// Why a measurement has the weight it has.
+/// Reason for the weight of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,10 +8,10 @@ use kestirim_scalar::Scalar;
 pub enum Reason {
     /// It agrees with the others and the prediction: full weight.
     Agrees,
-    /// Nothing else tells what it should have been, such as the first phase of a satellite: full
-    /// weight, unjudged.
+    /// No other measurement checks it, as of the first phase of a satellite: full weight, not
+    /// judged.
     NoRedundancy,
-    /// A t-test needs three: full weight, unjudged.
+    /// Fewer than the three measurements that a t-test needs: full weight, not judged.
     TooFew,
     /// Between the two thresholds, or beyond Huber's: less weight.
     DownWeighted,
@@ -19,20 +19,20 @@ pub enum Reason {
     Rejected,
 }
 
-/// What became of one measurement, and why.
+/// Decision about one measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Decision<T> {
     /// γ in 0..=1, by which R was divided; 0 left the measurement out.
     pub weight: T,
-    /// Why.
+    /// Reason for the weight.
     pub reason: Reason,
     /// v = z − h(x⁺) after the whole update, in the measurement's unit.
     pub residual: T,
     /// ṽ = v / (σ̂0 √Qᵥ) when it was judged; 0 if it was not.
     pub standardised: T,
-    /// What the thresholds were applied to: |ṽ|, or the t-test's T.
+    /// Statistic that was compared with the thresholds: |ṽ|, or the t-test's T.
     pub statistic: T,
     /// The inner and the outer threshold of that (the outer is the number type's largest where there is
     /// none).
@@ -43,7 +43,7 @@ pub struct Decision<T> {
 }
 
 impl<T: Scalar> Decision<T> {
-    /// What stands in an array before the first update.
+    /// Value of an array before the first update.
     pub const NONE: Self = Self {
         weight: T::ONE,
         reason: Reason::NoRedundancy,
@@ -73,7 +73,7 @@ impl<T: Scalar> Default for Decision<T> {
     }
 }
 
-/// What became of an epoch.
+/// Summary of an epoch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -82,11 +82,11 @@ pub struct Summary<T> {
     pub nis: T,
     /// σ̂0 as last estimated.
     pub scale: T,
-    /// How many measurements were down-weighted.
+    /// Number of down-weighted measurements.
     pub down_weighted: usize,
-    /// How many were rejected.
+    /// Number of rejected measurements.
     pub rejected: usize,
-    /// How often the epoch was gone through: 1 when nothing was found.
+    /// Number of passes through the epoch: 1 when no outlier was found.
     pub passes: usize,
     /// The statistic of the adaptive factor; 0 without one.
     pub discrepancy: T,

@@ -1,8 +1,8 @@
-//! What the residuals of a pass say about each measurement.
+//! Statistics and weights from the residuals of a pass.
 
 use crate::pass::Passed;
 use crate::student::whole;
-use crate::{Decision, Measurement, Reason, Robust, Weight};
+use crate::{Decision, Measurement, Reason, Robust, WeightFunction};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
@@ -13,7 +13,7 @@ pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
     pub(crate) measurements: &'a [Measurement<'b, T>],
 }
 
-impl<T: Scalar> Robust<T> {
+impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
     /// ṽ and the statistic of every measurement that was not treated yet, with σ̂0 if it is known already.
     /// Returns σ̂0.
     pub(crate) fn judge<const N: usize>(
@@ -38,7 +38,7 @@ impl<T: Scalar> Robust<T> {
         }
         let count = decisions.iter().filter(|decision| decision.counts()).count();
         let thresholds = self.weight.thresholds(count);
-        if matches!(self.weight, Weight::TTest { .. }) {
+        if self.weight.is_t_test() {
             compare_with_others(decisions, count);
         }
         for decision in decisions {

@@ -23,4 +23,4 @@ pub use robust::{Reweighting, Robust};
 pub use scale::Scale;
 pub use student::student_quantile;
 pub use update::jump;
-pub use weight::{Descent, Weight};
+pub use weight::{Descent, Huber, Igg3, TTest, Weight, WeightFunction};

@@ -5,7 +5,7 @@ use crate::{Decision, Error, Measurement, Reason};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-/// What a pass gives beside the estimate.
+/// Result of a pass beside the estimate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passed<T> {
     /// εᵀ Qε⁻¹ ε of those that were used.

@@ -1,4 +1,4 @@
-use crate::{Adaptive, Block, Descent, Discrepancy, Scale, Weight};
+use crate::{Adaptive, Block, Descent, Discrepancy, Igg3, Scale, TTest, Weight, WeightFunction};
 use kestirim_scalar::Scalar;
 
 /// How often measurements are weighted anew.
@@ -13,24 +13,24 @@ pub enum Reweighting {
     /// The worst one alone, then everything is computed anew, until none exceeds the inner threshold. Each
     /// measurement is treated once.
     WorstFirst {
-        /// How many at most.
+        /// Most measurements that are treated.
         most: usize,
     },
 }
 
 /// A robust, and maybe adaptive, Kalman update for any measurements: how it finds outliers and what it
-/// does about them. The five constructors are the paper's five filters.
+/// does about them. The five constructors are the five published filters; W is the weight function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Robust<T> {
-    /// What a residual does to a weight.
-    pub weight: Weight<T>,
-    /// What residuals are compared with.
+pub struct Robust<T, W = Weight<T>> {
+    /// Weight function.
+    pub weight: W,
+    /// Scale of the residuals, σ̂0.
     pub scale: Scale<T>,
-    /// How often.
+    /// How often weights are computed.
     pub reweighting: Reweighting,
-    /// Qᵥ/R up to which a measurement is not judged. Such a residual is hardly there, whatever the error.
+    /// Qᵥ/R up to which a measurement is not judged. Such a residual shows next to nothing of an error.
     pub least_redundancy: T,
     /// The adaptive factor, if there is one.
     pub adaptive: Option<Adaptive<T>>,
@@ -46,11 +46,11 @@ impl<T: Scalar> Robust<T> {
     /// measurements lose weight with it.
     pub fn igg3() -> Self {
         Self {
-            weight: Weight::Igg3 {
+            weight: Weight::Igg3(Igg3 {
                 k0: T::from_f64(2.5),
                 k1: T::from_f64(6.0),
                 descent: Descent::Squared,
-            },
+            }),
             scale: Scale::Unit,
             reweighting: Reweighting::OneShot,
             least_redundancy: T::from_f64(0.001),
@@ -60,43 +60,50 @@ impl<T: Scalar> Robust<T> {
 
     /// SKF: classification by a t-test at 0.1 and 0.01.
     pub fn t_test() -> Self {
-        let weight = Weight::TTest {
+        let weight = Weight::TTest(TTest {
             alpha0: T::from_f64(0.1),
             alpha1: T::from_f64(0.01),
             descent: Descent::Published,
-        };
+        });
         Self { weight, ..Self::igg3() }
     }
 
-    /// IKF: IGG III on the worst measurement, again and again.
+    /// IKF: IGG III on the worst measurement, repeated until none exceeds the inner threshold.
     pub fn iterative_igg3() -> Self {
         Self { reweighting: Reweighting::WorstFirst { most: usize::MAX }, ..Self::igg3() }
     }
 
-    /// UKF of the paper (uyarlı, adaptive): the same, then an adaptive factor on a block of the state.
+    /// The published UKF (uyarlı, adaptive): IKF, then an adaptive factor on a block of the state.
     pub fn adaptive(block: Block) -> Self {
         Self { adaptive: Some(Adaptive::new(block)), ..Self::iterative_igg3() }
     }
 
-    /// The same filter as published: σ̂0 of (17), the bracket of (15) and (21) without its
+    /// The published equations of the same filter: σ̂0 of (17), the bracket of (15) and (21) without its
     /// square, the discrepancy of (22).
     #[must_use]
     pub fn published(self) -> Self {
+        let descent = Descent::Published;
         let weight = match self.weight {
-            Weight::Igg3 { k0, k1, .. } => Weight::Igg3 { k0, k1, descent: Descent::Published },
-            Weight::TTest { alpha0, alpha1, .. } => {
-                Weight::TTest { alpha0, alpha1, descent: Descent::Published }
-            }
-            huber @ Weight::Huber { .. } => huber,
+            Weight::Igg3(igg3) => Weight::Igg3(Igg3 { descent, ..igg3 }),
+            Weight::TTest(test) => Weight::TTest(TTest { descent, ..test }),
+            huber @ Weight::Huber(_) => huber,
         };
-        let adaptive = self.adaptive.map(|adaptive| Adaptive {
-            discrepancy: Discrepancy::Innovation,
-            descent: Descent::Published,
-            ..adaptive
-        });
+        let discrepancy = Discrepancy::Innovation;
+        let adaptive = self.adaptive.map(|adaptive| Adaptive { discrepancy, descent, ..adaptive });
         Self { weight, scale: Scale::Epoch, adaptive, ..self }
     }
+}
 
+impl<T: Scalar, W> Robust<T, W> {
+    /// The same filter with another weight function.
+    #[must_use]
+    pub fn with_weight<V: WeightFunction<T>>(self, weight: V) -> Robust<T, V> {
+        let Self { scale, reweighting, least_redundancy, adaptive, .. } = self;
+        Robust { weight, scale, reweighting, least_redundancy, adaptive }
+    }
+}
+
+impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
     pub(crate) fn is_valid(&self) -> bool {
         self.weight.is_valid()
             && self.scale.is_valid()

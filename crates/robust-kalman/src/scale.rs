@@ -9,14 +9,14 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Scale<T> {
-    /// 1: the variances are believed. Where they deserve it, nothing finds more outliers.
+    /// 1: the variances are trusted. Where they are right, this finds most outliers.
     Unit,
-    /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so hide behind it: among n measurements no |ṽ|
+    /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so mask themselves: among n measurements no |ṽ|
     /// is larger than √n, whatever the error. With k1 = 6 nothing is rejected among fewer than 37.
     Epoch,
     /// 1.4826 · median |ε/√(h P⁻ hᵀ + R)|, but no less than the floor: half of the measurements may be
     /// wild. Where all are off at once it grows, and nothing is rejected; of a state that is hardly
-    /// predicted, such as a receiver's clock, it says little beside the floor.
+    /// predicted, such as a receiver's clock, it hardly exceeds the floor.
     Innovations {
         /// The smallest σ̂0, usually 1: few innovations that happen to be small do not make the others
         /// outliers.

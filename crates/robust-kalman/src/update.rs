@@ -4,11 +4,11 @@ use crate::bias::{Bias, Jump};
 use crate::judge::Epoch;
 use crate::pass::{Passed, pass};
 use crate::{Adaptive, Block, Decision, Discrepancy, Error, Measurement, Order, Reason};
-use crate::{Reweighting, Robust, Summary};
+use crate::{Reweighting, Robust, Summary, WeightFunction};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-impl<T: Scalar> Robust<T> {
+impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
     /// Takes the measurements of an epoch into a predicted estimate, with a decision about each.
     ///
     /// The innovations are those at the prediction. `decisions` needs a place for each measurement; what
@@ -63,8 +63,7 @@ impl<T: Scalar> Robust<T> {
 
 /// How far the epoch's measurements, all with full weight, put a block of the state from its prediction.
 ///
-/// For who wants to know of a motion before measurements are judged by the prediction; the estimate is
-/// not changed.
+/// Detects a motion before measurements are judged by the prediction; the estimate is not changed.
 ///
 /// # Errors
 /// [`Error::InvalidBlock`] or [`Error::Estimate`].
@@ -92,7 +91,7 @@ impl<T: Scalar> Adaptive<T> {
     }
 }
 
-/// What an epoch came to.
+/// Result of judging an epoch.
 struct Judged<T> {
     scale: T,
     discrepancy: T,
@@ -105,25 +104,25 @@ impl<T: Scalar> Default for Judged<T> {
     }
 }
 
-/// Whether more than a third of what could be judged was found wanting.
+/// Whether more than a third of what could be judged was down-weighted or rejected.
 fn many_are_off<T: Scalar>(decisions: &[Decision<T>]) -> bool {
     let treated = decisions.iter().filter(|decision| decision.was_treated()).count();
     let agreeing = decisions.iter().filter(|decision| decision.counts()).count();
     treated > agreeing / 2
 }
 
-/// An epoch on its way.
-struct Run<'a, 'b, T: Scalar, const N: usize> {
-    robust: &'a Robust<T>,
+/// An epoch while its measurements are judged.
+struct Run<'a, 'b, T: Scalar, W, const N: usize> {
+    robust: &'a Robust<T, W>,
     prior: Gaussian<T, N>,
     posterior: Gaussian<T, N>,
     measurements: &'a [Measurement<'b, T>],
-    /// While it is wanted.
+    /// Present while the adaptive factor needs it.
     bias: Option<Bias<T, N>>,
     passes: usize,
 }
 
-impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
+impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
     fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
         self.passes += 1;
         if let Some(bias) = &mut self.bias {
@@ -208,7 +207,7 @@ impl<'b, T: Scalar, const N: usize> Run<'_, 'b, T, N> {
         }
     }
 
-    /// √(εᵀε / tr Qε) of the measurements that have a say.
+    /// √(εᵀε / tr Qε) of the measurements of some weight.
     fn of_innovations(&self, decisions: &[Decision<T>]) -> T {
         let (mut square, mut trace) = (T::ZERO, T::ZERO);
         for (measurement, decision) in self.measurements.iter().zip(decisions) {

@@ -29,71 +29,169 @@ impl Descent {
     }
 }
 
-/// How much a measurement is believed, by how far it stands out.
+/// A weight function: how much a measurement is believed, by how far it stands out.
+///
+/// [`Weight`] chooses among the three of this crate at run time; each is a type of its own, too, and any other can
+/// be given to [`Robust::with_weight`](crate::Robust::with_weight).
+pub trait WeightFunction<T> {
+    /// The inner and the outer threshold among `count` measurements that can be judged; `None` if that is too few
+    /// to judge any. They are reported, and handed to [`WeightFunction::factor`].
+    fn thresholds(&self, count: usize) -> Option<(T, T)>;
+
+    /// γ in 0..=1 of a statistic ≥ 0 between such thresholds. It must never rise with the statistic.
+    fn factor(&self, statistic: T, thresholds: (T, T)) -> T;
+
+    /// Whether its parameters can be used; if not, an update is refused.
+    fn is_valid(&self) -> bool;
+
+    /// Whether the statistic is T (20), the distance of ṽ from the mean of the others in their standard
+    /// deviations, instead of |ṽ|.
+    fn is_t_test(&self) -> bool {
+        false
+    }
+}
+
+/// γ = k/|ṽ| beyond k: nothing is ever rejected (Huber 1964).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Huber<T> {
+    /// k, usually 1.345 to 3.
+    pub k: T,
+}
+
+/// Three parts: full weight up to k0, less up to k1, none beyond (Yang, Song and Xu 2002).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Igg3<T> {
+    /// k0, usually 1 to 3.
+    pub k0: T,
+    /// k1, usually 3 to 8.
+    pub k1: T,
+    /// How it falls between them.
+    pub descent: Descent,
+}
+
+/// The same with thresholds from Student's t of n − 2 degrees of freedom, both sides: T is the distance of ṽ from
+/// the mean of the others in their standard deviations (20; Zhang et al. 2018).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TTest<T> {
+    /// α0, the share of good measurements that are to be down-weighted: 0.1.
+    pub alpha0: T,
+    /// α1, the share of those that are to be rejected: 0.01.
+    pub alpha1: T,
+    /// How it falls between them.
+    pub descent: Descent,
+}
+
+/// A choice among the weight functions of this crate at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Weight<T> {
-    /// γ = k/|ṽ| beyond k: nothing is ever rejected (Huber 1964).
-    Huber {
-        /// k, usually 1.345 to 3.
-        k: T,
-    },
-    /// Three parts: full weight up to k0, less up to k1, none beyond (Yang, Song and Xu 2002).
-    Igg3 {
-        /// k0, usually 1 to 3.
-        k0: T,
-        /// k1, usually 3 to 8.
-        k1: T,
-        /// How it falls between them.
-        descent: Descent,
-    },
-    /// The same with thresholds from Student's t of n − 2 degrees of freedom, both sides: T is the
-    /// distance of ṽ from the mean of the others in their standard deviations (20; Zhang et al. 2018).
-    TTest {
-        /// α0, the share of good measurements that are to be down-weighted: 0.1.
-        alpha0: T,
-        /// α1, the share of those that are to be rejected: 0.01.
-        alpha1: T,
-        /// How it falls between them.
-        descent: Descent,
-    },
+    /// See [`struct@Huber`].
+    Huber(Huber<T>),
+    /// See [`struct@Igg3`].
+    Igg3(Igg3<T>),
+    /// See [`struct@TTest`].
+    TTest(TTest<T>),
 }
 
-impl<T: Scalar> Weight<T> {
-    /// The inner and the outer threshold among `count` measurements that can be judged. Huber's outer
-    /// one is the largest number; a t-test has none (`None`) for fewer than three.
-    pub fn thresholds(&self, count: usize) -> Option<(T, T)> {
-        match *self {
-            Self::Huber { k } => Some((k, T::MAX)),
-            Self::Igg3 { k0, k1, .. } => Some((k0, k1)),
-            Self::TTest { alpha0, alpha1, .. } => {
-                let freedom = count.checked_sub(2).filter(|&freedom| freedom > 0)?;
-                Some((student_quantile(alpha0, freedom), student_quantile(alpha1, freedom)))
-            }
-        }
-    }
-
-    /// γ in 0..=1 of a statistic ≥ 0 between such thresholds. It never rises with the statistic.
+impl<T: Scalar> WeightFunction<T> for Huber<T> {
+    /// k, and the largest number.
     #[inline]
-    pub fn factor(&self, statistic: T, (inner, outer): (T, T)) -> T {
-        match *self {
-            Self::Huber { .. } if statistic > inner => inner / statistic,
-            Self::Huber { .. } => Descent::Published.factor(statistic, inner, outer),
-            Self::Igg3 { descent, .. } | Self::TTest { descent, .. } => {
-                descent.factor(statistic, inner, outer)
-            }
+    fn thresholds(&self, _: usize) -> Option<(T, T)> {
+        Some((self.k, T::MAX))
+    }
+
+    #[inline]
+    fn factor(&self, statistic: T, (inner, outer): (T, T)) -> T {
+        if statistic > inner {
+            return inner / statistic;
+        }
+        Descent::Published.factor(statistic, inner, outer)
+    }
+
+    #[inline]
+    fn is_valid(&self) -> bool {
+        T::ZERO < self.k && self.k.is_finite()
+    }
+}
+
+impl<T: Scalar> WeightFunction<T> for Igg3<T> {
+    #[inline]
+    fn thresholds(&self, _: usize) -> Option<(T, T)> {
+        Some((self.k0, self.k1))
+    }
+
+    #[inline]
+    fn factor(&self, statistic: T, (inner, outer): (T, T)) -> T {
+        self.descent.factor(statistic, inner, outer)
+    }
+
+    #[inline]
+    fn is_valid(&self) -> bool {
+        T::ZERO < self.k0 && self.k0 <= self.k1 && self.k1.is_finite()
+    }
+}
+
+impl<T: Scalar> WeightFunction<T> for TTest<T> {
+    /// Of `count` − 2 degrees of freedom; none for fewer than three measurements.
+    #[inline]
+    fn thresholds(&self, count: usize) -> Option<(T, T)> {
+        let freedom = count.checked_sub(2).filter(|&freedom| freedom > 0)?;
+        Some((student_quantile(self.alpha0, freedom), student_quantile(self.alpha1, freedom)))
+    }
+
+    #[inline]
+    fn factor(&self, statistic: T, (inner, outer): (T, T)) -> T {
+        self.descent.factor(statistic, inner, outer)
+    }
+
+    #[inline]
+    fn is_valid(&self) -> bool {
+        T::ZERO < self.alpha1 && self.alpha1 <= self.alpha0 && self.alpha0 < T::ONE
+    }
+
+    #[inline]
+    fn is_t_test(&self) -> bool {
+        true
+    }
+}
+
+impl<T: Scalar> WeightFunction<T> for Weight<T> {
+    #[inline]
+    fn thresholds(&self, count: usize) -> Option<(T, T)> {
+        match self {
+            Self::Huber(huber) => huber.thresholds(count),
+            Self::Igg3(igg3) => igg3.thresholds(count),
+            Self::TTest(test) => test.thresholds(count),
         }
     }
 
-    /// Whether the thresholds can be used.
-    pub(crate) fn is_valid(&self) -> bool {
-        match *self {
-            Self::Huber { k } => T::ZERO < k && k.is_finite(),
-            Self::Igg3 { k0, k1, .. } => T::ZERO < k0 && k0 <= k1 && k1.is_finite(),
-            Self::TTest { alpha0, alpha1, .. } => {
-                T::ZERO < alpha1 && alpha1 <= alpha0 && alpha0 < T::ONE
-            }
+    #[inline]
+    fn factor(&self, statistic: T, thresholds: (T, T)) -> T {
+        match self {
+            Self::Huber(huber) => huber.factor(statistic, thresholds),
+            Self::Igg3(igg3) => igg3.factor(statistic, thresholds),
+            Self::TTest(test) => test.factor(statistic, thresholds),
         }
+    }
+
+    #[inline]
+    fn is_valid(&self) -> bool {
+        match self {
+            Self::Huber(huber) => huber.is_valid(),
+            Self::Igg3(igg3) => igg3.is_valid(),
+            Self::TTest(test) => test.is_valid(),
+        }
+    }
+
+    #[inline]
+    fn is_t_test(&self) -> bool {
+        matches!(self, Self::TTest(_))
     }
 }

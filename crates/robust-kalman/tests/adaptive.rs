@@ -58,7 +58,7 @@ fn while_nothing_moves_nothing_happens() {
 fn a_motion_of_the_block_is_followed() {
     let moved = [0.3, -0.2];
     let stubborn = update(&Robust::iterative_igg3(), moved, 0.0).0;
-    // In the paper's order the phases that show it are rejected first.
+    // In the published order the phases that show it are rejected first.
     let (_, summary) = update(&adaptive(Discrepancy::Block, Order::AfterWeights), moved, 0.0);
     assert!(summary.rejected > 4 && summary.adaptive_factor > 0.5, "{summary:?}");
     let before = update(&adaptive(Discrepancy::Block, Order::BeforeWeights), moved, 0.0);
@@ -78,7 +78,7 @@ fn a_motion_of_the_block_is_followed() {
 
 #[test]
 fn the_innovations_drown_in_the_clock() {
-    // Card of the paper: tr Qε is that of the clock, and eq. 22 never fires.
+    // As published: tr Qε is that of the clock, and eq. 22 never fires.
     let robust = adaptive(Discrepancy::Innovation, Order::AfterWeights);
     let (_, summary) = update(&robust, [0.3, -0.2], 0.0);
     assert!(summary.discrepancy < 0.5 && summary.adaptive_factor == 1.0, "{summary:?}");

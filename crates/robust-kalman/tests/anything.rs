@@ -2,8 +2,8 @@
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
-    Adaptive, Block, Decision, Descent, Discrepancy, Error, Measurement, Order, Reweighting,
-    Robust, Scale, Weight, jump,
+    Adaptive, Block, Decision, Descent, Discrepancy, Error, Huber, Igg3, Measurement, Order,
+    Reweighting, Robust, Scale, TTest, Weight, jump,
 };
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -45,9 +45,9 @@ fn robust<T: Scalar>() -> impl Strategy<Value = Robust<T>> {
     let weight =
         (0..3, 1.0..3.0f64, 0.0..3.0f64, descent).prop_map(move |(kind, k, more, descent)| {
             match kind {
-                0 => Weight::Huber { k: number(k) },
-                1 => Weight::Igg3 { k0: number(k), k1: number(k + more), descent },
-                _ => Weight::TTest { alpha0: number(0.1), alpha1: number(0.01), descent },
+                0 => Weight::Huber(Huber { k: number(k) }),
+                1 => Weight::Igg3(Igg3 { k0: number(k), k1: number(k + more), descent }),
+                _ => Weight::TTest(TTest { alpha0: number(0.1), alpha1: number(0.01), descent }),
             }
         });
     let scale = prop_oneof![
@@ -182,8 +182,9 @@ fn what_is_wrong_is_named() {
         assert_eq!(refused, Err(Error::InvalidBlock));
         assert_eq!(jump(&estimate, &[good], block), Err(Error::InvalidBlock));
     }
-    let igg3 = |k0, k1| Weight::Igg3 { k0, k1, descent: Descent::Squared };
-    let t_test = |alpha0, alpha1| Weight::TTest { alpha0, alpha1, descent: Descent::Squared };
+    let igg3 = |k0, k1| Weight::Igg3(Igg3 { k0, k1, descent: Descent::Squared });
+    let t_test =
+        |alpha0, alpha1| Weight::TTest(TTest { alpha0, alpha1, descent: Descent::Squared });
     let weights = [igg3(3.0, 2.0), igg3(f64::NAN, 2.0), t_test(0.01, 0.1), t_test(1.0, 0.0)];
     for weight in weights {
         let robust = Robust { weight, ..Robust::plain() };

@@ -2,7 +2,8 @@
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
-    Block, Decision, Measurement, Reason, Reweighting, Robust, Scale, Weight, jump,
+    Block, Decision, Huber, Measurement, Reason, Reweighting, Robust, Scale, Weight,
+    WeightFunction, jump,
 };
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::SVector;
@@ -258,13 +259,64 @@ fn huber_rejects_nothing_and_listens_less() {
     let (rows, innovations) = ranges(&[7]);
     let epoch = of_ranges(&rows, &innovations);
     let mut decisions = [Decision::NONE; 20];
-    let weight = Weight::Huber { k: 1.5 };
+    let weight = Weight::Huber(Huber { k: 1.5 });
     let robust = Robust { weight, scale: Scale::Unit, ..Robust::igg3() };
     let mut estimate = predicted::<f64>();
     let summary = robust.update(&mut estimate, &epoch, &mut decisions).expect("an update");
     assert_eq!(summary.rejected, 0);
     assert_eq!(decisions[7].reason, Reason::DownWeighted);
     assert!(decisions[7].weight < 0.1 && decisions[7].weight > 0.0);
+}
+
+fn answer<W: WeightFunction<f64>>(
+    robust: &Robust<f64, W>,
+) -> (SVector<f64, 3>, [Decision<f64>; 20]) {
+    let (rows, innovations) = ranges(&[3, 7]);
+    let (mut estimate, mut decisions) = (predicted(), [Decision::NONE; 20]);
+    let epoch = of_ranges(&rows, &innovations);
+    robust.update(&mut estimate, &epoch, &mut decisions).expect("an update");
+    (estimate.mean, decisions)
+}
+
+#[test]
+fn weight_functions_are_types_too() {
+    let huber = Robust { weight: Weight::Huber(Huber { k: 1.5 }), ..Robust::igg3() };
+    for robust in [huber, Robust::iterative_igg3(), Robust::t_test()] {
+        let typed = match robust.weight {
+            Weight::Huber(huber) => answer(&robust.with_weight(huber)),
+            Weight::Igg3(igg3) => answer(&robust.with_weight(igg3)),
+            Weight::TTest(test) => answer(&robust.with_weight(test)),
+        };
+        assert_eq!(typed, answer(&robust));
+    }
+}
+
+/// A user's own: all or nothing at three standard deviations.
+struct Gate;
+
+impl WeightFunction<f64> for Gate {
+    fn thresholds(&self, _: usize) -> Option<(f64, f64)> {
+        Some((3.0, 3.0))
+    }
+
+    fn factor(&self, statistic: f64, (_, outer): (f64, f64)) -> f64 {
+        if statistic < outer { 1.0 } else { 0.0 }
+    }
+
+    fn is_valid(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_users_own_weight_function_is_asked() {
+    let (rows, innovations) = ranges(&[7]);
+    let epoch = of_ranges(&rows, &innovations);
+    let (mut estimate, mut decisions) = (predicted::<f64>(), [Decision::NONE; 20]);
+    let robust = Robust::iterative_igg3().with_weight(Gate);
+    let summary = robust.update(&mut estimate, &epoch, &mut decisions).expect("an update");
+    assert_eq!((summary.rejected, summary.down_weighted), (1, 0));
+    assert_eq!(decisions[7].reason, Reason::Rejected);
 }
 
 #[test]

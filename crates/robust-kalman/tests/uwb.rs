@@ -124,7 +124,7 @@ fn check<T: Scalar>() {
     }
     // The mean and the deviation of three others are little to go by.
     assert!(t_test < 0.9 * plain, "{t_test} of {plain}");
-    println!("as published");
+    println!("the published equations");
     let published = Robust::<T>::iterative_igg3().published();
     let masked = drive(&published, 10.0, 1 << 40);
     println!("{masked:?}");

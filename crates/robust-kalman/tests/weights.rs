@@ -1,11 +1,13 @@
 //! Weight functions and Student's t, against published and scipy's numbers, in every number type.
 
-use kestirim_robust_kalman::{Adaptive, Block, Descent, Weight, student_quantile};
+use kestirim_robust_kalman::{
+    Adaptive, Block, Descent, Huber, Igg3, TTest, Weight, WeightFunction, student_quantile,
+};
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use proptest::prelude::*;
 
 fn igg3<T: Scalar>(descent: Descent) -> Weight<T> {
-    Weight::Igg3 { k0: T::from_f64(2.5), k1: T::from_f64(6.0), descent }
+    Weight::Igg3(Igg3 { k0: T::from_f64(2.5), k1: T::from_f64(6.0), descent })
 }
 
 fn gamma<T: Scalar>(weight: &Weight<T>, statistic: f64) -> f64 {
@@ -18,7 +20,7 @@ fn check_values<T: Scalar>(tolerance: f64) {
     let cases = [
         (igg3(Descent::Published), [1.0, 1.0, 0.625 * 2.0 / 3.5, 0.0, 0.0]),
         (igg3(Descent::Squared), [1.0, 1.0, 0.625 * 4.0 / 12.25, 0.0, 0.0]),
-        (Weight::Huber { k: T::from_f64(2.5) }, [1.0, 1.0, 0.625, 2.5 / 6.0, 2.5 / 100.0]),
+        (Weight::Huber(Huber { k: T::from_f64(2.5) }), [1.0, 1.0, 0.625, 2.5 / 6.0, 2.5 / 100.0]),
     ];
     for (weight, expected) in cases {
         for (statistic, expected) in [0.0, 2.5, 4.0, 6.0, 100.0].into_iter().zip(expected) {
@@ -120,7 +122,7 @@ fn thresholds_are_scipys() {
 
 #[test]
 fn a_t_test_of_two_has_no_thresholds() {
-    let weight = Weight::TTest { alpha0: 0.1, alpha1: 0.01, descent: Descent::Published };
+    let weight = Weight::TTest(TTest { alpha0: 0.1, alpha1: 0.01, descent: Descent::Published });
     assert_eq!(weight.thresholds(2), None);
     assert_eq!(weight.thresholds(0), None);
     let (inner, outer) = weight.thresholds(10).expect("eight degrees of freedom");
@@ -131,9 +133,9 @@ fn weight() -> impl Strategy<Value = Weight<f64>> {
     let descent = prop_oneof![Just(Descent::Published), Just(Descent::Squared)];
     let thresholds = (0.1..5.0f64, 0.0..5.0f64, 0.001..0.5f64, 0.01..1.0f64, descent, 0..3);
     thresholds.prop_map(|(k, more, alpha0, share, descent, kind)| match kind {
-        0 => Weight::Huber { k },
-        1 => Weight::Igg3 { k0: k, k1: k + more, descent },
-        _ => Weight::TTest { alpha0, alpha1: alpha0 * share, descent },
+        0 => Weight::Huber(Huber { k }),
+        1 => Weight::Igg3(Igg3 { k0: k, k1: k + more, descent }),
+        _ => Weight::TTest(TTest { alpha0, alpha1: alpha0 * share, descent }),
     })
 }
 

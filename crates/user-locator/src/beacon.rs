@@ -5,9 +5,9 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// The power of the likelihood that makes credible regions honest: (1 − ρ)/(1 + ρ) for hovers whose shadowing
+/// The power of the likelihood that gives credible regions their nominal coverage: (1 − ρ)/(1 + ρ) for hovers whose shadowing
 /// correlates by 0.82, as it does 20 m apart if it decays over 100 m.
-const HONEST: f64 = 0.1;
+const COMPOSITE_POWER: f64 = 0.1;
 
 /// Finds a transmitter of unknown power over open ground, from the levels received at hovers of a real flight.
 ///
@@ -19,17 +19,17 @@ pub struct Beacon<T, const M: usize> {
     measurements: Vec<Measurement<T>, M>,
 }
 
-/// Where a [`Beacon`] is.
+/// Estimate of a [`Beacon`].
 #[derive(Clone, Debug)]
 pub struct BeaconEstimate<T, const L: usize> {
     /// The place, m: the mean of the posterior that takes measurements for independent. That is the sharper
-    /// one, whose mean is not drawn to where nobody has flown; its width means nothing.
+    /// one, whose mean is not drawn to parts without measurements; its width has no meaning.
     pub place: [T; 2],
     /// The level received at one metre, dB.
     pub level: T,
-    /// The posterior that allows for their correlation: for how well the place is known.
+    /// The posterior that allows for their correlation: the uncertainty of the place.
     pub posterior: PointMass<T, 2, L>,
-    /// By which the posterior was computed.
+    /// The channel of the posterior.
     channel: FreeSpace<T>,
 }
 
@@ -37,6 +37,45 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
     /// Mean and spread of the posterior that allows for correlation.
     pub fn moments(&self) -> Moments<T, 2> {
         self.posterior.moments()
+    }
+
+    /// From all measurements, in a region where `inside` says.
+    pub(crate) fn of(
+        mut channel: FreeSpace<T>,
+        measurements: &[Measurement<T>],
+        region: &Region<T, 2>,
+        inside: impl Fn([T; 2]) -> bool,
+    ) -> Result<Self, Error> {
+        let mut posterior = sharp::<T, L>(&channel, measurements, region, &inside)?;
+        if let Some(likeliest) = posterior.point(posterior.heaviest()) {
+            // Once more with the noise that the likeliest place leaves.
+            channel = channel.fitted(measurements, likeliest);
+            posterior = sharp(&channel, measurements, region, &inside)?;
+        }
+        let place = posterior.moments().mean();
+        let level = channel.level(measurements, place);
+        let channel = channel.doubtful();
+        let mut posterior = PointMass::new(region);
+        posterior.update(|place| {
+            let power = T::from_f64(COMPOSITE_POWER);
+            log_posterior(&channel, measurements, place, power, &inside)
+        })?;
+        Ok(Self { place, level, posterior, channel })
+    }
+
+    /// Whether a place belongs to the smallest region of this probability, given the measurements of the estimate.
+    pub(crate) fn is_credible(
+        &self,
+        measurements: &[Measurement<T>],
+        place: [T; 2],
+        probability: T,
+    ) -> bool {
+        let density =
+            |place| self.channel.log_likelihood(measurements, place, T::from_f64(COMPOSITE_POWER));
+        let posterior = &self.posterior;
+        let Some(heaviest) = posterior.point(posterior.heaviest()) else { return false };
+        posterior.region().contains(&place)
+            && density(place) - density(heaviest) >= posterior.density_level(probability)
     }
 }
 
@@ -64,22 +103,7 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         region: &Region<T, 2>,
         inside: impl Fn([T; 2]) -> bool,
     ) -> Result<BeaconEstimate<T, L>, Error> {
-        let mut channel = self.channel;
-        let mut posterior = sharp::<T, L>(&channel, &self.measurements, region, &inside)?;
-        if let Some(likeliest) = posterior.point(posterior.heaviest()) {
-            // Once more with the noise that the likeliest place leaves.
-            channel = channel.fitted(&self.measurements, likeliest);
-            posterior = sharp(&channel, &self.measurements, region, &inside)?;
-        }
-        let place = posterior.moments().mean();
-        let level = channel.level(&self.measurements, place);
-        let channel = channel.doubtful();
-        let mut posterior = PointMass::new(region);
-        posterior.update(|place| {
-            let honest = T::from_f64(HONEST);
-            log_posterior(&channel, &self.measurements, place, honest, &inside)
-        })?;
-        Ok(BeaconEstimate { place, level, posterior, channel })
+        BeaconEstimate::of(self.channel, &self.measurements, region, inside)
     }
 
     /// Whether a place belongs to the smallest region that holds the transmitter with this probability.
@@ -89,13 +113,7 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         place: [T; 2],
         probability: T,
     ) -> bool {
-        let channel = &estimate.channel;
-        let density =
-            |place| channel.log_likelihood(&self.measurements, place, T::from_f64(HONEST));
-        let posterior = &estimate.posterior;
-        let Some(heaviest) = posterior.point(posterior.heaviest()) else { return false };
-        posterior.region().contains(&place)
-            && density(place) - density(heaviest) >= posterior.density_level(probability)
+        estimate.is_credible(&self.measurements, place, probability)
     }
 }
 

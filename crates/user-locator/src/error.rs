@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why a measurement was refused. The locator is as it was before the call.
+/// Why a measurement or an area was refused. The locator is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -10,6 +10,12 @@ pub enum Error {
     Channel(kestirim_air_to_ground::Error),
     /// The filter refused it: nowhere in the region does anything explain it.
     Filter(kestirim_particle_filter::Error),
+    /// A corner of an area is not finite.
+    NotFinite,
+    /// An area has more corners than there is room for.
+    TooManyCorners,
+    /// The corners of an area enclose nothing.
+    NoArea,
 }
 
 impl From<kestirim_air_to_ground::Error> for Error {
@@ -29,15 +35,19 @@ impl fmt::Display for Error {
         match self {
             Self::Channel(error) => error.fmt(formatter),
             Self::Filter(error) => error.fmt(formatter),
+            Self::NotFinite => formatter.write_str("a corner of the area is not finite"),
+            Self::TooManyCorners => formatter.write_str("the area has too many corners"),
+            Self::NoArea => formatter.write_str("the corners of the area enclose nothing"),
         }
     }
 }
 
 impl core::error::Error for Error {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        Some(match self {
-            Self::Channel(error) => error,
-            Self::Filter(error) => error,
-        })
+        match self {
+            Self::Channel(error) => Some(error),
+            Self::Filter(error) => Some(error),
+            Self::NotFinite | Self::TooManyCorners | Self::NoArea => None,
+        }
     }
 }

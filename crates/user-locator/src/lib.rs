@@ -1,16 +1,22 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod area;
 mod beacon;
 mod error;
 mod locator;
 mod orbit;
-mod printed;
+mod published;
+mod search;
+mod thinned;
 mod tracker;
 
+pub use area::{Area, Within};
 pub use beacon::{Beacon, BeaconEstimate};
 pub use error::Error;
 pub use locator::Locator;
 pub use orbit::{Height, Orbit, Waypoint};
-pub use printed::{PrintedLocator, PrintedSettings};
+pub use published::{PublishedLocator, PublishedSettings};
+pub use search::BeaconSearch;
+pub use thinned::Thinned;
 pub use tracker::{Motion, TrackEstimate, Tracker};

@@ -5,7 +5,7 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// What is less than e⁻¹² of the largest density is given up when the lattice is laid anew.
+/// What is less than e⁻¹⁰ of the largest density is given up when the lattice is laid anew.
 const DEPTH: f64 = 10.0;
 /// The lattice is laid anew when its weight is on less than this share of its points.
 const SHARE: f64 = 0.05;
@@ -15,7 +15,7 @@ const ROUNDS: usize = 4;
 /// Finds a user who stays where they are: the posterior on a lattice of L points, which is laid anew, more
 /// finely, where the posterior is.
 ///
-/// A user who does not move leaves all measurements worth remembering: up to M of them are stored, and each new
+/// All measurements of a user who does not move stay informative: up to M of them are stored, and each new
 /// lattice is weighed by all. Beyond M the lattice stays as it is. 4·L + 16·M bytes in single precision.
 ///
 /// The state is the place (m, in the plane of the measurements); with D = 3 its third coordinate is by how much
@@ -25,8 +25,8 @@ pub struct Locator<T, const L: usize, const M: usize, const D: usize = 2, C = Ch
     channel: C,
     posterior: PointMass<T, D, L>,
     measurements: Vec<Measurement<T>, M>,
-    /// Measurements that could not be stored.
-    forgotten: u32,
+    /// Number of measurements that were not stored.
+    unstored: u32,
 }
 
 impl<T, C, const L: usize, const M: usize, const D: usize> Locator<T, L, M, D, C>
@@ -38,7 +38,7 @@ where
     #[inline]
     pub fn new(channel: C, region: &Region<T, D>) -> Self {
         const { assert!(D == 2 || D == 3, "a place in the plane, and perhaps a level") };
-        Self { channel, posterior: PointMass::new(region), measurements: Vec::new(), forgotten: 0 }
+        Self { channel, posterior: PointMass::new(region), measurements: Vec::new(), unstored: 0 }
     }
 
     /// The same with a lattice of `count` points.
@@ -59,9 +59,9 @@ where
         let channel = &self.channel;
         let update = self.posterior.update(|state| log_likelihood(channel, measurement, &state))?;
         if self.measurements.push(*measurement).is_err() {
-            self.forgotten = self.forgotten.saturating_add(1);
+            self.unstored = self.unstored.saturating_add(1);
         }
-        if self.forgotten == 0 {
+        if self.unstored == 0 {
             self.refine();
         }
         Ok(update)
@@ -86,13 +86,13 @@ where
         }
     }
 
-    /// Where the user is, and how well that is known.
+    /// Posterior mean of the state and its uncertainty.
     #[inline]
     pub fn moments(&self) -> Moments<T, D> {
         self.posterior.moments()
     }
 
-    /// The posterior itself.
+    /// The posterior on its lattice.
     #[inline]
     pub fn posterior(&self) -> &PointMass<T, D, L> {
         &self.posterior
@@ -104,9 +104,9 @@ where
     }
 
     /// Whether a state belongs to the smallest region that holds the true one with this probability (0 to 1):
-    /// where the density is highest. None once measurements have been forgotten.
+    /// where the density is highest. None once more than M measurements were taken in.
     pub fn credible(&self, state: &[T; D], probability: T) -> Option<bool> {
-        if self.forgotten > 0 {
+        if self.unstored > 0 {
             return None;
         }
         if !self.posterior.region().contains(state) {

@@ -2,19 +2,20 @@ use kestirim_scalar::Scalar;
 
 use crate::TrackEstimate;
 
-/// How high to fly.
+/// Height of the flight above the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Height<T> {
-    /// Always so high, m.
+    /// A constant height, m.
     Fixed(T),
-    /// Five times the deviation of a coordinate, between these two, m: high to find a user, low to see where they are. A loss tells
-    /// a distance best from a third of the height beside the user, and the better the lower.
+    /// Five times the deviation of a coordinate, between these two, m: high while the user is searched, low to locate
+    /// them precisely. A loss determines the distance best from a third of the height beside the user, and the better
+    /// the lower.
     Between(T, T),
 }
 
-/// Where to measure next.
+/// Place and height of the next measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,10 +26,10 @@ pub struct Waypoint<T> {
     pub height: T,
 }
 
-/// Circles about where the user will be.
+/// Flight plan: circles about the predicted place of the user.
 ///
 /// Right above the user a loss does not change with the direction in which they go; the thesis' drone, which
-/// flies there, is blind. The circle is as wide as the estimate is uncertain.
+/// flies there, cannot observe it. The radius follows the uncertainty of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -40,13 +41,13 @@ pub struct Orbit<T> {
 }
 
 impl<T: Scalar> Orbit<T> {
-    /// Beginning in the east, 0.6 rad at a time.
+    /// Starts in the east, with 0.6 rad between waypoints.
     #[inline]
     pub fn new(height: Height<T>) -> Self {
         Self { height, advance: T::from_f64(0.6), angle: T::ZERO }
     }
 
-    /// Where to be `interval` (s) after the estimate.
+    /// The waypoint `interval` (s) after the estimate.
     pub fn next(&mut self, estimate: &TrackEstimate<T>, interval: T) -> Waypoint<T> {
         let (height, least) = match self.height {
             Height::Fixed(height) => (height, height * T::from_f64(0.3)),

@@ -9,20 +9,20 @@ use rand_core::Rng;
 
 use crate::Error;
 
-/// How users move, and when a cloud is no longer believed.
+/// Motion model of a user, and the threshold of the filter's divergence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion<T> {
     /// Standard deviation of each component of a user's velocity before anything is known, m/s.
     pub speed: T,
-    /// How fast a velocity changes: standard deviation after a second, m/s.
-    pub unsteadiness: T,
-    /// How far a user strays from a steady course: standard deviation after a second, m.
-    pub straying: T,
-    /// The cloud is widened at each step by at least this share of its own spread: a cloud that is still wide
-    /// must not commit itself to a velocity.
-    pub widening: T,
+    /// Process noise of the velocity: standard deviation after a second, m/s.
+    pub velocity_noise: T,
+    /// Process noise of the place: standard deviation after a second, m.
+    pub place_noise: T,
+    /// Roughening: the least noise of a step as a share of the cloud's own spread, so that a cloud that is still wide
+    /// does not commit itself to a velocity.
+    pub roughening: T,
     /// The mean logarithm of the evidence (per dB) of the last ten measurements below which the cloud is spread
     /// anew; never if none.
     pub least_evidence: Option<T>,
@@ -35,9 +35,9 @@ impl<T: Scalar> Motion<T> {
     pub fn people() -> Self {
         Self {
             speed: T::from_f64(1.2),
-            unsteadiness: T::from_f64(0.053_7),
-            straying: T::from_f64(1.79),
-            widening: T::from_f64(0.1),
+            velocity_noise: T::from_f64(0.053_7),
+            place_noise: T::from_f64(1.79),
+            roughening: T::from_f64(0.1),
             least_evidence: Some(T::from_f64(-4.0)),
         }
     }
@@ -53,9 +53,9 @@ impl<T: Scalar> Motion<T> {
     }
 }
 
-/// Follows a user who moves.
+/// Tracks a user who moves.
 ///
-/// Each particle is a place and the mean velocity that its own way implies; the velocity's variance is the same
+/// Each particle is a place and the mean velocity that its own path implies; the velocity's variance is the same
 /// for all, because it follows a Kalman filter whose measurements are the steps drawn (a Rao–Blackwellised
 /// filter: Schön, Gustafsson and Nordlund, IEEE Trans. Signal Processing 53(7), 2005). A cloud of places *and*
 /// velocities would need many times as many particles, and diverges from a start that knows neither.
@@ -69,13 +69,13 @@ pub struct Tracker<T, const L: usize, C = Channel<T>> {
     particles: Particles<T, 4, L>,
     /// Standard deviation of each component of the velocity, m/s.
     velocity_deviation: T,
-    /// After the last measurement.
+    /// The estimate at the last measurement.
     estimate: TrackEstimate<T>,
-    /// Mean logarithm of the evidence lately.
+    /// Running mean of the evidence's logarithm.
     evidence: T,
 }
 
-/// Where a user is and goes.
+/// Place and velocity of a user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TrackEstimate<T> {
@@ -153,11 +153,11 @@ where
         let motion = &self.motion;
         let root = interval.sqrt();
         // Of each coordinate: the spread is that of both.
-        let widening = motion.widening * self.estimate.spread * T::from_f64(FRAC_1_SQRT_2);
-        let straying = (motion.straying * root).max(widening);
+        let roughening = motion.roughening * self.estimate.spread * T::from_f64(FRAC_1_SQRT_2);
+        let place_noise = (motion.place_noise * root).max(roughening);
         let drift = self.velocity_deviation * interval;
-        // A step deviates by √(drift² + straying²); what of it is velocity, the Kalman gain says.
-        let step = T::norm(&[drift, straying]).max(T::EPSILON);
+        // A step deviates by √(drift² + place_noise²); what of it is velocity, the Kalman gain says.
+        let step = T::norm(&[drift, place_noise]).max(T::EPSILON);
         let share = drift / step;
         let gain = share * (self.velocity_deviation / step);
         self.particles.predict(
@@ -168,11 +168,11 @@ where
             rng,
         );
         let remaining = self.velocity_deviation * (T::ONE - share * share).max(T::ZERO).sqrt();
-        self.velocity_deviation = T::norm(&[remaining, motion.unsteadiness * root]);
+        self.velocity_deviation = T::norm(&[remaining, motion.velocity_noise * root]);
         Ok(())
     }
 
-    /// Takes in a measurement of the time that has come.
+    /// Takes in a measurement of the present time.
     ///
     /// # Errors
     /// [`Error::Filter`] with `Degenerate` if no particle explains it; then nothing has changed.
@@ -210,7 +210,7 @@ where
         TrackEstimate { place: moments.mean(), velocity, spread: moments.spread() }
     }
 
-    /// Where the user was and went at the last measurement.
+    /// Place and velocity at the last measurement.
     #[inline]
     pub fn estimate(&self) -> TrackEstimate<T> {
         self.estimate
@@ -222,7 +222,7 @@ where
         self.particles.moments_of(place)
     }
 
-    /// The cloud itself: place (m) and mean velocity (m/s).
+    /// The particles: place (m) and mean velocity (m/s).
     #[inline]
     pub fn particles(&self) -> &Particles<T, 4, L> {
         &self.particles

@@ -6,8 +6,8 @@ use kestirim_air_to_ground::{
 use kestirim_particle_filter::{Error as FilterError, Region, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{
-    Beacon, Error, Height, Locator, Motion, Orbit, PrintedLocator, PrintedSettings, TrackEstimate,
-    Tracker, Waypoint,
+    Beacon, Error, Height, Locator, Motion, Orbit, PublishedLocator, PublishedSettings,
+    TrackEstimate, Tracker, Waypoint,
 };
 use rand_core::{Rng, SeedableRng};
 
@@ -53,19 +53,20 @@ const USER: [f64; 2] = [1234.0, 707.0];
 fn finds<T: Scalar>() -> Outcome {
     let (mut noise, mut draws) = (rng(1), rng(2));
     let mut best = Locator::<T, 500, 12>::new(urban(), &square(2000.0));
-    let settings = PrintedSettings::thesis();
-    let mut printed = PrintedLocator::<T, 500>::new(urban(), &square(2000.0), settings, &mut draws);
+    let settings = PublishedSettings::thesis();
+    let mut published =
+        PublishedLocator::<T, 500>::new(urban(), &square(2000.0), settings, &mut draws);
     for k in 0..12 {
         let measurement = measured(USER, circle(k), 800.0, &mut noise);
         best.measure(&measurement)?;
-        printed.measure(&measurement, &mut draws)?;
+        published.measure(&measurement, &mut draws)?;
     }
     let error = distance(best.moments().mean(), USER);
     assert!(error < 60.0, "{error}");
     let spread = best.moments().spread().to_f64();
     assert!((20.0..150.0).contains(&spread), "{spread}");
-    let error = distance(printed.moments().mean(), USER);
-    assert!(error < 90.0, "printed {error}");
+    let error = distance(published.moments().mean(), USER);
+    assert!(error < 90.0, "published {error}");
     let credible = |place: [f64; 2]| best.credible(&place.map(T::from_f64), T::from_f64(0.9));
     assert_eq!(credible(USER), Some(true));
     assert_eq!(credible([USER[0] + 400.0, USER[1]]), Some(false));

@@ -21,7 +21,7 @@ use host_sim::systems::drone::trajectory::{SIDE_M, Trajectory};
 use kestirim_air_to_ground::Measurement;
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus, offspring};
 use kestirim_scalar::Scalar;
-use kestirim_user_locator::{PrintedLocator, PrintedSettings};
+use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use rustix::time::{ClockId, clock_gettime};
 
@@ -113,9 +113,9 @@ fn ours<T: Scalar>(stops: &[Stop]) -> Vec<f64> {
     let mut times = Vec::new();
     for threshold in THRESHOLDS {
         let settings =
-            PrintedSettings { threshold: number(threshold), ..PrintedSettings::thesis() };
+            PublishedSettings { threshold: number(threshold), ..PublishedSettings::thesis() };
         let channel = EnvironmentKind::Urban.channel();
-        let mut locator = PrintedLocator::<T, L>::new(channel, &region, settings, &mut rng);
+        let mut locator = PublishedLocator::<T, L>::new(channel, &region, settings, &mut rng);
         times.push(time_of_step(&measurements, |measurement| {
             locator.measure(measurement, &mut rng).expect("a loss that particles explain");
             black_box(locator.moments());

@@ -5,7 +5,7 @@ use anyhow::{Result, bail, ensure};
 use gnss_app::{STATES, site};
 use host_sim::systems::gnss::products::Products;
 use kestirim_gnss_files::{self as files, Antennas, Clocks, Orbits, Text};
-use kestirim_ppp_filter::{PppFilter, Sighting, Slipped, Solution};
+use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Slipped, Solution};
 use kestirim_telemetry::{GlobalPosition, Message};
 use kestirim_tests::ppp::{OUTLIERS, START, station};
 use nalgebra::Vector3;
@@ -30,7 +30,7 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
     let products = Products::new(start, &orbits, Some(&clocks), &Antennas::default());
     let mut filter = PppFilter::new(site::config());
     let solve = |epoch: &Observed| {
-        let sighting = |sighting: &Sighting<'_>| {
+        let sighting = |sighting: &SatelliteObservation<'_>| {
             let observed = files::Observed {
                 prn: sighting.satellite,
                 code: sighting.code.map(Some),
@@ -38,7 +38,7 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 loss_of_lock: [false, sighting.lock_lost],
             };
             let sighting = products.sighting(epoch.time(), &observed).expect("there are products");
-            Sighting { antenna: site::satellite_antenna(), ..sighting }
+            SatelliteObservation { antenna: site::satellite_antenna(), ..sighting }
         };
         let sightings: Vec<_> = epoch.sightings.iter().map(sighting).collect();
         Ok(filter.process(epoch.time(), &site::receiver(), &sightings)?)

@@ -3,7 +3,7 @@
 
 use kestirim_gnss_ppp::GpsTime;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_ppp_filter::Sighting;
+use kestirim_ppp_filter::SatelliteObservation;
 use kestirim_tests::ppp::{CLOCK, Epochs, INTERVAL, SATELLITES, in_orbit, station};
 
 /// In which epoch a satellite's phase on L2 slips, which satellite, and by how many cycles.
@@ -31,7 +31,7 @@ const PIECE: usize = 200;
 pub(crate) struct Observed {
     /// Of the week, by the receiver's clock.
     second: f64,
-    pub(crate) sightings: Vec<Sighting<'static>>,
+    pub(crate) sightings: Vec<SatelliteObservation<'static>>,
 }
 
 impl Observed {
@@ -75,7 +75,8 @@ fn message(epoch: &Observed) -> Vec<u8> {
         measurement([2, 11, 0], 24e6, 126e6, 64_500),
         measurement([0, ONE_CARRIER, 0], 23e6, 121e6, 64_500),
     ];
-    let unknown = Sighting { satellite: UNKNOWN, lock_lost: false, ..epoch.sightings[0] };
+    let unknown =
+        SatelliteObservation { satellite: UNKNOWN, lock_lost: false, ..epoch.sightings[0] };
     for sighting in epoch.sightings.iter().chain([&unknown]) {
         let lock = if sighting.lock_lost { 5_000 } else { 64_500 };
         for (carrier, (signal, lock)) in [(0, 64_500), (3, lock)].into_iter().enumerate() {

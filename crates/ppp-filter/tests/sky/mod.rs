@@ -1,7 +1,7 @@
 //! A sky of thirty-two satellites on circular orbits, and a receiver that observes them without noise.
 
 use kestirim_gnss_ppp::{GpsTime, Receiver, SatelliteState, Site, WAVELENGTH, carried_along};
-use kestirim_ppp_filter::Sighting;
+use kestirim_ppp_filter::SatelliteObservation;
 use nalgebra::Vector3;
 
 pub(crate) const START: GpsTime = GpsTime::new_in_day(59_025, 30_000.0);
@@ -36,7 +36,7 @@ fn state(prn: u8, seconds: f64) -> SatelliteState {
 }
 
 /// What a receiver at `place` observes `seconds` after the start, above five degrees.
-pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<Sighting<'static>> {
+pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<SatelliteObservation<'static>> {
     let site = Site::new(&Receiver::default(), place, START.plus(seconds));
     let sight = |prn: u8| {
         let state = state(prn, seconds);
@@ -46,7 +46,7 @@ pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<Sighting<'stati
         }
         let code = expected.range + 150.0 + WET_DELAY * expected.wet_mapping;
         let phase = code + expected.wind_up + 3.0 * f64::from(prn);
-        Some(Sighting {
+        Some(SatelliteObservation {
             satellite: prn,
             code: [code; 2],
             phase: WAVELENGTH.map(|wavelength| phase / wavelength),
@@ -59,11 +59,18 @@ pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<Sighting<'stati
 }
 
 /// Adds to a satellite's codes and phases, m.
-pub(crate) fn spoil(sightings: &mut [Sighting<'_>], satellite: u8, code: f64, phase: f64) {
-    for sighting in sightings.iter_mut().filter(|sighting| sighting.satellite == satellite) {
+pub(crate) fn spoil(
+    observations: &mut [SatelliteObservation<'_>],
+    satellite: u8,
+    code: f64,
+    phase: f64,
+) {
+    for observation in
+        observations.iter_mut().filter(|observation| observation.satellite == satellite)
+    {
         for carrier in 0..2 {
-            sighting.code[carrier] += code;
-            sighting.phase[carrier] += phase / WAVELENGTH[carrier];
+            observation.code[carrier] += code;
+            observation.phase[carrier] += phase / WAVELENGTH[carrier];
         }
     }
 }

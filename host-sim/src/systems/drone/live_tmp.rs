@@ -1,36 +1,30 @@
 //! A user on the ground, heard by a drone.
 
 use kestirim_telemetry::{Message, PathLoss};
+use kestirim_user_locator::Thinned;
 
 use super::{Estimator, Outcome};
 use crate::Error;
 use crate::figure::{Colour, Mark, Series};
-use crate::commands::live::options::Live;
-use crate::commands::live::thinned::Thinned;
-use crate::systems::drone::area::Area;
+use crate::live::options::Live;
+use crate::systems::drone::area::{self, Area};
 use crate::systems::drone::flight::Stop;
 use crate::systems::drone::online::{self, Found};
 
 /// Where the user can be.
 #[derive(Debug, Clone)]
 pub(in crate::live) struct Plan {
-    area: Option<Area>,
+    area: Option<Box<Area>>,
 }
 
 impl Plan {
     pub(super) fn read(options: &Live) -> Result<Self, Error> {
-        let area = options.area.as_deref().map(Area::read).transpose()?;
+        let area = options.area.as_deref().map(area::read).transpose()?;
         Ok(Self { area })
     }
 
     pub(super) fn build(&self) -> Listener {
-        Listener {
-            // One more is the last.
-            stops: Thinned::new(online::MOST - 1),
-            area: self.area.clone(),
-            is_new: false,
-            found: None,
-        }
+        Listener { stops: Box::default(), area: self.area.clone(), is_new: false, found: None }
     }
 
     pub(super) fn border(&self) -> Option<Series> {
@@ -44,8 +38,8 @@ impl Plan {
 /// thinned where it is much.
 #[derive(Debug)]
 pub(super) struct Listener {
-    stops: Thinned<Stop>,
-    area: Option<Area>,
+    stops: Box<Thinned<Stop, { online::MOST }>>,
+    area: Option<Box<Area>>,
     /// Whether something was heard that is not yet in what was found.
     is_new: bool,
     found: Option<Found>,
@@ -68,8 +62,8 @@ impl Estimator for Listener {
 
     fn settle(&mut self) {
         if std::mem::take(&mut self.is_new) {
-            let stops = self.stops.iter().collect();
-            self.found = online::locate(stops, self.area.as_ref()).or(self.found);
+            let stops = self.stops.as_slice().to_vec();
+            self.found = online::locate(stops, self.area.as_deref()).or(self.found);
         }
     }
 

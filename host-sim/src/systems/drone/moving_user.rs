@@ -6,7 +6,7 @@ use kestirim_air_to_ground::{Channel, Measurement, Rotor};
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{
-    Height, Motion, Orbit, PrintedLocator, PrintedSettings, Tracker, Waypoint,
+    Height, Motion, Orbit, PublishedLocator, PublishedSettings, Tracker, Waypoint,
 };
 use rand_core::{Rng, SeedableRng};
 
@@ -184,7 +184,7 @@ fn fly<T: Scalar, const L: usize>(
 
 /// The thesis' way.
 struct Hovering<T: Scalar, const L: usize> {
-    filter: PrintedLocator<T, L>,
+    filter: PublishedLocator<T, L>,
     rng: Xoshiro128PlusPlus,
     /// Effective number of particles after the last measurement.
     effective: T,
@@ -195,8 +195,8 @@ impl<T: Scalar, const L: usize> Hovering<T, L> {
         // The thesis does not print it. It must exceed the user's step, or the cloud stays behind.
         let step = TAU * walk.user_radius_m / f64::from(walk.end_time);
         let jitter = T::from_f64((1.27 * step).max(16.0));
-        let settings = PrintedSettings { resampler, jitter, ..PrintedSettings::thesis() };
-        let filter = PrintedLocator::with_count(
+        let settings = PublishedSettings { resampler, jitter, ..PublishedSettings::thesis() };
+        let filter = PublishedLocator::with_count(
             walk.particles,
             channel(walk),
             &square(),

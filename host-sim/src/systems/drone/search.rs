@@ -1,10 +1,10 @@
 //! Where a user is looked for: over open ground, or through the thesis' channel.
 
-use kestirim_air_to_ground::{Channel, FreeSpace, LevelPrior, Likelihood, Measurement};
+use kestirim_air_to_ground::{Channel, FreeSpace, LevelPrior, Measurement};
 use kestirim_particle_filter::Region;
-use kestirim_user_locator::{Beacon, Locator};
+use kestirim_user_locator::{BeaconSearch, Locator, Within};
 
-use super::area::Area;
+use super::area::{Area, MOST_CORNERS};
 use super::cloud::Cloud;
 use super::flight::{Flight, Quantity, Stop};
 use super::scenario::{EnvironmentKind, WAVELENGTH_M};
@@ -24,6 +24,11 @@ const LEVELS: u32 = 41;
 /// How well a path loss is calibrated, dB.
 const CALIBRATION_DB: f64 = 3.0;
 
+/// The thesis' channel to users within an area.
+type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
+/// A user in the plane, or with D = 3 one whose transmitter's level is unknown.
+type UserLocator<'a, const D: usize> = Locator<f64, POINTS, MOST, D, ChannelWithin<'a>>;
+
 /// Where the user is after some measurements.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Estimate {
@@ -40,10 +45,9 @@ pub(super) struct Estimate {
 /// Where a user is looked for.
 pub(super) struct Search<'a> {
     stops: &'a [Stop],
-    area: Option<&'a Area>,
     /// Coordinates are counted from here, so that they stay small.
     origin: [f64; 2],
-    high: [f64; 2],
+    area: Box<Area>,
     truth: Option<[f64; 2]>,
     /// Whether only the last estimate is wanted.
     only_last: bool,
@@ -58,18 +62,21 @@ impl<'a> Search<'a> {
         truth: Option<[f64; 2]>,
         only_last: bool,
     ) -> Self {
-        let (low, high) = area.map_or_else(|| surroundings(&flight.stops), Area::bounds);
-        let (stops, origin) = (&flight.stops[..], low);
-        Self { stops, area, origin, high, truth, only_last, with_clouds: false }
+        let stops = &flight.stops[..];
+        let (origin, area) = match area {
+            Some(area) => {
+                let origin = *area.region().low();
+                (origin, area.relative_to(origin))
+            }
+            None => surroundings(stops),
+        };
+        let area = Box::new(area.expect("an area of finite corners"));
+        Self { stops, origin, area, truth, only_last, with_clouds: false }
     }
 
     /// With all that is believed.
     pub(super) fn with_clouds(self) -> Self {
         Self { with_clouds: true, ..self }
-    }
-
-    fn inside(&self, place: [f64; 2]) -> bool {
-        self.area.is_none_or(|area| area.contains(self.outward(place)))
     }
 
     fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -84,10 +91,6 @@ impl<'a> Search<'a> {
         Measurement::new(self.inward(stop.place), stop.height, stop.loss).ok()
     }
 
-    fn region(&self) -> Region<f64, 2> {
-        Region::new([0.0; 2], self.inward(self.high)).expect("a box of finite corners")
-    }
-
     /// Over open ground.
     pub(super) fn in_free_space(&self, quantity: Quantity) -> Vec<Estimate> {
         let level = match quantity {
@@ -98,16 +101,20 @@ impl<'a> Search<'a> {
                 sigma: CALIBRATION_DB,
             }),
         };
-        let mut beacon = Box::new(Beacon::<f64, MOST_OPEN>::new(FreeSpace::new(level)));
+        // One place is that of the last measurement: all of them are kept.
+        let mut search = Box::new(BeaconSearch::<f64, { MOST_OPEN + 1 }, MOST_CORNERS>::new(
+            FreeSpace::new(level),
+            (*self.area).clone(),
+        ));
         let mut estimates = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
-            let taken = self.measurement(stop).is_some_and(|m| beacon.measure(&m).is_ok());
-            if !taken || (self.only_last && number + 1 < self.stops.len()) {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            search.measure(&measurement);
+            if self.only_last && number + 1 < self.stops.len() {
                 continue;
             }
-            let found = beacon.estimate::<POINTS>(&self.region(), |place| self.inside(place));
-            let Ok(found) = found else { continue };
-            let covered = self.truth.map(|truth| beacon.credible(&found, self.inward(truth), 0.9));
+            let Ok(found) = search.estimate::<POINTS>() else { continue };
+            let covered = self.truth.map(|truth| search.credible(&found, self.inward(truth), 0.9));
             estimates.push(Estimate {
                 t: stop.t,
                 place: self.outward(found.place),
@@ -128,14 +135,12 @@ impl<'a> Search<'a> {
         environment: EnvironmentKind,
         quantity: Quantity,
     ) -> Vec<Estimate> {
-        let channel = Fenced { channel: environment.channel(), search: self };
+        let channel = Within::new(environment.channel(), &*self.area);
+        let region = self.area.region();
         match quantity {
-            Quantity::PathLoss => {
-                let region = self.region();
-                self.follow::<2>(Locator::new(channel, &region))
-            }
+            Quantity::PathLoss => self.follow::<2>(Locator::new(channel, region)),
             Quantity::Level => {
-                let [width, height] = self.inward(self.high);
+                let [width, height] = *region.high();
                 let corners = ([0.0, 0.0, -LEVELS_DB], [width, height, LEVELS_DB]);
                 let region = Region::new(corners.0, corners.1).expect("a box of finite corners");
                 self.follow::<3>(Locator::new(channel, &region))
@@ -147,7 +152,7 @@ impl<'a> Search<'a> {
     /// integrated over: nobody knows the true one.
     fn covered<const D: usize>(
         &self,
-        locator: &Locator<f64, POINTS, MOST, D, Fenced<'_>>,
+        locator: &UserLocator<'_, D>,
         truth: [f64; 2],
     ) -> Option<bool> {
         let truth = self.inward(truth);
@@ -183,10 +188,7 @@ impl<'a> Search<'a> {
         border.map(|(least, _)| density(truth) >= *least)
     }
 
-    fn follow<const D: usize>(
-        &self,
-        locator: Locator<f64, POINTS, MOST, D, Fenced<'_>>,
-    ) -> Vec<Estimate> {
+    fn follow<const D: usize>(&self, locator: UserLocator<'_, D>) -> Vec<Estimate> {
         let mut locator = Box::new(locator);
         let mut estimates = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
@@ -222,27 +224,14 @@ fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
     largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln()
 }
 
-/// A channel to users within the area only.
-struct Fenced<'a> {
-    channel: Channel<f64>,
-    search: &'a Search<'a>,
-}
-
-impl Likelihood<f64> for Fenced<'_> {
-    fn log_likelihood(&self, measurement: &Measurement<f64>, user: [f64; 2]) -> f64 {
-        if self.search.inside(user) {
-            self.channel.log_likelihood(measurement, user)
-        } else {
-            f64::NEG_INFINITY
-        }
-    }
-}
-
-/// The box around a flight, and some more.
-fn surroundings(stops: &[Stop]) -> ([f64; 2], [f64; 2]) {
+/// The box around a flight, and some more: its lower corner, and the area as seen from there.
+fn surroundings(stops: &[Stop]) -> ([f64; 2], Result<Area, kestirim_user_locator::Error>) {
     let bound = |axis: usize, sign: f64| {
         let outermost = stops.iter().map(|stop| sign * stop.place[axis]).fold(f64::MIN, f64::max);
         sign * (outermost + BEYOND_M)
     };
-    ([bound(0, -1.0), bound(1, -1.0)], [bound(0, 1.0), bound(1, 1.0)])
+    let origin = [bound(0, -1.0), bound(1, -1.0)];
+    let size = [bound(0, 1.0) - origin[0], bound(1, 1.0) - origin[1]];
+    let region = Region::new([0.0; 2], size).expect("a box of finite corners");
+    (origin, Area::rectangle(&region))
 }

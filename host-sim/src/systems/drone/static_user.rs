@@ -3,7 +3,7 @@
 use kestirim_air_to_ground::{Measurement, Rotor};
 use kestirim_particle_filter::{PointMass, Region, Resampler, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_user_locator::{Locator, PrintedLocator, PrintedSettings};
+use kestirim_user_locator::{Locator, PublishedLocator, PublishedSettings};
 use rand_core::{Rng, SeedableRng};
 
 use super::cloud::Cloud;
@@ -202,11 +202,12 @@ impl<'a> Flight<'a> {
     fn printed<T: Scalar, const L: usize>(
         &self,
         paper: Paper,
-    ) -> (Box<PrintedLocator<T, L>>, Xoshiro128PlusPlus) {
+    ) -> (Box<PublishedLocator<T, L>>, Xoshiro128PlusPlus) {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(self.seed);
-        let settings = PrintedSettings { resampler: paper.resampler, ..PrintedSettings::thesis() };
+        let settings =
+            PublishedSettings { resampler: paper.resampler, ..PublishedSettings::thesis() };
         let channel = self.geometry.environment.channel::<T>();
-        let filter = PrintedLocator::<T, L>::with_count(
+        let filter = PublishedLocator::<T, L>::with_count(
             paper.particles,
             channel,
             &square(),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::area::Area;
+use super::area::{self, Area};
 use super::flight::{self, Flight, Stop};
 use super::scenario::EnvironmentKind;
 use super::search::{BEYOND_M, Estimate, MOST, MOST_OPEN, Search};
@@ -20,7 +20,7 @@ pub(super) struct Survey {
     /// Where the user really is.
     pub(super) truth: Option<[f64; 2]>,
     /// Where the user can be.
-    pub(super) area: Option<Area>,
+    pub(super) area: Option<Box<Area>>,
     /// What is built there; none: open ground.
     pub(super) environment: Option<EnvironmentKind>,
     /// What a reader should know.
@@ -40,7 +40,7 @@ impl Survey {
     ) -> Result<Self, Error> {
         let flight = flight::read(log)?;
         let truth = truth.map(flight::read_truth).transpose()?;
-        let area = area.map(Area::read).transpose()?;
+        let area = area.map(area::read).transpose()?;
         Self::new(log, flight, truth, area, environment)
     }
 
@@ -52,7 +52,7 @@ impl Survey {
         log: &Path,
         mut flight: Flight,
         truth: Option<[f64; 2]>,
-        area: Option<Area>,
+        area: Option<Box<Area>>,
         environment: Option<EnvironmentKind>,
     ) -> Result<Self, Error> {
         let mut warnings = Vec::new();
@@ -76,7 +76,7 @@ impl Survey {
                 "the user is looked for up to {BEYOND_M} m beyond the flight (--area)"
             ));
         }
-        if area.as_ref().is_some_and(|area| far(area, &flight.stops)) {
+        if area.as_deref().is_some_and(|area| far(area, &flight.stops)) {
             warnings.push("no measurement was made within 20 km of the area".to_owned());
         }
         Ok(Self { log, flight, truth, area, environment, warnings })
@@ -84,7 +84,7 @@ impl Survey {
 
     /// Where the user is looked for.
     pub(super) fn search(&self, only_last: bool) -> Search<'_> {
-        Search::new(&self.flight, self.area.as_ref(), self.truth, only_last)
+        Search::new(&self.flight, self.area.as_deref(), self.truth, only_last)
     }
 
     /// Where the user is after each measurement that some place explains.
@@ -115,7 +115,7 @@ fn thin_out(stops: &mut Vec<Stop>, most: usize, warnings: &mut Vec<String>) {
 
 /// Whether no stop is anywhere near an area.
 fn far(area: &Area, stops: &[Stop]) -> bool {
-    let (low, high) = area.bounds();
+    let (low, high) = (area.region().low(), area.region().high());
     let beside = |axis: usize, at: f64| at < low[axis] - FAR_M || at > high[axis] + FAR_M;
     stops.iter().all(|stop| beside(0, stop.place[0]) || beside(1, stop.place[1]))
 }

@@ -4,7 +4,7 @@
 
 use indicatif::ProgressBar;
 use kestirim_gnss_ppp::{Corrections, Geodetic, Receiver};
-use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, Sighting, states};
+use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, SatelliteObservation, states};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -135,7 +135,7 @@ fn trial(seed: u64, index: u64, cases: &[Case], bar: &ProgressBar) -> Vec<Score>
 }
 
 /// What the receiver observed, with the products of each satellite.
-fn sightings(day: &Day) -> Vec<Vec<Sighting<'_>>> {
+fn sightings(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
     let epochs = day.epochs.iter().map(|epoch| {
         let seen = epoch.satellites.iter();
         seen.filter_map(|observed| day.products.sighting(epoch.time, observed).ok()).collect()
@@ -144,7 +144,7 @@ fn sightings(day: &Day) -> Vec<Vec<Sighting<'_>>> {
 }
 
 /// One filter through one day.
-fn follow(day: &Day, sightings: &[Vec<Sighting<'_>>], config: Config) -> Score {
+fn follow(day: &Day, sightings: &[Vec<SatelliteObservation<'_>>], config: Config) -> Score {
     let receiver = Receiver {
         antenna: None,
         eccentricity: [0.0; 3],

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
 use kestirim_ppp_filter::{
-    Config, Health, PppFilter, SatelliteReport, Sighting, Slipped, Solution,
+    Config, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped, Solution,
 };
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
@@ -137,7 +137,7 @@ pub fn follow(
 ) -> Followed {
     let mut filter = PppFilter::<STATES>::new(config);
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
-    let mut sightings: Vec<Sighting<'_>> = Vec::new();
+    let mut sightings: Vec<SatelliteObservation<'_>> = Vec::new();
     // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
     let mut lost = [false; 256];
     // Tells which satellites stand below the mask, and nothing else.
@@ -153,7 +153,9 @@ pub fn follow(
             let lost = &mut lost[usize::from(observed.prn)];
             *lost |= observed.loss_of_lock.contains(&true);
             match recording.products().sighting(epoch.time, observed) {
-                Ok(sighting) => sightings.push(Sighting { lock_lost: *lost, ..sighting }),
+                Ok(sighting) => {
+                    sightings.push(SatelliteObservation { lock_lost: *lost, ..sighting })
+                }
                 Err(reason) => followed.miss(observed.prn, reason, &mut unused),
             }
         }
@@ -179,9 +181,9 @@ pub fn follow(
 }
 
 /// How many satellites stand below the mask.
-fn below(sightings: &[Sighting<'_>], place: &Vector3<f64>, mask: f64) -> usize {
+fn below(sightings: &[SatelliteObservation<'_>], place: &Vector3<f64>, mask: f64) -> usize {
     let geodetic = Geodetic::from_ecef(place);
-    let is_below = |sighting: &&Sighting<'_>| {
+    let is_below = |sighting: &&SatelliteObservation<'_>| {
         let sight = (sighting.state.position - place).normalize();
         Direction::of(&sight, &geodetic).elevation < mask
     };

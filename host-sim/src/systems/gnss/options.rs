@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use kestirim_ppp_filter::{Config, Estimator, Motion, states};
-use kestirim_robust_kalman::Weight;
+use kestirim_robust_kalman::{Igg3, Weight};
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -164,7 +164,7 @@ impl Setup {
     pub fn config(&self, filter: FilterKind) -> Config {
         let config = Config::new(self.motion);
         let mut estimator = filter.estimator(self.motion, self.printed);
-        if let (Some(thresholds), Weight::Igg3 { k0, k1, .. }) =
+        if let (Some(thresholds), Weight::Igg3(Igg3 { k0, k1, .. })) =
             (self.thresholds, &mut estimator.robust.weight)
         {
             [*k0, *k1] = thresholds;

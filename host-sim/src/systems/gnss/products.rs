@@ -3,7 +3,7 @@
 use kestirim_gnss_files::{self as files, Antenna, Antennas, Clocks, Observed, Orbits};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
-use kestirim_ppp_filter::Sighting;
+use kestirim_ppp_filter::SatelliteObservation;
 
 use super::model::{clock_sample, orbit_sample, patterns};
 
@@ -86,7 +86,11 @@ impl Products {
     ///
     /// # Errors
     /// What is missing.
-    pub fn sighting(&self, time: GpsTime, observed: &Observed) -> Result<Sighting<'_>, Unusable> {
+    pub fn sighting(
+        &self,
+        time: GpsTime,
+        observed: &Observed,
+    ) -> Result<SatelliteObservation<'_>, Unusable> {
         let ([Some(first), Some(second)], [Some(l1), Some(l2)]) = (observed.code, observed.phase)
         else {
             return Err(Unusable::Incomplete);
@@ -107,7 +111,7 @@ impl Products {
         // runs away by less than a millimetre.
         let clock = clock.at(sent).or_else(|| clock.at(time)).ok_or_else(missing)?;
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
-        Ok(Sighting {
+        Ok(SatelliteObservation {
             satellite: observed.prn,
             code: [first, second],
             phase: [l1, l2],

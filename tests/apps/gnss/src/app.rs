@@ -3,7 +3,7 @@
 use embedded_io::{Read, ReadReady, Write};
 use heapless::Vec;
 use kestirim_gnss_ppp::GpsTime;
-use kestirim_ppp_filter::{PppFilter, Sighting, Solution, states};
+use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Solution, states};
 use kestirim_telemetry::{GlobalPosition, Health, Transmitter};
 
 use crate::lines::Lines;
@@ -103,7 +103,7 @@ where
 
     fn take_in(&mut self, observations: &Observations) -> Epoch {
         let time = observations.time;
-        let mut sightings: Vec<Sighting<'static>, VISIBLE> = Vec::new();
+        let mut sightings: Vec<SatelliteObservation<'static>, VISIBLE> = Vec::new();
         let mut unused = Vec::new();
         for observed in &observations.satellites {
             let sighting = self.products.sighting(time, observed, self.lost(time, observed));

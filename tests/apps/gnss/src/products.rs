@@ -3,7 +3,7 @@
 use heapless::{String, Vec};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
-use kestirim_ppp_filter::Sighting;
+use kestirim_ppp_filter::SatelliteObservation;
 use nalgebra::Vector3;
 
 use crate::calendar;
@@ -124,7 +124,7 @@ impl Products {
         time: GpsTime,
         observed: &Observed,
         lock_lost: bool,
-    ) -> Result<Sighting<'static>, Unusable> {
+    ) -> Result<SatelliteObservation<'static>, Unusable> {
         let ([Some(first), Some(second)], [Some(l1), Some(l2)]) = (observed.code, observed.phase)
         else {
             return Err(Unusable::Incomplete);
@@ -141,7 +141,7 @@ impl Products {
             || if orbit.at(sent).is_none() { Unusable::NoOrbit } else { Unusable::NoClock };
         let clock = clock.at(sent).ok_or_else(missing)?;
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
-        Ok(Sighting {
+        Ok(SatelliteObservation {
             satellite: observed.satellite,
             code: [first, second],
             phase: [l1, l2],

@@ -3,7 +3,7 @@
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
 use kestirim_particle_filter::{Moments, Region, Xoshiro128PlusPlus};
 use kestirim_scalar::Scalar;
-use kestirim_user_locator::{PrintedLocator, PrintedSettings};
+use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use support::{Class, fail};
 
@@ -44,21 +44,22 @@ fn measurement<T: Scalar>(record: &PathLoss) -> Measurement<T> {
 }
 
 /// The thesis' particle filter.
-pub struct Printed<T: Scalar> {
-    locator: PrintedLocator<T, PARTICLES>,
+pub struct Published<T: Scalar> {
+    locator: PublishedLocator<T, PARTICLES>,
     rng: Xoshiro128PlusPlus,
     moments: Option<Moments<T, 2>>,
 }
 
-impl<T: Scalar> Default for Printed<T> {
+impl<T: Scalar> Default for Published<T> {
     fn default() -> Self {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
-        let locator = PrintedLocator::new(channel(), &city(), PrintedSettings::thesis(), &mut rng);
+        let locator =
+            PublishedLocator::new(channel(), &city(), PublishedSettings::thesis(), &mut rng);
         Self { locator, rng, moments: None }
     }
 }
 
-impl<T: Named> Tracker for Printed<T> {
+impl<T: Named> Tracker for Published<T> {
     const NAME: &str = if SMALL { "locator-100" } else { "locator-500" };
     const SCALAR: &str = T::NAME;
     const SAMPLES_A_POSITION: u32 = 1;

@@ -3,7 +3,7 @@
 
 use kestirim_gnss_ppp::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
 use kestirim_gnss_ppp::{FREQUENCY, Geodetic, GpsTime, SatelliteState, Site, WAVELENGTH};
-use kestirim_ppp_filter::{PppFilter, Sighting, states};
+use kestirim_ppp_filter::{PppFilter, SatelliteObservation, states};
 use nalgebra::Vector3;
 
 /// The receiver and its antennas: those of the application, which a user edits.
@@ -68,7 +68,7 @@ pub struct Epoch {
     /// When, by the receiver's clock.
     pub time: GpsTime,
     /// What was observed.
-    pub sightings: [Sighting<'static>; SATELLITES],
+    pub observations: [SatelliteObservation<'static>; SATELLITES],
 }
 
 /// The epochs one after the other.
@@ -92,7 +92,7 @@ impl Epochs {
         let site = Site::new(&receiver(), &self.station, time);
         let state = sending(0, &self.station, elapsed);
         let antenna = satellite_antenna();
-        let none = Sighting {
+        let none = SatelliteObservation {
             satellite: 0,
             code: [0.0; 2],
             phase: [0.0; 2],
@@ -100,9 +100,9 @@ impl Epochs {
             state,
             antenna,
         };
-        let mut sightings = [none; SATELLITES];
-        for (satellite, (sighting, wind_up)) in
-            sightings.iter_mut().zip(&mut self.wind_up).enumerate()
+        let mut observations = [none; SATELLITES];
+        for (satellite, (observation, wind_up)) in
+            observations.iter_mut().zip(&mut self.wind_up).enumerate()
         {
             let state = sending(satellite, &self.station, elapsed);
             let expected = site.expect(&state, antenna.as_ref(), *wind_up)?;
@@ -125,9 +125,10 @@ impl Epochs {
                 let ambiguity = 1_000.0 * (satellite + carrier) as f64;
                 *phase = metres / WAVELENGTH[carrier] + expected.wind_up_cycles + ambiguity;
             }
-            *sighting = Sighting { satellite: satellite as u8 + 1, code, phase, state, ..none };
+            *observation =
+                SatelliteObservation { satellite: satellite as u8 + 1, code, phase, state, ..none };
         }
-        Some(Epoch { time, sightings })
+        Some(Epoch { time, observations })
     }
 }
 

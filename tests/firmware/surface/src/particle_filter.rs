@@ -1,7 +1,8 @@
 //! Everything of `kestirim-particle-filter`.
 
 use kestirim_particle_filter::{
-    Moments, Particles, PointMass, Region, Resampler, Start, kld_count, offspring,
+    IntegerWeights, Moments, Multinomial, Particles, PointMass, Region, Resample, Resampler,
+    Residual, Start, Stratified, Systematic, kld_count, offspring,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 
@@ -45,6 +46,16 @@ fn draws<T: Scalar>() {
     let mut counts = any([0_u32; 8]);
     let (weights, counts) = (slice(&weights), slice_mut(&mut counts));
     keep(offspring(resampler(), weights, counts, &mut AnyRng));
+    keep(offspring(Multinomial, weights, counts, &mut AnyRng));
+    keep(offspring(Residual, weights, counts, &mut AnyRng));
+    keep(offspring(Stratified, weights, counts, &mut AnyRng));
+    keep(offspring(Systematic, weights, counts, &mut AnyRng));
+    if let Ok(weights) = any(IntegerWeights::new(counts, whole())) {
+        keep(IntegerWeights::into_parts(weights));
+    }
+    if let Ok(weights) = any(IntegerWeights::new(counts, whole())) {
+        Resample::replace(resampler(), weights, &mut AnyRng);
+    }
     keep(kld_count(whole(), number::<T>(), number(), whole()));
 }
 

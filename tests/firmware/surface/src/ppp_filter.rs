@@ -4,7 +4,7 @@ use kestirim_gnss_ppp::{
     Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
 };
 use kestirim_ppp_filter::{
-    Config, Deviation, Error, Estimator, Motion, PppFilter, Sighting, Solution, states,
+    Config, Deviation, Error, Estimator, Motion, PppFilter, SatelliteObservation, Solution, states,
 };
 
 use super::values::{
@@ -67,14 +67,14 @@ fn filters<const N: usize>() {
         clock_distance: number(),
     });
     let (satellite, code, phase, lock_lost) = (whole(), numbers(), numbers(), yes_or_no());
-    let sighting = Sighting { satellite, code, phase, lock_lost, state, antenna };
-    let sightings = any([sighting; 4]);
+    let observation = SatelliteObservation { satellite, code, phase, lock_lost, state, antenna };
+    let observations = any([observation; 4]);
     let mut filter = any(PppFilter::<N>::new(config()));
     keep(PppFilter::config(&filter));
     for _ in 0..rounds() {
         let time = any(GpsTime::new(whole(), number()));
         try_on(&mut filter, |filter| {
-            let solution = any(PppFilter::process(filter, time, &receiver, slice(&sightings))?);
+            let solution = any(PppFilter::process(filter, time, &receiver, slice(&observations))?);
             keep(Solution::deviations_enu(&solution));
             Ok::<_, Error>(())
         });

@@ -2,8 +2,8 @@
 
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_robust_kalman::{
-    Adaptive, Block, Decision, Descent, Discrepancy, Error, Measurement, Order, Reweighting,
-    Robust, Scale, Weight, jump, student_quantile,
+    Adaptive, Block, Decision, Descent, Discrepancy, Error, Huber, Igg3, Measurement, Order,
+    Reweighting, Robust, Scale, TTest, Weight, WeightFunction, jump, student_quantile,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -32,9 +32,9 @@ fn robust<T: Scalar>() -> Robust<T> {
     });
     any(Robust {
         weight: one_of([
-            Weight::Huber { k: number() },
-            Weight::Igg3 { k0: number(), k1: number(), descent: descent() },
-            Weight::TTest { alpha0: number(), alpha1: number(), descent: descent() },
+            Weight::Huber(Huber { k: number() }),
+            Weight::Igg3(Igg3 { k0: number(), k1: number(), descent: descent() }),
+            Weight::TTest(TTest { alpha0: number(), alpha1: number(), descent: descent() }),
         ]),
         scale: one_of([
             Scale::Unit,
@@ -62,12 +62,20 @@ fn presets<T: Scalar>() {
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
 }
 
+fn functions<T: Scalar, W: WeightFunction<T>>(weight: &W) {
+    keep(WeightFunction::thresholds(weight, whole()));
+    keep(WeightFunction::factor(weight, number(), any((number(), number()))));
+    keep(WeightFunction::<T>::is_valid(weight));
+    keep(WeightFunction::<T>::is_t_test(weight));
+}
+
 fn weights<T: Scalar>() {
     keep(student_quantile(number::<T>(), whole()));
     keep(Descent::factor(descent(), number::<T>(), number(), number()));
-    let weight = robust::<T>().weight;
-    keep(Weight::thresholds(&weight, whole()));
-    keep(Weight::factor(&weight, number(), any((number(), number()))));
+    functions(&robust::<T>().weight);
+    functions(&any(Huber { k: number::<T>() }));
+    functions(&any(Igg3 { k0: number::<T>(), k1: number(), descent: descent() }));
+    functions(&any(TTest { alpha0: number::<T>(), alpha1: number(), descent: descent() }));
     keep(Adaptive::factor(&any(Adaptive::<T>::new(block())), number()));
     keep(Decision::was_treated(&any(<Decision<T> as Default>::default())));
 }
@@ -81,6 +89,8 @@ fn updates<T: Scalar, const N: usize, const K: usize, const M: usize>() {
     let mut decisions = any([Decision::NONE; M]);
     let (measurements, decisions) = (slice(&measurements), slice_mut(&mut decisions));
     keep(Robust::update(&robust(), any(&mut estimate), measurements, decisions));
+    let huber = Robust::with_weight(robust(), any(Huber { k: number() }));
+    keep(Robust::update(&huber, any(&mut estimate), measurements, decisions));
     keep(jump(&estimate, measurements, block()));
 }
 

@@ -8,13 +8,13 @@ use kestirim_air_to_ground::{
 use kestirim_particle_filter::{Region, Resampler};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{
-    Beacon, BeaconEstimate, Error, Height, Locator, Motion, Orbit, PrintedLocator, PrintedSettings,
-    TrackEstimate, Tracker,
+    Area, Beacon, BeaconEstimate, BeaconSearch, Error, Height, Locator, Motion, Orbit,
+    PublishedLocator, PublishedSettings, Thinned, TrackEstimate, Tracker, Within,
 };
 
 use super::values::{
-    AnyRng, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, try_on, whole,
-    yes_or_no,
+    AnyRng, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, slice, try_on,
+    whole, yes_or_no,
 };
 
 fn region<T: Scalar, const D: usize>() -> Option<Region<T, D>> {
@@ -57,25 +57,25 @@ fn locators<T: Scalar, const L: usize, const M: usize, const D: usize>() {
     keep(locates::<T, _, L, M, D>(channel));
     let Ok(doubted) = any(Contaminated::new(channel, number())) else { return };
     keep(locates::<T, _, L, M, D>(doubted));
-    keep(prints::<T, L>(channel));
+    keep(publishes::<T, L>(channel));
 }
 
-fn prints<T: Scalar, const L: usize>(channel: Channel<T>) -> Option<()> {
+fn publishes<T: Scalar, const L: usize>(channel: Channel<T>) -> Option<()> {
     let (region, measurement) = (region()?, measurement()?);
-    let settings = any(PrintedSettings::thesis());
-    let settings = any(PrintedSettings {
+    let settings = any(PublishedSettings::thesis());
+    let settings = any(PublishedSettings {
         resampler: one_of([Resampler::Multinomial, Resampler::Systematic]),
         ..settings
     });
-    keep(PrintedLocator::<T, L>::new(channel, &region, settings, &mut AnyRng));
+    keep(PublishedLocator::<T, L>::new(channel, &region, settings, &mut AnyRng));
     let (count, rng) = (whole(), &mut AnyRng);
-    let printed = PrintedLocator::<T, L>::with_count(count, channel, &region, settings, rng);
-    let mut printed = any(printed).ok()?;
+    let published = PublishedLocator::<T, L>::with_count(count, channel, &region, settings, rng);
+    let mut published = any(published).ok()?;
     for _ in 0..rounds() {
-        try_on(&mut printed, |printed| PrintedLocator::measure(printed, &measurement, rng));
+        try_on(&mut published, |published| PublishedLocator::measure(published, &measurement, rng));
     }
-    keep(PrintedLocator::moments(&printed));
-    keep(PrintedLocator::particles(&printed));
+    keep(PublishedLocator::moments(&published));
+    keep(PublishedLocator::particles(&published));
     Some(())
 }
 
@@ -100,6 +100,48 @@ fn finds<T: Scalar, const M: usize, const L: usize>() -> Option<()> {
 
 fn beacons<T: Scalar, const M: usize, const L: usize>() {
     keep(finds::<T, M, L>());
+}
+
+fn areas<T: Scalar, const N: usize>() -> Option<()> {
+    let corners = any([(); N].map(|()| numbers::<T, 2>()));
+    let area = match any(Area::<T, N>::new(slice(&corners))) {
+        Ok(area) => area,
+        Err(_) => any(Area::rectangle(&region()?)).ok()?,
+    };
+    keep(Area::corners(&area));
+    keep(Area::region(&area));
+    keep(Area::size(&area));
+    keep(Area::contains(&area, numbers()));
+    let area = any(Area::relative_to(&area, numbers())).ok()?;
+    let within = any(Within::new(channel()?, &area));
+    keep(Likelihood::log_likelihood(&within, &measurement()?, numbers()));
+    searches::<T, N, 9>(area)
+}
+
+fn searches<T: Scalar, const N: usize, const L: usize>(area: Area<T, N>) -> Option<()> {
+    let level = maybe(LevelPrior { mean: number(), sigma: number() });
+    let mut search = any(BeaconSearch::<T, 5, N>::new(FreeSpace::new(level), area));
+    for _ in 0..rounds() {
+        if let Some(measurement) = measurement() {
+            BeaconSearch::measure(any(&mut search), &measurement);
+        }
+    }
+    keep(BeaconSearch::measurements(&search));
+    keep(BeaconSearch::area(&search));
+    let estimate = any(BeaconSearch::estimate::<L>(&search)).ok()?;
+    keep(BeaconSearch::credible(&search, &estimate, numbers(), number()));
+    Some(())
+}
+
+fn confined<T: Scalar, const N: usize>() {
+    keep(areas::<T, N>());
+    keep(Thinned::<T, 3>::new());
+    let mut thinned = any(<Thinned<T, 3> as Default>::default());
+    for _ in 0..rounds() {
+        Thinned::push(any(&mut thinned), number());
+    }
+    keep(Thinned::as_slice(&thinned));
+    keep(Thinned::count(&thinned));
 }
 
 fn motion<T: Scalar>() -> Motion<T> {
@@ -146,6 +188,8 @@ fn all_of<T: Scalar>() {
         locators::<T, 9, 3, 3>,
         beacons::<T, 16, 64>,
         beacons::<T, 3, 9>,
+        confined::<T, 4>,
+        confined::<T, 9>,
         trackers::<T, 64>,
         trackers::<T, 9>,
         orbits::<T>,

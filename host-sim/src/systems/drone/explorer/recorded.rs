@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::super::area::Area;
+use super::super::area::{self, Area};
 use super::super::flight::{self, Flight};
 use super::super::scenario::EnvironmentKind;
 use super::super::search::Estimate;
@@ -24,7 +24,7 @@ type Found = (Survey, Vec<Estimate>);
 pub(super) struct Recorded {
     log: PathBuf,
     flight: Flight,
-    area: Option<Area>,
+    area: Option<Box<Area>>,
     truth: Option<[f64; 2]>,
     last: Remembered<Option<EnvironmentKind>, Found>,
 }
@@ -40,7 +40,7 @@ impl Recorded {
         truth: Option<&Path>,
     ) -> Result<Self, Error> {
         let (flight, log) = (flight::read(log)?, log.to_path_buf());
-        let area = area.map(Area::read).transpose()?;
+        let area = area.map(area::read).transpose()?;
         let truth = truth.map(flight::read_truth).transpose()?;
         let recorded = Self { log, flight, area, truth, last: Remembered::default() };
         // What is asked for first; and what is too short to be used is told now.

@@ -3,8 +3,8 @@
 #![no_std]
 #![no_main]
 
-use images::path_loss::Printed;
+use images::path_loss::Published;
 use images::replay::run;
 use support::image;
 
-image!(run::<Printed<f32>>);
+image!(run::<Published<f32>>);

@@ -3,9 +3,9 @@
 #![no_std]
 #![no_main]
 
-use images::path_loss::Printed;
+use images::path_loss::Published;
 use images::replay::run;
 use kestirim_scalar::Q16_16;
 use support::image;
 
-image!(run::<Printed<Q16_16>>);
+image!(run::<Published<Q16_16>>);

@@ -51,7 +51,7 @@ fn position(keys: &[&str; 2], names: [&str; 3], config: Config) {
         };
         let mut answer = Err(Error::TimeNotAdvancing);
         meter.measure(|| {
-            answer = filter.process(epoch.time, &receiver(), &epoch.sightings);
+            answer = filter.process(epoch.time, &receiver(), &epoch.observations);
             if answer.is_ok() { Class::Update } else { Class::Rejected }
         });
         let Ok(solution) = answer else { fail("an epoch without a solution") };

@@ -1,25 +1,25 @@
 use kestirim_gnss_ppp::{Pattern, SatelliteState};
 
-/// One satellite as the receiver observed it in an epoch, and where it was.
+/// Observation of one satellite in an epoch, and the satellite's state.
 ///
 /// Only complete observations serve: both codes and both phases.
 #[derive(Clone, Copy, Debug)]
-pub struct Sighting<'a> {
+pub struct SatelliteObservation<'a> {
     /// Which GPS satellite (PRN).
     pub satellite: u8,
     /// Codes on L1 and L2, m (P1 and P2, to which the clocks of the IGS refer).
     pub code: [f64; 2],
     /// Carrier phases on L1 and L2, cycles.
     pub phase: [f64; 2],
-    /// Whether the receiver says that it lost lock since the last epoch that had a solution.
+    /// Whether the receiver reports a loss of lock since the last epoch that had a solution.
     pub lock_lost: bool,
-    /// The satellite when it sent what was received.
+    /// The satellite's state at the time of transmission.
     pub state: SatelliteState,
     /// Its antenna on L1 and L2, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
 }
 
-impl Sighting<'_> {
+impl SatelliteObservation<'_> {
     pub(crate) fn is_finite(&self) -> bool {
         self.code.iter().chain(&self.phase).all(|value| value.is_finite())
     }

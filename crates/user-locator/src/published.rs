@@ -5,11 +5,11 @@ use rand_core::Rng;
 
 use crate::Error;
 
-/// What the thesis leaves to choose.
+/// Parameters of the published filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct PrintedSettings<T> {
-    /// How particles are resampled.
+pub struct PublishedSettings<T> {
+    /// Law of resampling.
     pub resampler: Resampler,
     /// Share of effective particles below which they are resampled: `N_th/L`.
     pub threshold: T,
@@ -17,8 +17,8 @@ pub struct PrintedSettings<T> {
     pub jitter: T,
 }
 
-impl<T: Scalar> PrintedSettings<T> {
-    /// Systematic resampling, `N_th` = L/10, 10 m: what the thesis' tables were made with.
+impl<T: Scalar> PublishedSettings<T> {
+    /// Systematic resampling, `N_th` = L/10, 10 m: the settings of the published tables.
     #[inline]
     pub fn thesis() -> Self {
         Self {
@@ -29,21 +29,21 @@ impl<T: Scalar> PrintedSettings<T> {
     }
 }
 
-/// The thesis' particle filter (Table 2.1), literally.
+/// The published particle filter (the thesis' Table 2.1).
 #[derive(Clone, Debug)]
-pub struct PrintedLocator<T, const L: usize> {
+pub struct PublishedLocator<T, const L: usize> {
     channel: Channel<T>,
-    settings: PrintedSettings<T>,
+    settings: PublishedSettings<T>,
     particles: Particles<T, 2, L>,
 }
 
-impl<T: Scalar, const L: usize> PrintedLocator<T, L> {
+impl<T: Scalar, const L: usize> PublishedLocator<T, L> {
     /// Particles all over a region (m).
     #[inline]
     pub fn new<R: Rng + ?Sized>(
         channel: Channel<T>,
         region: &Region<T, 2>,
-        settings: PrintedSettings<T>,
+        settings: PublishedSettings<T>,
         rng: &mut R,
     ) -> Self {
         let particles = Particles::new(Start::Random, region, rng);
@@ -59,7 +59,7 @@ impl<T: Scalar, const L: usize> PrintedLocator<T, L> {
         count: usize,
         channel: Channel<T>,
         region: &Region<T, 2>,
-        settings: PrintedSettings<T>,
+        settings: PublishedSettings<T>,
         rng: &mut R,
     ) -> Result<Self, Error> {
         let particles = Particles::with_count(count, Start::Random, region, rng)?;
@@ -93,7 +93,7 @@ impl<T: Scalar, const L: usize> PrintedLocator<T, L> {
         self.particles.moments()
     }
 
-    /// The cloud itself.
+    /// The particles.
     #[inline]
     pub fn particles(&self) -> &Particles<T, 2, L> {
         &self.particles

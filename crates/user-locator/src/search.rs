@@ -1,0 +1,77 @@
+use kestirim_air_to_ground::{FreeSpace, Measurement};
+use kestirim_scalar::Scalar;
+
+use crate::{Area, BeaconEstimate, Error, Thinned};
+
+/// Searches an area of up to N corners, over open ground, for a transmitter from any number of measurements, of which
+/// up to M are kept.
+///
+/// [`Area`], [`Thinned`] and the posterior of [`Beacon`](crate::Beacon) in one. 16·M + 8·N bytes in single precision.
+///
+/// ```
+/// use kestirim_air_to_ground::{FreeSpace, Measurement};
+/// use kestirim_user_locator::{Area, BeaconSearch};
+///
+/// let area = Area::<f32, 8>::new(&[[0.0, 0.0], [400.0, 0.0], [400.0, 300.0]])?;
+/// // Of the transmitter's level nothing is known.
+/// let mut search = BeaconSearch::<f32, 40, 8>::new(FreeSpace::new(None), area);
+/// for (place, level) in [([0.0, 0.0], -72.0), ([200.0, 0.0], -66.5), ([400.0, 0.0], -68.0)] {
+///     search.measure(&Measurement::new(place, 40.0, -level)?);
+/// }
+/// let found = search.estimate::<500>()?;
+/// println!("{:?} m, ± {} m", found.place, found.moments().spread());
+/// # Ok::<(), kestirim_user_locator::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BeaconSearch<T, const M: usize, const N: usize> {
+    channel: FreeSpace<T>,
+    area: Area<T, N>,
+    measurements: Thinned<Measurement<T>, M>,
+}
+
+impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
+    /// Without measurements.
+    #[inline]
+    pub fn new(channel: FreeSpace<T>, area: Area<T, N>) -> Self {
+        const { assert!(M <= 128, "the channel reads no more") };
+        Self { channel, area, measurements: Thinned::new() }
+    }
+
+    /// Takes in a measurement, of which the loss is the negative received level.
+    #[inline]
+    pub fn measure(&mut self, measurement: &Measurement<T>) {
+        self.measurements.push(*measurement);
+    }
+
+    /// The measurements that are kept, in their order.
+    #[inline]
+    pub fn measurements(&self) -> &[Measurement<T>] {
+        self.measurements.as_slice()
+    }
+
+    /// Where the transmitter is searched for.
+    #[inline]
+    pub fn area(&self) -> &Area<T, N> {
+        &self.area
+    }
+
+    /// Where in the area the transmitter is, on a lattice of L points over its box.
+    ///
+    /// # Errors
+    /// [`Error::Filter`] with `Degenerate` if no point of the lattice lies inside and explains the measurements.
+    pub fn estimate<const L: usize>(&self) -> Result<BeaconEstimate<T, L>, Error> {
+        let inside = |place| self.area.contains(place);
+        BeaconEstimate::of(self.channel, self.measurements(), self.area.region(), inside)
+    }
+
+    /// Whether a place belongs to the smallest region that holds the transmitter with this probability (0 to 1). The
+    /// estimate must be that of the same measurements.
+    pub fn credible<const L: usize>(
+        &self,
+        estimate: &BeaconEstimate<T, L>,
+        place: [T; 2],
+        probability: T,
+    ) -> bool {
+        estimate.is_credible(self.measurements(), place, probability)
+    }
+}

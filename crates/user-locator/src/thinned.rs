@@ -1,0 +1,100 @@
+use heapless::Vec;
+
+/// Values of a stream of unknown length in room for M: at any time evenly many of them, and the last.
+///
+/// Measurements of a flight that are close together say much the same: of a long one, few tell where the user is. When
+/// the room is full every other value is given up, and from then on half as many are kept.
+#[derive(Clone, Debug)]
+pub struct Thinned<V, const M: usize> {
+    /// One in `stride`, and the last value of all, whether or not it is one of these.
+    kept: Vec<V, M>,
+    /// Whether the last value is to make room for the next.
+    is_passing: bool,
+    /// A power of two.
+    stride: u64,
+    /// How many values there were.
+    count: u64,
+}
+
+impl<V: Copy, const M: usize> Thinned<V, M> {
+    /// Without values.
+    #[inline]
+    pub const fn new() -> Self {
+        const { assert!(M >= 3, "two that stay, and the last") };
+        Self { kept: Vec::new(), is_passing: false, stride: 1, count: 0 }
+    }
+
+    /// Adds a value.
+    pub fn push(&mut self, value: V) {
+        if self.is_passing {
+            self.kept.pop();
+        }
+        // One place is the last value's.
+        if self.kept.len() + 1 >= M && self.is_due() {
+            self.halve();
+        }
+        self.is_passing = !self.is_due();
+        // There is room: at most M − 1 stay.
+        let _ = self.kept.push(value);
+        self.count = self.count.wrapping_add(1);
+    }
+
+    /// Whether the next value is one that stays.
+    fn is_due(&self) -> bool {
+        self.count & (self.stride - 1) == 0
+    }
+
+    /// Gives up every other value.
+    fn halve(&mut self) {
+        let mut left = 0;
+        while let Some(&value) = self.kept.get(2 * left) {
+            if let Some(place) = self.kept.get_mut(left) {
+                *place = value;
+            }
+            left += 1;
+        }
+        self.kept.truncate(left);
+        // No stream is as long as a stride that does not fit.
+        self.stride = self.stride.checked_mul(2).unwrap_or(self.stride);
+    }
+
+    /// What is left, in the order in which it came.
+    #[inline]
+    pub fn as_slice(&self) -> &[V] {
+        &self.kept
+    }
+
+    /// How many values there were, those that were given up included.
+    #[inline]
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+}
+
+impl<V: Copy, const M: usize> Default for Thinned<V, M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_even_and_ends_at_the_end() {
+        let mut thinned = Thinned::<u32, 9>::new();
+        for number in 0..1000 {
+            thinned.push(number);
+            let left = thinned.as_slice();
+            assert!(left.len() <= 9 && (left.len() > 4 || left.len() as u32 == number + 1));
+            assert_eq!((left.first(), left.last()), (Some(&0), Some(&number)));
+            let step = |pair: &[u32]| pair[1] - pair[0];
+            let whole = left.get(..left.len().saturating_sub(1)).unwrap_or_default();
+            let mut steps = whole.windows(2).map(step);
+            let first = steps.next();
+            assert!(steps.all(|step| Some(step) == first), "{left:?}");
+            assert_eq!(thinned.count(), u64::from(number) + 1);
+        }
+    }
+}
