@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use crate::program::{Desk, host_sim, json, refusal, text};
-use crate::station::{BEGIN, Fault, INTERVAL, MARKER, satellites};
+use crate::station::{self, BEGIN, Fault, INTERVAL, MARKER, satellites};
 use serde_json::Value;
 
 /// Epochs of a recording of an hour and twenty minutes.

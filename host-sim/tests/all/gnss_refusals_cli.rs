@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::program::{Desk, host_sim, json, refusal};
-use crate::station::{Fault, satellites};
+use crate::station::{self, Fault, satellites};
 
 struct Files {
     desk: Desk,
