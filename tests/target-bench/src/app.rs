@@ -6,14 +6,22 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 
 use crate::elf::Elf;
-use crate::images::{Images, Profile, build_apart};
+use crate::images::{Images, Packages, Profile, build_apart};
 use crate::qemu::{ERRORS, OUTPUT, STREAM, emulate};
-use crate::target::Target;
+use crate::target::{CORTEX_M0, CORTEX_M4F, RV32IMC, Target};
 
 /// The names under which application and host meet in the emulator's working directory.
 const CARD: &str = "card.img";
 const LOG: &str = "log.bin";
 const TELEMETRY: &str = "telemetry.bin";
+
+/// The applications of each target, and which of them are built in one go: `gnss-firmware` wants another board.
+const APPLICATIONS: [(&Target, Packages); 4] = [
+    (&CORTEX_M0, &["pedestrian-firmware", "uav-firmware"]),
+    (&CORTEX_M4F, &["drone-firmware", "pedestrian-firmware", "uav-firmware"]),
+    (&CORTEX_M4F, &["gnss-firmware"]),
+    (&RV32IMC, &["robot-firmware"]),
+];
 
 /// An application, built for one target.
 #[derive(Clone, Debug)]
@@ -39,12 +47,17 @@ pub struct Run {
 }
 
 impl App {
-    /// Builds an application; `None` on a machine without the tools, which is said.
+    /// Builds an application, with the others of its board; `None` on a machine without the tools, which is said.
     ///
     /// # Errors
-    /// It does not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
+    /// It is no application of this target, it does not build, or a tool is missing and
+    /// `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, package: &'static str) -> Result<Option<Self>> {
-        let images = Images::of_package(package, target, Profile::Speed)?;
+        let (_, packages) = APPLICATIONS
+            .into_iter()
+            .find(|(of, packages)| of.triple == target.triple && packages.contains(&package))
+            .with_context(|| format!("{package} is not for {}", target.triple))?;
+        let images = Images::of_packages(packages, target, Profile::Speed)?;
         Ok(images.map(|images| Self { target, board: target.board, image: images.file(package) }))
     }
 

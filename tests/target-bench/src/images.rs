@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::env;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use anyhow::{Error, Result, bail};
 
@@ -18,7 +18,13 @@ use crate::toolchain::{Toolchain, is_installed};
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
 
 /// The packages of images with our workloads and with the peers', built in one go.
-const DEFAULT: [&str; 2] = ["images", "peers"];
+const WORKLOADS: Packages = &["images", "peers"];
+
+/// The package of the programs that call everything; apart, because it takes long and one test needs it.
+const SURFACE: Packages = &["surface"];
+
+/// Packages that one call of cargo builds together.
+pub(crate) type Packages = &'static [&'static str];
 
 /// What the compiler optimises for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,19 +76,15 @@ impl Images {
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        Self::of_packages(&DEFAULT, target, profile)
+        Self::of_packages(WORKLOADS, target, profile)
     }
 
-    /// The same for one package of the workspace of images.
+    /// The same for the programs that call everything the crates offer: to be looked at, not to be run.
     ///
     /// # Errors
     /// As [`Images::of`].
-    pub fn of_package(
-        package: &'static str,
-        target: &'static Target,
-        profile: Profile,
-    ) -> Result<Option<Self>> {
-        Self::of_packages(&[package], target, profile)
+    pub fn of_surface(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
+        Self::of_packages(SURFACE, target, profile)
     }
 
     /// The same as [`Images::of`] for who cannot do without.
@@ -90,28 +92,27 @@ impl Images {
     /// # Errors
     /// The images do not build, or a tool is missing.
     pub fn needed(target: &'static Target, profile: Profile) -> Result<Self> {
-        Self::build(&toolchain(target).map_err(Error::msg)?, &DEFAULT, profile)
+        Self::build(&toolchain(target).map_err(Error::msg)?, WORKLOADS, profile)
     }
 
-    fn of_packages(
-        packages: &[&'static str],
+    pub(crate) fn of_packages(
+        packages: Packages,
         target: &'static Target,
         profile: Profile,
     ) -> Result<Option<Self>> {
-        type Key = (Vec<&'static str>, &'static str, Profile);
-        static BUILT: Mutex<BTreeMap<Key, Option<Images>>> = Mutex::new(BTreeMap::new());
-        // Locked while building: whoever comes second waits for the images instead of building, too.
-        let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
-        let key = (packages.to_vec(), target.triple, profile);
-        if let Some(images) = built.get(&key) {
-            return Ok(images.clone());
-        }
-        let images = match toolchain(target) {
-            Ok(toolchain) => Some(Self::build(&toolchain, packages, profile)?),
-            Err(why) => skip(target, &why)?,
+        type Key = (Packages, &'static str, Profile);
+        type Built = OnceLock<Result<Option<Images>, String>>;
+        static BUILT: Mutex<BTreeMap<Key, Arc<Built>>> = Mutex::new(BTreeMap::new());
+        // Whoever comes second waits for these images, and for no others.
+        let key = (packages, target.triple, profile);
+        let built =
+            BUILT.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
+        let build = || match toolchain(target) {
+            Ok(toolchain) => Self::build(&toolchain, packages, profile).map(Some),
+            Err(why) => skip(target, &why),
         };
-        built.insert(key, images.clone());
-        Ok(images)
+        let images = built.get_or_init(|| build().map_err(|error| format!("{error:?}")));
+        images.clone().map_err(Error::msg)
     }
 
     fn build(toolchain: &Toolchain, packages: &[&str], profile: Profile) -> Result<Self> {

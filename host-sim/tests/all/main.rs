@@ -1,0 +1,23 @@
+//! The program from outside, one module a subject, in one binary: linking the library a dozen times took longer than
+//! most of the tests. `cargo test -p host-sim --test all robot_cli::` runs those of one.
+//!
+//! Apart stand `page`, which alone needs a browser's protocol, and `live_flood`, which measures what is lost when
+//! nothing else keeps the machine busy.
+
+mod cli;
+mod design_cli;
+mod drone_cli;
+mod gnss_cli;
+mod gnss_recorded_cli;
+mod gnss_refusals_cli;
+mod live_cli;
+mod live_systems;
+mod outputs_cli;
+#[path = "../program/mod.rs"]
+mod program;
+mod robot_cli;
+mod room;
+#[path = "../sender/mod.rs"]
+mod sender;
+mod station;
+mod uav_cli;

@@ -1,0 +1,68 @@
+//! What runs write, and what shells and scripts rely on.
+
+use std::fs;
+use std::process::Command;
+
+use crate::program::{Desk, host_sim, json, refusal, text};
+
+#[test]
+fn a_run_writes_tables_streams_and_a_report() {
+    let desk = Desk::new();
+    let [csv, mcap, folder] = ["robot.csv", "robot.mcap", "report"].map(|name| desk.named(name));
+    let arguments = ["run", "robot", "--trials", "2", "--json"];
+    let files = ["--csv", &csv, "--mcap", &mcap, "--report", &folder];
+    let report = json(&host_sim(&[&arguments[..], &files].concat()));
+    assert_eq!(report, json(&host_sim(&arguments)), "files change nothing of what is printed");
+    let table = fs::read_to_string(&csv).expect("the tables");
+    assert_eq!(table.lines().next(), Some("system,table,quantity,published,ours,limit"));
+    assert!(
+        table.lines().any(|row| row.starts_with("robot,robot-table-1") && row.contains("2.52"))
+    );
+    let magic = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];
+    let streams = fs::read(&mcap).expect("the streams");
+    assert!(streams.starts_with(&magic) && streams.ends_with(&magic));
+    for name in ["index.html", "results.csv", "results.json", "robot.mcap"] {
+        assert!(desk.path("report").join(name).is_file(), "{name}");
+    }
+    let figures = fs::read_dir(desk.path("report")).expect("the folder");
+    let svg = figures
+        .filter_map(Result::ok)
+        .filter(|file| file.path().extension().is_some_and(|e| e == "svg"));
+    let mut drawn = 0;
+    for file in svg {
+        let drawing = fs::read_to_string(file.path()).expect("text");
+        assert!(drawing.trim_end().ends_with("</svg>"), "{:?}", file.path());
+        drawn += 1;
+    }
+    assert!(drawn > 5, "{drawn} figures");
+}
+
+#[test]
+fn two_outputs_are_two_files() {
+    let desk = Desk::new();
+    let both = desk.named("both");
+    let sentence = refusal(&["run", "robot", "--csv", &both, "--mcap", &both]);
+    assert!(sentence.contains("--csv and --mcap name the same file"), "{sentence}");
+    assert!(!desk.path("both").exists());
+}
+
+#[test]
+fn every_shell_is_told_how_to_complete() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let output = host_sim(&["completions", shell]);
+        assert_eq!(output.status.code(), Some(0));
+        assert!(text(&output.stdout).contains("calibrate"), "{shell}");
+    }
+    refusal(&["completions", "abacus"]);
+}
+
+#[test]
+fn help_has_no_colours_where_nobody_wants_them() {
+    let help = |name: &str, value: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+        let output = program.arg("--help").env_remove("NO_COLOR").env(name, value).output();
+        output.expect("the program runs").stdout.contains(&0x1b)
+    };
+    assert!(help("CLICOLOR_FORCE", "1"), "colours can be had");
+    assert!(!help("NO_COLOR", "1"));
+}

@@ -1,0 +1,377 @@
+//! The robot's commands from outside.
+
+use std::fmt::Write;
+use std::fs;
+
+use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::room::{ANCHORS, Room, distance, line, place};
+use host_sim::random::{normal, stream};
+use serde_json::Value;
+
+#[test]
+fn a_recording_is_replayed_as_json_and_as_a_table() {
+    let room = Room::clean();
+    let report = room.report(&["--height", "1"]);
+    assert_eq!(report["system"], "robot");
+    assert_eq!((report["updates"].as_u64(), report["rejected"].as_u64()), (Some(1600), Some(0)));
+    assert_eq!(report["lost_s"], 0.0);
+    assert_eq!(report["warnings"], Value::Array(vec![]));
+    assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.1, "{report}");
+    assert_eq!(report["accuracy"]["missed"], 0);
+    let table = host_sim(&room.replay(&["--height", "1"]));
+    assert!(text(&table.stdout).contains("ranges taken in"));
+    assert_eq!(
+        json(&host_sim(&room.replay(&["--height", "1", "--json"])))["accuracy"],
+        Value::Null
+    );
+}
+
+#[test]
+fn every_tracker_follows_in_every_number() {
+    let room = Room::clean();
+    for tracker in ["lsq", "nls", "ekf", "aekf", "default"] {
+        for scalar in ["f32", "f64", "fixed"] {
+            let rmse = room.rmse(&["--height", "1", "--tracker", tracker, "--scalar", scalar]);
+            assert!(rmse < 0.12, "{tracker} {scalar}: {rmse}");
+        }
+    }
+    // As printed, the paper's filter stays behind where it was started.
+    assert!(room.rmse(&["--height", "1", "--tracker", "aekf-printed"]) > 0.3);
+}
+
+#[test]
+fn the_track_has_a_row_for_every_epoch() {
+    let room = Room::clean();
+    let track = room.desk.named("track.csv");
+    assert!(host_sim(&room.replay(&["--height", "1", "--track", &track])).status.success());
+    let written = fs::read_to_string(&track).unwrap();
+    let mut lines = written.lines();
+    assert_eq!(lines.next(), Some("t,x,y,z"));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 400);
+    assert!((rows[399][0] - 39.9).abs() < 1e-9 && rows[399][3] == 1.0);
+    let [x, y] = place(39.9);
+    assert!((rows[399][1] - x).hypot(rows[399][2] - y) < 0.15);
+}
+
+#[test]
+fn without_a_height_the_anchors_is_assumed_and_said() {
+    let room = Room::clean();
+    let output = host_sim(&room.replay(&["--json"]));
+    assert!(text(&output.stderr).contains("--height"));
+    assert!(json(&output)["warnings"][0].as_str().unwrap().contains("1.15 m"));
+    let heights = room.desk.file("heights.csv", "t,z\n0,1.0\n40,1.0\n");
+    assert_eq!(room.report(&["--height", &heights])["warnings"], Value::Array(vec![]));
+    assert!(room.rmse(&["--height", &heights]) < 0.1);
+    assert!(room.rmse(&["--dim", "3"]) < 0.6, "four anchors hardly see the height");
+}
+
+#[test]
+fn truth_never_reaches_the_estimator() {
+    let room = Room::clean();
+    let track = |truth: &str, name: &str| {
+        let out = room.desk.named(name);
+        let arguments = ["--height", "1", "--truth", truth, "--track", &out];
+        assert!(host_sim(&room.replay(&arguments)).status.success());
+        fs::read_to_string(out).unwrap()
+    };
+    let wrong = room.desk.file("wrong.csv", "t,x,y,z\n0,99,-99,7\n40,99,-99,7\n");
+    assert_eq!(track(&room.truth, "a.csv"), track(&wrong, "b.csv"));
+}
+
+#[test]
+fn planted_biases_are_found_and_their_file_helps() {
+    let planted = [0.30, 0.10, 0.20, -0.05];
+    let wild = |epoch: usize, t: f64, anchor: usize, range: f64| {
+        vec![line(t, anchor, if epoch % 11 == 10 { [337.0, -143.0][epoch % 2] } else { range })]
+    };
+    let room = Room::new(planted, wild);
+    let out = room.desk.named("calibration.csv");
+    let found = json(&host_sim(&[
+        "calibrate",
+        "robot",
+        "--anchors",
+        &room.anchors,
+        "--log",
+        &room.log,
+        "--truth",
+        &room.truth,
+        "--out",
+        &out,
+        "--json",
+    ]));
+    for (anchor, bias) in found["anchors"].as_array().unwrap().iter().zip(planted) {
+        assert!((anchor["bias_m"].as_f64().unwrap() - bias).abs() < 0.02, "{anchor}");
+    }
+    assert!(fs::read_to_string(&out).unwrap().starts_with("anchor,bias,sigma,ranges\nA0,0."));
+    let (with, without) =
+        (room.rmse(&["--height", "1", "--calibration", &out]), room.rmse(&["--height", "1"]));
+    assert!(with < 0.1 && with < 0.8 * without, "{with} {without}");
+    let short = room.desk.file("short.csv", "anchor,bias\nA0,0.3\nA9,1\n");
+    let warned = room.report(&["--height", "1", "--calibration", &short]);
+    assert!(warned["warnings"][0].as_str().unwrap().contains("A1"));
+}
+
+#[test]
+fn bad_ranges_are_counted_and_do_no_harm() {
+    let spoil = |epoch: usize, t: f64, anchor: usize, range: f64| {
+        let good = line(t, anchor, range);
+        let bad = |value: &str| format!("{t:.3},A{anchor},{value}");
+        if anchor != epoch / 10 % 4 {
+            return vec![good];
+        }
+        match epoch % 10 {
+            0 => vec![bad("")],
+            1 => vec![bad("nan")],
+            2 => vec![bad("inf")],
+            3 => vec![bad("-143")],
+            4 => vec![bad("1000")],
+            5 => vec![good.clone(), good],
+            6 => vec![format!("{t:.3},stranger,3.0"), good],
+            7 => vec![format!("{:.3},A{anchor},3.0", t - 5.0), good],
+            _ => vec![good],
+        }
+    };
+    let room = Room::new([0.0; 4], spoil);
+    for scalar in ["f32", "f64", "fixed"] {
+        let report = room.report(&["--height", "1", "--scalar", scalar]);
+        assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.12, "{report}");
+        // NaN, infinity, −143 m, 1000 m, the same again, and what is five seconds old.
+        assert_eq!(report["rejected"].as_u64(), Some(6 * 40), "{report}");
+        assert!(report["warnings"][0].as_str().unwrap().starts_with("40 ranges"));
+    }
+}
+
+#[test]
+fn a_time_far_ahead_ends_nothing() {
+    let spoil = |epoch: usize, t: f64, anchor: usize, range: f64| {
+        let ahead = if (epoch, anchor) == (100, 2) { 1e6 } else { 0.0 };
+        vec![line(t + ahead, anchor, range)]
+    };
+    let report = Room::new([0.0; 4], spoil).report(&["--height", "1"]);
+    assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.1, "{report}");
+    assert_eq!(report["accuracy"]["positions"], 400);
+    assert!(report["warnings"][0].as_str().unwrap().starts_with("1 samples"));
+}
+
+#[test]
+fn an_outage_is_survived() {
+    let silent = |epoch: usize, t: f64, anchor: usize, range: f64| {
+        if (150..250).contains(&epoch) { vec![] } else { vec![line(t, anchor, range)] }
+    };
+    let room = Room::new([0.0; 4], silent);
+    for (tracker, scalar) in [("default", "f32"), ("default", "fixed"), ("ekf", "fixed")] {
+        let report = room.report(&["--height", "1", "--tracker", tracker, "--scalar", scalar]);
+        assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.25, "{tracker} {report}");
+        assert!(report["accuracy"]["missed"].as_u64().unwrap() <= 1, "{report}");
+    }
+}
+
+#[test]
+fn points_are_found_in_their_order() {
+    let desk = Desk::new();
+    let room = Room::clean();
+    let marks = [("b", [2.0, 2.0]), ("a", [6.0, 4.5]), ("c", [3.0, 5.0])];
+    let mut rng = stream(6, 0);
+    let mut log = "point,k,anchor,range\n".to_owned();
+    for k in 0..50 {
+        for (name, at) in marks {
+            for (index, anchor) in ANCHORS.iter().enumerate() {
+                let range = distance(*anchor, at) + normal(&mut rng, 0.03);
+                let _ = writeln!(log, "{name},{k},A{index},{range:.4}");
+            }
+        }
+    }
+    let log = desk.file("ranges.csv", log);
+    let known = desk.file("points.csv", "point,x,y,z\nb,2,2,1\na,6,4.5,1\nc,3,5,1\nnever,1,1,1\n");
+    let names = desk.file("names.csv", "point,z\nb,1\na,1\nc,1\n");
+    let replay = |points: &str| {
+        json(&host_sim(&[
+            "replay",
+            "robot",
+            "--anchors",
+            &room.anchors,
+            "--log",
+            &log,
+            "--points",
+            points,
+            "--height",
+            points,
+            "--json",
+        ]))
+    };
+    let report = replay(&known);
+    let found = report["points"].as_array().unwrap();
+    assert_eq!(found.len(), 3);
+    for (found, (name, at)) in found.iter().zip(marks) {
+        assert_eq!(found["point"], name);
+        let [x, y] = ["x", "y"].map(|axis| found[axis].as_f64().unwrap());
+        assert!((x - at[0]).hypot(y - at[1]) < 0.05, "{found}");
+        assert_eq!(found["z"], 1.0);
+    }
+    assert_eq!(report["accuracy"]["missed"], 1);
+    assert!(report["warnings"][0].as_str().unwrap().ends_with("position: 1"));
+    let blind = replay(&names);
+    assert_eq!(blind["accuracy"], Value::Null);
+    assert_eq!(blind["points"].as_array().unwrap()[..3], found[..3]);
+
+    let out = desk.named("calibration.csv");
+    let found = json(&host_sim(&[
+        "calibrate",
+        "robot",
+        "--anchors",
+        &room.anchors,
+        "--log",
+        &log,
+        "--points",
+        &known,
+        "--out",
+        &out,
+        "--json",
+    ]));
+    assert!(found["anchors"][0]["bias_m"].as_f64().unwrap().abs() < 0.02);
+}
+
+#[test]
+fn imu_and_wheels_may_have_any_columns() {
+    let room = Room::clean();
+    let imu = |name: &str, header: &str, row: &str| {
+        let line = |k| format!("{:.3},{row}\n", 0.05 * f64::from(k));
+        let rows = (0..800).map(line).collect::<Vec<_>>().concat();
+        room.desk.file(name, format!("t,{header}\n{rows}"))
+    };
+    for (name, header, row) in [
+        ("all.csv", "qw,qx,qy,qz,gx,gy,gz,ax,ay,az,lax,lay,laz", "1,0,0,0,0,0,0,1,2,9,1,-1,0.5"),
+        ("force.csv", "ax,ay,az", "0.1,0.2,9.8"),
+        ("linear.csv", "qw,qx,qy,qz,lax,lay,laz", "1,0,0,0,0.5,0,0"),
+    ] {
+        let rmse = room.rmse(&["--height", "1", "--imu", &imu(name, header, row)]);
+        assert!(rmse < 0.4, "{name}: {rmse}");
+    }
+    let gyro = imu("gyro.csv", "gx,gy,gz", "0,0,0.1");
+    let warned = room.report(&["--height", "1", "--imu", &gyro]);
+    assert!(warned["warnings"][0].as_str().unwrap().contains("IMU"));
+    let wheels = imu("odom.csv", "v_left,v_right,track", "0.3,0.4,0.2");
+    assert!(room.rmse(&["--height", "1", "--odom", &wheels]) < 0.15);
+}
+
+#[test]
+fn broken_files_are_refused_with_file_and_line() {
+    let room = Room::clean();
+    let desk = &room.desk;
+    for (name, contents, expected) in [
+        ("a.csv", "", "empty file"),
+        ("b.csv", "t,anchor,range\n", "only a header"),
+        ("c.csv", "t,anchor\n0,A0\n", "line 1: expected a header with a column range"),
+        (
+            "d.csv",
+            "t,anchor,range\n0,A0,1\nx,A0,1\n",
+            "line 3: expected a finite number in column t",
+        ),
+        ("e.csv", "t,anchor,range\n0,A0,one\n", "line 2: expected a range or nothing"),
+        ("f.csv", "t,anchor,range\n0,A0\n", "line 2: expected 3 fields"),
+        ("g.csv", "t,anchor,range\n1e99,A0,1\n", "beyond any clock"),
+    ] {
+        let log = desk.file(name, contents);
+        let sentence = refusal(&["replay", "robot", "--anchors", &room.anchors, "--log", &log]);
+        assert!(sentence.contains(name) && sentence.contains(expected), "{sentence}");
+    }
+    let seventeen = (0..17).map(|index| format!("{index},{index},0,1\n"));
+    let seventeen = seventeen.collect::<Vec<_>>().concat();
+    for (name, contents, expected) in [
+        ("h.csv", "anchor,x,y,z\n1,NaN,0,0\n".to_owned(), "line 2: expected a finite number"),
+        ("i.csv", "anchor,x,y,z\n1,0,0,0\n1,1,0,0\n".to_owned(), "line 3: expected another anchor"),
+        ("j.csv", format!("anchor,x,y,z\n{seventeen}"), "line 18: expected at most 16 anchors"),
+    ] {
+        let anchors = desk.file(name, contents);
+        let sentence = refusal(&["replay", "robot", "--anchors", &anchors, "--log", &room.log]);
+        assert!(sentence.contains(name) && sentence.contains(expected), "{sentence}");
+    }
+    let backwards = desk.file("k.csv", "t,x,y\n1,0,0\n0,0,0\n");
+    let twice = desk.file("l.csv", "anchor,bias\nA0,0.1\nA0,0.2\n");
+    let missing = desk.named("missing.csv");
+    for (more, expected) in [
+        (["--truth", &backwards], "k.csv, line 3: expected a time not before"),
+        (["--calibration", &twice], "l.csv, line 3: expected another anchor"),
+        (["--imu", &missing], "missing.csv: cannot be read"),
+    ] {
+        let sentence = refusal(&room.replay(&more));
+        assert!(sentence.contains(expected), "{sentence}");
+    }
+}
+
+#[test]
+fn wrong_usage_is_one_sentence() {
+    let room = Room::clean();
+    for more in [
+        &["--room", "1,2,3"][..],
+        &["--room", "a,b,c,d"],
+        &["--height", "-1e9"],
+        &["--height", "nan"],
+        &["--dim", "4"],
+        &["--tracker", "best"],
+        &["--truth", &room.truth, "--points", &room.truth],
+        &["--track", &room.log],
+        &["--track", &room.truth, "--truth", &room.truth],
+    ] {
+        refusal(&room.replay(more));
+    }
+    refusal(&["calibrate", "robot", "--anchors", &room.anchors, "--log", &room.log, "--out", "x"]);
+    refusal(&["replay", "robot"]);
+}
+
+#[test]
+fn walls_are_respected() {
+    // Three anchors along a wall see a tag and its mirror image alike.
+    let desk = Desk::new();
+    let anchors = desk.file("a.csv", "anchor,x,y,z\n0,0,0,2\n1,2,0.05,2\n2,4,0,2\n");
+    let mut log = "t,anchor,range\n".to_owned();
+    for epoch in 0..50 {
+        for (index, x) in [0.0_f64, 2.0, 4.0].into_iter().enumerate() {
+            let range = ((1.0 - x).powi(2) + 9.0 + 1.0).sqrt();
+            let _ = writeln!(log, "{:.1},{index},{range:.4}", 0.1 * f64::from(epoch));
+        }
+    }
+    let log = desk.file("r.csv", log);
+    for (room, sign) in [("-1,0,5,6", 1.0), ("-1,-6,5,0", -1.0)] {
+        let track = desk.named("t.csv");
+        let output = host_sim(&[
+            "replay",
+            "robot",
+            "--anchors",
+            &anchors,
+            "--log",
+            &log,
+            "--height",
+            "1",
+            "--room",
+            room,
+            "--track",
+            &track,
+        ]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let written = fs::read_to_string(&track).unwrap();
+        let last: Vec<f64> = written
+            .lines()
+            .last()
+            .unwrap()
+            .split(',')
+            .map(|field| field.parse().unwrap())
+            .collect();
+        assert!((last[2] - 3.0 * sign).abs() < 0.3, "{room}: {last:?}");
+    }
+}
+
+#[test]
+fn an_experiment_repeats() {
+    let run = || host_sim(&["run", "robot", "--trials", "3", "--seed", "1", "--json"]).stdout;
+    let first = run();
+    assert_eq!(first, run());
+    let report: Value = serde_json::from_slice(&first).unwrap();
+    assert_eq!(report["points"].as_array().unwrap().len(), 15);
+    assert_eq!(report["mean"]["published"]["aekf_cm"], 2.52);
+    let cell = |group: &str, column: &str| report["mean"][group][column].as_f64().unwrap();
+    assert!(cell("from_the_truth", "aekf_cm") < 4.0);
+    assert!(cell("honest_start", "aekf_cm") > 8.0);
+}

@@ -1,0 +1,46 @@
+//! Whatever is fed in, no crate panics or overflows, and a step that is refused leaves the state as it was (where
+//! `try_on` takes it): everything that a crate offers (`tests/firmware/surface`) is called with numbers drawn at random, NaN, infinities
+//! and the rails of fixed point among them. Tests are built with overflow checks.
+//!
+//! `KESTIRIM_SEEDS` sets how often; a failure names the seed it happened at.
+
+use std::env;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+#[allow(unreachable_pub)] // Another package's library.
+#[path = "../../firmware/surface/src/lib.rs"]
+mod surface;
+
+/// How often each crate's functions are called, unless told otherwise.
+const SEEDS: u64 = 300;
+
+/// One in so many numbers is wild: none to speak of, some, many.
+const TAME: [u64; 4] = [1_000_000, 100, 20, 3];
+
+fn run(call_all: fn()) {
+    let seeds = env::var("KESTIRIM_SEEDS");
+    let seeds = seeds.map_or(SEEDS, |seeds| seeds.parse().expect("KESTIRIM_SEEDS is a number"));
+    for seed in 0..seeds {
+        let tame = TAME[(seed % 4) as usize];
+        surface::values::start_from(seed, tame);
+        if let Err(panic) = catch_unwind(AssertUnwindSafe(call_all)) {
+            eprintln!("at seed {seed}, with one wild number among {tame}");
+            resume_unwind(panic);
+        }
+    }
+}
+
+macro_rules! test_each {
+    ($($name:ident)*) => {$(
+        #[test]
+        fn $name() {
+            run(surface::$name::run);
+        }
+    )*};
+}
+
+test_each!(
+    adaptive_kalman air_to_ground attitude gnss_ppp kalman luenberger luenberger_f64 observer_design
+    particle_filter pedestrian ppp_filter robust_kalman scalar scalar_f64 telemetry uav_estimator
+    uav_longitudinal user_locator uwb_ranging uwb_tracker
+);

@@ -1,0 +1,203 @@
+//! Every crate stands on one floor, and depends on what stands below: read from `cargo metadata`. And every package
+//! that can be published has what a registry shows.
+//!
+//! A crate says in its `Cargo.toml` where it stands: `[package.metadata.kestirim]`, `floor = "estimator"`. What is not
+//! in `crates/` is a program, which may depend on anything and on which no crate may.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
+
+/// The floors of crates, and what stands on each may depend on.
+const FLOORS: [(&str, &[&str]); 6] = [
+    ("numbers", &["numbers"]),
+    // Know no sensor: no model.
+    ("estimator", &["numbers", "estimator"]),
+    // Know no estimator.
+    ("model", &["numbers", "model"]),
+    ("frames", &["numbers", "frames"]),
+    // With the standard library, so nothing that runs on a target may depend on them.
+    ("files", &["numbers", "files"]),
+    ("system", &["numbers", "estimator", "model", "frames"]),
+];
+
+const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn metadata() -> Result<Metadata> {
+    Ok(MetadataCommand::new().manifest_path(root().join("Cargo.toml")).no_deps().exec()?)
+}
+
+fn folder(package: &Package) -> Result<&Path> {
+    Ok(package.manifest_path.parent().context("a manifest is in a folder")?.as_std_path())
+}
+
+/// The packages in `crates/`.
+fn crates(metadata: &Metadata) -> Vec<&Package> {
+    let folder = metadata.workspace_root.join("crates");
+    metadata.packages.iter().filter(|package| package.manifest_path.starts_with(&folder)).collect()
+}
+
+/// Where a crate says it stands.
+fn floor(package: &Package) -> Result<&str> {
+    let floor = package.metadata["kestirim"]["floor"].as_str();
+    let known: Vec<_> = FLOORS.iter().map(|(name, _)| *name).collect();
+    floor.filter(|floor| known.contains(floor)).with_context(|| {
+        format!(
+            "{}/Cargo.toml must say where {} stands: [package.metadata.kestirim] with floor = one of {known:?}, \
+             but there is {floor:?}",
+            package.manifest_path.parent().map_or("", |folder| folder.file_name().unwrap_or("")),
+            package.name
+        )
+    })
+}
+
+fn floors<'a>(crates: &[&'a Package]) -> Result<BTreeMap<&'a str, &'a str>> {
+    crates.iter().map(|package| Ok((package.name.as_str(), floor(package)?))).collect()
+}
+
+/// How high a floor is.
+fn height(floor: &str) -> u32 {
+    match floor {
+        "numbers" => 1,
+        "system" => 3,
+        _ => 2,
+    }
+}
+
+#[test]
+fn no_arrow_points_up() -> Result<()> {
+    let metadata = metadata()?;
+    let crates = crates(&metadata);
+    ensure!(!crates.is_empty(), "there are crates");
+    let floors = floors(&crates)?;
+    let members: BTreeSet<_> =
+        metadata.packages.iter().map(|package| package.name.as_str()).collect();
+    let mut wrong = Vec::new();
+    for package in crates {
+        let (name, floor) = (package.name.as_str(), floors[package.name.as_str()]);
+        let (_, allowed) = FLOORS.into_iter().find(|(of, _)| *of == floor).context("a floor")?;
+        for dependency in &package.dependencies {
+            let on = dependency.name.as_str();
+            if !members.contains(on) {
+                continue;
+            }
+            let Some(of) = floors.get(on) else {
+                wrong.push(format!("{name} ({floor}) depends on the program {on}"));
+                continue;
+            };
+            // A test may take its numbers from a model.
+            let only_tests = dependency.kind == DependencyKind::Development;
+            if !(allowed.contains(of) || only_tests && height(of) <= height(floor)) {
+                wrong.push(format!("{name} ({floor}) depends on {on} ({of})"));
+            }
+        }
+    }
+    assert_eq!(wrong, Vec::<String>::new());
+    Ok(())
+}
+
+/// Cargo allows circles through tests, but no registry takes the first of them.
+#[test]
+fn there_is_no_circle() -> Result<()> {
+    let metadata = metadata()?;
+    let mut left: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for package in crates(&metadata) {
+        let on = package.dependencies.iter().map(|dependency| dependency.name.as_str());
+        left.insert(package.name.as_str(), on.collect());
+    }
+    while !left.is_empty() {
+        let free: Vec<_> = left
+            .iter()
+            .filter(|(_, on)| !on.iter().any(|on| left.contains_key(on)))
+            .map(|(&name, _)| name)
+            .collect();
+        ensure!(!free.is_empty(), "a circle among {:?}", left.keys());
+        left.retain(|name, _| !free.contains(name));
+    }
+    Ok(())
+}
+
+#[test]
+fn what_runs_on_a_target_has_no_standard_library() -> Result<()> {
+    let metadata = metadata()?;
+    for package in crates(&metadata) {
+        let library = fs::read_to_string(folder(package)?.join("src/lib.rs"))?;
+        let without = library.lines().any(|line| line == "#![no_std]");
+        let with = floor(package)? == "files";
+        assert_ne!(
+            without, with,
+            "{}: `#![no_std]` in lib.rs, unless it reads files",
+            package.name
+        );
+    }
+    Ok(())
+}
+
+#[test]
+fn only_crates_are_published() -> Result<()> {
+    let metadata = metadata()?;
+    let crates: BTreeSet<_> = crates(&metadata).iter().map(|package| &package.id).collect();
+    for package in &metadata.packages {
+        let private = package.publish.as_ref().is_some_and(Vec::is_empty);
+        assert_ne!(private, crates.contains(&package.id), "{}: publish = false?", package.name);
+    }
+    Ok(())
+}
+
+#[test]
+fn packages_say_what_a_registry_shows() -> Result<()> {
+    let metadata = metadata()?;
+    let mut keywords: BTreeMap<Vec<String>, &str> = BTreeMap::new();
+    for package in crates(&metadata) {
+        let name = package.name.as_str();
+        for (field, given) in [
+            ("description", &package.description),
+            ("license", &package.license),
+            ("repository", &package.repository),
+            ("documentation", &package.documentation),
+        ] {
+            assert!(given.as_ref().is_some_and(|text| !text.is_empty()), "{name} has no {field}");
+        }
+        assert_eq!(package.documentation, Some(format!("https://docs.rs/{name}")));
+        assert!(package.rust_version.is_some(), "{name} has no rust-version");
+        assert!((1..=5).contains(&package.categories.len()), "{name}: {:?}", package.categories);
+        assert!((1..=5).contains(&package.keywords.len()), "{name}: {:?}", package.keywords);
+        // What all have tells nobody anything.
+        let other = keywords.insert(package.keywords.clone(), name);
+        assert_eq!(other, None, "{name} has keywords of its own");
+    }
+    Ok(())
+}
+
+#[test]
+fn packages_hold_what_they_need() -> Result<()> {
+    let metadata = metadata()?;
+    for package in crates(&metadata) {
+        let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let output = Command::new(cargo)
+            .args(["package", "--list", "--allow-dirty", "--offline", "-p", package.name.as_str()])
+            .current_dir(&metadata.workspace_root)
+            .output()?;
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        ensure!(output.status.success(), "cargo package of {}: {complaint}", package.name);
+        let files = String::from_utf8(output.stdout)?;
+        for needed in ["Cargo.toml", "README.md", "src/lib.rs"].iter().chain(&LICENCES) {
+            assert!(files.lines().any(|file| file == *needed), "{} without {needed}", package.name);
+        }
+        for licence in LICENCES {
+            let [ours, theirs] =
+                [folder(package)?.to_owned(), root()].map(|at| fs::read(at.join(licence)));
+            assert_eq!(ours?, theirs?, "{}: {licence}", package.name);
+        }
+    }
+    Ok(())
+}
