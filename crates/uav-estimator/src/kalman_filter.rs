@@ -1,6 +1,6 @@
 use core::array::from_fn;
 
-use kestirim_kalman::{Covariance, Gaussian, Innovation, SparseRow};
+use kestirim_kalman::{Covariance, Gaussian, Innovation, LinearObservation, SparseRow};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -168,8 +168,8 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
             let unit = self.units.data.0[0][output];
             let parts = &self.rows.data.0[output];
             let row = SparseRow::<T, 4>::new(from_fn(|state| (state, parts[state])));
-            let measured = T::from_f64(measured / unit);
-            let innovation = next.observe(&row, measured, self.variances.data.0[0][output])?;
+            let observation = LinearObservation { row, measured: T::from_f64(measured / unit) };
+            let innovation = next.observe(&observation, self.variances.data.0[0][output])?;
             innovations[output] = Some(Innovation {
                 innovation: innovation.innovation.to_f64() * unit,
                 variance: innovation.variance.to_f64() * (unit * unit),
