@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use host_sim::cli::ScalarKind;
+use host_sim::system::ScalarKind;
 use host_sim::systems::robot::accuracy::Accuracy;
 use host_sim::systems::robot::anchors::{self, Anchors};
 use host_sim::systems::robot::calibration::Residuals;

@@ -201,6 +201,7 @@ pub trait Calibration {
 }
 
 /// What came of an experiment.
+#[derive(Debug, Clone)]
 pub struct Experiment {
     /// What `--json` prints.
     pub report: Value,

@@ -121,7 +121,7 @@ pub fn walk(samples: &[Sample], options: &Options) -> Result<Walk, RunError> {
 }
 
 /// Tracks a walk and lets `see` each moment of it.
-pub(super) fn watched(
+fn watched(
     samples: &[Sample],
     options: &Options,
     updates: Updates,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use host_sim::systems::pedestrian::log;
+use host_sim::systems::pedestrian::recording::log;
 use host_sim::text::TextFile;
 use kestirim_pedestrian::{Config, EkfTracker, ImuSample};
 use kestirim_scalar::{Q12_20, Scalar};
