@@ -10,7 +10,7 @@ use std::process::Command;
 use clap::Arg;
 use host_sim::commands;
 use host_sim::system::{
-    AnySystem, Answer, Kind, Number, Opened, Setting, SettingValue, Settings, Source,
+    Answer, AnySystem, Kind, Number, Opened, Setting, SettingValue, Settings, Source,
 };
 use host_sim::systems::ALL;
 
@@ -93,9 +93,8 @@ fn contexts(opened: &dyn Opened) -> Vec<Vec<(&'static str, SettingValue)>> {
     let choices = settings
         .iter()
         .filter(|setting| matches!(setting.kind, Kind::Choice { .. } | Kind::Switch { .. }));
-    let single = choices.flat_map(|setting| {
-        others(setting).into_iter().map(|value| vec![(setting.name, value)])
-    });
+    let single = choices
+        .flat_map(|setting| others(setting).into_iter().map(|value| vec![(setting.name, value)]));
     std::iter::once(Vec::new()).chain(single).collect()
 }
 
@@ -119,7 +118,8 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
             if let Kind::Choice { of, .. } | Kind::Set { of } = &setting.kind {
                 let names: Vec<_> = of.iter().map(|named| named.name.clone()).collect();
                 let options = control["options"].as_array().expect("options");
-                let shown: Vec<_> = options.iter().map(|it| it[0].as_str().unwrap().to_owned()).collect();
+                let shown: Vec<_> =
+                    options.iter().map(|it| it[0].as_str().unwrap().to_owned()).collect();
                 assert_eq!(names, shown, "{name}");
                 for value in &names {
                     assert!(setting.read(value).is_ok(), "{name} {value}");
@@ -200,7 +200,8 @@ fn the_command_gives_the_same_result_again() {
         for (recording, _) in system.synthetic() {
             let opened = open(system, recording);
             for setting in std::iter::once(None).chain(opened.settings().into_iter().map(Some)) {
-                let given = setting.and_then(|setting| Some((setting.name, others(&setting).pop()?)));
+                let given =
+                    setting.and_then(|setting| Some((setting.name, others(&setting).pop()?)));
                 let settings = with(&*opened, &given.clone().into_iter().collect::<Vec<_>>());
                 let Ok(answer) = opened.answer(&settings) else { continue };
                 if given.as_ref().is_some_and(|(name, _)| is_idle(&answer, name)) {
@@ -270,14 +271,17 @@ fn check(source: &str) {
         .to_owned();
     for entry in fs::read_dir(root.join("crates")).expect("crates") {
         let path = entry.expect("an entry").path();
-        let name = path.file_name().and_then(|name| name.to_str()).expect("a plain name").to_owned();
-        if fs::read_to_string(path.join("src/lib.rs")).is_ok_and(|text| text.contains("#![no_std]")) {
+        let name =
+            path.file_name().and_then(|name| name.to_str()).expect("a plain name").to_owned();
+        if fs::read_to_string(path.join("src/lib.rs")).is_ok_and(|text| text.contains("#![no_std]"))
+        {
             writeln!(manifest, "kestirim-{name} = {{ path = {path:?} }}").expect("a string");
         }
     }
     fs::write(folder.join("Cargo.toml"), manifest).expect("a manifest");
     fs::write(folder.join("src/lib.rs"), source).expect("a source");
-    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the versions of this workspace");
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))
+        .expect("the versions of this workspace");
     let output = Command::new(env!("CARGO"))
         .args(["check", "--quiet", "--offline"])
         .current_dir(&folder)

@@ -68,10 +68,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 }
 
 /// Reads, tracks, compares and writes.
-pub(super) fn account(
-    system: &dyn AnySystem,
-    matches: &ArgMatches,
-) -> Result<Account, Error> {
+pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Account, Error> {
     let mut settings = Settings::matched(system.settings(), matches);
     let files = Files::matched(system.files(), matches, &mut settings);
     let outputs = system.outputs().iter();

@@ -1,7 +1,7 @@
 //! The drone against its thesis: published numbers, limits, credible regions, degeneracy.
 
-use host_sim::system::ScalarKind;
 use host_sim::metrics::{mean, standard_deviation};
+use host_sim::system::ScalarKind;
 use host_sim::systems::drone::moving_user::{self, LOST_M, Policy, Walk};
 use host_sim::systems::drone::report::Row;
 use host_sim::systems::drone::static_user::{self, Geometry, Job, Outcome, Paper};

@@ -2,8 +2,8 @@
 //!
 //! `cargo test --release -p kestirim-tests --test all pedestrian_table:: -- --ignored --nocapture`
 
-use host_sim::system::{ScalarKind, System, Settings};
 use host_sim::metrics::{mean, median};
+use host_sim::system::{ScalarKind, Settings, System};
 use host_sim::systems::pedestrian::Pedestrian;
 use host_sim::systems::pedestrian::settings::{Options, SensorClass, TrackerKind};
 use kestirim_tests::recordings::{self, GCP, GCP_FAST, Group, gcp, vicon};
