@@ -44,44 +44,6 @@ pub const PEDESTRIAN_100_HZ: PathLengths = PathLengths {
     sigma_m: 0.8852,
 };
 
-/// Position errors at one point of the robot's office, cm: the error of the mean of 50 measurements.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct PositionErrors {
-    /// Trilateration alone.
-    pub unfiltered_cm: f64,
-    /// Extended Kalman filter.
-    pub ekf_cm: f64,
-    /// Adaptive extended Kalman filter.
-    pub aekf_cm: f64,
-}
-
-const fn errors(unfiltered_cm: f64, ekf_cm: f64, aekf_cm: f64) -> PositionErrors {
-    PositionErrors { unfiltered_cm, ekf_cm, aekf_cm }
-}
-
-/// Table 1 of the robot's paper (ultra-wideband ranging and an IMU on an ESP32, in Turkish): points P1 to
-/// P15.
-pub const ROBOT_TABLE_1: [PositionErrors; 15] = [
-    errors(11.64, 8.04, 0.46),
-    errors(17.37, 11.87, 0.74),
-    errors(19.10, 7.55, 4.78),
-    errors(16.87, 7.33, 3.20),
-    errors(28.10, 10.18, 2.35),
-    errors(3.87, 5.71, 4.69),
-    errors(11.70, 4.79, 3.16),
-    errors(17.91, 3.29, 1.13),
-    errors(6.88, 5.49, 2.82),
-    errors(11.93, 6.21, 4.27),
-    errors(14.93, 4.13, 1.73),
-    errors(7.59, 7.09, 3.68),
-    errors(13.35, 3.96, 1.46),
-    errors(28.62, 8.03, 2.43),
-    errors(21.16, 7.61, 0.89),
-];
-
-/// The table's means as printed.
-pub const ROBOT_TABLE_1_MEAN: PositionErrors = errors(15.40, 6.75, 2.52);
-
 /// Mean errors of the drone's thesis (Turkish; a drone base station finds a ground user by a particle filter), m,
 /// 100 trials each. Table 3.2: L = 1000, T = 12, h = 500 m, circles of 2000 m divided by 2 to 8.
 pub const DRONE_RADIUS: [f64; 7] = [165.0, 133.0, 159.0, 183.0, 242.0, 261.0, 336.0];
@@ -181,13 +143,5 @@ mod tests {
             let sigma = standard_deviation(&printed.walks_m);
             assert!((sigma - printed.sigma_m).abs() < sigma_digits / 2.0);
         }
-    }
-
-    #[test]
-    fn the_robots_means_follow_from_its_points() {
-        let column = |of: fn(&PositionErrors) -> f64| mean(&ROBOT_TABLE_1.each_ref().map(of));
-        assert!((column(|p| p.unfiltered_cm) - ROBOT_TABLE_1_MEAN.unfiltered_cm).abs() < 0.006);
-        assert!((column(|p| p.ekf_cm) - ROBOT_TABLE_1_MEAN.ekf_cm).abs() < 0.006);
-        assert!((column(|p| p.aekf_cm) - ROBOT_TABLE_1_MEAN.aekf_cm).abs() < 0.006);
     }
 }

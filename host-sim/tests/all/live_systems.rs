@@ -8,7 +8,7 @@ use crate::sender::frames;
 use host_sim::random::stream;
 use host_sim::systems::drone::scenario::EnvironmentKind;
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
-use host_sim::systems::robot::scenario::{ANCHORS, Office, line};
+use host_sim::systems::robot::simulate::scenario::{ANCHORS, Office, line};
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, fly};
 use kestirim_telemetry::{Flight, Imu, Message, PathLoss, Range};

@@ -5,7 +5,7 @@
 
 use host_sim::metrics::{mean, median, rms};
 use host_sim::system::ScalarKind;
-use host_sim::systems::robot::options::TrackerKind;
+use host_sim::systems::robot::settings::TrackerKind;
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Method, Points, Recording, blocked};
 use kestirim_uwb_ranging::LevelBias;

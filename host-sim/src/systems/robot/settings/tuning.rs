@@ -1,8 +1,10 @@
-//! The constants of a tracker, to be turned.
+//! Constants of the trackers.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Huber;
 use kestirim_uwb_tracker::Config;
+
+use crate::system::Settings;
 
 /// Constants of a tracker that can be other than its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +17,7 @@ pub struct Tuning {
     pub gate_sigmas: Option<f64>,
     /// Beyond how many a range that is too long, or too short, is weakened; none weakens none.
     pub huber_sigmas: Option<[f64; 2]>,
-    /// How long a velocity lasts, s; none decays none.
+    /// Time constant with which a velocity decays, s; none decays none.
     pub decay_time_s: Option<f64>,
     /// Whether each anchor's variance is learnt.
     pub learns: bool,
@@ -37,7 +39,20 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// Noises, which every filter has.
+    /// As set.
+    pub(super) fn of(settings: &Settings) -> Self {
+        let huber = ["huber-long", "huber-short"].map(|name| settings.decided(name));
+        Self {
+            range_sigma_m: settings.decided("range-sigma"),
+            acceleration_density: settings.decided("acceleration"),
+            gate_sigmas: settings.is_on("gating").then(|| settings.decided("gate")),
+            huber_sigmas: settings.is_on("huber").then_some(huber),
+            decay_time_s: settings.number("decay"),
+            learns: settings.is_on("learning"),
+        }
+    }
+
+    /// The noises, which every Kalman filter has.
     pub fn of_any<T: Scalar>(&self, config: Config<T>) -> Config<T> {
         Config {
             range_sigma: T::from_f64(self.range_sigma_m),

@@ -9,19 +9,20 @@ use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::accuracy::Accuracy;
-use super::feed::{self, Company, Epoch};
-use super::follow::{self, Follow};
 use super::limit::{Knowledge, mean_error_limit};
-use super::options::{self, Setup, TrackerKind};
-use super::published::{Beginning, Noise};
-use super::ranges::RangeRow;
-use super::scenario::{self, EPOCHS, Office};
-use crate::system::{RunOptions, ScalarKind};
+use super::published::{PositionErrors, TABLE_1, TABLE_1_MEAN};
 use crate::metrics::{distance, mean};
-use crate::published::{PositionErrors, ROBOT_TABLE_1, ROBOT_TABLE_1_MEAN};
 use crate::random::stream;
-use crate::system::choose_scalar;
+use crate::system::{RunOptions, ScalarKind, System, choose_scalar};
+use crate::systems::robot::Robot;
+use crate::systems::robot::account::accuracy::Accuracy;
+use crate::systems::robot::recording::event::Sensors;
+use crate::systems::robot::recording::ranges::RangeRow;
+use crate::systems::robot::settings::{SCALARS, Setup, TrackerKind};
+use crate::systems::robot::simulate::scenario::{self, EPOCHS, Office};
+use crate::systems::robot::track::follow::{self, Follow};
+use crate::systems::robot::track::published::{Beginning, Noise};
+use crate::systems::robot::track::{self, Epoch};
 use crate::{Error, output};
 
 /// Repetitions unless told otherwise: the mean of the table is then good to a fiftieth.
@@ -32,7 +33,7 @@ const COLUMNS: usize = 8;
 /// Errors in cm, of the mean of 50 positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Row {
-    /// As printed in the paper.
+    /// As published.
     pub published: PositionErrors,
     /// The paper's protocol, its filters started at the surveyed point.
     pub from_the_truth: PositionErrors,
@@ -82,7 +83,7 @@ pub struct Report {
 /// # Errors
 /// If the scalar is not supported.
 pub fn run(options: RunOptions) -> Result<Report, Error> {
-    let scalar = choose_scalar("robot", options.scalar, &options::SCALARS, ScalarKind::F32)?;
+    let scalar = choose_scalar(Robot::NAME, options.scalar, &SCALARS, ScalarKind::F32)?;
     let trials = options.trials.unwrap_or(TRIALS);
     let days: Result<Vec<Day>, Error> = (0..u64::from(trials))
         .into_par_iter()
@@ -101,7 +102,7 @@ pub fn run(options: RunOptions) -> Result<Report, Error> {
         ours_calibrated_cm: column(4),
     };
     let mean = mean_row(&points);
-    Ok(Report { system: "robot", seed: options.seed, trials, scalar, points, mean, line })
+    Ok(Report { system: Robot::NAME, seed: options.seed, trials, scalar, points, mean, line })
 }
 
 /// One office on one day.
@@ -125,8 +126,8 @@ impl Day {
             let trackers = trackers(&plain, &calibrated, place, trial)?;
             *errors = trackers.map(|mut tracker| static_error_cm(tracker.as_mut(), rows, place));
         }
-        let way = scenario::line();
-        let rows = office.measure(&mut rng, &way);
+        let path = scenario::line();
+        let rows = office.measure(&mut rng, &path);
         let honest = |noise| Beginning { start: None, noise };
         let followers = [
             follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
@@ -135,7 +136,7 @@ impl Day {
             follow::build(&plain)?,
             follow::build(&calibrated)?,
         ];
-        let line = followers.map(|mut tracker| line_error_cm(tracker.as_mut(), &rows, &way));
+        let line = followers.map(|mut tracker| line_error_cm(tracker.as_mut(), &rows, &path));
         Ok(Self { points, line })
     }
 }
@@ -164,7 +165,7 @@ fn trackers(
 }
 
 fn positions(tracker: &mut dyn Follow, rows: &[RangeRow]) -> Vec<Epoch> {
-    feed::follow(tracker, rows, &Company::default()).epochs
+    track::follow(tracker, &Sensors::ranges(rows.to_vec()).events()).epochs
 }
 
 /// The paper's measure: the error of the mean of all positions, cm.
@@ -176,10 +177,10 @@ fn static_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], place: [f64; 2])
     100.0 * distance([coordinate(0), coordinate(1)], place)
 }
 
-fn line_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], way: &[[f64; 2]]) -> f64 {
+fn line_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], path: &[[f64; 2]]) -> f64 {
     let epochs = positions(tracker, rows);
     let pairs: Vec<_> =
-        epochs.iter().zip(way).map(|(epoch, &truth)| (epoch.position, truth)).collect();
+        epochs.iter().zip(path).map(|(epoch, &truth)| (epoch.position, truth)).collect();
     Accuracy::of(&pairs).map_or(0.0, |accuracy| 100.0 * accuracy.rmse_m)
 }
 
@@ -190,7 +191,7 @@ fn row(days: &[Day], point: usize) -> Row {
         std::array::from_fn(column);
     let place = scenario::points()[point];
     Row {
-        published: ROBOT_TABLE_1[point],
+        published: TABLE_1[point],
         from_the_truth: PositionErrors {
             unfiltered_cm: unfiltered,
             ekf_cm: from_truth,
@@ -208,7 +209,7 @@ fn row(days: &[Day], point: usize) -> Row {
 fn mean_row(rows: &[Row]) -> Row {
     let of = |field: fn(&Row) -> f64| mean(&rows.iter().map(field).collect::<Vec<_>>());
     Row {
-        published: ROBOT_TABLE_1_MEAN,
+        published: TABLE_1_MEAN,
         from_the_truth: PositionErrors {
             unfiltered_cm: of(|row| row.from_the_truth.unfiltered_cm),
             ekf_cm: of(|row| row.from_the_truth.ekf_cm),

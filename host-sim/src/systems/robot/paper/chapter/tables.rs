@@ -1,10 +1,10 @@
 //! The paper's table, with the start made visible.
 
-use super::super::experiment::{Report, Row};
-use super::super::trace::Trace;
 use super::day::Day;
-use crate::published::PositionErrors;
 use crate::report::Comparison;
+use crate::systems::robot::paper::experiment::{Report, Row};
+use crate::systems::robot::paper::published::PositionErrors;
+use crate::systems::robot::track::Trace;
 
 fn three(errors: &PositionErrors) -> String {
     let PositionErrors { unfiltered_cm, ekf_cm, aekf_cm } = errors;
@@ -92,7 +92,7 @@ pub(super) fn line(report: &Report) -> Comparison {
 /// The round among people.
 pub(super) fn round(day: &Day) -> Comparison {
     let rmse = |traces: &[Trace]| {
-        let accuracy = day.recording.accuracy(traces.iter().map(|trace| &trace.followed));
+        let accuracy = day.recording.accuracy(traces);
         accuracy.map_or_else(String::new, |accuracy| format!("{:.1} cm", 100.0 * accuracy.rmse_m))
     };
     let [ekf, aekf] = &day.honest;

@@ -7,13 +7,20 @@
 use rand_core::Rng;
 use rand_distr::{Distribution, Exp};
 
-use super::ranges::RangeRow;
 use crate::metrics::{distance, median};
 use crate::random::{normal, uniform};
+use crate::systems::robot::recording::anchors::Anchors;
+use crate::systems::robot::recording::ranges::RangeRow;
 
 /// The anchors A1 to A4, m.
 pub const ANCHORS: [[f64; 3]; 4] =
     [[0.0, 0.0, 0.0], [4.8, 6.4, 0.0], [0.0, 6.4, 0.0], [4.8, 0.0, 0.0]];
+/// The anchors with their names.
+pub fn office_anchors() -> Anchors {
+    let names = (1..=ANCHORS.len()).map(|number| format!("A{number}")).collect();
+    Anchors { names, positions: ANCHORS.to_vec() }
+}
+
 /// Epochs at each point.
 pub const EPOCHS: usize = 50;
 /// Time between epochs, µs.
@@ -44,7 +51,7 @@ const BLOCKED_TO: f64 = 0.8;
 const SPEED: f64 = 0.2;
 const LINE: [[f64; 2]; 2] = [[0.8, 0.8], [4.0, 5.6]];
 const ROUND: [[f64; 2]; 5] = [[0.8, 0.8], [4.0, 0.8], [4.0, 5.6], [0.8, 5.6], [0.8, 0.8]];
-/// Who meets a crowd has a person before each anchor in turn, for this share of the way.
+/// Who meets a crowd has a person before each anchor in turn, for this share of the path.
 const CROWD_SHARE: usize = 6;
 
 /// The fifteen points, m. The paper does not say where its own were.
@@ -73,7 +80,7 @@ pub fn round() -> Vec<[f64; 2]> {
     along(&ROUND)
 }
 
-/// At each epoch of a way from corner to corner.
+/// At each epoch of a path from corner to corner.
 fn along(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let stretch = |(from, to): (&[f64; 2], &[f64; 2])| {
         let (from, to) = (*from, *to);
@@ -99,25 +106,25 @@ impl Office {
         Self { biases: std::array::from_fn(|_| COMMON_BIAS + normal(rng, ANCHOR_SIGMA)) }
     }
 
-    /// Ranges along a way, four at each epoch.
-    pub fn measure<R: Rng>(&self, rng: &mut R, way: &[[f64; 2]]) -> Vec<RangeRow> {
+    /// Ranges along a path, four at each epoch.
+    pub fn measure<R: Rng>(&self, rng: &mut R, path: &[[f64; 2]]) -> Vec<RangeRow> {
         let links = self.links(rng);
-        let person = Person::draw(rng, way.len());
-        Self::ranges(rng, way, links, &[person])
+        let person = Person::draw(rng, path.len());
+        Self::ranges(rng, path, links, &[person])
     }
 
     /// The same in a crowd: before each anchor somebody stands for a while, one after the other.
-    pub fn measure_in_a_crowd<R: Rng>(&self, rng: &mut R, way: &[[f64; 2]]) -> Vec<RangeRow> {
+    pub fn measure_in_a_crowd<R: Rng>(&self, rng: &mut R, path: &[[f64; 2]]) -> Vec<RangeRow> {
         let links = self.links(rng);
         let persons = std::array::from_fn::<_, 4, _>(|anchor| {
             Person::before(
                 rng,
                 anchor,
-                way.len() * (anchor + 1) / CROWD_SHARE,
-                way.len() / CROWD_SHARE,
+                path.len() * (anchor + 1) / CROWD_SHARE,
+                path.len() / CROWD_SHARE,
             )
         });
-        Self::ranges(rng, way, links, &persons)
+        Self::ranges(rng, path, links, &persons)
     }
 
     /// What each anchor measures too long, m: the median at the marked places.
@@ -140,13 +147,13 @@ impl Office {
 
     fn ranges<R: Rng>(
         rng: &mut R,
-        way: &[[f64; 2]],
+        path: &[[f64; 2]],
         links: [f64; 4],
         persons: &[Person],
     ) -> Vec<RangeRow> {
         let mut bursts = [0.0; 4];
-        let mut rows = Vec::with_capacity(4 * way.len());
-        for (epoch, &[x, y]) in way.iter().enumerate() {
+        let mut rows = Vec::with_capacity(4 * path.len());
+        for (epoch, &[x, y]) in path.iter().enumerate() {
             for (anchor, place) in ANCHORS.iter().enumerate() {
                 bursts[anchor] = next_burst(rng, bursts[anchor]);
                 let blocked: f64 =

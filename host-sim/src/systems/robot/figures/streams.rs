@@ -1,8 +1,9 @@
 //! A recording and its track as streams, for other programs.
 
-use super::recording::Recording;
-use super::trace::{Trace, sigma_m};
 use crate::stream::Stream;
+use crate::systems::robot::recording::Recording;
+use crate::systems::robot::recording::event::Event;
+use crate::systems::robot::track::Trace;
 
 /// What was measured, what the tracker makes of it, and the truth as far as it is known. Points that were
 /// recorded one by one begin at the same time, so each has topics of its own.
@@ -14,32 +15,37 @@ pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
             "" => format!("/robot/{name}"),
             point => format!("/robot/{point}/{name}"),
         };
-        let ranges = trace.heard.iter().map(|(row, reception)| {
+        let ranges = trace.ranges.iter().map(|(range, reception)| {
             let taken = f64::from(u8::from(reception.taken));
             let nis = reception.nis.unwrap_or(f64::NAN);
-            let range_m = row.range.unwrap_or(f64::NAN);
-            (seconds(row.time_us), vec![row.anchor as f64, range_m, taken, nis])
+            (seconds(range.time_us), vec![range.anchor as f64, range.metres, taken, nis])
         });
         let names = ["anchor_index", "range_m", "taken", "nis"];
         streams.push(Stream::new(topic("ranges"), &names, ranges.collect()));
-        let estimate = trace.epochs().map(|(epoch, spread)| {
+        let estimate = trace.epochs.iter().map(|epoch| {
             let [x, y, z] = epoch.position.unwrap_or([f64::NAN; 3]);
-            (seconds(epoch.time_us), vec![x, y, z, spread.map_or(f64::NAN, sigma_m)])
+            (seconds(epoch.time_us), vec![x, y, z, epoch.sigma_m().unwrap_or(f64::NAN)])
         });
         let names = ["x_m", "y_m", "z_m", "sigma_m"];
         streams.push(Stream::new(topic("estimate"), &names, estimate.collect()));
         if let Some(truth) = &part.truth {
-            let times = trace.followed.epochs.iter().map(|epoch| epoch.time_us);
+            let times = trace.epochs.iter().map(|epoch| epoch.time_us);
             let known =
                 times.filter_map(|time_us| Some((seconds(time_us), truth.at(time_us)?.to_vec())));
             streams.push(Stream::new(topic("truth"), &["x_m", "y_m"], known.collect()));
         }
     }
-    let inertial = recording.company.inertial.iter();
-    let inertial = inertial.map(|sample| (seconds(sample.time_us), sample.acceleration.to_vec()));
-    let wheels = recording.company.wheels.iter();
-    let wheels =
-        wheels.map(|sample| (seconds(sample.time_us), vec![sample.speed, sample.turn_rate]));
+    let events = || recording.parts.iter().flat_map(|part| &part.events);
+    let inertial = events().filter_map(|event| match event {
+        Event::Inertial(sample) => Some((seconds(sample.time_us), sample.acceleration.to_vec())),
+        _ => None,
+    });
+    let wheels = events().filter_map(|event| match event {
+        Event::Wheels(sample) => {
+            Some((seconds(sample.time_us), vec![sample.speed, sample.turn_rate]))
+        }
+        _ => None,
+    });
     let beside = [
         Stream::new("/robot/imu", &["ax_m_s2", "ay_m_s2", "az_m_s2"], inertial.collect()),
         Stream::new("/robot/wheels", &["speed_m_s", "turn_rate_rad_s"], wheels.collect()),
@@ -50,19 +56,18 @@ pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::follow;
-    use super::super::options::Setup;
-    use super::super::recording::Driven;
-    use super::super::trace::trace;
     use super::*;
     use crate::system::ScalarKind;
+    use crate::systems::robot::recording::Driven;
+    use crate::systems::robot::settings::Setup;
+    use crate::systems::robot::track::{follow, track};
 
     #[test]
     fn rows_fit_their_columns_and_every_point_has_its_topics() {
         let setup = Setup::of_the_office(ScalarKind::F32);
         for (driven, expected) in [(Driven::Line, 3), (Driven::Points, 45)] {
             let recording = Recording::synthetic(driven, 1);
-            let traces = trace(&recording, &setup, follow::build).unwrap();
+            let traces = track(&recording, &setup, follow::build).unwrap();
             let streams = streams(&recording, &traces);
             assert_eq!(streams.len(), expected);
             for stream in &streams {

@@ -2,7 +2,9 @@
 
 use nalgebra::{Matrix3, Matrix4, Matrix4x3};
 
-use super::scenario::{ANCHOR_SIGMA, ANCHORS, EPOCHS, LINK_SIGMA, NOISE_SIGMA};
+use crate::systems::robot::simulate::scenario::{
+    ANCHOR_SIGMA, ANCHORS, EPOCHS, LINK_SIGMA, NOISE_SIGMA,
+};
 
 /// What an estimator may know of the biases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::anchors::Anchors;
-use crate::metrics::percentile;
+use crate::metrics::{mean, percentile};
 use crate::table;
 use crate::text::printable;
 use crate::{Error, output};
@@ -91,11 +91,24 @@ pub fn write(path: &Path, calibrations: &[AnchorCalibration]) -> Result<(), Erro
     })
 }
 
-/// The bias of each anchor of the list, m; none of those that the file does not name.
+/// The bias of each anchor of the list, m, and warnings of those that the file does not name: they are taken to be
+/// like the others.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read(path: &Path, anchors: &Anchors) -> Result<Vec<Option<f64>>, Error> {
+pub fn of(path: &Path, anchors: &Anchors) -> Result<(Vec<f64>, Vec<String>), Error> {
+    let known = read(path, anchors)?;
+    let found: Vec<f64> = known.iter().flatten().copied().collect();
+    let mean = mean(&found);
+    let unknown = known.iter().zip(&anchors.names).filter(|(bias, _)| bias.is_none());
+    let warnings = unknown.map(|(_, name)| {
+        format!("the calibration does not know anchor {name}: the others' mean bias is assumed")
+    });
+    Ok((known.iter().map(|bias| bias.unwrap_or(mean)).collect(), warnings.collect()))
+}
+
+/// The bias of each anchor of the list, m; none of those that the file does not name.
+fn read(path: &Path, anchors: &Anchors) -> Result<Vec<Option<f64>>, Error> {
     let mut biases = vec![None; anchors.names.len()];
     table::read(
         path,

@@ -1,12 +1,12 @@
-//! One day in the office, followed by everyone.
+//! One day in the office, followed by every tracker.
 
-use super::super::follow::{self, Follow};
-use super::super::options::{Setup, TrackerKind};
-use super::super::published::{Beginning, Noise};
-use super::super::recording::{Recording, Truth};
-use super::super::trace::{Trace, trace};
 use crate::Error;
 use crate::system::ScalarKind;
+use crate::systems::robot::recording::{Recording, Truth};
+use crate::systems::robot::settings::{Setup, TrackerKind};
+use crate::systems::robot::track::follow::{self, Follow};
+use crate::systems::robot::track::published::{Beginning, Noise};
+use crate::systems::robot::track::{Trace, track};
 
 /// A recording, and what each tracker makes of it.
 pub(super) struct Day {
@@ -32,17 +32,17 @@ impl Day {
         let kinds = [Noise::Fixed, Noise::Adapted];
         let honest = kinds.map(|noise| {
             let beginning = Beginning { start: None, noise };
-            trace(&recording, &plain, |setup| follow::build_published(setup, beginning))
+            track(&recording, &plain, |setup| follow::build_published(setup, beginning))
         });
         let from_the_truth = kinds.map(|noise| each_from_its_truth(&recording, &plain, noise));
         let [ekf, aekf] = honest;
         let [true_ekf, true_aekf] = from_the_truth;
         Ok(Self {
-            unfiltered: trace(&recording, &unfiltered, follow::build)?,
+            unfiltered: track(&recording, &unfiltered, follow::build)?,
             honest: [ekf?, aekf?],
             from_the_truth: [true_ekf?, true_aekf?],
-            ours: trace(&recording, &plain, follow::build)?,
-            calibrated: trace(&recording, &calibrated, follow::build)?,
+            ours: track(&recording, &plain, follow::build)?,
+            calibrated: track(&recording, &calibrated, follow::build)?,
             recording,
         })
     }
@@ -56,7 +56,7 @@ fn each_from_its_truth(
 ) -> Result<Vec<Trace>, Error> {
     let starts: Vec<_> = recording.parts.iter().map(|part| start(part.truth.as_ref())).collect();
     let next = std::cell::Cell::new(0);
-    trace(recording, setup, |setup| -> Result<Box<dyn Follow>, Error> {
+    track(recording, setup, |setup| -> Result<Box<dyn Follow>, Error> {
         let part = next.replace(next.get() + 1);
         let start = starts.get(part).copied().flatten();
         follow::build_published(setup, Beginning { start, noise })

@@ -1,13 +1,15 @@
 //! `kestirim_uwb_tracker::PublishedTracker` behind the trackers' face.
 
 use kestirim_scalar::Scalar;
-use kestirim_uwb_tracker::{Anchor, PublishedConfig, PublishedTracker, RangeSample};
+use kestirim_uwb_tracker::{
+    Anchor, PublishedConfig, PublishedOutcome, PublishedTracker, RangeSample,
+};
 use nalgebra::SVector;
 
 use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused};
-use super::motion::{Inertial, Wheels};
-use super::options::Setup;
 use crate::Error;
+use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::settings::Setup;
 
 /// Which noise the filter works with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,27 +82,31 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Published<T, D, 
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Published<T, D, N, A> {
-    fn set_height(&mut self, height_m: f64) {
-        if self.tracker.set_height(T::from_f64(height_m)).is_ok() {
-            self.height_m = height_m;
-        }
-    }
-
-    fn range(&mut self, time_us: u64, anchor: usize, range_m: f64) -> Reception {
-        let sample = RangeSample { time_us, anchor, range: T::from_f64(range_m) };
-        Reception::unweighed(self.tracker.range(&sample).is_ok())
-    }
-
-    fn inertial(&mut self, _: u64, sample: &Inertial) {
-        let push = sample.push.map(|push| std::array::from_fn(|axis| T::from_f64(push[axis])));
-        self.tracker.push(push);
-    }
-
-    fn wheels(&mut self, _: u64, _: &Wheels) {}
-
-    fn end_epoch(&mut self, time_us: u64) {
-        // What eq. 18 makes impossible is left out.
-        let _ = self.tracker.end_epoch(time_us);
+    fn take(&mut self, time_us: u64, event: &Event) -> Reception {
+        let number = T::from_f64;
+        let taken = match *event {
+            Event::Range(Range { anchor, metres, .. }) => {
+                self.tracker.range(&RangeSample { time_us, anchor, range: number(metres) }).is_ok()
+            }
+            Event::Inertial(sample) => {
+                let push = |push: [f64; 3]| std::array::from_fn(|axis| number(push[axis]));
+                self.tracker.push(sample.push.map(push));
+                true
+            }
+            Event::Height { metres, .. } => {
+                let set = self.tracker.set_height(number(metres)).is_ok();
+                if set {
+                    self.height_m = metres;
+                }
+                set
+            }
+            // What eq. 18 makes impossible is left out.
+            Event::EpochEnd { .. } => {
+                !matches!(self.tracker.end_epoch(time_us), PublishedOutcome::Refused(_))
+            }
+            Event::Wheels(_) => true,
+        };
+        Reception::unweighed(taken)
     }
 
     fn position(&self) -> Option<[f64; 3]> {

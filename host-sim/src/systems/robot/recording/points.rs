@@ -111,33 +111,11 @@ pub fn read_course<const K: usize>(path: &Path, names: [&str; K]) -> Result<Cour
     Ok(Course::new(rows))
 }
 
-/// How high the tag is.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Height {
-    /// The same everywhere, m.
-    Metres(f64),
-    /// Known over time.
-    Course(Course<1>),
-    /// Known of each point.
-    Points(BTreeMap<String, f64>),
-}
-
-/// Reads `--height`: a number of metres, or a file with columns `t,z` or `point,z`.
+/// Reads the height of the tag at each point: CSV with columns `point,z` (m).
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_height(text: &str, of_points: bool) -> Result<Height, Error> {
-    if let Ok(metres) = text.parse::<f64>() {
-        return if metres.abs() <= 1e4 {
-            Ok(Height::Metres(metres))
-        } else {
-            Err(Error::Usage("--height: expected metres above the floor, or a file".to_owned()))
-        };
-    }
-    let path = Path::new(text);
-    if !of_points {
-        return Ok(Height::Course(read_course(path, ["z"])?));
-    }
+pub fn read_heights(path: &Path) -> Result<BTreeMap<String, f64>, Error> {
     let mut heights = BTreeMap::new();
     table::read(
         path,
@@ -148,5 +126,5 @@ pub fn read_height(text: &str, of_points: bool) -> Result<Height, Error> {
             Ok(())
         },
     )?;
-    Ok(Height::Points(heights))
+    Ok(heights)
 }

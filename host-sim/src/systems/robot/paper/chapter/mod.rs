@@ -4,12 +4,14 @@ mod day;
 mod drawings;
 mod tables;
 
+use self::day::Day;
 use super::experiment::Report;
-use super::recording::{Driven, Recording};
-use super::streams::streams;
 use crate::Error;
 use crate::report::{Chapter, Comparison, Made};
-use day::Day;
+use crate::system::System;
+use crate::systems::robot::Robot;
+use crate::systems::robot::figures::streams::streams;
+use crate::systems::robot::recording::{Driven, Recording};
 
 /// The chapter of a report.
 ///
@@ -46,9 +48,9 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     items.push(one.item(drawings::round_errors(&round)));
     items.push(one.item(tables::round(&round)));
     Ok(Chapter {
-        system: "robot",
+        system: Robot::NAME,
         title: "Robot: ranges to ultra-wideband anchors",
-        paper: "Ultra-wideband ranging and an IMU on an ESP32 (in Turkish)",
+        paper: Robot::PAPER,
         about: "The paper's recordings are not published: ours are days in an office of the same layout, whose \
                 biases and noise are those of 90 recorded points. A standing tag's error is a bias of each link, \
                 and no filter removes a bias: the published 2.52 cm come out only if the filter is started at the \

@@ -1,21 +1,21 @@
 //! The figures of the paper, of one day, and ours.
 
-use super::super::experiment::{Report, Row};
-use super::super::figures::{self, Shown};
-use super::super::recording::{Recording, Truth};
-use super::super::trace::Trace;
 use super::day::Day;
 use crate::figure::{Colour, Figure, Mark, Series};
+use crate::systems::robot::figures::{self, Shown};
+use crate::systems::robot::paper::experiment::{Report, Row};
+use crate::systems::robot::recording::{Recording, Truth};
+use crate::systems::robot::track::Trace;
 
 /// Fig. 3: the office.
 pub(super) fn office(points: &Day, line: &Day) -> Figure {
     let mut figure = figures::room("robot-figure-3", &points.recording);
-    let ways = line.recording.parts.iter().filter_map(|part| match &part.truth {
+    let paths = line.recording.parts.iter().filter_map(|part| match &part.truth {
         Some(Truth::Course(course)) => Some(course.rows().iter().map(|(_, place)| *place)),
         _ => None,
     });
-    figure.series.extend(ways.map(|way| {
-        Series::path("straight line", way).marked(Mark::Dashes).coloured(Colour::Other(4))
+    figure.series.extend(paths.map(|path| {
+        Series::path("straight line", path).marked(Mark::Dashes).coloured(Colour::Other(4))
     }));
     titled(
         figure,
@@ -98,7 +98,7 @@ fn three(day: &Day, ids: [&str; 3], numbers: [&str; 3], what: &str) -> [Figure; 
         ),
         figure(
             2,
-            "AEKF as printed",
+            "AEKF as published",
             vec![honest(aekf), told(true_aekf)],
             "Started at the truth it hardly leaves the place of a standing tag; from an honest start it is as far off as the EKF. A \
              moving tag it does not follow.",
@@ -156,8 +156,7 @@ pub(super) fn round_errors(day: &Day) -> Figure {
 
 /// Showing the office and a metre about it.
 fn within(figure: Figure, recording: &Recording) -> Figure {
-    let places = recording.anchors.positions.iter().map(|&[x, y, _]| [x, y]);
-    let [x0, y0, x1, y1] = figures::around(places);
+    let [x0, y0, x1, y1] = recording.anchors.rectangle();
     figure.showing(Some([x0 - 1.0, x1 + 1.0]), Some([y0 - 1.0, y1 + 1.0]))
 }
 

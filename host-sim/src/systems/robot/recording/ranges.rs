@@ -30,7 +30,7 @@ pub struct RangeLog {
     /// In the order of the log.
     pub rows: Vec<RangeRow>,
     /// How many lines name an anchor that is not in the list; they are left out.
-    pub strangers: usize,
+    pub unlisted: usize,
 }
 
 /// Later lines may go back behind a time by this, µs; one that they go back behind farther was wrong.
@@ -68,7 +68,7 @@ pub fn read_moving(path: &Path, anchors: &Anchors) -> Result<RangeLog, Error> {
             let range = optional_range(row, range)?;
             match anchors.find(row.text(anchor)) {
                 Some(anchor) => log.rows.push(RangeRow { time_us, anchor, range }),
-                None => log.strangers += 1,
+                None => log.unlisted += 1,
             }
             Ok(())
         },
@@ -100,7 +100,7 @@ pub fn read_static(path: &Path, anchors: &Anchors) -> Result<BTreeMap<String, Ra
                     let time_us = epoch as i64 * EPOCH_US;
                     log.rows.push(RangeRow { time_us, anchor, range });
                 }
-                None => log.strangers += 1,
+                None => log.unlisted += 1,
             }
             Ok(())
         },

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::feed::Epoch;
-use super::points::Course;
 use crate::metrics::{distance, mean, median, percentile, rms};
+use crate::systems::robot::recording::points::Course;
+use crate::systems::robot::track::Epoch;
 
 /// Horizontal errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
