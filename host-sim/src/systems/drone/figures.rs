@@ -18,7 +18,7 @@ pub(super) fn draw(recording: &Recording, settings: &Settings, track: &Track, an
     let (environment, plane_m) = match recording {
         Recording::Moving => (Some(settings.chosen("environment")), Some(moving_user::SIDE_M)),
         Recording::Staying => (Some(settings.chosen("environment")), Some(trajectory::SIDE_M)),
-        // A level says nothing of what is lost on the way.
+        // A level says nothing of what is lost in between.
         Recording::Flight(recorded) if recorded.flight.quantity == Quantity::PathLoss => {
             (built(settings), None)
         }

@@ -74,9 +74,9 @@ impl Experiment {
             .map(|(description, walk)| (description, place_of(&mut moving.walks, walk)))
             .collect();
         let still = staying.jobs.len() + Stay::ALL.len();
-        let under_way = moving.walks.len() + 1;
+        let in_motion = moving.walks.len() + 1;
         let flights = u64::from(self.trials.unwrap_or(4 * PORTION)) * still as u64
-            + u64::from(self.moving_trials) * under_way as u64;
+            + u64::from(self.moving_trials) * in_motion as u64;
         let bar = output::progress(flights, "flights");
         let outcomes: Vec<_> = staying.jobs.iter().map(|job| self.staying(job, &bar)).collect();
         let refused = outcomes.iter().flatten().map(|outcome| outcome.refused).sum();

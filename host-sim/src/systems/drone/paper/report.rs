@@ -40,7 +40,7 @@ pub struct Row {
     pub max_m: Option<f64>,
     /// Mean error of the exact posterior's mean on the same measurements, m.
     pub limit_m: Option<f64>,
-    /// Energy of the flight, J, by the printed formulas.
+    /// Energy of the flight, J, by the published formulas.
     pub energy_j: Option<f64>,
     /// Trials with a mean error of 300 m and more, %.
     pub lost_percent: Option<f64>,

@@ -7,7 +7,7 @@ use crate::metrics::polyline_length;
 /// Side of the square in which the user is, m.
 pub const SIDE_M: f64 = 2000.0;
 
-/// A way through the air.
+/// A path through the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trajectory {
     /// Round the middle of the square.
@@ -31,7 +31,7 @@ impl Trajectory {
         Self::Grid { spacing_m: SIDE_M / f64::from(points).sqrt() }
     }
 
-    /// A grid (c) whose ways are those of a circle with as many points.
+    /// A grid (c) whose path is as long as that of a circle with as many points.
     pub fn small_grid(points: u32) -> Self {
         Self::Grid { spacing_m: SIDE_M / 3.0 * 2.0 * (TAU / 2.0 / f64::from(points)).sin() }
     }
@@ -53,7 +53,7 @@ impl Trajectory {
                 (0..count)
                     .map(|k| {
                         let (row, along) = (k / columns, k % columns);
-                        // There and back, so that each way is one spacing long.
+                        // There and back, so that each leg is one spacing long.
                         let column = if row % 2 == 0 { along } else { columns - 1 - along };
                         [place(column), place(row)]
                     })
@@ -62,7 +62,7 @@ impl Trajectory {
         }
     }
 
-    /// Length of the way from the first point to the last, m.
+    /// Length of the path from the first point to the last, m.
     pub fn length(self, count: u32) -> f64 {
         polyline_length(&self.points(count))
     }
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ways_are_as_long_as_the_thesis_says() {
+    fn paths_are_as_long_as_the_thesis_says() {
         // Eq. 2.16: (T − 1)·√2·R·√(1 − cos(2π/T)).
         let circle = 11.0 * 2_f64.sqrt() * SIDE_M / 3.0 * (1.0 - (TAU / 12.0).cos()).sqrt();
         assert!((Trajectory::CIRCLE.length(12) - circle).abs() < 1e-6);

@@ -95,7 +95,7 @@ pub(super) fn items(report: &Report, walks: &Walks) -> Vec<Item> {
     items
 }
 
-/// Error, energy and share of lost users of both ways to follow, and the table.
+/// Error, energy and share of lost users of both policies, and the table.
 fn sweep(
     report: &Report,
     table: &str,

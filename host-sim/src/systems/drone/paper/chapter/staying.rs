@@ -10,7 +10,7 @@ use crate::systems::drone::simulate::trajectory::Trajectory;
 
 /// In the thesis' order.
 pub(super) fn items(report: &Report) -> Vec<Item> {
-    let mut items = ways(report);
+    let mut items = paths(report);
     items.extend(tables::of(report, "Table 3.2", (
         "drone-table-3-2",
         "Table 3.2: mean error, m",
@@ -30,14 +30,14 @@ pub(super) fn items(report: &Report) -> Vec<Item> {
 }
 
 /// Fig. 3.1: where the drone measures.
-fn ways(report: &Report) -> Vec<Item> {
+fn paths(report: &Report) -> Vec<Item> {
     if report.rows.iter().all(|row| row.table != "Table 3.2") {
         return Vec::new();
     }
-    let way = |name: &str, trajectory: Trajectory, colour| {
+    let path = |name: &str, trajectory: Trajectory, colour| {
         Series::path(name, trajectory.points(9)).marked(Mark::LineAndPoints).coloured(colour)
     };
-    let figure = Figure::new("drone-fig-3-1", "Fig. 3.1, ways of the drone for T = 9")
+    let figure = Figure::new("drone-fig-3-1", "Fig. 3.1, paths of the drone for T = 9")
         .axes("x, m", "y, m")
         .map()
         .caption("The user is anywhere in the square; the small grid is as long as the circle.")
@@ -45,9 +45,9 @@ fn ways(report: &Report) -> Vec<Item> {
             Series::path("square", [[0.0, 0.0], [2e3, 0.0], [2e3, 2e3], [0.0, 2e3], [0.0, 0.0]])
                 .coloured(Colour::Truth),
         )
-        .with(way("(a) grid", Trajectory::grid(9), Colour::Other(0)))
-        .with(way("(b) circle", Trajectory::CIRCLE, Colour::Other(1)))
-        .with(way("(c) small grid", Trajectory::small_grid(9), Colour::Other(2)));
+        .with(path("(a) grid", Trajectory::grid(9), Colour::Other(0)))
+        .with(path("(b) circle", Trajectory::CIRCLE, Colour::Other(1)))
+        .with(path("(c) small grid", Trajectory::small_grid(9), Colour::Other(2)));
     vec![made(report, "none: nothing is random").item(figure)]
 }
 
