@@ -130,7 +130,7 @@ fn user_radius(range: [f64; 3]) -> Setting {
 
 fn end_time(range: [f64; 3]) -> Setting {
     let help = "Steps in which the user walks the circle";
-    Setting::number("end-time", help, "", [range[0], range[1], 1.0], 500.0)
+    Setting::number("end-time", help, "", range, 500.0)
 }
 
 fn speed(range: [f64; 3]) -> Setting {
