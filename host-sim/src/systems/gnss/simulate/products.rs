@@ -12,7 +12,7 @@ use super::constellation::Kepler;
 use super::noise::Wander;
 use super::times::{INTERVAL_S, LAST, MIDNIGHT, SAMPLES};
 use crate::random::{normal, uniform};
-use crate::systems::gnss::products::{Products, Satellite};
+use crate::systems::gnss::recording::products::{Products, Satellite};
 
 /// Samples of a clock to one of an orbit: 15 minutes.
 const TO_ORBIT: usize = 30;

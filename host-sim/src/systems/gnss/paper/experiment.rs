@@ -2,19 +2,23 @@
 //!
 //! Every filter gets the same days, with faults; two of them get the same days without faults, too.
 
+mod report;
+mod score;
+
 use indicatif::ProgressBar;
-use kestirim_gnss_ppp::{Corrections, Geodetic, Receiver};
+use kestirim_gnss_ppp::{Corrections, Receiver};
 use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, SatelliteObservation, states};
-use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::options::FilterKind;
-use super::report::{Report, Row};
-use super::sky::score::Score;
-use super::sky::{Day, Rates, UTC_MINUS_GPS};
-use crate::system::{RunOptions, ScalarKind};
-use crate::published::{GNSS_KINEMATIC, GNSS_STATIC, PppErrors};
-use crate::system::choose_scalar;
+pub(super) use self::report::four;
+pub use self::report::{Report, Row};
+pub use self::score::Score;
+use super::published::{self, PppErrors};
+use crate::system::{RunOptions, ScalarKind, System, choose_scalar};
+use crate::systems::gnss::Gnss;
+use crate::systems::gnss::account::accuracy::Fix;
+use crate::systems::gnss::settings::{FilterKind, SCALARS};
+use crate::systems::gnss::simulate::{Day, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::{Error, output};
 
 /// Station-days unless told otherwise; the paper has 100.
@@ -42,10 +46,10 @@ struct Case {
     published: Option<PppErrors>,
 }
 
-/// All rows of the tables. By the letter of the paper the t-test is what it is anyway; UKF is IKF, as its factor never
-/// falls: one of the tables shows it.
+/// All rows of the tables. As published the t-test is what it is anyway; UKF is IKF, as its factor never falls: one
+/// of the tables shows it.
 fn cases() -> Vec<Case> {
-    let printed =
+    let as_published =
         |estimator: Estimator| Estimator { robust: estimator.robust.published(), ..estimator };
     let standing = Motion::Static;
     let moving = Motion::Kinematic { process_noise: PROCESS_NOISE };
@@ -57,8 +61,8 @@ fn cases() -> Vec<Case> {
         published,
         faults: true,
     };
-    let [gkf, rkf, skf, ikf, ukf] = GNSS_STATIC.map(Some);
-    let [moving_ikf, moving_ukf] = GNSS_KINEMATIC.map(Some);
+    let [gkf, rkf, skf, ikf, ukf] = published::STATIC.map(Some);
+    let [moving_ikf, moving_ukf] = published::KINEMATIC.map(Some);
     let clean = |filter, motion, estimator| Case {
         faults: false,
         ..case(CLEAN, filter, motion, estimator, None)
@@ -72,16 +76,16 @@ fn cases() -> Vec<Case> {
         case(STATIC, FilterKind::Ikf.title(), standing, iterative, ikf),
         case(STATIC, FilterKind::Adaptive.title(), standing, adaptive, ukf),
         case(STATIC, FilterKind::Default.title(), standing, Estimator::guarded(standing), None),
-        case(STATIC, "RKF by the letter", standing, printed(igg3), None),
-        case(STATIC, "IKF by the letter", standing, printed(iterative), None),
+        case(STATIC, "RKF as published", standing, as_published(igg3), None),
+        case(STATIC, "IKF as published", standing, as_published(iterative), None),
         case(KINEMATIC, FilterKind::Gkf.title(), moving, plain, None),
         case(KINEMATIC, FilterKind::Rkf.title(), moving, igg3, None),
         case(KINEMATIC, FilterKind::Skf.title(), moving, t_test, None),
         case(KINEMATIC, FilterKind::Ikf.title(), moving, iterative, moving_ikf),
         case(KINEMATIC, FilterKind::Adaptive.title(), moving, adaptive, moving_ukf),
         case(KINEMATIC, FilterKind::Default.title(), moving, Estimator::guarded(moving), None),
-        case(KINEMATIC, "IKF by the letter", moving, printed(iterative), None),
-        case(KINEMATIC, "UKF by the letter", moving, printed(adaptive), None),
+        case(KINEMATIC, "IKF as published", moving, as_published(iterative), None),
+        case(KINEMATIC, "UKF as published", moving, as_published(adaptive), None),
         clean("plain, static", standing, plain),
         clean("default, static", standing, Estimator::guarded(standing)),
         clean("plain, kinematic", moving, plain),
@@ -94,7 +98,7 @@ fn cases() -> Vec<Case> {
 /// # Errors
 /// If the scalar is not supported.
 pub fn run(options: RunOptions) -> Result<Report, Error> {
-    let scalar = choose_scalar("gnss", options.scalar, &[ScalarKind::F64], ScalarKind::F64)?;
+    let scalar = choose_scalar(Gnss::NAME, options.scalar, &SCALARS, ScalarKind::F64)?;
     let trials = options.trials.unwrap_or(TRIALS);
     let cases = cases();
     let bar = output::progress(u64::from(trials) * cases.len() as u64, "filter days");
@@ -108,7 +112,7 @@ pub fn run(options: RunOptions) -> Result<Report, Error> {
         Row::of(case.table, case.filter, case.published, scores)
     });
     Ok(Report {
-        system: "gnss",
+        system: Gnss::NAME,
         seed: options.seed,
         scalar,
         trials,
@@ -120,14 +124,14 @@ pub fn run(options: RunOptions) -> Result<Report, Error> {
 /// All cases on one station-day.
 fn trial(seed: u64, index: u64, cases: &[Case], bar: &ProgressBar) -> Vec<Score> {
     let days = [Rates::NONE, Rates::RECORDING].map(|rates| Day::new(seed, index, &rates));
-    let sightings = days.each_ref().map(sightings);
+    let observations = days.each_ref().map(observations);
     // Filters of a day beside each other, so that few days keep all threads busy, too.
     cases
         .par_iter()
         .map(|case| {
             let which = usize::from(case.faults);
             let config = Config { estimator: case.estimator, ..Config::new(case.motion) };
-            let score = follow(&days[which], &sightings[which], config);
+            let score = follow(&days[which], &observations[which], config);
             bar.inc(1);
             score
         })
@@ -135,16 +139,16 @@ fn trial(seed: u64, index: u64, cases: &[Case], bar: &ProgressBar) -> Vec<Score>
 }
 
 /// What the receiver observed, with the products of each satellite.
-fn sightings(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
+fn observations(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
     let epochs = day.epochs.iter().map(|epoch| {
         let seen = epoch.satellites.iter();
-        seen.filter_map(|observed| day.products.sighting(epoch.time, observed).ok()).collect()
+        seen.filter_map(|observed| day.products.observation(epoch.time, observed).ok()).collect()
     });
     epochs.collect()
 }
 
 /// One filter through one day.
-fn follow(day: &Day, sightings: &[Vec<SatelliteObservation<'_>>], config: Config) -> Score {
+fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: Config) -> Score {
     let receiver = Receiver {
         antenna: None,
         eccentricity: [0.0; 3],
@@ -153,18 +157,11 @@ fn follow(day: &Day, sightings: &[Vec<SatelliteObservation<'_>>], config: Config
         corrections: Corrections::ALL,
     };
     let mut filter = PppFilter::<STATES>::new(config);
-    let enu = Geodetic::from_ecef(&day.marker).enu_from_ecef();
-    let errors: Vec<_> = day
-        .epochs
-        .iter()
-        .zip(sightings)
-        .map(|(epoch, sightings)| {
-            let solution = filter.process(epoch.time, &receiver, sightings).ok()?;
-            let [east, north, up] = (enu * (solution.position - day.marker)).data.0[0];
-            Some(Vector3::new(north, east, up))
-        })
-        .collect();
-    Score::of(&errors)
+    let fixes = day.epochs.iter().zip(observations).filter_map(|(epoch, observations)| {
+        let solution = filter.process(epoch.time, &receiver, observations).ok()?;
+        Some(Fix { t: epoch.time.since(MIDNIGHT), position: solution.position })
+    });
+    Score::of(&fixes.collect::<Vec<_>>(), day.epochs.len(), &day.marker)
 }
 
 #[cfg(test)]
@@ -191,10 +188,10 @@ mod tests {
     fn plain_and_default(index: u64) -> [[Score; 2]; 2] {
         [Rates::NONE, Rates::RECORDING].map(|rates| {
             let day = Day::new(11, index, &rates);
-            let sightings = sightings(&day);
+            let observations = observations(&day);
             [Estimator::plain(), Estimator::guarded(Motion::Static)].map(|estimator| {
                 let config = Config { estimator, ..Config::new(Motion::Static) };
-                follow(&day, &sightings, config)
+                follow(&day, &observations, config)
             })
         })
     }

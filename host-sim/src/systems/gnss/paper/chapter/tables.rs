@@ -1,19 +1,18 @@
 //! Published beside ours.
 
-use super::super::experiment::{CLEAN, KINEMATIC, STATIC};
-use super::super::options::FilterKind;
-use super::super::report::{Report, Row, four};
-use crate::published::PppErrors;
 use crate::report::Comparison;
+use crate::systems::gnss::paper::experiment::{CLEAN, KINEMATIC, Report, Row, STATIC, four};
+use crate::systems::gnss::paper::published::PppErrors;
+use crate::systems::gnss::settings::FilterKind;
 
-/// The paper's Table 2, and what each filter is by the letter.
+/// The paper's Table 2, and what each filter is as published.
 pub(super) fn standing(report: &Report) -> Comparison {
     let table = Comparison::new("gnss-table-2", "Table 2: static receivers (mean of station-days)");
     let table = with_rows(table, report, STATIC, plain(report, 0));
     let published = |row: &Row| row.published.map(|errors| errors.rms_mm[3]);
     let ours = |row: &Row| row.published.map(|_| row.ours.rms_mm[3]);
     table.note(format!(
-        "By the letter: σ̂0 of (17), which the outliers inflate, and the bracket of (15) without its square. The \
+        "As published: σ̂0 of (17), which the outliers inflate, and the bracket of (15) without its square. The \
          limit is what the plain filter makes of the same days without faults: no bound in the strict sense. The \
          faults of our days are worse than those of the paper's stations: compare the order by RMS 3-D, worst \
          first. Published: {}; ours: {}.",
@@ -41,7 +40,7 @@ pub(super) fn moving(report: &Report) -> Comparison {
     let table = with_rows(table, report, KINEMATIC, plain(report, 2));
     table.note(
         "The paper has IKF and UKF alone, and no convergence. No filter that knows nothing of slips survives those \
-         that nothing else shows: only the default finds them. UKF by the letter is IKF by the letter, as the factor \
+         that nothing else shows: only the default finds them. UKF as published is IKF as published, as the factor \
          of (22) never falls.",
     )
 }
@@ -73,7 +72,7 @@ pub(super) fn summary(report: &Report) -> Comparison {
         [FilterKind::Ikf, FilterKind::Adaptive, FilterKind::Default].map(FilterKind::title);
     for row in &report.rows {
         let (limit, mode) = match row.table {
-            STATIC if !row.is_printed() => (plain(report, 0), "static"),
+            STATIC if !row.is_published() => (plain(report, 0), "static"),
             KINEMATIC if wanted.contains(&row.filter) => (plain(report, 2), "kinematic"),
             _ => continue,
         };

@@ -1,17 +1,17 @@
 //! What a replay reports of one filter.
 
-use std::fmt;
-
-use kestirim_gnss_ppp::{Correction, Corrections, Geodetic, zenith_hydrostatic};
+use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
 use kestirim_ppp_filter::Health;
 use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::accuracy::Accuracy;
-use super::follow::{Both, Followed, Slips};
-use super::options::{FilterKind, Mode};
-use super::outage::Unused;
-use crate::output;
+use crate::system::System;
+use crate::systems::gnss::Gnss;
+use crate::systems::gnss::recording::Recording;
+use crate::systems::gnss::settings::{FilterKind, Mode, Setup};
+use crate::systems::gnss::track::followed::{Both, Followed, Slips};
+use crate::systems::gnss::track::outage::Unused;
 
 /// So many satellites are named as those with the most rejected observations.
 const WORST: usize = 5;
@@ -23,7 +23,7 @@ pub struct Report {
     pub system: &'static str,
     /// Which filter.
     pub filter: FilterKind,
-    /// Whether by the letter of the paper.
+    /// Whether as the paper publishes it.
     pub printed: bool,
     /// Whether the receiver was allowed to move.
     pub mode: Mode,
@@ -77,42 +77,28 @@ pub struct Rejections {
     pub rejected: Both,
 }
 
-/// What is known besides what the filter found.
-#[derive(Debug, Clone, Copy)]
-pub struct Circumstances<'a> {
-    /// Which filter.
-    pub filter: FilterKind,
-    /// Whether by the letter of the paper.
-    pub printed: bool,
-    /// Whether the receiver was allowed to move.
-    pub mode: Mode,
-    /// What was corrected.
-    pub corrections: Corrections,
-    /// The first epoch, s since the midnight before it.
-    pub begin: f64,
-    /// Where the marker really is, ECEF, m.
-    pub truth: Option<&'a Vector3<f64>>,
-}
-
 impl Report {
     /// What a filter found; none if that is no position at all.
-    pub fn new(
+    pub(super) fn new(
+        recording: &Recording,
+        setup: &Setup,
+        filter: FilterKind,
         followed: &Followed,
-        about: Circumstances<'_>,
         warnings: Vec<String>,
     ) -> Option<Self> {
         let (last, fix) = (followed.last?, followed.fixes.last()?);
-        let Circumstances { filter, printed, mode, begin, .. } = about;
-        let dry = if about.corrections.has(Correction::Troposphere) {
+        let [begin, _] = recording.span();
+        let dry = if setup.corrections.has(Correction::Troposphere) {
             zenith_hydrostatic(&Geodetic::from_ecef(&fix.position))
         } else {
             0.0
         };
+        let truth = setup.truth(recording);
         Some(Self {
-            system: "gnss",
+            system: Gnss::NAME,
             filter,
-            printed: printed && filter.is_printed(),
-            mode,
+            printed: setup.published && filter.is_published(),
+            mode: Mode::of(setup.motion),
             epochs: followed.epochs,
             solved: followed.fixes.len(),
             position_ecef_m: fix.position.into(),
@@ -130,13 +116,13 @@ impl Report {
             most_rejected: most_rejected(followed),
             unused: followed.unused,
             warnings,
-            accuracy: about.truth.and_then(|truth| Accuracy::of(&followed.fixes, begin, truth)),
+            accuracy: truth.and_then(|truth| Accuracy::of(&followed.fixes, begin, &truth)),
         })
     }
 }
 
 /// As in reports.
-pub const fn health(health: Health) -> &'static str {
+const fn health(health: Health) -> &'static str {
     match health {
         Health::Converging => "converging",
         Health::Converged => "converged",
@@ -161,13 +147,31 @@ fn most_rejected(followed: &Followed) -> Vec<Rejections> {
 }
 
 impl Report {
+    /// The filter's name, and whether it is as published.
+    pub(super) fn title(&self) -> String {
+        let published = if self.printed { " (published)" } else { "" };
+        format!("{}{published}", self.filter.name())
+    }
+
+    /// What matters most.
+    pub(super) fn in_a_line(&self) -> String {
+        let rejected = format!("{} rejected, {} slips", self.rejected, self.slips);
+        match &self.accuracy {
+            Some(Accuracy { final_3d_m, rms_3d_m, .. }) => {
+                let rms =
+                    rms_3d_m.map_or(String::new(), |rms| format!(", RMS {}", millimetres(rms)));
+                format!("final error {}{rms}, {rejected}", millimetres(*final_3d_m))
+            }
+            None => format!("standard deviation {}, {rejected}", enu(self.sd_enu_m)),
+        }
+    }
+
     /// What it says, each with a name.
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = Vec::new();
         let mut fact = |name, value| facts.push((name, value));
-        let printed = if self.printed { ", as printed" } else { "" };
         let mode = format!("{:?}", self.mode).to_lowercase();
-        fact("filter", format!("{}{printed}, {mode}", self.filter.name()));
+        fact("filter", format!("{}, {mode}", self.title()));
         fact("epochs", format!("{}, {} with a solution", self.epochs, self.solved));
         let [x, y, z] = self.position_ecef_m;
         fact("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
@@ -208,16 +212,6 @@ impl Report {
             fact("convergence", accuracy.convergence_min.map_or_else(never, minutes));
         }
         facts
-    }
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = output::table();
-        for (name, value) in self.facts() {
-            table.add_row([name, value.as_str()]);
-        }
-        table.fmt(f)
     }
 }
 

@@ -1,10 +1,10 @@
 //! A synthetic sky: what a receiver at a known place observes in a day, and the products of that day.
 //!
 //! `constellation` has the orbits, `clocks` those of the satellites and of the receiver, `products` what a service
-//! knows of both, both at the `times` of a day, `atmosphere` what delays the signals, `noise` and `faults` what disturbs them; `receiver` puts
-//! the observations together, and `score` says how good a solution is.
+//! knows of both, both at the `times` of a day, `atmosphere` what delays the signals, `noise` and `faults` what
+//! disturbs them; `receiver` puts the observations together.
 //!
-//! The observations come from a forward model of their own: Kepler's orbits, the light's way in the frame that does
+//! The observations come from a forward model of their own: Kepler's orbits, the light's path in the frame that does
 //! not rotate, relativity by the eccentric anomaly. It shares with the filter's model the formulas of the solid tide,
 //! the wind-up with nominal yaw, Shapiro's delay, and the hydrostatic zenith delay and mapping of a standard
 //! atmosphere: a mistake in those would not show here, only on recorded data. What the filter does not model is the
@@ -18,7 +18,6 @@ mod faults;
 mod noise;
 mod products;
 mod receiver;
-pub mod score;
 mod times;
 
 use nalgebra::Vector3;
@@ -27,9 +26,9 @@ pub use self::faults::Rates;
 use self::products::Services;
 use self::receiver::Station;
 pub use self::times::{EPOCHS, INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
-use super::model::Epoch;
-use super::products::Products;
 use crate::random::stream;
+use crate::systems::gnss::recording::model::Epoch;
+use crate::systems::gnss::recording::products::Products;
 
 /// Streams of randomness of a day: faults have their own, so that the same day can be had without them.
 const STREAMS: u64 = 2;

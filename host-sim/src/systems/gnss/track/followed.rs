@@ -1,4 +1,4 @@
-//! Feeds a filter with a recording, and counts what becomes of it.
+//! One filter, fed with a recording, and what becomes of each observation.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::accuracy::Fix;
-use super::model::Epoch;
-use super::options::STATES;
 use super::outage::{Outage, Outages, Unused};
-use super::products::Unusable;
-use super::recording::Recording;
+use crate::systems::gnss::account::accuracy::Fix;
+use crate::systems::gnss::recording::Recording;
+use crate::systems::gnss::recording::model::Epoch;
+use crate::systems::gnss::recording::products::Unusable;
+use crate::systems::gnss::settings::STATES;
 
 /// Numbers of codes and of phases.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -137,7 +137,7 @@ pub fn follow(
 ) -> Followed {
     let mut filter = PppFilter::<STATES>::new(config);
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
-    let mut sightings: Vec<SatelliteObservation<'_>> = Vec::new();
+    let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();
     // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
     let mut lost = [false; 256];
     // Tells which satellites stand below the mask, and nothing else.
@@ -145,32 +145,32 @@ pub fn follow(
     for epoch in epochs {
         let t = recording.seconds(epoch);
         let mut unused = Unused { observed: epoch.satellites.len(), ..Unused::default() };
-        sightings.clear();
+        observations.clear();
         if epoch.power_failure {
             lost.fill(true);
         }
         for observed in &epoch.satellites {
             let lost = &mut lost[usize::from(observed.prn)];
             *lost |= observed.loss_of_lock.contains(&true);
-            match recording.products().sighting(epoch.time, observed) {
-                Ok(sighting) => {
-                    sightings.push(SatelliteObservation { lock_lost: *lost, ..sighting })
+            match recording.products().observation(epoch.time, observed) {
+                Ok(observation) => {
+                    observations.push(SatelliteObservation { lock_lost: *lost, ..observation })
                 }
                 Err(reason) => followed.miss(observed.prn, reason, &mut unused),
             }
         }
-        match filter.process(epoch.time, receiver, &sightings) {
+        match filter.process(epoch.time, receiver, &observations) {
             Ok(solution) => {
                 for report in &solution.satellites {
                     lost[usize::from(report.satellite)] = false;
                 }
                 about = Some(solution.position);
-                unused.below_mask = sightings.len().saturating_sub(solution.satellites.len());
+                unused.below_mask = observations.len().saturating_sub(solution.satellites.len());
                 followed.take(t, &solution, with_residuals);
             }
             Err(error) => {
                 unused.below_mask =
-                    about.map_or(0, |place| below(&sightings, &place, config.elevation_mask));
+                    about.map_or(0, |place| below(&observations, &place, config.elevation_mask));
                 followed.outages.add(Outage { error, t, unused });
             }
         }
@@ -181,13 +181,13 @@ pub fn follow(
 }
 
 /// How many satellites stand below the mask.
-fn below(sightings: &[SatelliteObservation<'_>], place: &Vector3<f64>, mask: f64) -> usize {
+fn below(observations: &[SatelliteObservation<'_>], place: &Vector3<f64>, mask: f64) -> usize {
     let geodetic = Geodetic::from_ecef(place);
-    let is_below = |sighting: &&SatelliteObservation<'_>| {
-        let sight = (sighting.state.position - place).normalize();
+    let is_below = |observation: &&SatelliteObservation<'_>| {
+        let sight = (observation.state.position - place).normalize();
         Direction::of(&sight, &geodetic).elevation < mask
     };
-    sightings.iter().filter(is_below).count()
+    observations.iter().filter(is_below).count()
 }
 
 impl Followed {

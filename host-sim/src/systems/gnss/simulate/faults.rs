@@ -5,7 +5,7 @@ use kestirim_gnss_ppp::WAVELENGTH;
 use rand_core::Rng;
 
 use crate::random::uniform;
-use crate::systems::gnss::model::Epoch;
+use crate::systems::gnss::recording::model::Epoch;
 
 /// How often what goes wrong. Errors are equal on both carriers unless said otherwise: differences between them
 /// would give them away.

@@ -1,26 +1,22 @@
 //! Station-days of the experiment again, this time with all that becomes of them.
 
-use std::path::Path;
-
-use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::Motion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::super::accuracy::BEGINNING;
-use super::super::experiment::PROCESS_NOISE;
-use super::super::figures;
-use super::super::follow::Followed;
-use super::super::options::{FilterKind, Setup};
-use super::super::recording::Recording;
-use super::super::report::Report;
-use super::super::session::Session;
-use super::super::sky::{Day, Rates};
-use super::super::streams;
 use crate::Error;
 use crate::figure::Figure;
 use crate::metrics::median;
 use crate::stream::Stream;
+use crate::system::Detail;
+use crate::systems::gnss::account::accuracy::BEGINNING;
+use crate::systems::gnss::figures::{self, streams};
+use crate::systems::gnss::paper::experiment::{PROCESS_NOISE, Report};
+use crate::systems::gnss::recording::Recording;
+use crate::systems::gnss::settings::{FilterKind, Setup};
+use crate::systems::gnss::simulate::{Day, Rates};
+use crate::systems::gnss::track::Track;
+use crate::systems::gnss::track::followed::Followed;
 
 /// Station-days that are drawn; the paper draws three.
 const DRAWN: u32 = 3;
@@ -149,14 +145,9 @@ fn filters(
     motion: Motion,
     filters: &[FilterKind],
 ) -> Result<Filters, Error> {
-    let session = Session {
-        log: Path::new("synthetic day"),
-        recording,
-        epochs: recording.epochs(None),
-        setup: Setup { motion, mask: None, printed: false, thresholds: None },
-        corrections: Corrections::ALL,
-        truth: None,
+    let follow = |&filter: &FilterKind| {
+        Ok(Track::of(recording, &Setup::new(filter, motion), Detail::Every)?.filters)
     };
-    let follow = |&filter: &FilterKind| Ok((filter, session.one(filter, true)?.1));
-    filters.par_iter().map(follow).collect()
+    let each: Vec<Filters> = filters.par_iter().map(follow).collect::<Result<_, Error>>()?;
+    Ok(each.concat())
 }

@@ -86,7 +86,7 @@ impl Products {
     ///
     /// # Errors
     /// What is missing.
-    pub fn sighting(
+    pub fn observation(
         &self,
         time: GpsTime,
         observed: &Observed,

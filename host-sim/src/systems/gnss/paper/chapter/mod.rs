@@ -3,9 +3,11 @@
 mod drawn;
 mod tables;
 
-use super::report::Report;
+use super::experiment::Report;
 use crate::Error;
 use crate::report::{Chapter, Made};
+use crate::system::System;
+use crate::systems::gnss::Gnss;
 
 /// The chapter on what was run.
 ///
@@ -29,12 +31,12 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     items.push(all.item(tables::without_faults(report)));
     items.push(one.item(days.trusted()));
     Ok(Chapter {
-        system: "gnss",
+        system: Gnss::NAME,
         title: "GNSS: a receiver, positioned precisely",
         paper: "Bahadur and Nohutcu 2020: robust Kalman filters for precise point positioning (in Turkish)",
         about: "The paper's hundred station-days are real; it names four of the ten stations, and of none what was \
                 wrong with its observations. These are synthetic ones with faults that are known, so that the order \
-                of the filters can be compared with the paper's, but not each number. By the letter three of its \
+                of the filters can be compared with the paper's, but not each number. As published three of its \
                 robust filters reject nothing, as their scale (17) is inflated by what it is to find. Figures 1 (a \
                 flow chart) and 2 (a map of the stations) have nothing to compare."
             .to_owned(),
@@ -46,9 +48,9 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::experiment;
     use super::*;
     use crate::system::RunOptions;
+    use crate::systems::gnss::paper::experiment;
 
     #[test]
     fn the_chapter_has_every_table_and_figure_of_the_paper() {

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::metrics::rms;
 
 /// Errors before this are those of the beginning, s since the first epoch.
-pub(super) const BEGINNING: f64 = 3600.0;
+pub const BEGINNING: f64 = 3600.0;
 /// From here on a position has converged, m …
 const CONVERGED: f64 = 0.1;
 /// … if it stays so for as long as this, s.

@@ -1,15 +1,15 @@
-//! What the command prints.
+//! What the experiment reports.
 
 use std::fmt;
 
 use comfy_table::Table;
 use serde::Serialize;
 
-use super::sky::score::Score;
-use crate::system::ScalarKind;
+use super::Score;
 use crate::metrics::mean;
 use crate::output;
-use crate::published::PppErrors;
+use crate::system::ScalarKind;
+use crate::systems::gnss::paper::published::PppErrors;
 
 /// A filter's errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -18,7 +18,7 @@ pub struct Row {
     pub table: &'static str,
     /// Which filter.
     pub filter: &'static str,
-    /// What the paper prints.
+    /// What the paper publishes.
     pub published: Option<PppErrors>,
     /// Means over the station-days; the convergence's over those that converged.
     pub ours: PppErrors,
@@ -64,7 +64,7 @@ impl Row {
 
 impl Row {
     /// Minutes until convergence in words, with what did not converge or had no solution.
-    pub(super) fn converged(&self) -> String {
+    pub(in crate::systems::gnss::paper) fn converged(&self) -> String {
         let mean = self.ours.convergence_min.map_or("never".to_owned(), |it| format!("{it:.1}"));
         let never = match self.unconverged {
             0 => String::new(),
@@ -78,9 +78,9 @@ impl Row {
         mean + &never + &unsolved
     }
 
-    /// Whether the filter is taken by the letter of the paper.
-    pub(super) fn is_printed(&self) -> bool {
-        self.filter.ends_with("by the letter")
+    /// Whether the filter is taken as published.
+    pub(in crate::systems::gnss::paper) fn is_published(&self) -> bool {
+        self.filter.ends_with("as published")
     }
 }
 
@@ -154,6 +154,6 @@ fn shown(rows: &[Row]) -> Table {
 }
 
 /// North, east, up and three-dimensional, mm.
-pub(super) fn four(numbers: [f64; 4]) -> String {
+pub(in crate::systems::gnss::paper) fn four(numbers: [f64; 4]) -> String {
     numbers.map(|number| format!("{number:.1}")).join(" ")
 }

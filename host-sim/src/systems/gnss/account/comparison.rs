@@ -4,9 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::accounts::{Report, millimetres};
-use super::options::Mode;
+use super::report::{Report, millimetres};
 use crate::output;
+use crate::systems::gnss::settings::Mode;
 
 /// What `--filter all` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,11 +33,7 @@ impl fmt::Display for Comparison {
         header.extend(["rejected", "down-weighted", "slips"]);
         table.set_header(header);
         for report in &self.filters {
-            let printed = if report.printed { " (printed)" } else { "" };
-            let mut row = vec![
-                format!("{}{printed}", report.filter.name()),
-                format!("{} of {}", report.solved, report.epochs),
-            ];
+            let mut row = vec![report.title(), format!("{} of {}", report.solved, report.epochs)];
             if let Some(accuracy) = &report.accuracy {
                 let [east, north, up] = accuracy.rms_enu_m.map_or([None; 3], |it| it.map(Some));
                 let lengths = [Some(accuracy.final_3d_m), north, east, up, accuracy.rms_3d_m];

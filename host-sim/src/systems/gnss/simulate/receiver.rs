@@ -17,7 +17,7 @@ use super::noise::{Spread, Wander};
 use super::products::{Services, Spacecraft};
 use super::times::{INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
 use crate::random::{normal, uniform};
-use crate::systems::gnss::model::Epoch;
+use crate::systems::gnss::recording::model::Epoch;
 
 /// Lowest elevation at which the receiver tracks, rad.
 const HORIZON: f64 = 0.087;
@@ -155,7 +155,7 @@ impl Station {
         Epoch { time, power_failure: false, satellites: satellites.collect() }
     }
 
-    /// The signal's way, in the frame that does not rotate.
+    /// The signal's path, in the frame that does not rotate.
     fn path(&self, instant: &Instant, spacecraft: &Spacecraft) -> Path {
         let received = instant.tag - instant.clock;
         let receiver = carried_along(&instant.antenna, -received);
