@@ -4,7 +4,7 @@
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use host_sim::metrics::rms;
-use host_sim::systems::gnss::accuracy::Accuracy;
+use host_sim::systems::gnss::account::accuracy::Accuracy;
 use host_sim::systems::gnss::recording::Recording;
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};

@@ -1,16 +1,19 @@
 //! How observations become positions: what can be set, and what it means.
 
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
-use kestirim_gnss_ppp::{Correction, Corrections};
-use kestirim_ppp_filter::{Config, Estimator, Motion, states};
+mod filter;
+mod firmware;
+mod part;
+
+use kestirim_gnss_ppp::Corrections;
+use kestirim_ppp_filter::{Config, Motion, states};
 use kestirim_robust_kalman::{Igg3, Weight};
 use nalgebra::Vector3;
-use serde::Serialize;
 
+pub use self::filter::{Choice, FilterKind, Mode};
+use self::part::Part;
 use super::recording::Recording;
 use super::recording::truth::place;
-use crate::system::{Idle, Literal, ScalarKind, Setting, Settings};
+use crate::system::{Idle, ScalarKind, Setting, Settings};
 
 /// Number types the filter is built for: ranges of 26 000 km to a millimetre need the digits.
 pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];
@@ -199,251 +202,13 @@ impl Setup {
             Choice::All => FilterKind::default(),
         }
     }
-
-    /// The same in firmware: the filter's settings and what of the receiver is corrected.
-    pub(super) fn firmware(&self) -> String {
-        let filter = self.main();
-        let motion = match self.motion {
-            Motion::Static => "Motion::Static".to_owned(),
-            Motion::Kinematic { process_noise } => {
-                format!("Motion::Kinematic {{ process_noise: {process_noise:?} }}")
-            }
-        };
-        let base = format!("Config::new({motion})");
-        let imports = "kestirim_ppp_filter::{Config, Motion}";
-        let mut literal = Literal::new(imports, ScalarKind::F64, "Config", &base)
-            .number_field("elevation_mask", self.mask);
-        let constructor = match filter {
-            FilterKind::Gkf => "plain()",
-            FilterKind::Rkf => "igg3()",
-            FilterKind::Skf => "t_test()",
-            FilterKind::Ikf => "iterative_igg3()",
-            FilterKind::Adaptive => "adaptive()",
-            FilterKind::Default => &format!("guarded({motion})"),
-        };
-        let mut changes = Vec::new();
-        let (published, ours) =
-            (self.published && filter.is_published(), filter.estimator(self.motion, false));
-        if published {
-            changes.push("estimator.robust = estimator.robust.published();".to_owned());
-        }
-        let weight = self.config(filter).estimator.robust.weight;
-        if let (true, Weight::Igg3(Igg3 { k0, k1, descent })) =
-            (filter.has_thresholds() && self.thresholds != [None; 2], weight)
-        {
-            literal = literal.import("kestirim_robust_kalman::{Descent, Igg3, Weight}");
-            changes.push(format!(
-                "estimator.robust.weight = Weight::Igg3(Igg3 {{ k0: {k0:?}, k1: {k1:?}, descent: \
-                 Descent::{descent:?} }});"
-            ));
-        }
-        if !changes.is_empty() || ours != Config::new(self.motion).estimator {
-            let value = match &*changes {
-                [] => format!("Estimator::{constructor}"),
-                changes => format!(
-                    "{{\n        let mut estimator = Estimator::{constructor};\n        {}\n        estimator\n    }}",
-                    changes.join("\n        ")
-                ),
-            };
-            literal = literal.import("kestirim_ppp_filter::Estimator").field("estimator", value);
-        }
-        if self.corrections != Corrections::ALL {
-            let left_out = Correction::ALL.into_iter().filter(|part| !self.corrections.has(*part));
-            let without: String =
-                left_out.map(|part| format!(".without(Correction::{part:?})")).collect();
-            literal = literal
-                .import("kestirim_gnss_ppp::{Correction, Corrections}")
-                .then(format!("let corrections = Corrections::ALL{without};"));
-        }
-        literal.to_string()
-    }
-}
-
-/// Whether the receiver moves.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Mode {
-    /// It stands still
-    #[default]
-    Static,
-    /// It may move
-    Kinematic,
-}
-
-impl Mode {
-    /// Of a filter.
-    pub const fn of(motion: Motion) -> Self {
-        match motion {
-            Motion::Static => Self::Static,
-            Motion::Kinematic { .. } => Self::Kinematic,
-        }
-    }
-}
-
-/// Which filter.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum FilterKind {
-    /// The plain Kalman filter (the paper's GKF)
-    Gkf,
-    /// IGG III weights, all at once (RKF)
-    Rkf,
-    /// Classification by a t-test (SKF)
-    Skf,
-    /// IGG III weights, the worst observation first (IKF)
-    Ikf,
-    /// The same and an adaptive factor on the position (the paper's UKF)
-    Adaptive,
-    /// Our own: robust, and slips that nothing else shows are found
-    #[default]
-    Default,
-}
-
-impl FilterKind {
-    /// Every filter, in the order of tables.
-    pub const ALL: [Self; 6] =
-        [Self::Gkf, Self::Rkf, Self::Skf, Self::Ikf, Self::Adaptive, Self::Default];
-
-    /// Whether the paper publishes formulas of it from which ours differ.
-    pub const fn is_published(self) -> bool {
-        matches!(self, Self::Rkf | Self::Skf | Self::Ikf | Self::Adaptive)
-    }
-
-    /// Whether it weights by IGG III, between two thresholds.
-    const fn has_thresholds(self) -> bool {
-        !matches!(self, Self::Gkf | Self::Skf)
-    }
-
-    /// As on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Gkf => "gkf",
-            Self::Rkf => "rkf",
-            Self::Skf => "skf",
-            Self::Ikf => "ikf",
-            Self::Adaptive => "adaptive",
-            Self::Default => "default",
-        }
-    }
-
-    /// What people call it.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Gkf => "plain (GKF)",
-            Self::Rkf => "IGG III (RKF)",
-            Self::Skf => "t-test (SKF)",
-            Self::Ikf => "iterative IGG III (IKF)",
-            Self::Adaptive => "adaptive (UKF)",
-            Self::Default => "default",
-        }
-    }
-
-    /// What is done about observations that do not fit, as the paper publishes it if `published`.
-    pub fn estimator(self, motion: Motion, published: bool) -> Estimator {
-        let ours = match self {
-            Self::Gkf => Estimator::plain(),
-            Self::Rkf => Estimator::igg3(),
-            Self::Skf => Estimator::t_test(),
-            Self::Ikf => Estimator::iterative_igg3(),
-            Self::Adaptive => Estimator::adaptive(),
-            Self::Default => Estimator::guarded(motion),
-        };
-        if published && self.is_published() {
-            Estimator { robust: ours.robust.published(), ..ours }
-        } else {
-            ours
-        }
-    }
-}
-
-/// One filter, or all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice {
-    /// One of them.
-    One(FilterKind),
-    /// All of them, compared.
-    All,
-}
-
-impl Choice {
-    /// Which, in the order of tables.
-    pub const fn filters(&self) -> &[FilterKind] {
-        match self {
-            Self::One(filter) => std::slice::from_ref(filter),
-            Self::All => &FilterKind::ALL,
-        }
-    }
-}
-
-impl Default for Choice {
-    fn default() -> Self {
-        Self::One(FilterKind::default())
-    }
-}
-
-impl ValueEnum for Choice {
-    fn value_variants<'a>() -> &'a [Self] {
-        const ALL: [Choice; 7] = {
-            let mut all = [Choice::All; 7];
-            let mut place = 0;
-            while place < FilterKind::ALL.len() {
-                all[place] = Choice::One(FilterKind::ALL[place]);
-                place += 1;
-            }
-            all
-        };
-        &ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self {
-            Self::One(kind) => kind.to_possible_value(),
-            Self::All => Some(PossibleValue::new("all").help("All six, compared")),
-        }
-    }
-}
-
-/// A part of the observation model that can be left out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Part {
-    /// The satellite's clock on its eccentric orbit
-    Relativity,
-    /// The delay in the Earth's gravity
-    Shapiro,
-    /// The Earth's rotation while the signal travels
-    Sagnac,
-    /// The hydrostatic troposphere
-    Troposphere,
-    /// The tide of the solid Earth
-    SolidTide,
-    /// The load of the oceans' tides
-    OceanLoading,
-    /// The turning of the antennas against each other
-    WindUp,
-    /// The phase centre of the satellite's antenna
-    SatelliteAntenna,
-    /// The phase centre of the receiver's antenna
-    ReceiverAntenna,
-}
-
-impl From<Part> for Correction {
-    fn from(part: Part) -> Self {
-        match part {
-            Part::Relativity => Self::Relativity,
-            Part::Shapiro => Self::Shapiro,
-            Part::Sagnac => Self::Sagnac,
-            Part::Troposphere => Self::Troposphere,
-            Part::SolidTide => Self::SolidTide,
-            Part::OceanLoading => Self::OceanLoading,
-            Part::WindUp => Self::WindUp,
-            Part::SatelliteAntenna => Self::SatelliteAntenna,
-            Part::ReceiverAntenna => Self::ReceiverAntenna,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use clap::ValueEnum;
+    use kestirim_gnss_ppp::Correction;
+
     use super::*;
 
     #[test]
@@ -452,14 +217,6 @@ mod tests {
             for text in ["", "-1", "nan", "inf", "x", "1e300"] {
                 assert!(setting.read(text).is_err(), "{} {text}", setting.name);
             }
-        }
-    }
-
-    #[test]
-    fn what_is_published_is_of_the_robust_filters() {
-        let estimator = |kind: FilterKind, published| kind.estimator(Motion::Static, published);
-        for kind in FilterKind::ALL {
-            assert_eq!(estimator(kind, true) != estimator(kind, false), kind.is_published());
         }
     }
 
@@ -473,26 +230,6 @@ mod tests {
             assert_eq!(corrections.has(correction), correction != Correction::SolidTide);
         }
         assert_eq!(Part::value_variants().len(), Correction::ALL.len());
-        Ok(())
-    }
-
-    #[test]
-    fn firmware_says_what_differs() -> Result<(), crate::Error> {
-        let mut settings = Settings::new(table(None));
-        assert!(Setup::of(&settings).firmware().ends_with("= Config::new(Motion::Static);"));
-        for (name, text) in [("filter", "rkf"), ("published", "true"), ("k0", "2"), ("mask", "15")]
-        {
-            settings.set(name, text)?;
-        }
-        let firmware = Setup::of(&settings).firmware();
-        for line in [
-            "elevation_mask: 0.2617993877991494",
-            "let mut estimator = Estimator::igg3();",
-            "estimator.robust = estimator.robust.published();",
-            "Igg3 { k0: 2.0, k1: 6.0, descent: Descent::Published }",
-        ] {
-            assert!(firmware.contains(line), "{firmware}");
-        }
         Ok(())
     }
 }

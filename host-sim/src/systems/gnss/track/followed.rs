@@ -154,7 +154,7 @@ pub fn follow(
             *lost |= observed.loss_of_lock.contains(&true);
             match recording.products().observation(epoch.time, observed) {
                 Ok(observation) => {
-                    observations.push(SatelliteObservation { lock_lost: *lost, ..observation })
+                    observations.push(SatelliteObservation { lock_lost: *lost, ..observation });
                 }
                 Err(reason) => followed.miss(observed.prn, reason, &mut unused),
             }
