@@ -24,7 +24,8 @@ pub struct Report {
     /// Which filter.
     pub filter: FilterKind,
     /// Whether as the paper publishes it.
-    pub printed: bool,
+    #[serde(rename = "printed")]
+    pub published: bool,
     /// Whether the receiver was allowed to move.
     pub mode: Mode,
     /// All epochs from the first on.
@@ -97,7 +98,7 @@ impl Report {
         Some(Self {
             system: Gnss::NAME,
             filter,
-            printed: setup.published && filter.is_published(),
+            published: setup.published && filter.is_published(),
             mode: Mode::of(setup.motion),
             epochs: followed.epochs,
             solved: followed.fixes.len(),
@@ -149,7 +150,7 @@ fn most_rejected(followed: &Followed) -> Vec<Rejections> {
 impl Report {
     /// The filter's name, and whether it is as published.
     pub(super) fn title(&self) -> String {
-        let published = if self.printed { " (published)" } else { "" };
+        let published = if self.published { " (published)" } else { "" };
         format!("{}{published}", self.filter.name())
     }
 
