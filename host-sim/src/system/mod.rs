@@ -90,6 +90,12 @@ pub trait System: Sync + 'static {
         None
     }
 
+    /// Why these settings give no tables and no streams to write, in words that complete `--track …`; none if
+    /// they do.
+    fn lacks_output(_settings: &Settings) -> Option<&'static str> {
+        None
+    }
+
     /// Reads a recording. Settings tell no more than how to read.
     ///
     /// # Errors

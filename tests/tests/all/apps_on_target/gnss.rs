@@ -3,7 +3,7 @@
 
 use anyhow::{Result, bail, ensure};
 use gnss_app::{STATES, site};
-use host_sim::systems::gnss::products::Products;
+use host_sim::systems::gnss::recording::products::Products;
 use kestirim_gnss_files::{self as files, Antennas, Clocks, Orbits, Text};
 use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Slipped, Solution};
 use kestirim_telemetry::{GlobalPosition, Message};
@@ -37,7 +37,8 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 phase: sighting.phase.map(Some),
                 loss_of_lock: [false, sighting.lock_lost],
             };
-            let sighting = products.sighting(epoch.time(), &observed).expect("there are products");
+            let sighting =
+                products.observation(epoch.time(), &observed).expect("there are products");
             SatelliteObservation { antenna: site::satellite_antenna(), ..sighting }
         };
         let sightings: Vec<_> = epoch.sightings.iter().map(sighting).collect();
