@@ -17,7 +17,7 @@ const NULL_FILL: f64 = 0.1;
 /// The level's curvature is never taken for less than this share of that of perfect data.
 const LEAST_CURVATURE: f64 = 0.05;
 
-/// How many of a link's two antennas are upright dipoles, whose pattern has nulls upwards and downwards.
+/// Number of a link's two antennas that are upright dipoles, whose pattern has nulls upwards and downwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -69,7 +69,7 @@ const MOST: usize = 128;
 struct Sight<T> {
     /// Received level beyond one of 0 dB at one metre, dB.
     excess: [T; MOST],
-    /// What a dipole leaves in that direction, dB.
+    /// Gain of one dipole in that direction, dB.
     dipole: [T; MOST],
     count: usize,
 }
@@ -107,7 +107,7 @@ impl<T: Scalar> Sight<T> {
     }
 }
 
-/// How well measurements fit if the transmitter is at a place.
+/// Fit of the measurements to a transmitter at a place.
 #[derive(Clone, Copy)]
 struct Fit<T> {
     /// The level that fits best, dB.

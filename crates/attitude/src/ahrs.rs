@@ -3,7 +3,7 @@ use core::fmt;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// Why an [`Ahrs`] refused a sample. Its state is as it was.
+/// Reason for which an [`Ahrs`] refused a sample. Its state is as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -25,7 +25,7 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// How fast gravity corrects what the gyroscope integrates.
+/// Gains with which gravity corrects what the gyroscope integrates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -34,7 +34,7 @@ pub struct Gains<T> {
     pub tilt: T,
     /// Gyro bias correction (1/s²): the integral term; zero keeps the bias as it was given.
     pub bias: T,
-    /// How far |f|/g may be from 1 for the force to be taken for gravity.
+    /// Largest deviation of |f|/g from 1 at which the force is taken for gravity.
     pub gate: T,
 }
 
@@ -81,7 +81,7 @@ impl<T: Scalar> Ahrs<T> {
         &self.orientation
     }
 
-    /// What is subtracted from the gyroscope (rad/s, body).
+    /// Estimated bias of the gyroscope, which is subtracted from it (rad/s, body).
     pub fn gyro_bias(&self) -> &SVector<T, 3> {
         &self.gyro_bias
     }

@@ -59,7 +59,7 @@ pub struct Antennas {
     satellites: Vec<(u8, Antenna)>,
     /// The receiver's, or else the same type without a radome.
     pub receiver: Option<Antenna>,
-    /// What a user should know of the file.
+    /// Warnings about the file.
     pub warnings: Vec<Warning>,
 }
 
@@ -230,7 +230,7 @@ impl Grid {
     }
 }
 
-/// How many points a grid has.
+/// Number of points of a grid.
 fn steps(first: f64, last: f64, step: f64) -> Option<usize> {
     let steps = (last - first) / step;
     let fits = (0.0..MOST_ANGLES).contains(&steps) && (steps - steps.round()).abs() < 1e-6;

@@ -38,7 +38,7 @@ impl Correction {
     ];
 }
 
-/// Which corrections are applied: all, unless one is left out to see what it is worth.
+/// Set of the corrections that are applied: all, unless one is left out to see what it is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

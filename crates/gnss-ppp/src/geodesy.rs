@@ -73,7 +73,7 @@ impl Geodetic {
     }
 }
 
-/// Where a satellite stands in the sky of a receiver.
+/// Direction from a receiver to a satellite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -85,7 +85,7 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The direction of the unit vector `sight` (ECEF, receiver to satellite) in the sky of `place`.
+    /// The direction of the unit vector `sight` (ECEF, receiver to satellite) at `place`.
     pub fn of(sight: &Vector3<f64>, place: &Geodetic) -> Self {
         let [east, north, up] = (place.enu_from_ecef() * sight).data.0[0];
         let azimuth = libm::atan2(east, north);

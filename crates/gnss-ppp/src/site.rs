@@ -11,7 +11,7 @@ pub struct Receiver<'a> {
     pub antenna: Option<[Pattern<'a>; 2]>,
     /// From the marker to the antenna's reference point: east, north, up, m.
     pub eccentricity: [f64; 3],
-    /// How the tides of the oceans move it, where known.
+    /// Ocean loading of the station, where known.
     pub ocean_loading: Option<&'a OceanLoading>,
     /// UT1 (or UTC) ahead of GPS time, s: the leap seconds since 1980, negated.
     pub ut1_minus_gps: f64,

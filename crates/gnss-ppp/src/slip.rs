@@ -156,7 +156,7 @@ impl Arc {
         self.off > 0
     }
 
-    /// When the satellite was observed last.
+    /// Time of the last observation of the satellite.
     pub const fn last(&self) -> GpsTime {
         self.last
     }

@@ -1,9 +1,9 @@
-//! Which measurements are believed.
+//! Gates that reject improbable measurements.
 
 use crate::{Error, Gaussian, Innovation, Weighed};
 use kestirim_scalar::Scalar;
 
-/// What a [`Gate`] makes of a measurement.
+/// Decision of a [`Gate`] about a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -42,7 +42,7 @@ impl<T: Scalar> Gate<T> {
         self.gamma
     }
 
-    /// How many measurements in a row were rejected.
+    /// Number of measurements rejected in a row.
     pub const fn rejected(&self) -> u16 {
         self.rejected
     }

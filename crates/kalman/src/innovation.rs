@@ -1,7 +1,7 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// What a measurement said beyond what was expected.
+/// Innovation of a measurement: its difference from what was expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

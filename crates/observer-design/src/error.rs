@@ -1,7 +1,7 @@
 use core::fmt;
 use nalgebra::Complex;
 
-/// A mode of a linear system: one eigenvalue of its dynamics, and where it lives.
+/// A mode of a linear system: one eigenvalue of its dynamics, and its largest component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -14,7 +14,7 @@ pub struct Mode {
     pub state: usize,
 }
 
-/// Why a design was refused.
+/// Reason for which a design was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -224,7 +224,7 @@ impl Shares {
         Self { total, draws, zeros, reciprocal: (draws << 43) / upper }
     }
 
-    /// How many whole shares there are in a weight, and draws times what remains.
+    /// Number of whole shares in a weight, and draws times what remains.
     #[inline(always)]
     fn of(&self, weight: u64) -> (u64, u64) {
         // Right, or one too small: with up to 2²⁰ draws the error is below 2⁻¹⁰.

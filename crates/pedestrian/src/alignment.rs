@@ -83,10 +83,10 @@ impl<T: Scalar> Alignment<T> {
     const RATE_FLOOR: f64 = 0.07;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
-    /// How far a bias wanders between two standstills (0.01 rad/s).
+    /// Standard deviation by which a bias wanders between two standstills (0.01 rad/s).
     const WANDER: f64 = 0.01;
 
-    /// Nothing seen yet but the class of the sensor.
+    /// The state before the first sample, from the class of the sensor.
     pub(crate) fn new(sensor: SensorClass) -> Self {
         let Prior { gyro_bias, gravity } = sensor.prior();
         Self {

@@ -1,7 +1,7 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// What the time stamp of a new sample means.
+/// Meaning of the time stamp of a new sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Tick<T> {
     /// The first sample: nothing to integrate yet.

@@ -2,7 +2,7 @@ use crate::{ImuSample, SensorClass};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What is suspicious about a stream. Flags once raised stay raised.
+/// Suspicious findings about a stream. Flags once raised stay raised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -36,7 +36,7 @@ pub(crate) struct Health<T: Scalar> {
     bad_landings: u8,
 }
 
-/// How often in a row each axis has shown the same value, and how often that was three times.
+/// Number of times in a row that each axis has shown the same value, and number of runs of three.
 #[derive(Clone, Copy, Debug)]
 struct Repeats<T: Scalar> {
     last: SVector<T, 3>,

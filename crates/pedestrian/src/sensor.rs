@@ -12,7 +12,7 @@ pub enum SensorClass {
     Consumer,
 }
 
-/// What is expected of a class before its stream has said anything.
+/// Standard deviations of a class before its first sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prior {
     /// Standard deviation of the gyro bias at power-on (rad/s).
@@ -21,7 +21,7 @@ pub(crate) struct Prior {
     pub(crate) gravity: f64,
 }
 
-/// How fast the uncertainty of an error-state filter grows.
+/// Process noise of an error-state filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Noise<T> {
     /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.

@@ -49,7 +49,7 @@ pub struct Config {
     pub phase: Deviation,
     /// Noise of the ionosphere-free code.
     pub code: Deviation,
-    /// How fast satellite clocks wander between the samples of their product: variance per second,
+    /// Random walk of satellite clocks between the samples of their product: variance per second,
     /// m²/s. Between two samples the error is a random walk tied at both ends.
     pub clock_walk: f64,
     /// Standard deviation of the first wet zenith delay, m.
@@ -88,7 +88,7 @@ impl Config {
             && rest.iter().all(|&value| value >= 0.0 && value.is_finite())
     }
 
-    /// What the interpolation of a satellite's clock adds to the variance of an observation, m².
+    /// Variance that the interpolation of a satellite's clock adds to an observation, m².
     pub(crate) fn clock_variance(&self, state: &SatelliteState) -> f64 {
         let SatelliteState { clock_interval: interval, clock_distance: distance, .. } = *state;
         if interval > 0.0 {

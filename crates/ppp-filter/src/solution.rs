@@ -34,9 +34,9 @@ pub enum Health {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SatelliteReport {
-    /// Which GPS satellite (PRN).
+    /// PRN of the GPS satellite.
     pub satellite: u8,
-    /// Direction in the receiver's sky.
+    /// Direction from the receiver.
     pub direction: Direction,
     /// Weight, residual and reason of the code.
     pub code: Decision<f64>,
@@ -59,7 +59,7 @@ pub struct Solution<const N: usize> {
     pub covariance: Matrix3<f64>,
     /// The same in east, north, up.
     pub covariance_enu: Matrix3<f64>,
-    /// How far the receiver's clock is ahead of GPS time, m.
+    /// Receiver clock minus GPS time, m.
     pub clock: f64,
     /// Wet zenith delay, m.
     pub wet_delay: f64,

@@ -8,7 +8,7 @@ use kestirim_scalar::Scalar;
 pub struct Block {
     /// The index of the first.
     pub first: usize,
-    /// How many there are, up to [`MOST_STATES`].
+    /// Number of states, up to [`MOST_STATES`].
     pub count: usize,
 }
 
@@ -41,7 +41,7 @@ pub enum Discrepancy {
     Prediction,
 }
 
-/// When the adaptive factor is computed.
+/// Order of adaptive factor and weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -71,7 +71,7 @@ pub struct Adaptive<T> {
     pub c0: T,
     /// Beyond c1 a is at its floor; usually 3 to 8.
     pub c1: T,
-    /// How a falls between them.
+    /// Course of a between them.
     pub descent: Descent,
     /// The smallest a (published as 0, by which (13) cannot divide).
     pub floor: T,

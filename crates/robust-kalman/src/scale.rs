@@ -32,7 +32,7 @@ pub enum Scale<T> {
 }
 
 impl<T: Scalar> Scale<T> {
-    /// What the innovations say before anything is judged: σ̂0 for the whole epoch, if it comes from them.
+    /// Scale from the innovations, before anything is judged: σ̂0 for the whole epoch, if it comes from them.
     pub(crate) fn of_innovations<const N: usize>(
         &self,
         epoch: &Epoch<'_, '_, T, N>,

@@ -1,7 +1,7 @@
 use crate::student_quantile;
 use kestirim_scalar::Scalar;
 
-/// How a weight falls between two thresholds.
+/// Course of a weight between two thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -69,7 +69,7 @@ pub struct Igg3<T> {
     pub k0: T,
     /// k1, usually 3 to 8.
     pub k1: T,
-    /// How it falls between them.
+    /// Course of the weight between them.
     pub descent: Descent,
 }
 
@@ -83,7 +83,7 @@ pub struct TTest<T> {
     pub alpha0: T,
     /// α1, the share of those that are to be rejected: 0.01.
     pub alpha1: T,
-    /// How it falls between them.
+    /// Course of the weight between them.
     pub descent: Descent,
 }
 

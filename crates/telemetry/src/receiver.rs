@@ -9,11 +9,11 @@ use crate::frame::{CHECKSUM, CONTENT, CRC, VERSION};
 pub struct Frame {
     /// The sender's count of frames.
     pub sequence: u16,
-    /// What it carried.
+    /// Its content.
     pub message: Message,
 }
 
-/// What became of everything that arrived.
+/// Counts of the frames that arrived, were damaged, or are missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
@@ -88,7 +88,7 @@ impl Receiver {
         }
     }
 
-    /// What became of everything so far.
+    /// Counts so far.
     pub const fn counts(&self) -> Counts {
         self.counts
     }

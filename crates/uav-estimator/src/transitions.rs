@@ -31,7 +31,7 @@ impl<S: Copy, const L: usize> Transitions<S, L> {
         self.known = [None; L];
     }
 
-    /// What happens in so many microseconds, in the form that `form` gives it.
+    /// Step over so many microseconds, in the form that `form` gives it.
     pub(crate) fn over(&self, interval_us: i64, form: impl FnOnce(&Step) -> S) -> Result<S, Error> {
         if let Some(Some((known_us, step))) = self.known.get(Self::place(interval_us))
             && *known_us == interval_us

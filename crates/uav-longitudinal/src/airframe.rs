@@ -67,7 +67,7 @@ pub struct Lift {
     pub pitch_rate: f64,
     /// `C_Lδe`, per radian.
     pub elevator: f64,
-    /// How the flow leaves the wing; none: it stays attached.
+    /// Stall of the wing; none: the flow stays attached.
     pub stall: Option<Stall>,
 }
 
@@ -78,7 +78,7 @@ pub struct Lift {
 pub struct Stall {
     /// α₀, rad.
     pub alpha: f64,
-    /// How sharp the transition is M, per radian.
+    /// Sharpness of the transition M, per radian.
     pub sharpness: f64,
 }
 

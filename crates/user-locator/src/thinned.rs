@@ -12,7 +12,7 @@ pub struct Thinned<V, const M: usize> {
     is_passing: bool,
     /// A power of two.
     stride: u64,
-    /// How many values there were.
+    /// Number of values so far.
     count: u64,
 }
 
@@ -58,13 +58,13 @@ impl<V: Copy, const M: usize> Thinned<V, M> {
         self.stride = self.stride.checked_mul(2).unwrap_or(self.stride);
     }
 
-    /// What is left, in the order in which it came.
+    /// The values that are left, in the order in which they came.
     #[inline]
     pub fn as_slice(&self) -> &[V] {
         &self.kept
     }
 
-    /// How many values there were, those that were given up included.
+    /// Number of values so far, including those that were given up.
     #[inline]
     pub fn count(&self) -> u64 {
         self.count

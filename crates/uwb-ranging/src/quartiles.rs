@@ -11,7 +11,7 @@ use kestirim_scalar::Scalar;
 pub struct Quartiles<T> {
     /// Values at the markers, in rising order.
     heights: [T; 5],
-    /// How many values are at or below each marker.
+    /// Number of values at or below each marker.
     positions: [u32; 5],
     count: u32,
     limits: (T, T),
@@ -24,7 +24,7 @@ impl<T: Scalar> Quartiles<T> {
         Self { heights: [T::ZERO; 5], positions: [1, 2, 3, 4, 5], count: 0, limits }
     }
 
-    /// How many values there were.
+    /// Number of values so far.
     pub fn count(&self) -> u32 {
         self.count
     }

@@ -10,7 +10,7 @@ use nalgebra::SVector;
 pub struct Anchor<T: Scalar> {
     /// Its place in the room's axes (right-handed, z up), m.
     pub position: SVector<T, 3>,
-    /// What its ranges are too long by, m; zero if that is not known.
+    /// Bias of its ranges, m: what they are too long by; zero if that is not known.
     pub bias: T,
 }
 

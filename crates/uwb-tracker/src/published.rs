@@ -7,7 +7,7 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Error as NoPosition, Solver, expected_range};
 use nalgebra::{SMatrix, SVector};
 
-/// What the paper leaves open.
+/// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PublishedConfig<T: Scalar, const D: usize> {
@@ -45,12 +45,12 @@ impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
     }
 }
 
-/// What became of an epoch.
+/// Outcome of an epoch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PublishedOutcome {
-    /// Not every anchor has been heard: the epoch goes on.
+    /// The epoch goes on, as not every anchor has been heard.
     Incomplete,
     /// Its ranges make no first position.
     NoPosition(NoPosition),
@@ -71,10 +71,10 @@ pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: 
     config: PublishedConfig<T, D>,
     /// The anchors' ranges, and the first position.
     ranges: EpochSolver<T, A>,
-    /// Which anchors were heard in this epoch.
+    /// Anchors that were heard in this epoch.
     heard: [bool; A],
     filter: Option<PublishedAdaptiveKalman<T, N, A>>,
-    /// When the filter's estimate holds (µs).
+    /// Time of the filter's estimate (µs).
     time_us: u64,
     push: Option<[T; D]>,
 }
@@ -153,7 +153,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         }
     }
 
-    /// Where the tag is, m; none before the first position.
+    /// Position of the tag, m; none before the first one.
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))

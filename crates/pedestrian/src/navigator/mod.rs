@@ -31,7 +31,7 @@ pub struct Step<T: Scalar> {
 pub struct ZeroVelocity<T: Scalar> {
     /// The sensor's velocity (m/s, earth): zero, or that of a foot which rolls on the ground.
     pub velocity: SVector<T, 3>,
-    /// The unrest T of the detector's verdict, (rad/s)².
+    /// The SHOE statistic T of the detector's verdict, (rad/s)².
     pub unrest: T,
     /// The step that ends in this sample (s).
     pub interval: T,
@@ -49,10 +49,10 @@ pub trait Navigator<T: Scalar> {
     fn propagate(&mut self, step: &Step<T>, stance: bool);
     /// The foot stands at the end of this step.
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>);
-    /// Where the sensor is (m, earth, from the start).
+    /// Position of the sensor (m, earth, from the start).
     fn position(&self) -> SVector<T, 3>;
-    /// How it moves (m/s, earth).
+    /// Velocity of the sensor (m/s, earth).
     fn velocity(&self) -> SVector<T, 3>;
-    /// How it is turned, body → earth.
+    /// Orientation of the sensor, body → earth.
     fn orientation(&self) -> Orientation<T>;
 }

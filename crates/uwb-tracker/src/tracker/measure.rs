@@ -1,4 +1,4 @@
-//! What a range makes of the estimate.
+//! Updates of the estimate by ranges.
 
 use super::Tracker;
 use crate::measurement::Range;

@@ -1,4 +1,4 @@
-//! How the estimate follows the time, and whether the tag stands meanwhile.
+//! Time of the estimate, and standstills of the tag.
 
 use super::Tracker;
 use crate::measurement::{Speed, Standstill};
@@ -25,7 +25,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// A robot turning faster changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
-    /// What [`Tracker::advance`] changes.
+    /// Fields that [`Tracker::advance`] changes.
     #[inline]
     pub(super) fn timed(&self) -> Timed<T, N> {
         (self.estimate, self.time_us, self.heard, self.doubted_until_us)
