@@ -27,7 +27,7 @@ struct Shadowing<T> {
     log_weight: T,
     /// β per radian of elevation.
     decay: T,
-    /// −ln of the smallest deviation believed in.
+    /// −ln of the smallest deviation.
     most_precise: T,
 }
 

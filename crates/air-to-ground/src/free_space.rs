@@ -6,9 +6,9 @@ use crate::Measurement;
 
 /// Degrees of freedom of Student's distribution: tails as antenna nulls and buildings make them.
 const FREEDOM: f64 = 3.0;
-/// Its scale, dB (a standard deviation of 6 dB): open ground seen from some tens of metres.
+/// Scale of the distribution, dB (a standard deviation of 6 dB): open ground seen from some tens of metres.
 const SCALE: f64 = 3.5;
-/// No scale is below this, dB: receivers count in halves of decibels.
+/// Least scale, dB: receivers count in halves of decibels.
 const LEAST_SCALE: f64 = 0.5;
 /// Place, level and antennas are fitted, too: so many measurements do not count for the scale.
 const FITTED: usize = 4;
@@ -42,7 +42,7 @@ impl Antennas {
 pub struct LevelPrior<T> {
     /// Mean of the level received at one metre, dB.
     pub mean: T,
-    /// Its standard deviation, dB.
+    /// Standard deviation of the level, dB.
     pub sigma: T,
 }
 
@@ -58,11 +58,11 @@ pub struct LevelPrior<T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeSpace<T> {
     level: Option<LevelPrior<T>>,
-    /// Of Student's distribution, dB.
+    /// Scale of Student's distribution, dB.
     scale: T,
 }
 
-/// Most measurements that are read.
+/// Largest number of measurements that are read.
 const MOST: usize = 128;
 
 /// Geometry of the measurements seen from a place.

@@ -36,7 +36,7 @@ pub struct PhaseCentre {
 /// An antenna.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antenna {
-    /// Its type, and the radome of a receiver's, as in the file.
+    /// Type of the antenna, and the radome of a receiver's, as in the file.
     pub name: String,
     /// The phase centres on L1 and L2, where the file has them.
     pub frequencies: [Option<PhaseCentre>; 2],

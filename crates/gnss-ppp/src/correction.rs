@@ -50,7 +50,7 @@ impl Corrections {
     /// All corrections.
     pub const ALL: Self = Self { left_out: 0 };
 
-    /// These, without one.
+    /// These corrections without one of them.
     pub const fn without(self, correction: Correction) -> Self {
         Self { left_out: self.left_out | 1 << correction as u16 }
     }

@@ -2,9 +2,9 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Semi-major axis of the GRS 80 ellipsoid, m.
 const SEMI_MAJOR: f64 = 6_378_137.0;
-/// Its flattening.
+/// Flattening of the ellipsoid.
 const FLATTENING: f64 = 1.0 / 298.257_222_101;
-/// Its first eccentricity squared.
+/// First eccentricity of the ellipsoid, squared.
 const ECCENTRICITY_SQUARED: f64 = FLATTENING * (2.0 - FLATTENING);
 
 /// A place on or above the GRS 80 ellipsoid.

@@ -17,7 +17,7 @@ pub struct SatelliteState {
     pub position: Vector3<f64>,
     /// Velocity, m/s, inertial or relative to the Earth.
     pub velocity: Vector3<f64>,
-    /// Its clock minus GPS time, s, without the effect of its eccentric orbit.
+    /// Satellite clock minus GPS time, s, without the effect of its eccentric orbit.
     pub clock: f64,
     /// Time from the clock's sample before to that after, s (zero: not interpolated).
     pub clock_interval: f64,

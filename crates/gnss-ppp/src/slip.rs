@@ -8,7 +8,7 @@ use crate::signal::{geometry_free, melbourne_wuebbena};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Slip {
-    /// It was not observed for too long.
+    /// The satellite was not observed for too long.
     Gap,
     /// The receiver reports a loss of lock.
     LossOfLock,
@@ -56,7 +56,7 @@ impl Default for SlipLimits {
 pub struct Arc {
     last: GpsTime,
     geometry_free: f64,
-    /// Of the jumps, m².
+    /// Variance of the jumps, m².
     geometry_free_variance: f64,
     wide_lane: f64,
     /// Around the running mean, cycles².

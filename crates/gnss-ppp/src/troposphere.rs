@@ -35,9 +35,9 @@ const HEIGHT: Coefficients = [2.53e-5, 5.49e-3, 1.14e-3];
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mapping {
-    /// Of the dry air, in hydrostatic equilibrium.
+    /// Mapping of the dry air, in hydrostatic equilibrium.
     pub hydrostatic: f64,
-    /// Of the water vapour: the partial derivative of the range by the zenith wet delay.
+    /// Mapping of the water vapour: the partial derivative of the range by the zenith wet delay.
     pub wet: f64,
 }
 

@@ -8,11 +8,11 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
-    /// It agrees with the estimate: take it in.
+    /// The measurement agrees with the estimate: take it in.
     Admit,
-    /// It does not: leave it out.
+    /// The measurement does not agree: leave it out.
     Reject,
-    /// It does not, but so many in a row did not that the estimate must be wrong: take it in with
+    /// The measurement does not agree, nor did many before it, so the estimate must be wrong: take it in with
     /// [`Gaussian::correct_widened`].
     Recover,
 }

@@ -1,6 +1,6 @@
 use rand_core::Rng;
 
-/// Most numbers of one prefix that are drawn together.
+/// Largest number of values of one prefix that are drawn together.
 const TOGETHER: usize = 32;
 /// Halves still to come: each of 32 bits leaves one behind.
 const DEPTH: usize = 33;

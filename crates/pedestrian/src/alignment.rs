@@ -15,8 +15,8 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 #[derive(Clone, Copy, Debug)]
 pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
-    /// Of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20 holds
-    /// the squares of both the largest bias and the smallest noise.)
+    /// Variance of the bias of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20
+    /// holds the squares of both the largest bias and the smallest noise.)
     bias_variance: T,
     /// The accelerometer's magnitude at rest, in units of standard gravity.
     gravity: T,

@@ -16,7 +16,7 @@ pub struct Warnings {
     pub gyroscope_saturated: bool,
     /// At rest the accelerometer does not show 9.8 m/s²: its unit is wrong (g?) or it needs calibration.
     pub gravity_implausible: bool,
-    /// Angular rates beyond any foot: degrees a second taken for radians?
+    /// Angular rates beyond any foot, as if °/s were taken for rad/s.
     pub rate_implausible: bool,
     /// Stride after stride ends with metres a second left over: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
@@ -69,7 +69,7 @@ impl<T: Scalar> Repeats<T> {
 }
 
 impl<T: Scalar> Health<T> {
-    /// Beyond the widest range of a gyroscope, 2000 °/s (rad/s).
+    /// Largest plausible rate, beyond the widest range of a gyroscope, 2000 °/s (rad/s).
     const LARGEST_RATE: f64 = 45.0;
     /// A stride that ends with so much velocity left over (m/s) was not measured by this IMU …
     const LANDING: f64 = 2.0;

@@ -38,7 +38,7 @@ impl<T: Scalar> Default for Config<T> {
     ))
 )]
 pub struct Estimate<T: Scalar> {
-    /// Of the sample (µs, the samples' clock).
+    /// Time of the sample (µs, the samples' clock).
     pub time_us: u64,
     /// Position of the sensor (m, earth: z up, from the start).
     pub position: SVector<T, 3>,

@@ -8,7 +8,7 @@ use kestirim_gnss_ppp::{Arc, Slip};
 pub(crate) struct Channel {
     /// PRN of the GPS satellite.
     pub(crate) satellite: u8,
-    /// Its combinations, for the detection of slips.
+    /// Combinations of its phases and codes, for the detection of slips.
     pub(crate) arc: Arc,
     /// Phase wind-up of its last epoch, cycles.
     pub(crate) wind_up: f64,

@@ -15,7 +15,7 @@ pub struct SatelliteObservation<'a> {
     pub lock_lost: bool,
     /// The satellite's state at the time of transmission.
     pub state: SatelliteState,
-    /// Its antenna on L1 and L2, where known.
+    /// Antenna on L1 and L2, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
 }
 

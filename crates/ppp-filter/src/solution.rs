@@ -12,7 +12,7 @@ pub enum Slipped {
     New,
     /// A slip in its own observations.
     Seen(Slip),
-    /// Its phase contradicted all others for several epochs.
+    /// The phase contradicted all others for several epochs.
     Contradicted,
 }
 
@@ -55,7 +55,7 @@ pub struct Solution<const N: usize> {
     pub time: GpsTime,
     /// The marker, ECEF, m, free of tides.
     pub position: Vector3<f64>,
-    /// Its covariance, ECEF, m².
+    /// Covariance of the position, ECEF, m².
     pub covariance: Matrix3<f64>,
     /// The same in east, north, up.
     pub covariance_enu: Matrix3<f64>,

@@ -13,7 +13,7 @@ pub enum Reweighting {
     /// The worst one alone, then everything is computed anew, until none exceeds the inner threshold. Each
     /// measurement is treated once.
     WorstFirst {
-        /// Most measurements that are treated.
+        /// Largest number of measurements that are treated.
         most: usize,
     },
 }

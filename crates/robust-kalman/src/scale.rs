@@ -72,7 +72,7 @@ fn from_median<T: Scalar>(decisions: &[Decision<T>], floor: T) -> T {
     median(decisions).map_or(floor, |median| (T::from_f64(1.4826) * median).max(floor))
 }
 
-/// Of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
+/// Median of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
 /// of four measurements two may be wild. By counting, so that nothing needs to be stored.
 fn median<T: Scalar>(decisions: &[Decision<T>]) -> Option<T> {
     let count = decisions.iter().filter(|decision| decision.counts()).count();

@@ -29,7 +29,7 @@ impl Descent {
     }
 }
 
-/// A weight function: how much a measurement is believed, by how far it stands out.
+/// A weight function: the weight of a measurement by its standardised residual.
 ///
 /// [`Weight`] chooses among the three of this crate at run time; each is a type of its own, too, and any other can
 /// be given to [`Robust::with_weight`](crate::Robust::with_weight).
@@ -139,7 +139,7 @@ impl<T: Scalar> WeightFunction<T> for Igg3<T> {
 }
 
 impl<T: Scalar> WeightFunction<T> for TTest<T> {
-    /// Of `count` − 2 degrees of freedom; none for fewer than three measurements.
+    /// Thresholds of `count` − 2 degrees of freedom; none for fewer than three measurements.
     #[inline]
     fn thresholds(&self, count: usize) -> Option<(T, T)> {
         let freedom = count.checked_sub(2).filter(|&freedom| freedom > 0)?;

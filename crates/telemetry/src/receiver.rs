@@ -9,7 +9,7 @@ use crate::frame::{CHECKSUM, CONTENT, CRC, VERSION};
 pub struct Frame {
     /// The sender's count of frames.
     pub sequence: u16,
-    /// Its content.
+    /// Content of the frame.
     pub message: Message,
 }
 
@@ -121,7 +121,7 @@ impl Receiver {
     }
 }
 
-/// Reads what the checksum has vouched for, if this version knows it to the last byte.
+/// Reads a frame whose checksum is right, if this version understands it to the last byte.
 fn read(checked: &[u8]) -> Option<Frame> {
     let (&[version, low, high], message) = checked.split_first_chunk()?;
     if version != VERSION {

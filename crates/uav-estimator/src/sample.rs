@@ -19,6 +19,6 @@ pub struct Sample<const P: usize> {
 pub struct Noise<const P: usize> {
     /// Standard deviations of what reaches the aircraft beside δe (rad) and δt, a sample.
     pub inputs: SVector<f64, 2>,
-    /// That of each output, in its unit.
+    /// Standard deviation of each output, in its unit.
     pub outputs: SVector<f64, P>,
 }

@@ -2,7 +2,7 @@ use nalgebra::SVector;
 
 use crate::{Dynamics, Error, Step};
 
-/// No gap is longer, in usual intervals.
+/// Longest gap, in usual intervals.
 const LONGEST_GAP: f64 = 1e6;
 
 /// Steps of a model over the intervals between samples; the last one for each remainder of the interval's

@@ -80,7 +80,7 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
 }
 
 impl<T: Scalar, const M: usize> Beacon<T, M> {
-    /// Without measurements.
+    /// A beacon of which nothing has been measured.
     pub fn new(channel: FreeSpace<T>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };
         Self { channel, measurements: Vec::new() }

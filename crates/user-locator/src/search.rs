@@ -30,7 +30,7 @@ pub struct BeaconSearch<T, const M: usize, const N: usize> {
 }
 
 impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
-    /// Without measurements.
+    /// A search in an area before its first measurement.
     #[inline]
     pub fn new(channel: FreeSpace<T>, area: Area<T, N>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };

@@ -17,7 +17,7 @@ pub struct Thinned<V, const M: usize> {
 }
 
 impl<V: Copy, const M: usize> Thinned<V, M> {
-    /// Without values.
+    /// An empty collection.
     #[inline]
     pub const fn new() -> Self {
         const { assert!(M >= 3, "two that stay, and the last") };

@@ -11,7 +11,7 @@ pub struct Observation<T: Scalar> {
     pub anchor: SVector<T, 3>,
     /// The measured distance, m.
     pub range: T,
-    /// Its variance, m².
+    /// Variance of the range, m².
     pub variance: T,
 }
 

@@ -3,7 +3,7 @@ use kestirim_scalar::Scalar;
 /// Median and quartiles of a stream, in constant memory: the P² algorithm (Jain and Chlamtac 1985) with
 /// its five markers at the minimum, the quartiles and the maximum.
 ///
-/// A tenth of wild values moves the median by a fraction of the spread, however wild they are: beyond the
+/// A tenth of outliers moves the median by a fraction of the spread, however large they are: beyond the
 /// limits it only counts on which side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -18,7 +18,7 @@ pub struct Quartiles<T> {
 }
 
 impl<T: Scalar> Quartiles<T> {
-    /// Of values that are expected between `low` and `high`.
+    /// Quartiles of values that are expected between `low` and `high`.
     pub fn within(low: T, high: T) -> Self {
         let limits = (low.min(high), low.max(high));
         Self { heights: [T::ZERO; 5], positions: [1, 2, 3, 4, 5], count: 0, limits }

@@ -136,7 +136,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         Ok(all)
     }
 
-    /// Of all crossings of two circles around placed neighbours, the one that fits the others best.
+    /// The crossing of two circles around placed neighbours that fits the others best.
     fn best_crossing(&self, anchor: usize, places: &[Option<Place<T>>; A]) -> Option<Place<T>> {
         let placed =
             |other: usize| Some((*places.get(other)?.as_ref()?, self.between(anchor, other)?));

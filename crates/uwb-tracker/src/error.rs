@@ -18,7 +18,7 @@ pub enum Error {
     TooManyAnchors,
     /// The same anchor's range for the same time came before.
     Duplicate,
-    /// The sample is older than what the tracker already knows. If all are, the clock has jumped: make a new
+    /// The sample is older than the estimate. If all are, the clock has jumped: make a new
     /// tracker.
     OutOfOrder,
     /// The estimate refused it.

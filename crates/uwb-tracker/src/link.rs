@@ -8,7 +8,7 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Anchor<T: Scalar> {
-    /// Its place in the room's axes (right-handed, z up), m.
+    /// Position in the room's axes (right-handed, z up), m.
     pub position: SVector<T, 3>,
     /// Bias of its ranges, m: what they are too long by; zero if that is not known.
     pub bias: T,
@@ -38,7 +38,7 @@ pub(crate) struct Link<T: Scalar> {
 }
 
 impl<T: Scalar> Link<T> {
-    /// After so many ranges in a row that do not fit, one is believed all the same.
+    /// Number of ranges in a row that do not fit after which one is taken in all the same.
     const PATIENCE: u16 = 20;
 
     pub(crate) fn new(anchor: Anchor<T>, config: &Config<T>) -> Self {

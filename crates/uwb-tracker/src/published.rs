@@ -52,11 +52,11 @@ impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
 pub enum PublishedOutcome {
     /// The epoch goes on, as not every anchor has been heard.
     Incomplete,
-    /// Its ranges make no first position.
+    /// The ranges determine no first position.
     NoPosition(NoPosition),
-    /// It made the first position.
+    /// The epoch gave the first position.
     Started,
-    /// It was taken in.
+    /// The epoch was taken in.
     Taken,
     /// A step of the filter was refused, as when eq. 18 has made R indefinite: its ranges are left out.
     Refused(Refusal),
@@ -80,7 +80,7 @@ pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: 
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker<T, D, N, A> {
-    /// A filter for these anchors, which does not know yet where it is.
+    /// A filter for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::NotFinite`].

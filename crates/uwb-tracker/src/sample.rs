@@ -64,17 +64,17 @@ pub struct OdometrySample<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome {
-    /// It is kept for a first position, for which more are needed.
+    /// The range is kept for a first position, for which more are needed.
     Collected,
-    /// It made a first position possible, or a new one after the tracker was lost.
+    /// The range made a first position possible, or a new one after the tracker was lost.
     Started,
-    /// It was taken in with its full weight.
+    /// The range was taken in with its full weight.
     Taken,
-    /// It was taken in with less: it is longer or shorter than expected.
+    /// The range was taken in with less weight: it is longer or shorter than expected.
     Weakened,
-    /// It was left out.
+    /// The range was left out.
     Rejected,
-    /// It was taken in against expectation: too many had been left out.
+    /// The range was taken in although it does not fit: too many had been left out.
     Recovered,
 }
 

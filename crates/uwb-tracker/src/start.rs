@@ -13,7 +13,8 @@ const POSITION_SIGMA: f64 = 0.1;
 /// Standard deviation of the velocity of a tag when it is first heard, m/s.
 const VELOCITY_SIGMA: f64 = 0.5;
 
-/// A fit that costs more is of ranges of which one is wild: three standard deviations a range cost 3.
+/// Largest cost of a fit; one that costs more has an outlier among its ranges: three standard
+/// deviations a range cost 3.
 const LARGEST_COST: f64 = 12.0;
 
 /// The estimate that the fresh ranges make, if they are enough and, unless there is no more `patience`, agree

@@ -22,7 +22,7 @@ impl<T: Scalar> Stillness<T> {
     const MEAN_TIME: f64 = 0.5;
     /// Over how long the squares are averaged, s.
     const SQUARE_TIME: f64 = 0.15;
-    /// Without a sample for so long nothing is known (µs).
+    /// Longest gap between samples after which stillness is still known (µs).
     const GAP_US: u64 = 500_000;
 
     pub(crate) fn new() -> Self {

@@ -13,7 +13,7 @@ use crate::time::{GpsTime, full_year};
 pub(super) struct Body {
     header: Header,
     epochs: Vec<RawEpoch>,
-    /// Of all epochs, one after the other: satellite, and the end of its part of `raw`.
+    /// Records of all epochs, one after the other: satellite, and the end of its part of `raw`.
     records: Vec<(u8, usize)>,
     raw: Vec<Raw>,
     moved: bool,

@@ -1,6 +1,6 @@
 //! The best neighbour of a rounded gain.
 //!
-//! Poles that lie close together feel the last bit of every gain. There are more gains than poles, or at least
+//! Poles that lie close together depend on the last bit of every gain. There are more gains than poles, or at least
 //! as many: among the doubles around the exact gain some place the poles far better than the nearest ones.
 
 use super::problem::{Checked, Problem};

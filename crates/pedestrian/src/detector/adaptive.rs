@@ -26,7 +26,7 @@ impl<T: Scalar> Default for Adaptive<T> {
 impl<T: Scalar> Adaptive<T> {
     /// 1.4 s, longer than a slow stride.
     const MEMORY_BINS: usize = 14;
-    /// Of the smallest T; any value from 1.5 to 3 finds the same strides.
+    /// Threshold as a multiple of the smallest T; any value from 1.5 to 3 finds the same strides.
     const FACTOR: f64 = 2.0;
     /// T₀, (rad/s)²: below 0.3 rad/s the foot always stands.
     const FLOOR: f64 = 0.1;

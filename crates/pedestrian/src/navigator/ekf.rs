@@ -40,7 +40,7 @@ impl<T: Scalar> Ekf<T> {
     const REFERENCE_INTERVAL: f64 = 0.005;
     /// Value of the SHOE statistic T at which the variance doubles, (rad/s)².
     const UNREST: f64 = 0.3;
-    /// The uncertainty grows no further in a longer swing (s): the next stance will be believed anyway.
+    /// Longest swing in which the uncertainty grows (s): beyond it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
     /// The covariance of the error, 6 × 6 in (m/s, rad)² × 1000.

@@ -16,7 +16,7 @@ use nalgebra::SVector;
 /// One step of time with what moved the foot in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<T: Scalar> {
-    /// Its length (s).
+    /// Interval of the step (s).
     pub interval: T,
     /// Specific force without its bias (units of standard gravity, body), held over the step.
     pub force_g: SVector<T, 3>,

@@ -33,7 +33,7 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     time_us: u64,
     stillness: Stillness<T>,
     wheels: Option<OdometrySample<T>>,
-    /// Until then, what says that the tag stands is not believed.
+    /// Time until which standstills are not taken in, µs.
     doubted_until_us: u64,
     heard: u8,
     counters: Counters<T>,
@@ -50,7 +50,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Between ranges, the estimate follows the IMU in steps of this (µs).
     const INERTIAL_STEP_US: u64 = 100_000;
 
-    /// A tracker for these anchors, which does not know yet where it is.
+    /// A tracker for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].

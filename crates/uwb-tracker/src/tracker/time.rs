@@ -82,7 +82,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.wheels.as_ref().filter(fresh)
     }
 
-    /// Whether IMU or wheels say that the tag stands, and may be believed.
+    /// Whether IMU or wheels show that the tag stands, and are not in doubt.
     #[inline]
     pub(super) fn is_still(&self, time_us: u64) -> bool {
         let wheels_stand =
