@@ -5,6 +5,7 @@
 //! in `crates/` is a program, which may depend on anything and on which no crate may.
 
 mod readmes;
+mod recipes;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::env;
