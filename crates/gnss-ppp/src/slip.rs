@@ -72,7 +72,7 @@ const MEMORY: u16 = 100;
 const WIDE_LANE_DEVIATION: f64 = 0.7;
 /// Standard deviation of a jump of the geometry-free phase before any is known, m.
 const GEOMETRY_FREE_DEVIATION: f64 = 0.01;
-/// For so many epochs a wide lane is suspicious; then that is where it is.
+/// Number of epochs for which a jump of the wide lane is suspicious; after these its mean moves there.
 const ACCUSTOMED: u16 = 10;
 
 impl Arc {

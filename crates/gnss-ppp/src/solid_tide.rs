@@ -79,7 +79,7 @@ impl Station {
         self.up * up + self.north * north + self.east * east
     }
 
-    /// The time domain: what one body does.
+    /// Displacement by one body, in the time domain.
     fn step_1(&self, body: &Vector3<f64>, mass: f64) -> Vector3<f64> {
         let Some(direction) = body.try_normalize(f64::MIN_POSITIVE) else {
             return Vector3::zeros();
@@ -125,7 +125,7 @@ impl Station {
         nominal + self.displacement(up, north, east) * degree_2
     }
 
-    /// The frequency domain (7.12 and 7.13).
+    /// Corrections in the frequency domain (7.12 and 7.13).
     fn step_2(&self, arguments: &Arguments) -> Vector3<f64> {
         let Self { sine, cosine, .. } = *self;
         let mut total = [0.0; 3];

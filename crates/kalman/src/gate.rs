@@ -17,7 +17,7 @@ pub enum Verdict {
     Recover,
 }
 
-/// Rejects measurements whose NIS is above γ, but never for ever.
+/// Rejects measurements whose NIS is above γ, but not indefinitely.
 ///
 /// When more than `patience` measurements in a row are rejected, the estimate is taken to be wrong
 /// and not they. A gate belongs to one sensor: another one's good measurements say nothing about its
@@ -47,7 +47,7 @@ impl<T: Scalar> Gate<T> {
         self.rejected
     }
 
-    /// Judges the next measurement and remembers the verdict.
+    /// Judges the next measurement and counts rejections.
     #[inline(always)]
     pub fn judge<const N: usize>(&mut self, weighed: &Weighed<T, N>) -> Verdict {
         if !weighed.exceeds(self.gamma) {

@@ -30,7 +30,7 @@ pub fn observability<const N: usize, const P: usize>(
     }
 }
 
-/// The modes that no output sees, each once; nothing in the places that are left.
+/// The modes that no output sees, each once; `None` in the places that are left.
 ///
 /// # Errors
 /// [`Error::NotFinite`]; [`Error::NotConverged`].

@@ -1,4 +1,4 @@
-//! A pair (A, C) made ready for numbers: outputs that say the same are merged, and units are evened out.
+//! A pair (A, C) made ready for numbers: dependent outputs are merged, and units are evened out.
 
 use crate::Error;
 use crate::extended::Extended;

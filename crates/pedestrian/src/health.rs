@@ -9,7 +9,7 @@ use nalgebra::SVector;
 // One flag a finding is what a reader wants to ask for by name.
 #[allow(clippy::struct_excessive_bools)]
 pub struct Warnings {
-    /// Again and again an axis of the accelerometer showed the same large value three times in a row: its
+    /// Repeatedly an axis of the accelerometer showed the same large value three times in a row: its
     /// range is too small.
     pub accelerometer_saturated: bool,
     /// The same of the gyroscope.
@@ -18,7 +18,7 @@ pub struct Warnings {
     pub gravity_implausible: bool,
     /// Angular rates beyond any foot, as if °/s were taken for rad/s.
     pub rate_implausible: bool,
-    /// Stride after stride ends with metres a second left over: axes are swapped or mirrored between the
+    /// Repeatedly strides end with a velocity of metres a second left over: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
     pub axes_inconsistent: bool,
     /// Samples are missing (more than a tenth of a second).
@@ -27,7 +27,7 @@ pub struct Warnings {
     pub never_still: bool,
 }
 
-/// Watches a stream for what no filter can mend.
+/// Checks of a stream for faults that no filter can correct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Health<T: Scalar> {
     warnings: Warnings,

@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-/// The class of an IMU: what may be expected of it before it has said anything.
+/// The class of an IMU: the prior of its biases and its noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

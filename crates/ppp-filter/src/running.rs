@@ -66,7 +66,7 @@ impl<const N: usize> Running<N> {
         Self { estimate, time, interval: None, channels: [None; N] }
     }
 
-    /// Lets time pass.
+    /// Predicts to the time of an epoch.
     pub(crate) fn advance(&mut self, time: GpsTime, config: &Config) -> Result<(), Error> {
         let elapsed = time.since(self.time);
         if elapsed <= 0.0 || elapsed.is_nan() {

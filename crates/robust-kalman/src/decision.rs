@@ -60,7 +60,7 @@ impl<T: Scalar> Decision<T> {
         matches!(self.reason, Reason::DownWeighted | Reason::Rejected)
     }
 
-    /// Whether its residual was comparable with anything, and it was not found wanting.
+    /// Whether its residual can be compared with others, and it kept its full weight.
     #[inline(always)]
     pub(crate) fn counts(&self) -> bool {
         matches!(self.reason, Reason::Agrees | Reason::TooFew)

@@ -25,7 +25,7 @@ pub struct Counts {
     pub corrupt: u32,
     /// Frames of another version, or with a message that this receiver does not know.
     pub unknown: u32,
-    /// Numbers that are missing between those of the good frames, whatever became of theirs.
+    /// Sequence numbers that are missing between those of the good frames: torn, corrupt or never arrived.
     pub lost: u32,
 }
 

@@ -139,7 +139,7 @@ where
         }
     }
 
-    /// Lets `interval` (s) pass.
+    /// Predicts over `interval` (s).
     ///
     /// # Errors
     /// [`Error::Filter`] with `NotFinite` or `NotPositive` for such an interval; then nothing has changed.

@@ -54,7 +54,7 @@ impl<T: Scalar> Quartiles<T> {
         }
     }
 
-    /// The median; none of nothing.
+    /// The median; none before the first value.
     pub fn median(&self) -> Option<T> {
         self.quantile(2)
     }

@@ -103,7 +103,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         (0..A).flat_map(move |i| (0..i).filter_map(move |j| Some((i, j, self.between(i, j)?))))
     }
 
-    /// First places: the longest pair, then whoever has the most neighbours that are placed.
+    /// First places: the longest pair, then the anchor with the most neighbours that are placed.
     fn placed(&self) -> Result<[Place<T>; A], Error> {
         let mut places = [None; A];
         let longest = self.pairs().fold(None, |best: Option<(usize, usize, T)>, pair| {

@@ -40,7 +40,7 @@ impl<T: Scalar> Config<T> {
         Self::robust(height, 0.1)
     }
 
-    /// The textbook's extended filter: every range counts, always the same.
+    /// The textbook's extended Kalman filter: all ranges have the same variance and are taken in.
     #[inline]
     pub fn plain(height: T) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl<T: Scalar> Config<T> {
         }
     }
 
-    /// All that real rooms ask for. The constants are physical, and broad in their effect: the book has the
+    /// Constants for real rooms. They are physical, and broad in their effect: the book has the
     /// table of what half and twice of each does to every recording.
     #[inline(always)] // So that the constants fold.
     fn robust(height: T, least_sigma: f64) -> Self {

@@ -26,7 +26,7 @@ pub struct PublishedConfig<T: Scalar, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
-    /// With these the paper's table comes out of biased ranges, if the filter is started at the truth. With
+    /// Settings with which biased ranges give the paper's table, if the filter is started at the truth. With
     /// everyday ones eq. 18 makes R indefinite.
     pub fn adaptive(height: T) -> Self {
         Self {

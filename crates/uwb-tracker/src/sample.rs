@@ -12,7 +12,7 @@ pub struct RangeSample<T> {
     pub time_us: u64,
     /// Index of its anchor in the list that the tracker was made with.
     pub anchor: usize,
-    /// The distance, m; a little below zero is possible, and meant.
+    /// The distance, m; small negative ones are accepted.
     pub range: T,
 }
 

@@ -18,9 +18,9 @@ pub(crate) struct Stillness<T: Scalar> {
 impl<T: Scalar> Stillness<T> {
     /// Root mean square of the changes below which the tag stands, m/s².
     const LIMIT: f64 = 0.3;
-    /// Over how long the mean is taken, s.
+    /// Time over which the mean is taken, s.
     const MEAN_TIME: f64 = 0.5;
-    /// Over how long the squares are averaged, s.
+    /// Time over which the squares are averaged, s.
     const SQUARE_TIME: f64 = 0.15;
     /// Longest gap between samples after which stillness is still known (µs).
     const GAP_US: u64 = 500_000;

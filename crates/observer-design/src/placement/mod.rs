@@ -14,7 +14,7 @@ use crate::poles::{arrange, multiplicity};
 use nalgebra::{Complex, SMatrix};
 use problem::{Checked, Problem};
 
-/// A gain and what it does.
+/// A gain and the poles that it gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Placement<const N: usize, const P: usize> {

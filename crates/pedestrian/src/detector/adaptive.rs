@@ -76,7 +76,7 @@ impl<T> RecentMinimum<T> {
 }
 
 impl<T: Scalar> RecentMinimum<T> {
-    /// Remembers `memory` bins and the one being filled; at most 15.
+    /// Keeps `memory` bins and the one being filled; at most 15.
     pub(crate) fn new(memory: usize) -> Self {
         Self {
             bins: [T::MAX; CAPACITY],

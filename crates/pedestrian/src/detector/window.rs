@@ -14,7 +14,7 @@ pub(crate) struct SlidingMean<T, const K: usize> {
     count: usize,
     sums: [T; K],
     span_us: u32,
-    /// 1/count, kept because a division is dear and the count seldom changes.
+    /// 1/count, kept because a division is expensive and the count seldom changes.
     reciprocal: T,
 }
 

@@ -43,7 +43,7 @@ pub struct ZeroVelocity<T: Scalar> {
 ///
 /// Steps are checked before they come here: finite, bounded, of positive length.
 pub trait Navigator<T: Scalar> {
-    /// At the origin, at rest.
+    /// A navigator at the origin, at rest.
     fn start(sensor: SensorClass, orientation: Orientation<T>) -> Self;
     /// Moves by one step.
     fn propagate(&mut self, step: &Step<T>, stance: bool);

@@ -17,9 +17,9 @@ pub(crate) struct Speed<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Speed<T, D> {
-    /// The wheels slip, and the tag is not between them, m/s.
+    /// Standard deviation of the speed, m/s: the wheels slip, and the tag is not between them.
     const SIGMA: f64 = 0.1;
-    /// A velocity this small has no direction, m/s.
+    /// Least velocity that has a direction, m/s.
     const LEAST: f64 = 0.02;
 
     /// Takes it in, unless the velocity has no direction yet or contradicts it.

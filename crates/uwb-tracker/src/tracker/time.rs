@@ -10,19 +10,19 @@ use kestirim_scalar::Scalar;
 pub(super) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// Odometry older than this says nothing about now (µs).
+    /// Age beyond which odometry is not used (µs).
     const WHEELS_US: u64 = 500_000;
-    /// A position this uncertain is none, m.
+    /// Standard deviation beyond which a position is given up, m.
     const LOST_SIGMA: f64 = 2.0;
-    /// Nor is one that nothing has been heard of for so long (µs).
+    /// Time without a sample after which a position is given up (µs).
     const LOST_US: u64 = 60_000_000;
-    /// Ranges whose mean NIS is above this do not come from a tag that stands.
+    /// Mean NIS of ranges above which a standstill is doubted.
     const NIS_OF_MOTION: f64 = 4.0;
-    /// For so long standing is doubted then (µs), …
+    /// Time for which standstills are doubted then (µs), …
     const DOUBT_US: u64 = 30_000_000;
     /// … and the velocity is as uncertain as at the start, (m/s)².
     const DOUBTED_VARIANCE: f64 = 0.25;
-    /// A robot turning faster changes its direction between two ranges, rad/s.
+    /// Turn rate above which a robot changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
     /// Fields that [`Tracker::advance`] changes.
