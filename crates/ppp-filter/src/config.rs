@@ -3,7 +3,7 @@
 use crate::Estimator;
 use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
 
-/// Whether the receiver moves.
+/// Motion of the receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,7 +41,7 @@ impl Deviation {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
-    /// Whether the receiver moves. The default `estimator` is made for it: change both.
+    /// Motion of the receiver. The default `estimator` is made for it: change both.
     pub motion: Motion,
     /// Lowest elevation of a satellite, rad.
     pub elevation_mask: f64,
