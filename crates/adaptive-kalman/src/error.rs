@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why a step was refused. The filter is as it was before the call.
+/// Reason for which a step was refused. The filter is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,7 +8,7 @@ use core::fmt;
 pub enum Error {
     /// The estimate refused it.
     Estimate(kestirim_kalman::Error),
-    /// There is no measurement of this number.
+    /// No measurement has this number.
     NoSuchMeasurement,
     /// A forgetting factor is not in 0..=1, or limits of a variance are negative, out of order or not
     /// finite.

@@ -38,8 +38,8 @@ impl<T: Scalar> MeasurementNoise<T> {
         self.learn_square(learning, weighed, weighed.innovation() * weighed.innovation());
     }
 
-    /// [`MeasurementNoise::learn`] where only `square` is believed of ν². Of a measurement that a gate left
-    /// out, γ S is enough: one wild value then teaches little, and many in a row the same in the end.
+    /// [`MeasurementNoise::learn`] with `square` in place of ν². Of a measurement that a gate left
+    /// out, γ S is enough: a single outlier then changes little, and many in a row the same in the end.
     #[inline(always)]
     pub fn learn_square<const N: usize>(
         &mut self,

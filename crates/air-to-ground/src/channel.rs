@@ -27,11 +27,11 @@ struct Shadowing<T> {
     log_weight: T,
     /// β per radian of elevation.
     decay: T,
-    /// −ln of the smallest deviation believed in.
+    /// −ln of the smallest deviation.
     most_precise: T,
 }
 
-/// What a channel expects of a measurement (eqs 2.1 and 2.7 to 2.10).
+/// Distribution of a measured path loss (eqs 2.1 and 2.7 to 2.10).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PathLoss<T> {
@@ -115,7 +115,7 @@ impl<T: Scalar> Channel<T> {
         Ok(Self { line_of_sight, obstructed: limited(&self.obstructed), ..*self })
     }
 
-    /// What to expect at a horizontal distance and a height (m) of the drone from the user.
+    /// Path loss at a horizontal distance and a height (m) of the drone from the user.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not above zero.

@@ -9,7 +9,7 @@ pub struct Propagation<T> {
     pub excess_loss: T,
     /// Standard deviation of the shadowing at the horizon α, dB.
     pub sigma: T,
-    /// How fast that deviation falls with the elevation β, per degree: σ(θ) = α·exp(−β·θ) (eqs 2.7, 2.8).
+    /// Decay of that deviation with the elevation β, per degree: σ(θ) = α·exp(−β·θ) (eqs 2.7, 2.8).
     pub sigma_decay: T,
 }
 

@@ -6,9 +6,9 @@ use crate::Measurement;
 
 /// Degrees of freedom of Student's distribution: tails as antenna nulls and buildings make them.
 const FREEDOM: f64 = 3.0;
-/// Its scale, dB (a standard deviation of 6 dB): open ground seen from some tens of metres.
+/// Scale of the distribution, dB (a standard deviation of 6 dB): open ground seen from some tens of metres.
 const SCALE: f64 = 3.5;
-/// No scale is below this, dB: receivers count in halves of decibels.
+/// Least scale, dB: receivers count in halves of decibels.
 const LEAST_SCALE: f64 = 0.5;
 /// Place, level and antennas are fitted, too: so many measurements do not count for the scale.
 const FITTED: usize = 4;
@@ -17,7 +17,7 @@ const NULL_FILL: f64 = 0.1;
 /// The level's curvature is never taken for less than this share of that of perfect data.
 const LEAST_CURVATURE: f64 = 0.05;
 
-/// How many of a link's two antennas are upright dipoles, whose pattern has nulls upwards and downwards.
+/// Number of a link's two antennas that are upright dipoles, whose pattern has nulls upwards and downwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -42,7 +42,7 @@ impl Antennas {
 pub struct LevelPrior<T> {
     /// Mean of the level received at one metre, dB.
     pub mean: T,
-    /// Its standard deviation, dB.
+    /// Standard deviation of the level, dB.
     pub sigma: T,
 }
 
@@ -58,18 +58,18 @@ pub struct LevelPrior<T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeSpace<T> {
     level: Option<LevelPrior<T>>,
-    /// Of Student's distribution, dB.
+    /// Scale of Student's distribution, dB.
     scale: T,
 }
 
-/// Most measurements that are read.
+/// Largest number of measurements that are read.
 const MOST: usize = 128;
 
 /// Geometry of the measurements seen from a place.
 struct Sight<T> {
     /// Received level beyond one of 0 dB at one metre, dB.
     excess: [T; MOST],
-    /// What a dipole leaves in that direction, dB.
+    /// Gain of one dipole in that direction, dB.
     dipole: [T; MOST],
     count: usize,
 }
@@ -107,7 +107,7 @@ impl<T: Scalar> Sight<T> {
     }
 }
 
-/// How well measurements fit if the transmitter is at a place.
+/// Fit of the measurements to a transmitter at a place.
 #[derive(Clone, Copy)]
 struct Fit<T> {
     /// The level that fits best, dB.

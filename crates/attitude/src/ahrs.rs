@@ -3,7 +3,7 @@ use core::fmt;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// Why an [`Ahrs`] refused a sample. Its state is as it was.
+/// Reason for which an [`Ahrs`] refused a sample. Its state is as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -25,16 +25,16 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// How fast gravity corrects what the gyroscope integrates.
+/// Gains with which gravity corrects what the gyroscope integrates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gains<T> {
-    /// Tilt correction (1/s): 1/gain is the time within which gravity wins over the gyroscope.
+    /// Tilt correction (1/s): 1/gain is the time constant with which gravity corrects the gyroscope.
     pub tilt: T,
     /// Gyro bias correction (1/s²): the integral term; zero keeps the bias as it was given.
     pub bias: T,
-    /// How far |f|/g may be from 1 for the force to be taken for gravity.
+    /// Largest deviation of |f|/g from 1 at which the force is taken for gravity.
     pub gate: T,
 }
 
@@ -49,7 +49,7 @@ impl<T: Scalar> Default for Gains<T> {
 ///
 /// The explicit complementary filter of Mahony, Hamel & Pflimlin (IEEE TAC 2008, eq. 48), whose
 /// tilt error is e = f̂ × ĝ in body axes: the angular rate is corrected by `tilt·e`, the gyro bias by
-/// `−bias·e`. The accelerometer only speaks while its magnitude is near g; the heading is the gyroscope's
+/// `−bias·e`. The accelerometer is used only while its magnitude is near g; the heading is the gyroscope's
 /// alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -81,7 +81,7 @@ impl<T: Scalar> Ahrs<T> {
         &self.orientation
     }
 
-    /// What is subtracted from the gyroscope (rad/s, body).
+    /// Estimated bias of the gyroscope, which is subtracted from it (rad/s, body).
     pub fn gyro_bias(&self) -> &SVector<T, 3> {
         &self.gyro_bias
     }
@@ -92,8 +92,8 @@ impl<T: Scalar> Ahrs<T> {
     }
 
     /// Takes one sample: angular rate (rad/s) and specific force (m/s²), both in body axes, held for
-    /// `interval` seconds. Without a force, or with one that is no measure of gravity, the gyroscope speaks
-    /// alone.
+    /// `interval` seconds. Without a force, or with one that is no measure of gravity, the gyroscope is
+    /// integrated alone.
     ///
     /// # Errors
     /// [`Error`]; the state is untouched.

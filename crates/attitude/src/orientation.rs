@@ -107,7 +107,7 @@ impl<T: Scalar> Orientation<T> {
         ])
     }
 
-    /// Which way the body's x axis points, seen from above, anticlockwise from earth's x (rad, −π..=π).
+    /// Heading of the body's x axis, seen from above, anticlockwise from earth's x (rad, −π..=π).
     pub fn heading(&self) -> T {
         let sine = T::TWO * (self.w * self.z + self.x * self.y);
         let cosine = T::ONE - T::TWO * (self.y * self.y + self.z * self.z);

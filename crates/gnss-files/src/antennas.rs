@@ -36,7 +36,7 @@ pub struct PhaseCentre {
 /// An antenna.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antenna {
-    /// Its type, and the radome of a receiver's, as in the file.
+    /// Type of the antenna, and the radome of a receiver's, as in the file.
     pub name: String,
     /// The phase centres on L1 and L2, where the file has them.
     pub frequencies: [Option<PhaseCentre>; 2],
@@ -59,7 +59,7 @@ pub struct Antennas {
     satellites: Vec<(u8, Antenna)>,
     /// The receiver's, or else the same type without a radome.
     pub receiver: Option<Antenna>,
-    /// What a user should know of the file.
+    /// Warnings about the file.
     pub warnings: Vec<Warning>,
 }
 
@@ -230,7 +230,7 @@ impl Grid {
     }
 }
 
-/// How many points a grid has.
+/// Number of points of a grid.
 fn steps(first: f64, last: f64, step: f64) -> Option<usize> {
     let steps = (last - first) / step;
     let fits = (0.0..MOST_ANGLES).contains(&steps) && (steps - steps.round()).abs() < 1e-6;

@@ -24,7 +24,7 @@ pub struct ClockSample {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clocks {
     samples: PerSatellite<ClockSample>,
-    /// What a user should know of the files.
+    /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
 

@@ -13,7 +13,7 @@ use crate::text::{Line, Lines, Text};
 /// More satellites or observables than any file has.
 const MOST: usize = 999;
 
-/// What stands in place of an epoch that was cut off.
+/// Line in place of an epoch that was cut off.
 const CUT: &[u8] = b"> cut off";
 
 /// Whether a text is compressed so.
@@ -72,7 +72,7 @@ pub(crate) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> 
 struct Decoder {
     compact_version: i32,
     version: i32,
-    /// How many observables each satellite system has, by its letter; of RINEX 2 that of letter 0.
+    /// Number of observables of each satellite system, by its letter; of RINEX 2 that of letter 0.
     observables: Vec<(u8, usize)>,
     /// The line of the epoch before.
     epoch: Vec<u8>,

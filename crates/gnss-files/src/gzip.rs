@@ -8,7 +8,7 @@ use flate2::bufread::GzDecoder;
 
 use crate::error::Error;
 
-/// No file of any use unpacks to more, bytes.
+/// Largest size that a file may unpack to, bytes.
 pub(crate) const LARGEST: usize = 1 << 30;
 
 /// Reads a file.

@@ -2,7 +2,7 @@
 
 use crate::error::quoted;
 
-/// What a text is, in words, by its first line.
+/// The format of a text in words, by its first line.
 pub(crate) fn kind(bytes: &[u8]) -> String {
     const RINEX: &[u8] = b"RINEX VERSION / TYPE";
     let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();

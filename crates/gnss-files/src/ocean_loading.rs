@@ -26,7 +26,7 @@ pub struct OceanLoading {
 pub struct StationLoading {
     /// The loading; none if the file does not know the station.
     pub loading: Option<OceanLoading>,
-    /// What a user should know of the file.
+    /// Warnings about the file.
     pub warnings: Vec<Warning>,
 }
 

@@ -8,7 +8,7 @@ use crate::satellites::PerSatellite;
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
 
-/// What stands for a clock that is not known, µs.
+/// Value that stands for an unknown clock, µs.
 const NO_CLOCK: f64 = 999_999.0;
 
 /// The position of a satellite and its clock at one instant.
@@ -32,7 +32,7 @@ pub struct OrbitSample {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Orbits {
     samples: PerSatellite<OrbitSample>,
-    /// What a user should know of the files.
+    /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
 

@@ -25,7 +25,7 @@ impl Text {
         &self.bytes
     }
 
-    /// Its lines, blank ones too.
+    /// The lines of the text, blank ones too.
     pub(crate) fn lines(&self) -> Lines<'_> {
         Lines { text: self, position: 0 }
     }

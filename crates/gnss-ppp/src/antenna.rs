@@ -25,7 +25,7 @@ pub struct Pattern<'a> {
 }
 
 impl Pattern<'_> {
-    /// How much farther than from the mean phase centre the phase seems to come or go, m, at an angle (rad)
+    /// Variation of the phase centre: excess of the range over that from the mean phase centre, m, at an angle (rad)
     /// from the zenith or nadir and an azimuth (rad), if one matters.
     ///
     /// Linear between the points of the grid, the edge's value beyond it. An azimuth counts only if there are
@@ -60,7 +60,7 @@ impl Pattern<'_> {
         Some(left + (right - left) * (row - below))
     }
 
-    /// What a receiver's antenna adds to the modelled range from its reference point to a satellite, m.
+    /// Contribution of a receiver's antenna to the modelled range from its reference point to a satellite, m.
     ///
     /// The phase centre `offset` shortens the range by its part along the line of sight, the variation
     /// lengthens it: what RTKLIB's `antmodel` calls `dant` and subtracts from the observations. The antenna
@@ -90,7 +90,7 @@ impl Pattern<'_> {
         self.variation(libm::atan2(libm::hypot(x, y), z), Some(libm::atan2(x, y)))
     }
 
-    /// What a satellite's antenna adds to the modelled range from its centre of mass, m: offset along the line
+    /// Contribution of a satellite's antenna to the modelled range from its centre of mass, m: offset along the line
     /// of sight and variation. As [`Self::satellite_offset`] and [`Self::satellite_variation`] together, up to
     /// the curvature of the wave front (below 0.1 µm).
     pub fn satellite_range(&self, axes: &BodyAxes, sight: &Vector3<f64>) -> f64 {

@@ -8,7 +8,7 @@ use crate::constants::TERRESTRIAL_MINUS_GPS;
 /// Greenwich mean sidereal time, rad from 0 to 2π (IAU 2006; Capitaine et al. 2005).
 ///
 /// `ut1_minus_gps` (s) is UT1 − UTC minus the seconds by which GPS time is ahead of UTC: −18 and a fraction
-/// since 2017. Who does not know UT1 − UTC may leave it out: 0.9 s turn the Earth by 66 µrad, and the tides by
+/// since 2017. If UT1 − UTC is not known, it may be left out: 0.9 s turn the Earth by 66 µrad, and the tides by
 /// some 50 µm.
 pub fn greenwich_sidereal_time(time: GpsTime, ut1_minus_gps: f64) -> f64 {
     let days = time.days_since_j2000(ut1_minus_gps);

@@ -4,7 +4,7 @@ use crate::GpsTime;
 use crate::astronomy::Arguments;
 use crate::constants::ASTRONOMICAL_UNIT;
 
-/// Where the Sun and the Moon are as seen from the Earth's centre, ECEF m.
+/// Positions of the Sun and the Moon relative to the Earth's centre, ECEF, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

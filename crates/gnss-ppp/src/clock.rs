@@ -9,7 +9,7 @@ use crate::GpsTime;
 pub struct ClockSample {
     /// Seconds since the clock's reference instant.
     pub second: f64,
-    /// How far the satellite's clock is ahead of GPS time, s, without the relativistic effect of
+    /// Satellite clock minus GPS time, s, without the relativistic effect of
     /// its eccentric orbit, as products of the IGS give it.
     pub bias: f64,
 }
@@ -19,7 +19,7 @@ pub struct ClockSample {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClockState {
-    /// How far it is ahead of GPS time, s.
+    /// Satellite clock minus GPS time, s.
     pub bias: f64,
     /// Time from the sample before to the sample after, s; zero on a sample.
     pub interval: f64,

@@ -38,7 +38,7 @@ impl Correction {
     ];
 }
 
-/// Which corrections are applied: all, unless one is left out to see what it is worth.
+/// Set of the corrections that are applied: all, unless one is left out to see what it is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -50,7 +50,7 @@ impl Corrections {
     /// All corrections.
     pub const ALL: Self = Self { left_out: 0 };
 
-    /// These, without one.
+    /// These corrections without one of them.
     pub const fn without(self, correction: Correction) -> Self {
         Self { left_out: self.left_out | 1 << correction as u16 }
     }

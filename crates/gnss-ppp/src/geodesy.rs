@@ -2,9 +2,9 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Semi-major axis of the GRS 80 ellipsoid, m.
 const SEMI_MAJOR: f64 = 6_378_137.0;
-/// Its flattening.
+/// Flattening of the ellipsoid.
 const FLATTENING: f64 = 1.0 / 298.257_222_101;
-/// Its first eccentricity squared.
+/// First eccentricity of the ellipsoid, squared.
 const ECCENTRICITY_SQUARED: f64 = FLATTENING * (2.0 - FLATTENING);
 
 /// A place on or above the GRS 80 ellipsoid.
@@ -73,7 +73,7 @@ impl Geodetic {
     }
 }
 
-/// Where a satellite stands in the sky of a receiver.
+/// Direction from a receiver to a satellite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -85,7 +85,7 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The direction of the unit vector `sight` (ECEF, receiver to satellite) in the sky of `place`.
+    /// The direction of the unit vector `sight` (ECEF, receiver to satellite) at `place`.
     pub fn of(sight: &Vector3<f64>, place: &Geodetic) -> Self {
         let [east, north, up] = (place.enu_from_ecef() * sight).data.0[0];
         let azimuth = libm::atan2(east, north);

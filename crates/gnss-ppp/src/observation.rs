@@ -17,7 +17,7 @@ pub struct SatelliteState {
     pub position: Vector3<f64>,
     /// Velocity, m/s, inertial or relative to the Earth.
     pub velocity: Vector3<f64>,
-    /// How far its clock is ahead of GPS time, s, without the effect of its eccentric orbit.
+    /// Satellite clock minus GPS time, s, without the effect of its eccentric orbit.
     pub clock: f64,
     /// Time from the clock's sample before to that after, s (zero: not interpolated).
     pub clock_interval: f64,
@@ -34,20 +34,20 @@ pub struct Expected {
     /// Distance between the phase centres with all that delays the signal but the receiver's clock,
     /// the wet troposphere and the ambiguity; less the satellite's clock; m.
     pub range: f64,
-    /// What the wind-up adds to the ionosphere-free phase, m.
+    /// Contribution of the wind-up to the ionosphere-free phase, m.
     pub wind_up: f64,
     /// The same in cycles, to be handed back in the next epoch.
     pub wind_up_cycles: f64,
     /// ECEF unit vector from the receiver to the satellite: minus ∂range/∂position.
     pub sight: Vector3<f64>,
-    /// The same in the receiver's sky.
+    /// The same as azimuth and elevation at the receiver.
     pub direction: Direction,
     /// ∂P/∂Z, Niell's mapping of the wet delay.
     pub wet_mapping: f64,
 }
 
 impl Site<'_> {
-    /// What should be observed of a satellite from here; none where that is not finite, as for a
+    /// The modelled observation of a satellite from here; none where that is not finite, as for a
     /// receiver at the satellite's place.
     pub fn expect(
         &self,

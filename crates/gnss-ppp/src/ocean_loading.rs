@@ -21,7 +21,7 @@ const WAVES: [[i8; 5]; 11] = [
     [0, 0, 2, 0, 0],
 ];
 
-/// How the tides of the oceans move one station: eleven waves, as a BLQ file lists them
+/// Displacement of one station by the tides of the oceans: eleven waves, as a BLQ file lists them
 /// (M2 S2 N2 K2 K1 O1 P1 Q1 Mf Mm Ssa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -4,10 +4,10 @@ use crate::GpsTime;
 use crate::constants::EARTH_ROTATION;
 use nalgebra::Vector3;
 
-/// How many samples a polynomial goes through: degree 10 follows a GPS orbit sampled every 15
+/// Number of samples that a polynomial goes through: degree 10 follows a GPS orbit sampled every 15
 /// minutes to millimetres.
 const POINTS: usize = 11;
-/// How far outside of the samples the polynomial is followed, s.
+/// Time by which the polynomial is extrapolated beyond the samples, s.
 const BEYOND: f64 = 1.0;
 
 /// One sample of a precise orbit.
@@ -30,7 +30,7 @@ impl OrbitSample {
     }
 }
 
-/// Where a satellite's centre of mass is and how it moves.
+/// Position and velocity of a satellite's centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

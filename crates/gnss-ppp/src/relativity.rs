@@ -2,7 +2,7 @@ use nalgebra::Vector3;
 
 use crate::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
 
-/// How much a satellite's clock runs ahead because its orbit is not a circle, s: −2·r·v/c².
+/// Advance of a satellite's clock due to the eccentricity of its orbit, s: −2·r·v/c².
 ///
 /// Add it to the clock of an orbit product or a broadcast message. `position` (m) and `velocity` (m/s)
 /// belong to the time of transmission; the velocity may be inertial or relative to the Earth, as
@@ -11,7 +11,7 @@ pub fn eccentricity_clock(position: &Vector3<f64>, velocity: &Vector3<f64>) -> f
     -2.0 * position.dot(velocity) / (SPEED_OF_LIGHT * SPEED_OF_LIGHT)
 }
 
-/// How much longer the signal takes in the Earth's gravity, m: Shapiro's delay, some 13 to 19 mm for
+/// Shapiro's delay of the signal in the Earth's gravity, m: some 13 to 19 mm for
 /// GPS. Add it to the modelled range. (IERS Conventions 2010, 11.17.)
 ///
 /// Zero where it is not defined: for a point at the Earth's centre or a ray through it.
@@ -23,7 +23,7 @@ pub fn shapiro_delay(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
     if delay.is_finite() { delay } else { 0.0 }
 }
 
-/// How much the Earth's rotation during the flight of the signal lengthens the range, m, to first order.
+/// Sagnac's correction: lengthening of the range by the Earth's rotation during the signal's flight, m, to first order.
 ///
 /// Both positions are ECEF (m), the satellite's in the axes of the time of transmission, the receiver's
 /// in those of the reception. Add it to their distance; up to 40 m, wrong by at most 0.1 mm.

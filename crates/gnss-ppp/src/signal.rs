@@ -8,7 +8,7 @@ pub const FREQUENCY: [f64; 2] = [1_575.42e6, 1_227.60e6];
 /// Wavelengths of L1 and L2, m.
 pub const WAVELENGTH: [f64; 2] = [SPEED_OF_LIGHT / FREQUENCY[0], SPEED_OF_LIGHT / FREQUENCY[1]];
 
-/// What a whole cycle on both carriers is worth in the ionosphere-free phase, c/(f1 + f2), m.
+/// Wavelength of the narrow lane, c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
 pub const NARROW_LANE: f64 = SPEED_OF_LIGHT / (FREQUENCY[0] + FREQUENCY[1]);
 
 /// Wavelength of φ1 − φ2, c/(f1 − f2), m.

@@ -7,11 +7,11 @@ use nalgebra::{Matrix3, Vector3};
 /// Properties of a receiver besides its position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Receiver<'a> {
-    /// Its antenna on L1 and L2, where known.
+    /// Antenna on L1 and L2, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
     /// From the marker to the antenna's reference point: east, north, up, m.
     pub eccentricity: [f64; 3],
-    /// How the tides of the oceans move it, where known.
+    /// Ocean loading of the station, where known.
     pub ocean_loading: Option<&'a OceanLoading>,
     /// UT1 (or UTC) ahead of GPS time, s: the leap seconds since 1980, negated.
     pub ut1_minus_gps: f64,
@@ -26,7 +26,7 @@ pub struct Site<'a> {
     pub(crate) bodies: Bodies,
     pub(crate) enu_from_ecef: Matrix3<f64>,
     pub(crate) place: Geodetic,
-    /// Of the antenna's reference point, with the tides, ECEF, m.
+    /// Position of the antenna's reference point, with the tides, ECEF, m.
     pub(crate) antenna: Vector3<f64>,
     pub(crate) troposphere: Troposphere,
 }

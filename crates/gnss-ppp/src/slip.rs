@@ -8,7 +8,7 @@ use crate::signal::{geometry_free, melbourne_wuebbena};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Slip {
-    /// It was not observed for too long.
+    /// The satellite was not observed for too long.
     Gap,
     /// The receiver reports a loss of lock.
     LossOfLock,
@@ -56,7 +56,7 @@ impl Default for SlipLimits {
 pub struct Arc {
     last: GpsTime,
     geometry_free: f64,
-    /// Of the jumps, m².
+    /// Variance of the jumps, m².
     geometry_free_variance: f64,
     wide_lane: f64,
     /// Around the running mean, cycles².
@@ -72,7 +72,7 @@ const MEMORY: u16 = 100;
 const WIDE_LANE_DEVIATION: f64 = 0.7;
 /// Standard deviation of a jump of the geometry-free phase before any is known, m.
 const GEOMETRY_FREE_DEVIATION: f64 = 0.01;
-/// For so many epochs a wide lane is suspicious; then that is where it is.
+/// Number of epochs for which a jump of the wide lane is suspicious; after these its mean moves there.
 const ACCUSTOMED: u16 = 10;
 
 impl Arc {
@@ -156,7 +156,7 @@ impl Arc {
         self.off > 0
     }
 
-    /// When the satellite was observed last.
+    /// Time of the last observation of the satellite.
     pub const fn last(&self) -> GpsTime {
         self.last
     }

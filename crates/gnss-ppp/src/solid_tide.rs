@@ -4,7 +4,7 @@ use crate::astronomy::Arguments;
 use crate::constants::{EARTH_RADIUS, MOON_TO_EARTH_MASS, SUN_TO_EARTH_MASS};
 use crate::{Bodies, GpsTime};
 
-/// What the diurnal tides move beyond the nominal Love numbers, mm (IERS Conventions 2010, table 7.3a):
+/// Displacement by the diurnal tides beyond the nominal Love numbers, mm (IERS Conventions 2010, table 7.3a):
 /// multiples of τ, s, h, p, N′ and p₁, then radial in and out of phase, transverse in and out of phase.
 const DIURNAL: [([i8; 6], [f64; 4]); 11] = [
     ([1, -2, 0, 1, 0, 0], [-0.08, 0.00, -0.01, 0.01]),
@@ -28,7 +28,7 @@ const LONG_PERIOD: [([i8; 6], [f64; 4]); 5] = [
     ([0, 2, 0, 0, 1, 0], [-0.05, -0.06, -0.05, -0.03]),
 ];
 
-/// How the tides of the solid Earth displace a station at `position` (ECEF m), in ECEF m: up to 0.4 m.
+/// Displacement of a station at `position` (ECEF, m) by the tides of the solid Earth, ECEF, m: up to 0.4 m.
 ///
 /// The model of the IERS Conventions 2010, section 7.1.1: tides of degree 2 and 3 from the Sun and the Moon
 /// with the Love and Shida numbers' dependence on latitude and their imaginary parts (step 1), and the
@@ -79,7 +79,7 @@ impl Station {
         self.up * up + self.north * north + self.east * east
     }
 
-    /// The time domain: what one body does.
+    /// Displacement by one body, in the time domain.
     fn step_1(&self, body: &Vector3<f64>, mass: f64) -> Vector3<f64> {
         let Some(direction) = body.try_normalize(f64::MIN_POSITIVE) else {
             return Vector3::zeros();
@@ -125,7 +125,7 @@ impl Station {
         nominal + self.displacement(up, north, east) * degree_2
     }
 
-    /// The frequency domain (7.12 and 7.13).
+    /// Corrections in the frequency domain (7.12 and 7.13).
     fn step_2(&self, arguments: &Arguments) -> Vector3<f64> {
         let Self { sine, cosine, .. } = *self;
         let mut total = [0.0; 3];

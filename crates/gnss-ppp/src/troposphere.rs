@@ -31,13 +31,13 @@ const WET: [Coefficients; 5] = [
 /// The same of the correction for the station's height.
 const HEIGHT: Coefficients = [2.53e-5, 5.49e-3, 1.14e-3];
 
-/// How a delay at the zenith maps to the elevation of a satellite.
+/// Factors from delays at the zenith to those at the elevation of a satellite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mapping {
-    /// Of the dry air, in hydrostatic equilibrium.
+    /// Mapping of the dry air, in hydrostatic equilibrium.
     pub hydrostatic: f64,
-    /// Of the water vapour: the partial derivative of the range by the zenith wet delay.
+    /// Mapping of the water vapour: the partial derivative of the range by the zenith wet delay.
     pub wet: f64,
 }
 
@@ -55,7 +55,7 @@ pub struct Troposphere {
 }
 
 impl Troposphere {
-    /// What depends on the place and the season only; once an epoch is more than enough.
+    /// The troposphere over a place in a season; to be computed once an epoch at most.
     pub fn over(place: &Geodetic, time: GpsTime) -> Self {
         // Days since 28 January 2000, as the years of the tables have 365.25 days; half a year off in
         // the south. Against the day of the calendar's year that is a day at most: some 10 µm at 5°.

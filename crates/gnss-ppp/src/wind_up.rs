@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::BodyAxes;
 
-/// How many cycles the turning of the satellite's antenna, seen by the receiver's, adds to a carrier
+/// Wind-up, cycles: what the rotation of the satellite's antenna relative to the receiver's adds to a carrier
 /// phase (Wu et al. 1993). Subtract that many wavelengths from the measured phase.
 ///
 /// `receiver_enu_from_ecef` gives the receiver's antenna, whose dipoles point north and west, and `sight`

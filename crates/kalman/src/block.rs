@@ -4,7 +4,7 @@ use crate::{Covariance, Error, Gaussian, SparseRow};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// What M measurements said together beyond what was expected.
+/// Innovation of M correlated measurements: their differences from what was expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BlockInnovation<T: Scalar, const M: usize> {

@@ -143,7 +143,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         *self.entry(i, i) += a * (cross + sheared);
     }
 
-    /// Forgets all that ties state `I` to the others and sets its variance.
+    /// Sets the variance of state `I`, and its covariances with the others to zero.
     #[inline]
     pub fn reset_component<const I: usize>(&mut self, variance: T) {
         const { assert!(I < N, "the state has no such component") };

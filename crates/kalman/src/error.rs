@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why a predict or an update was refused. The estimate is as it was before the call.
+/// Reason for which a prediction or an update was refused. The estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -1,23 +1,23 @@
-//! Which measurements are believed.
+//! Gates that reject improbable measurements.
 
 use crate::{Error, Gaussian, Innovation, Weighed};
 use kestirim_scalar::Scalar;
 
-/// What a [`Gate`] makes of a measurement.
+/// Decision of a [`Gate`] about a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
-    /// It agrees with the estimate: take it in.
+    /// The measurement agrees with the estimate: take it in.
     Admit,
-    /// It does not: leave it out.
+    /// The measurement does not agree: leave it out.
     Reject,
-    /// It does not, but so many in a row did not that the estimate must be wrong: take it in with
+    /// The measurement does not agree, nor did many before it, so the estimate must be wrong: take it in with
     /// [`Gaussian::correct_widened`].
     Recover,
 }
 
-/// Rejects measurements whose NIS is above γ, but never for ever.
+/// Rejects measurements whose NIS is above γ, but not indefinitely.
 ///
 /// When more than `patience` measurements in a row are rejected, the estimate is taken to be wrong
 /// and not they. A gate belongs to one sensor: another one's good measurements say nothing about its
@@ -42,12 +42,12 @@ impl<T: Scalar> Gate<T> {
         self.gamma
     }
 
-    /// How many measurements in a row were rejected.
+    /// Number of measurements rejected in a row.
     pub const fn rejected(&self) -> u16 {
         self.rejected
     }
 
-    /// Judges the next measurement and remembers the verdict.
+    /// Judges the next measurement and counts rejections.
     #[inline(always)]
     pub fn judge<const N: usize>(&mut self, weighed: &Weighed<T, N>) -> Verdict {
         if !weighed.exceeds(self.gamma) {

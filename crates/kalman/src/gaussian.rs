@@ -80,7 +80,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(())
     }
 
-    /// Forgets one state: sets its mean and variance, and all that ties it to the others to zero.
+    /// Resets one state: sets its mean and variance, and its covariances with the others to zero.
     ///
     /// # Errors
     /// [`Error::IndexOutOfRange`], [`Error::NotPositive`] for a negative variance, or

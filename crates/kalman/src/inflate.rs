@@ -1,11 +1,11 @@
-//! Doubt in a few states of many.
+//! Inflation of the covariance of a few states.
 
 use crate::{Covariance, Error};
 use kestirim_scalar::Scalar;
 
 impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// Multiplies the covariance of `count` states from index `first` on among each other by `factor` ≥ 1,
-    /// and leaves what ties them to the other states.
+    /// and leaves their covariances with the other states.
     ///
     /// That is process noise in proportion to what the block is uncertain by: P stays positive, and a
     /// surprise in the block is not taken for one in states that correlate with it. (Had the

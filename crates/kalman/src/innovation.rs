@@ -1,7 +1,7 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// What a measurement said beyond what was expected.
+/// Innovation of a measurement: its difference from what was expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,7 +22,7 @@ pub(crate) struct Weights<T: Scalar> {
     spread: T,
     /// R.
     noise: T,
-    /// S, by which everything is divided.
+    /// S, by which the gain and the NIS are divided.
     divisor: T::Divisor,
 }
 
@@ -86,13 +86,13 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
         self.weights.innovation
     }
 
-    /// h P hᵀ: how uncertain the expectation is.
+    /// h P hᵀ, the variance of the expected measurement.
     #[inline(always)]
     pub fn spread(&self) -> T {
         self.weights.spread
     }
 
-    /// R: how uncertain the measurement is.
+    /// R, the variance of the measurement's noise.
     #[inline(always)]
     pub fn noise(&self) -> T {
         self.weights.noise
@@ -137,7 +137,7 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
     }
 }
 
-/// S as a divisor, if anything can be weighed with it.
+/// S as a divisor, if it is positive and finite.
 #[inline(always)]
 fn checked_divisor<T: Scalar>(spread: T, noise: T) -> Result<T::Divisor, Error> {
     let variance = spread + noise;

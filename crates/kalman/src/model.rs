@@ -1,10 +1,10 @@
-//! What a system tells the filter: how its state moves on, and what a measurement of it would show.
+//! Models of a system: its process and its measurements.
 
 use crate::{Covariance, Error, Gaussian, SparseRow};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// How a state of N components moves on over one step.
+/// Process model: the change of a state of N components over one step.
 pub trait Process<T: Scalar, const N: usize> {
     /// x ← f(x), P ← F P Fᵀ + Q with F = ∂f/∂x at the old x.
     ///

@@ -4,7 +4,7 @@ use crate::{Covariance, Error, Gaussian};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// What a time-invariant filter settles at.
+/// Gain and covariances at which a time-invariant filter settles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SteadyState<T: Scalar, const N: usize, const M: usize> {

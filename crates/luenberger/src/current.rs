@@ -51,7 +51,7 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
     )
 )]
 pub struct CurrentObserver<T: Scalar, const N: usize, const M: usize, const P: usize> {
-    /// Its step is of A − I, B and K.
+    /// Increment of A − I, B and K.
     core: FullOrder<T, N, M, P>,
 }
 

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why an observer was not built, or did not step. An estimate is as it was before the call.
+/// Reason for which an observer was not built, or did not step. An estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

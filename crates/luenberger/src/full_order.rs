@@ -1,4 +1,4 @@
-//! What the predictor and the current form of a full-order observer share.
+//! Parts that the predictor and the current form of a full-order observer share.
 
 use crate::Error;
 use crate::carried::Carried;

@@ -41,7 +41,7 @@ impl<const N: usize, const M: usize, const P: usize> IntegerIncrement<N, M, P> {
     }
 }
 
-/// What a step adds to a state: N × N, N × M and N × P blocks that multiply state, inputs and outputs. Row i is
+/// Increment of a state in a step: N × N, N × M and N × P blocks that multiply state, inputs and outputs. Row i is
 /// scaled up by 2^shift i.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -8,9 +8,9 @@ use nalgebra::{SMatrix, SVector};
 
 /// An entry is its integer · 2^(exponent of its row − 62).
 const BITS: i32 = 62;
-/// Of rows smaller than 2⁻²⁸ fewer bits are kept: fixed point could not hold them.
+/// Least exponent of a row: of smaller ones fewer bits are kept, as fixed point could not hold them.
 const LEAST: i32 = -28;
-/// Beyond 2¹²⁰ nothing is a gain.
+/// Largest exponent of a row: no gain is beyond 2¹²⁰.
 const MOST: i32 = 120;
 /// Stands for a row that is not finite.
 const NOT_FINITE: i32 = i32::MAX;

@@ -46,7 +46,7 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
     )
 )]
 pub struct Predictor<T: Scalar, const N: usize, const M: usize, const P: usize> {
-    /// Its step is of A − I − L C, B and L.
+    /// Increment of A − I − L C, B and L.
     core: FullOrder<T, N, M, P>,
 }
 

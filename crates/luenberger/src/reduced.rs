@@ -86,7 +86,7 @@ const fn others<const N: usize, const P: usize, const R: usize>(
 /// A reduced-order observer: only what is not measured is estimated, w⁺ = F w + G y + H u, `x̂_u = w + L y`.
 ///
 /// `F = A_uu − L A_mu`, `G = F L + A_um − L A_mm`, `H = B_u − L B_m` (Luenberger 1971). The estimate follows a
-/// measurement at once, as the current form's does, and so does the noise of it: what is measured is believed.
+/// measurement at once, as the current form's does, and so does its noise: measured states are taken as they are.
 ///
 /// Units are the plant's. Cost: R (R + 2 P + M) multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -36,7 +36,7 @@ impl<T: Scalar, const M: usize> Saturation<T, M> {
         }
     }
 
-    /// What the actuators make of a command; NaN stays NaN, for the observer to refuse.
+    /// The command that the actuators carry out; NaN stays NaN, for the observer to refuse.
     #[inline]
     pub fn applied(&self, command: &SVector<T, M>) -> SVector<T, M> {
         let mut applied = *command;

@@ -1,4 +1,4 @@
-//! Which matrices are covariances.
+//! Checks of covariances.
 
 use crate::Error;
 use crate::eigenvalues::eigenvalues_extended;

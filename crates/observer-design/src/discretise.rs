@@ -82,7 +82,7 @@ fn answer<const N: usize, const M: usize>(
     if finite(&discrete.a) && finite(&discrete.b) { Ok(discrete) } else { Err(Error::NotFinite) }
 }
 
-/// What ẋ = A x + w does in an interval: the transition, its integral, and what noise adds up to.
+/// Flow of ẋ = A x + w over an interval: the transition, its integral, and the covariance of the noise.
 struct Flow<const N: usize> {
     transition: Square<Extended, N>,
     integral: Square<Extended, N>,

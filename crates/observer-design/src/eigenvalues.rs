@@ -103,7 +103,7 @@ fn spectrum<const N: usize>(matrix: &Square<Wide, N>) -> Result<[Wide; N], Error
     Ok(values)
 }
 
-/// What stands in a place; outside the matrix nothing.
+/// Element of a matrix; zero outside of it.
 fn element<T: Number, const N: usize>(h: &Square<T, N>, row: usize, column: usize) -> T {
     h.get((row, column)).copied().unwrap_or(T::zero())
 }
@@ -179,7 +179,7 @@ fn reduce<const N: usize>(h: &mut Square<Wide, N>) {
     }
 }
 
-/// Where the last block begins that no negligible subdiagonal element divides.
+/// First row of the last block that no negligible subdiagonal element divides.
 fn decoupled<const N: usize>(h: &mut Square<Wide, N>, end: usize, tiny: f64) -> usize {
     for row in (1..end).rev() {
         let size = |row, column| element(h, row, column).magnitude();

@@ -1,7 +1,7 @@
 use core::fmt;
 use nalgebra::Complex;
 
-/// A mode of a linear system: one eigenvalue of its dynamics, and where it lives.
+/// A mode of a linear system: one eigenvalue of its dynamics, and its largest component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -14,7 +14,7 @@ pub struct Mode {
     pub state: usize,
 }
 
-/// Why a design was refused.
+/// Reason for which a design was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -26,11 +26,11 @@ pub enum Error {
     Interval,
     /// A complex pole stands there without its conjugate: no real gain has it.
     NotConjugate,
-    /// No output sees this mode.
+    /// This mode is unobservable: no output depends on it.
     Unobservable(Mode),
-    /// No input moves this mode.
+    /// This mode is uncontrollable: no input moves it.
     Uncontrollable(Mode),
-    /// This mode does not decay, and no output sees it.
+    /// This mode neither decays nor is observable.
     Undetectable(Mode),
     /// This mode neither decays nor grows, and no noise drives it: the filter would learn it once and for all,
     /// and no steady gain is left.

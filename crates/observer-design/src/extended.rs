@@ -196,7 +196,7 @@ impl One for Extended {
 
 impl Num for Extended {
     type FromStrRadixErr = num_traits::ParseFloatError;
-    /// What a double can hold of it.
+    /// The number, as far as a double holds it.
     fn from_str_radix(text: &str, radix: u32) -> Result<Self, Self::FromStrRadixErr> {
         <f64 as Num>::from_str_radix(text, radix).map(Self::from)
     }

@@ -14,7 +14,7 @@ use nalgebra::{Complex, SMatrix};
 /// Doublings after which the slowest mode a double can hold has settled.
 const MOST_DOUBLINGS: u32 = 64;
 
-/// What is left of a start does not count any more.
+/// Share of the start below which the sum has settled.
 const SETTLED: f64 = 1e-20;
 
 /// P of P = F P Fᵀ + Q, by doubling (Smith 1968).

@@ -1,4 +1,4 @@
-//! What the linear algebra inside needs of a number: real or complex, of 53 or 106 bits.
+//! Numbers of the linear algebra inside: real or complex, of 53 or 106 bits.
 
 use core::ops::Neg;
 

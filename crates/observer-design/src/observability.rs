@@ -1,4 +1,4 @@
-//! Which modes the outputs see.
+//! Observability and controllability of modes.
 
 use crate::Error;
 use crate::eigenvalues::eigenvalues_extended;
@@ -10,7 +10,7 @@ use crate::pair::Pair;
 use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
 
-/// How well the outputs see the least visible mode: the smallest singular value that [A − λ; C] has at an
+/// Observability of the least observable mode: the smallest singular value that [A − λ; C] has at an
 /// eigenvalue λ, on a balanced scale on which A (without its mean diagonal) and C have size 1.
 ///
 /// The test of Popov, Belevitch and Hautus. The rank of [C; CA; …] and its determinant say little: at 100 Hz,
@@ -30,7 +30,7 @@ pub fn observability<const N: usize, const P: usize>(
     }
 }
 
-/// The modes that no output sees, each once; nothing in the places that are left.
+/// The modes that no output sees, each once; `None` in the places that are left.
 ///
 /// # Errors
 /// [`Error::NotFinite`]; [`Error::NotConverged`].
@@ -55,7 +55,7 @@ pub(crate) fn hidden<const N: usize>(pair: &Pair<N>) -> Result<[Option<Mode>; N]
     Ok(modes)
 }
 
-/// How well the inputs move the mode that they move least: the [`observability`] of (Aᵀ, Bᵀ).
+/// Controllability of the least controllable mode: the [`observability`] of (Aᵀ, Bᵀ).
 ///
 /// # Errors
 /// [`Error::Uncontrollable`] with the mode that nothing moves; [`Error::NotFinite`]; [`Error::NotConverged`].
@@ -69,13 +69,13 @@ pub fn controllability<const N: usize, const M: usize>(
     })
 }
 
-/// How well the least visible mode is seen, and which one it is if that is no better than rounding.
+/// Observability of the least observable mode, and that mode if rounding explains its observability.
 pub(crate) fn least_visible<const N: usize>(pair: &Pair<N>) -> Result<(f64, Option<Mode>), Error> {
     let worst = sights(pair)?.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
     Ok(worst.unwrap_or((f64::INFINITY, None)))
 }
 
-/// How well each mode is seen, and which one it is if that is no better than rounding.
+/// Observability of each mode, and the mode if rounding explains its observability.
 fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Error> {
     // A shift of the diagonal changes no eigenvector, and at high rates A is nearly the identity.
     let mut mean = Extended::from(0.0);
@@ -106,7 +106,7 @@ fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Er
     Ok(sights)
 }
 
-/// How often λ follows the vector: at a mode that is several at once, a step halves the distance.
+/// Limit of the iterations in which λ follows the vector: at a multiple mode, each halves the distance.
 const FOLLOWED: u32 = 80;
 
 /// The smallest singular value of [A − λ; C] near an eigenvalue, where it is reached, and with which vector.

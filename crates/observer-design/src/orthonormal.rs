@@ -40,7 +40,7 @@ fn farthest<T: Number, const N: usize>(
     normalised(&residual(&unit, basis, count), 0.0)
 }
 
-/// What is left of a vector orthogonal to the first `count` vectors of a basis; projected twice, as once leaves
+/// Part of a vector orthogonal to the first `count` vectors of a basis; projected twice, as once leaves
 /// rounding behind.
 fn residual<T: Number, const N: usize>(
     vector: &SVector<T, N>,

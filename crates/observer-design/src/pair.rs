@@ -1,4 +1,4 @@
-//! A pair (A, C) made ready for numbers: outputs that say the same are merged, and units are evened out.
+//! A pair (A, C) made ready for numbers: dependent outputs are merged, and units are evened out.
 
 use crate::Error;
 use crate::extended::Extended;
@@ -12,7 +12,7 @@ pub(crate) struct Pair<const N: usize> {
     pub(crate) dynamics: Square<Extended, N>,
     /// S in the first `rank` rows, zeros below.
     pub(crate) outputs: Square<Extended, N>,
-    /// How many outputs are independent.
+    /// Number of independent outputs.
     pub(crate) rank: usize,
     scale: [Extended; N],
 }
@@ -20,7 +20,7 @@ pub(crate) struct Pair<const N: usize> {
 /// W, which makes independent outputs of those that there are.
 pub(crate) struct Merging<const N: usize, const P: usize>(SMatrix<Extended, P, N>);
 
-/// What rounding may have made of nothing, beside the longest column.
+/// Largest column that rounding explains, relative to the longest one.
 const NEGLIGIBLE: f64 = 1e-13;
 
 impl<const N: usize> Pair<N> {

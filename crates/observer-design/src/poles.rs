@@ -54,13 +54,13 @@ pub(crate) fn size(pole: Complex<f64>) -> f64 {
     libm::hypot(pole.re, pole.im)
 }
 
-/// How often the pole that occurs most often occurs.
+/// Multiplicity of the pole that occurs most often.
 pub(crate) fn multiplicity<const N: usize>(poles: &[Complex<f64>; N]) -> usize {
     let count = |pole: &Complex<f64>| poles.iter().filter(|&other| other == pole).count();
     poles.iter().map(count).max().unwrap_or(0)
 }
 
-/// Which of the placed poles stands for which of the wanted ones, the nearest for the nearest: `distances` has a
+/// Assignment of placed to wanted poles, nearest first: `distances` has a
 /// row for every wanted one.
 pub(crate) fn pair_up<const N: usize>(distances: &[[f64; N]; N]) -> [usize; N] {
     let mut partners = [None; N];

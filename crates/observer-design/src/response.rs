@@ -1,4 +1,4 @@
-//! What a linear system answers.
+//! Responses of linear systems.
 
 use crate::Error;
 use crate::discretise::zero_order_hold;

@@ -11,7 +11,7 @@ use crate::pair::Pair;
 use crate::solve::{Eliminated, solve};
 use nalgebra::SMatrix;
 
-/// What a filter of x⁺ = A x + w, y = C x + v settles at.
+/// Steady-state Kalman filter of x⁺ = A x + w, y = C x + v.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -137,7 +137,7 @@ impl<const N: usize> Equation<N> {
         None
     }
 
-    /// What a measurement makes of a prior covariance.
+    /// Posterior covariance of a measurement.
     fn posterior(&self, prior: &Square<Extended, N>) -> Option<Square<Extended, N>> {
         solve(&(Square::identity() + prior.times(&self.g)), prior)
     }

@@ -1,4 +1,4 @@
-//! Numbers without a pattern, always the same ones: where a search has to start somewhere.
+//! A fixed pseudo-random sequence, for the starting points of searches.
 
 /// A linear congruential generator (Numerical Recipes' constants).
 pub(crate) struct Sequence(u32);

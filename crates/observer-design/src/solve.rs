@@ -9,12 +9,12 @@ use nalgebra::SMatrix;
 pub(crate) struct Eliminated<T: Number, const N: usize> {
     /// Divisors on the diagonal; beside them, which multiple of the pivot's row each row lost. By columns.
     factors: [[T; N]; N],
-    /// Which row came to the place of each in its turn.
+    /// Row that was exchanged for each in its turn.
     pivots: [usize; N],
 }
 
 impl<T: Number, const N: usize> Eliminated<T, N> {
-    /// Nothing where the matrix is singular to the last bit.
+    /// None if the matrix is singular to the last bit.
     pub(crate) fn new(matrix: &Square<T, N>) -> Option<Self> {
         let (mut a, mut pivots) = (matrix.data.0, [0; N]);
         for place in 0..N {
@@ -80,7 +80,7 @@ pub(crate) fn inverse<T: Number, const N: usize>(a: &Square<T, N>) -> Option<Squ
     solve(a, &Square::identity())
 }
 
-/// Where, from a row down, the largest element of a column is, and how large.
+/// Index and size of the largest element of a column, from a row down.
 fn largest<T: Number>(column: &[T], from: usize) -> Option<(usize, f64)> {
     let sizes = column.iter().map(|value| value.magnitude()).enumerate().skip(from);
     sizes.reduce(|best, other| if other.1 > best.1 { other } else { best })

@@ -9,7 +9,7 @@ pub(crate) const BLOCK: usize = 32;
 /// Coordinates of the points of a block.
 pub(crate) type Block<T, const D: usize> = [[T; BLOCK]; D];
 
-/// Where the points of a filter are.
+/// Coordinates of the points of a filter.
 pub(crate) trait Points<T, const D: usize> {
     /// The coordinates of `used` points from number `base` on: where they are stored, or written into `room`.
     fn load<'a>(

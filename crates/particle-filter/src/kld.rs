@@ -4,7 +4,7 @@ use kestirim_scalar::Scalar;
 
 use crate::{Error, Particles};
 
-/// How many particles keep the Kullback–Leibler divergence from the true posterior below `epsilon` with
+/// Number of particles that keep the Kullback–Leibler divergence from the true posterior below `epsilon` with
 /// the confidence whose normal quantile is `z` (2.33 for 99 %), if the posterior occupies so many `bins`:
 /// at least one, never above `most`.
 ///
@@ -29,7 +29,7 @@ pub fn kld_count<T: Scalar>(bins: usize, epsilon: T, z: T, most: usize) -> Resul
 }
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
-    /// How many bins of these sides hold a particle of some weight (1/1000 of the largest).
+    /// Number of bins of these sides that hold a particle of some weight (1/1000 of the largest).
     ///
     /// Bins share 32·N bits by a hash, so that of k bins about k²/(64·N) are not told apart. Between update and
     /// resampling.

@@ -18,7 +18,7 @@ pub struct Moments<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Moments<T, D> {
-    /// Of weighted points.
+    /// Moments of weighted points.
     #[inline(always)]
     pub(crate) fn of<const N: usize>(weights: &Weights<T, N>, points: &impl Points<T, D>) -> Self {
         let share = weights.sum().recip();
@@ -152,8 +152,8 @@ pub(crate) fn bounds<T: Scalar, const D: usize, const N: usize>(
     )
 }
 
-/// Of the lower triangle, in place. A column whose pivot is not positive becomes zero: the points lie in a
-/// plane of fewer dimensions.
+/// Cholesky factor of the lower triangle, in place. A column whose pivot is not positive becomes zero: the points lie
+/// in a plane of fewer dimensions.
 #[inline(always)]
 fn cholesky<T: Scalar, const D: usize>(matrix: &mut [[T; D]; D]) {
     for column in 0..D {

@@ -23,7 +23,7 @@ pub(crate) const fn bits(count: usize) -> i32 {
     if doubled > 31 { 62 - doubled } else { 31 }
 }
 
-/// How many offspring each of some weights has: `counts`, which sum up to their own number.
+/// Number of offspring of each of some weights: `counts`, which sum up to their own number.
 ///
 /// Weights need not sum up to one. Integers of 31 bits stand for them (fewer beyond 32 000 weights), so that
 /// neither a cumulative sum nor its last index can be rounded wrongly, and every number type draws alike;

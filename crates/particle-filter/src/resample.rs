@@ -1,15 +1,15 @@
-//! Laws by which particles have offspring.
+//! Resampling schemes.
 
 use rand_core::Rng;
 
 use crate::Error;
 use crate::uniform::Uniform;
 
-/// A law of resampling: how many offspring each particle has. The expected number should be in proportion to its
+/// A resampling scheme: the number of offspring of each particle. The expected number should be in proportion to its
 /// weight.
 ///
 /// [`Resampler`] chooses among the four of this crate at run time; each is a type of its own, too, and any other
-/// law can be given to [`Particles::resample`](crate::Particles::resample).
+/// scheme can be given to [`Particles::resample`](crate::Particles::resample).
 pub trait Resample {
     /// Replaces each weight by its number of offspring. They should sum up to the number of draws: particles for
     /// which offspring are missing stay where they are, offspring beyond the last are left out.
@@ -70,7 +70,7 @@ pub struct Stratified;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Systematic;
 
-/// A choice among the laws of this crate (the thesis' Tables 2.2 to 2.5) at run time.
+/// A choice among the schemes of this crate (the thesis' Tables 2.2 to 2.5) at run time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -224,7 +224,7 @@ impl Shares {
         Self { total, draws, zeros, reciprocal: (draws << 43) / upper }
     }
 
-    /// How many whole shares there are in a weight, and draws times what remains.
+    /// Number of whole shares in a weight, and draws times what remains.
     #[inline(always)]
     fn of(&self, weight: u64) -> (u64, u64) {
         // Right, or one too small: with up to 2²⁰ draws the error is below 2⁻¹⁰.

@@ -1,4 +1,4 @@
-//! Arrays of any length, which serde knows up to 32 only.
+//! Serialisation of arrays of any length; serde itself has it up to 32 only.
 
 use serde::{Serialize, Serializer};
 

@@ -1,6 +1,6 @@
 use rand_core::Rng;
 
-/// Most numbers of one prefix that are drawn together.
+/// Largest number of values of one prefix that are drawn together.
 const TOGETHER: usize = 32;
 /// Halves still to come: each of 32 bits leaves one behind.
 const DEPTH: usize = 33;
@@ -18,7 +18,7 @@ pub(crate) struct Uniform {
     ready: [u32; TOGETHER],
     /// The largest that may have this prefix.
     last: u32,
-    /// How many numbers are ready, and how many of these have been counted.
+    /// Number of values that are ready, and number of these that have been counted.
     count: u32,
     counted: u32,
 }
@@ -31,7 +31,7 @@ impl Uniform {
         Self { pending, depth: 1, ready: [u32::MAX; TOGETHER], last: 0, count: 0, counted: 0 }
     }
 
-    /// How many numbers there are below a limit that have not been counted yet.
+    /// Number of values below a limit that have not been counted yet.
     ///
     /// No branch depends on a comparison with one of them: a processor would guess it wrongly once a
     /// particle.
@@ -96,7 +96,7 @@ impl Uniform {
     }
 }
 
-/// How many of `count` coins show heads.
+/// Number of heads among `count` coins.
 #[inline]
 fn heads<R: Rng + ?Sized>(count: u32, rng: &mut R) -> u32 {
     let mut heads = 0;

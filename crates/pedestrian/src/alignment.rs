@@ -15,8 +15,8 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 #[derive(Clone, Copy, Debug)]
 pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
-    /// Of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20 holds
-    /// the squares of both the largest bias and the smallest noise.)
+    /// Variance of the bias of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20
+    /// holds the squares of both the largest bias and the smallest noise.)
     bias_variance: T,
     /// The accelerometer's magnitude at rest, in units of standard gravity.
     gravity: T,
@@ -83,10 +83,10 @@ impl<T: Scalar> Alignment<T> {
     const RATE_FLOOR: f64 = 0.07;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
-    /// How far a bias wanders between two standstills (0.01 rad/s).
+    /// Standard deviation by which a bias wanders between two standstills (0.01 rad/s).
     const WANDER: f64 = 0.01;
 
-    /// Nothing seen yet but the class of the sensor.
+    /// The state before the first sample, from the class of the sensor.
     pub(crate) fn new(sensor: SensorClass) -> Self {
         let Prior { gyro_bias, gravity } = sensor.prior();
         Self {

@@ -1,7 +1,7 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// What the time stamp of a new sample means.
+/// Meaning of the time stamp of a new sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Tick<T> {
     /// The first sample: nothing to integrate yet.
@@ -21,7 +21,7 @@ pub(crate) struct Clock {
 impl Clock {
     /// Steps beyond this are missing samples (µs): a tenth of a second spans half a swing.
     const GAP_US: u64 = 100_000;
-    /// No step is integrated for longer (µs): what the foot did meanwhile is not known.
+    /// Longest step that is integrated (µs): the motion of the foot in a longer gap is not known.
     const LONGEST_US: u64 = 200_000;
 
     /// The step to `time_us`, without taking it.

@@ -2,23 +2,23 @@ use crate::{ImuSample, SensorClass};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What is suspicious about a stream. Flags once raised stay raised.
+/// Suspicious findings about a stream. Flags once raised stay raised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 // One flag a finding is what a reader wants to ask for by name.
 #[allow(clippy::struct_excessive_bools)]
 pub struct Warnings {
-    /// Again and again an axis of the accelerometer showed the same large value three times in a row: its
+    /// Repeatedly an axis of the accelerometer showed the same large value three times in a row: its
     /// range is too small.
     pub accelerometer_saturated: bool,
     /// The same of the gyroscope.
     pub gyroscope_saturated: bool,
     /// At rest the accelerometer does not show 9.8 m/s²: its unit is wrong (g?) or it needs calibration.
     pub gravity_implausible: bool,
-    /// Angular rates beyond any foot: degrees a second taken for radians?
+    /// Angular rates beyond any foot, as if °/s were taken for rad/s.
     pub rate_implausible: bool,
-    /// Stride after stride ends with metres a second left over: axes are swapped or mirrored between the
+    /// Repeatedly strides end with a velocity of metres a second left over: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
     pub axes_inconsistent: bool,
     /// Samples are missing (more than a tenth of a second).
@@ -27,7 +27,7 @@ pub struct Warnings {
     pub never_still: bool,
 }
 
-/// Watches a stream for what no filter can mend.
+/// Checks of a stream for faults that no filter can correct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Health<T: Scalar> {
     warnings: Warnings,
@@ -36,7 +36,7 @@ pub(crate) struct Health<T: Scalar> {
     bad_landings: u8,
 }
 
-/// How often in a row each axis has shown the same value, and how often that was three times.
+/// Number of times in a row that each axis has shown the same value, and number of runs of three.
 #[derive(Clone, Copy, Debug)]
 struct Repeats<T: Scalar> {
     last: SVector<T, 3>,
@@ -69,7 +69,7 @@ impl<T: Scalar> Repeats<T> {
 }
 
 impl<T: Scalar> Health<T> {
-    /// Beyond the widest range of a gyroscope, 2000 °/s (rad/s).
+    /// Largest plausible rate, beyond the widest range of a gyroscope, 2000 °/s (rad/s).
     const LARGEST_RATE: f64 = 45.0;
     /// A stride that ends with so much velocity left over (m/s) was not measured by this IMU …
     const LANDING: f64 = 2.0;

@@ -8,7 +8,7 @@ use kestirim_scalar::Scalar;
 /// Tracks a foot through a recorded walk, looking ahead.
 ///
 /// Two things are better known afterwards: the biases, from every standstill of the
-/// recording, and the stances, whose unrest is compared with the smallest of 0.6 s before and after. An
+/// recording, and the stances, whose SHOE statistic is compared with the smallest of 0.6 s before and after. An
 /// iterator over the estimates, one a sample; memory is the recording and one number a sample, both the
 /// caller's.
 #[derive(Debug)]
@@ -22,16 +22,16 @@ pub struct OfflineTracker<'a, T: Scalar, N> {
 }
 
 impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
-    /// The foot stands below so many times the smallest unrest …
+    /// The foot stands below so many times the smallest SHOE statistic around …
     const FACTOR: f64 = 1.5;
     /// … and always below this, (rad/s)².
     const FLOOR: f64 = 0.15;
-    /// Half of the span over which the smallest unrest is sought (µs).
+    /// Half of the span over which the smallest statistic is sought (µs).
     const LOOK_US: u64 = 600_000;
     /// The same to both sides, in bins.
     const LOOK_BINS: usize = 12;
 
-    /// Prepares a walk. `unrest` is working memory, an entry a sample.
+    /// Prepares a walk. `unrest` is working memory for the SHOE statistic, an entry a sample.
     ///
     /// # Errors
     /// The index of the first sample that no tracker can take, and why. (The entries of `unrest` that are
@@ -72,12 +72,12 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
         self.engine.path_length()
     }
 
-    /// What is suspicious about the stream so far.
+    /// Suspicious findings about the stream so far.
     pub fn warnings(&self) -> Warnings {
         self.engine.warnings()
     }
 
-    /// The smallest unrest around `time_us`.
+    /// The smallest SHOE statistic around `time_us`, (rad/s)².
     fn minimum_around(&mut self, time_us: u64) -> T {
         while let (Some(sample), Some(&unrest)) =
             (self.samples.get(self.ahead), self.unrest.get(self.ahead))

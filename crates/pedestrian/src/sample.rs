@@ -14,11 +14,11 @@ use nalgebra::SVector;
     ))
 )]
 pub struct ImuSample<T: Scalar> {
-    /// When it was taken (µs since any moment). Integers, because a float's seconds grow coarse in an hour.
+    /// Time of the sample (µs since any moment). Integers, because a float's seconds grow coarse in an hour.
     pub time_us: u64,
-    /// What the accelerometer measures (m/s²): +g upwards at rest.
+    /// Specific force, as an accelerometer measures it (m/s², body): +g upwards at rest.
     pub specific_force: SVector<T, 3>,
-    /// What the gyroscope measures (rad/s).
+    /// Angular rate, as a gyroscope measures it (rad/s, body).
     pub angular_rate: SVector<T, 3>,
 }
 
@@ -42,7 +42,7 @@ impl<T: Scalar> ImuSample<T> {
     }
 }
 
-/// Which of a sample's vectors are so large that a sensor's range may end there.
+/// Flags of a sample's vectors that are so large that a sensor's range may end there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size {
     pub(crate) large_force: bool,

@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-/// The class of an IMU: what may be expected of it before it has said anything.
+/// The class of an IMU: the prior of its biases and its noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -12,7 +12,7 @@ pub enum SensorClass {
     Consumer,
 }
 
-/// What is expected of a class before its stream has said anything.
+/// Standard deviations of a class before its first sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prior {
     /// Standard deviation of the gyro bias at power-on (rad/s).
@@ -21,7 +21,7 @@ pub(crate) struct Prior {
     pub(crate) gravity: f64,
 }
 
-/// How fast the uncertainty of an error-state filter grows.
+/// Process noise of an error-state filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Noise<T> {
     /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.

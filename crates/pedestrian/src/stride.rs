@@ -15,18 +15,18 @@ use nalgebra::SVector;
 pub struct Stride<T: Scalar> {
     /// The end of the stance it arrived at (µs, the samples' clock).
     pub time_us: u64,
-    /// Where that stance was (m, earth, from the start).
+    /// Position of that stance (m, earth, from the start).
     pub position: SVector<T, 3>,
     /// Horizontal distance from the stance before (m).
     pub length: T,
     /// Time since the end of the stance before (s).
     pub duration: T,
-    /// How far its direction is turned from that of the stride before, anticlockwise from above (rad); zero
+    /// Turn of its direction from that of the stride before, anticlockwise from above (rad); zero
     /// for the first.
     pub heading_change: T,
 }
 
-/// Where the foot stood.
+/// A stance of the foot.
 #[derive(Clone, Copy, Debug)]
 struct Footprint<T: Scalar> {
     time_us: u64,

@@ -7,14 +7,14 @@ use kestirim_attitude::Orientation;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What is known of sensor and foot beforehand.
+/// Settings of sensor and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config<T> {
     /// The class of the IMU.
     pub sensor: SensorClass,
-    /// How high the sensor is above the ball of the foot, about which the foot rolls in stance (m). Zero
+    /// Height of the sensor above the ball of the foot, about which the foot rolls in stance (m). Zero
     /// takes the foot for motionless.
     pub contact_height: T,
 }
@@ -26,7 +26,7 @@ impl<T: Scalar> Default for Config<T> {
     }
 }
 
-/// Where the foot is after a sample.
+/// Estimate of the foot after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -38,13 +38,13 @@ impl<T: Scalar> Default for Config<T> {
     ))
 )]
 pub struct Estimate<T: Scalar> {
-    /// Of the sample (µs, the samples' clock).
+    /// Time of the sample (µs, the samples' clock).
     pub time_us: u64,
-    /// Where the sensor is (m, earth: z up, from the start).
+    /// Position of the sensor (m, earth: z up, from the start).
     pub position: SVector<T, 3>,
-    /// How it moves (m/s, earth).
+    /// Velocity of the sensor (m/s, earth).
     pub velocity: SVector<T, 3>,
-    /// How it is turned, body → earth.
+    /// Orientation of the sensor, body → earth.
     pub orientation: Orientation<T>,
     /// Whether the foot stands.
     pub stance: bool,
@@ -103,12 +103,12 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
         self.engine.path_length()
     }
 
-    /// What is suspicious about the stream so far.
+    /// Suspicious findings about the stream so far.
     pub fn warnings(&self) -> Warnings {
         self.engine.warnings()
     }
 
-    /// What standstills have shown of the biases.
+    /// Biases as learnt from standstills.
     pub fn alignment(&self) -> &Alignment<T> {
         &self.engine.alignment
     }

@@ -6,9 +6,9 @@ use kestirim_gnss_ppp::{Arc, Slip};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Channel {
-    /// Which GPS satellite (PRN).
+    /// PRN of the GPS satellite.
     pub(crate) satellite: u8,
-    /// Its combinations, for the detection of slips.
+    /// Combinations of its phases and codes, for the detection of slips.
     pub(crate) arc: Arc,
     /// Phase wind-up of its last epoch, cycles.
     pub(crate) wind_up: f64,

@@ -3,7 +3,7 @@
 use crate::Estimator;
 use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
 
-/// Whether the receiver moves.
+/// Motion of the receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,7 +41,7 @@ impl Deviation {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
-    /// Whether the receiver moves. The default `estimator` is made for it: change both.
+    /// Motion of the receiver. The default `estimator` is made for it: change both.
     pub motion: Motion,
     /// Lowest elevation of a satellite, rad.
     pub elevation_mask: f64,
@@ -49,7 +49,7 @@ pub struct Config {
     pub phase: Deviation,
     /// Noise of the ionosphere-free code.
     pub code: Deviation,
-    /// How fast satellite clocks wander between the samples of their product: variance per second,
+    /// Random walk of satellite clocks between the samples of their product: variance per second,
     /// m²/s. Between two samples the error is a random walk tied at both ends.
     pub clock_walk: f64,
     /// Standard deviation of the first wet zenith delay, m.
@@ -88,7 +88,7 @@ impl Config {
             && rest.iter().all(|&value| value >= 0.0 && value.is_finite())
     }
 
-    /// What the interpolation of a satellite's clock adds to the variance of an observation, m².
+    /// Variance that the interpolation of a satellite's clock adds to an observation, m².
     pub(crate) fn clock_variance(&self, state: &SatelliteState) -> f64 {
         let SatelliteState { clock_interval: interval, clock_distance: distance, .. } = *state;
         if interval > 0.0 {

@@ -11,7 +11,7 @@ pub(crate) const POSITION: Block = Block::new(0, 3);
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimator {
-    /// How an epoch's observations are weighted.
+    /// Weighting of an epoch's observations.
     pub robust: Robust<f64>,
     /// After how many epochs in which its phase was rejected a satellite's ambiguity begins anew. With none,
     /// phases are not monitored at all: no slip by the wide lane, no noise estimated.

@@ -12,7 +12,7 @@ pub(crate) type Row = [(usize, f64); COMMON + 1];
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     pub(crate) satellite: u8,
-    /// Which state its ambiguity is.
+    /// Index of the state that is its ambiguity.
     pub(crate) state: usize,
     pub(crate) slipped: Option<Slipped>,
     pub(crate) expected: Expected,

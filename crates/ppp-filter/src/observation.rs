@@ -5,7 +5,7 @@ use kestirim_gnss_ppp::{Pattern, SatelliteState};
 /// Only complete observations serve: both codes and both phases.
 #[derive(Clone, Copy, Debug)]
 pub struct SatelliteObservation<'a> {
-    /// Which GPS satellite (PRN).
+    /// PRN of the GPS satellite.
     pub satellite: u8,
     /// Codes on L1 and L2, m (P1 and P2, to which the clocks of the IGS refer).
     pub code: [f64; 2],
@@ -15,7 +15,7 @@ pub struct SatelliteObservation<'a> {
     pub lock_lost: bool,
     /// The satellite's state at the time of transmission.
     pub state: SatelliteState,
-    /// Its antenna on L1 and L2, where known.
+    /// Antenna on L1 and L2, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
 }
 

@@ -24,10 +24,10 @@ const ENDURANCE: u8 = 10;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PhaseMonitor {
-    /// Its variance in what it should be: of a receiver at rest that of its interpolated clock alone,
+    /// Variance of its modelled value: of a receiver at rest that of its interpolated clock alone,
     /// as a caesium clock wanders ten times as far as a rubidium clock; of one that moves, all of it.
     noise: f64,
-    /// Its residual when it was last used, m.
+    /// Residual when it was last used, m.
     residual: f64,
     /// Number of epochs, up to the last one, in which it was rejected.
     rejected: u8,

@@ -24,15 +24,15 @@ const WET_DELAY: f64 = 0.1;
 /// A receiver that was found farther than this from where the model was linearised is looked at
 /// again from there, m: at 20 000 km, 100 m are worth 0.2 mm.
 const LINEAR: f64 = 100.0;
-/// Most relinearisations of an epoch.
+/// Largest number of relinearisations of an epoch.
 const RELINEARISATIONS: usize = 5;
 
-/// Of the squares of standard normal numbers.
+/// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
 
 /// Observations of an epoch that are used.
 pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a SatelliteObservation<'b>, Line), N>;
-/// Of each line's code and phase.
+/// Decisions about each line's code and phase.
 pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +66,7 @@ impl<const N: usize> Running<N> {
         Self { estimate, time, interval: None, channels: [None; N] }
     }
 
-    /// Lets time pass.
+    /// Predicts to the time of an epoch.
     pub(crate) fn advance(&mut self, time: GpsTime, config: &Config) -> Result<(), Error> {
         let elapsed = time.since(self.time);
         if elapsed <= 0.0 || elapsed.is_nan() {

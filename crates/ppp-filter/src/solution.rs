@@ -12,7 +12,7 @@ pub enum Slipped {
     New,
     /// A slip in its own observations.
     Seen(Slip),
-    /// Its phase contradicted all others for several epochs.
+    /// The phase contradicted all others for several epochs.
     Contradicted,
 }
 
@@ -34,9 +34,9 @@ pub enum Health {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SatelliteReport {
-    /// Which GPS satellite (PRN).
+    /// PRN of the GPS satellite.
     pub satellite: u8,
-    /// Direction in the receiver's sky.
+    /// Direction from the receiver.
     pub direction: Direction,
     /// Weight, residual and reason of the code.
     pub code: Decision<f64>,
@@ -55,11 +55,11 @@ pub struct Solution<const N: usize> {
     pub time: GpsTime,
     /// The marker, ECEF, m, free of tides.
     pub position: Vector3<f64>,
-    /// Its covariance, ECEF, m².
+    /// Covariance of the position, ECEF, m².
     pub covariance: Matrix3<f64>,
     /// The same in east, north, up.
     pub covariance_enu: Matrix3<f64>,
-    /// How far the receiver's clock is ahead of GPS time, m.
+    /// Receiver clock minus GPS time, m.
     pub clock: f64,
     /// Wet zenith delay, m.
     pub wet_delay: f64,

@@ -11,7 +11,7 @@ use nalgebra::{SVector, Vector3};
 pub(crate) struct CodePosition {
     /// ECEF, m.
     pub(crate) position: Vector3<f64>,
-    /// How far the receiver's clock is ahead of GPS time, m.
+    /// Receiver clock minus GPS time, m.
     pub(crate) clock: f64,
 }
 

@@ -5,10 +5,10 @@
 pub(crate) const CLOCK: usize = 3;
 /// The wet zenith delay.
 pub(crate) const WET: usize = 4;
-/// How many states there are besides the ambiguities.
+/// Number of states besides the ambiguities.
 pub(crate) const COMMON: usize = 5;
 
-/// How many states a [`PppFilter`](crate::PppFilter) for so many satellites at a time has.
+/// Number of states of a [`PppFilter`](crate::PppFilter) for so many satellites at a time.
 pub const fn states(satellites: usize) -> usize {
     COMMON.saturating_add(satellites)
 }

@@ -8,7 +8,7 @@ use kestirim_scalar::Scalar;
 pub struct Block {
     /// The index of the first.
     pub first: usize,
-    /// How many there are, up to [`MOST_STATES`].
+    /// Number of states, up to [`MOST_STATES`].
     pub count: usize,
 }
 
@@ -41,7 +41,7 @@ pub enum Discrepancy {
     Prediction,
 }
 
-/// When the adaptive factor is computed.
+/// Order of adaptive factor and weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -57,8 +57,8 @@ pub enum Order {
 }
 
 /// An adaptive factor a ≤ 1 on a block of P⁻: the block over a. The rest of P⁻ is kept, with what ties it
-/// to the block: on all of it, a would throw away what is not in doubt, and a surprise in the block would be
-/// taken for one in what correlates with it.
+/// to the block: on all of it, a would discard what is not in doubt, and a deviation of the block would be
+/// taken for one of the states that correlate with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -67,11 +67,11 @@ pub struct Adaptive<T> {
     pub block: Block,
     /// Statistic by which they are judged.
     pub discrepancy: Discrepancy,
-    /// Up to c0 the prediction is believed; usually 1.5 to 3.
+    /// Up to c0 the prediction has full weight, a = 1; usually 1.5 to 3.
     pub c0: T,
-    /// Beyond c1 a is at its floor; usually 3 to 8.
+    /// Beyond c1 the factor a is at its floor; usually 3 to 8.
     pub c1: T,
-    /// How a falls between them.
+    /// Course of a between them.
     pub descent: Descent,
     /// The smallest a (published as 0, by which (13) cannot divide).
     pub floor: T,

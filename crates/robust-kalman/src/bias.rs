@@ -7,7 +7,7 @@ use kestirim_scalar::Scalar;
 /// The largest block that can be judged: position and velocity in space.
 pub const MOST_STATES: usize = 6;
 
-/// How far the block of a state lies from its prediction, by the epoch alone.
+/// Distance of a block of the state from its prediction, by the epoch alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Jump<T> {

@@ -6,7 +6,7 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Reason {
-    /// It agrees with the others and the prediction: full weight.
+    /// The measurement agrees with the others and the prediction: full weight.
     Agrees,
     /// No other measurement checks it, as of the first phase of a satellite: full weight, not
     /// judged.
@@ -15,7 +15,7 @@ pub enum Reason {
     TooFew,
     /// Between the two thresholds, or beyond Huber's: less weight.
     DownWeighted,
-    /// Beyond the outer threshold: no weight.
+    /// The residual is beyond the outer threshold: no weight.
     Rejected,
 }
 
@@ -60,7 +60,7 @@ impl<T: Scalar> Decision<T> {
         matches!(self.reason, Reason::DownWeighted | Reason::Rejected)
     }
 
-    /// Whether its residual was comparable with anything, and it was not found wanting.
+    /// Whether its residual can be compared with others, and it kept its full weight.
     #[inline(always)]
     pub(crate) fn counts(&self) -> bool {
         matches!(self.reason, Reason::Agrees | Reason::TooFew)

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why an update was refused. The estimate is as it was before the call.
+/// Reason for which an update was refused. The estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,7 +8,7 @@ use core::fmt;
 pub enum Error {
     /// The estimate refused a measurement.
     Estimate(kestirim_kalman::Error),
-    /// There are fewer places for decisions than measurements.
+    /// The slice for decisions is shorter than that of the measurements.
     TooFewDecisions,
     /// The block names states that the estimate does not have, none, or more than
     /// [`MOST_STATES`](crate::MOST_STATES).

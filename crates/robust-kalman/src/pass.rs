@@ -10,7 +10,7 @@ use kestirim_scalar::Scalar;
 pub(crate) struct Passed<T> {
     /// εᵀ Qε⁻¹ ε of those that were used.
     pub(crate) nis: T,
-    /// How many those were.
+    /// Number of those.
     pub(crate) used: usize,
 }
 

@@ -1,7 +1,7 @@
 use crate::{Adaptive, Block, Descent, Discrepancy, Igg3, Scale, TTest, Weight, WeightFunction};
 use kestirim_scalar::Scalar;
 
-/// How often measurements are weighted anew.
+/// Iteration of the robust weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -13,7 +13,7 @@ pub enum Reweighting {
     /// The worst one alone, then everything is computed anew, until none exceeds the inner threshold. Each
     /// measurement is treated once.
     WorstFirst {
-        /// Most measurements that are treated.
+        /// Largest number of measurements that are treated.
         most: usize,
     },
 }
@@ -28,7 +28,7 @@ pub struct Robust<T, W = Weight<T>> {
     pub weight: W,
     /// Scale of the residuals, σ̂0.
     pub scale: Scale<T>,
-    /// How often weights are computed.
+    /// Iteration of the weights.
     pub reweighting: Reweighting,
     /// Qᵥ/R up to which a measurement is not judged. Such a residual shows next to nothing of an error.
     pub least_redundancy: T,

@@ -32,7 +32,7 @@ pub enum Scale<T> {
 }
 
 impl<T: Scalar> Scale<T> {
-    /// What the innovations say before anything is judged: σ̂0 for the whole epoch, if it comes from them.
+    /// Scale from the innovations, before anything is judged: σ̂0 for the whole epoch, if it comes from them.
     pub(crate) fn of_innovations<const N: usize>(
         &self,
         epoch: &Epoch<'_, '_, T, N>,
@@ -72,7 +72,7 @@ fn from_median<T: Scalar>(decisions: &[Decision<T>], floor: T) -> T {
     median(decisions).map_or(floor, |median| (T::from_f64(1.4826) * median).max(floor))
 }
 
-/// Of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
+/// Median of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
 /// of four measurements two may be wild. By counting, so that nothing needs to be stored.
 fn median<T: Scalar>(decisions: &[Decision<T>]) -> Option<T> {
     let count = decisions.iter().filter(|decision| decision.counts()).count();

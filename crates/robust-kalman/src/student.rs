@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-/// Beyond, Student's t is the normal distribution to three digits.
+/// Largest degrees of freedom; beyond, Student's t is the normal distribution to three digits.
 const MOST_FREEDOM: usize = 1000;
 /// From the left of a concave function Newton's steps never pass the root; a dozen are usual.
 const MOST_STEPS: usize = 60;

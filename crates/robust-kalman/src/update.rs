@@ -61,7 +61,7 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
     }
 }
 
-/// How far the epoch's measurements, all with full weight, put a block of the state from its prediction.
+/// Distance at which the epoch's measurements, all with full weight, put a block of the state from its prediction.
 ///
 /// Detects a motion before measurements are judged by the prediction; the estimate is not changed.
 ///

@@ -1,7 +1,7 @@
 use crate::student_quantile;
 use kestirim_scalar::Scalar;
 
-/// How a weight falls between two thresholds.
+/// Course of a weight between two thresholds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -29,7 +29,7 @@ impl Descent {
     }
 }
 
-/// A weight function: how much a measurement is believed, by how far it stands out.
+/// A weight function: the weight of a measurement by its standardised residual.
 ///
 /// [`Weight`] chooses among the three of this crate at run time; each is a type of its own, too, and any other can
 /// be given to [`Robust::with_weight`](crate::Robust::with_weight).
@@ -69,7 +69,7 @@ pub struct Igg3<T> {
     pub k0: T,
     /// k1, usually 3 to 8.
     pub k1: T,
-    /// How it falls between them.
+    /// Course of the weight between them.
     pub descent: Descent,
 }
 
@@ -83,7 +83,7 @@ pub struct TTest<T> {
     pub alpha0: T,
     /// α1, the share of those that are to be rejected: 0.01.
     pub alpha1: T,
-    /// How it falls between them.
+    /// Course of the weight between them.
     pub descent: Descent,
 }
 
@@ -139,7 +139,7 @@ impl<T: Scalar> WeightFunction<T> for Igg3<T> {
 }
 
 impl<T: Scalar> WeightFunction<T> for TTest<T> {
-    /// Of `count` − 2 degrees of freedom; none for fewer than three measurements.
+    /// Thresholds of `count` − 2 degrees of freedom; none for fewer than three measurements.
     #[inline]
     fn thresholds(&self, count: usize) -> Option<(T, T)> {
         let freedom = count.checked_sub(2).filter(|&freedom| freedom > 0)?;

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why a frame was not written.
+/// Reason for which a frame was not written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

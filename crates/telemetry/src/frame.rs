@@ -19,7 +19,7 @@ pub(crate) const CHECKSUM: usize = size_of::<u32>();
 pub(crate) const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const DELIMITER: u8 = 0;
 
-/// What is checked by the CRC.
+/// Part of a frame that the CRC checks.
 #[derive(Serialize, MaxSize)]
 struct Envelope {
     version: u8,
@@ -54,7 +54,7 @@ struct Stuffed<'a> {
     state: EncoderState,
 }
 
-/// Where the encoder counts its bytes from: behind the first delimiter.
+/// Offset from which the encoder counts its bytes: behind the first delimiter.
 const START: usize = size_of_val(&DELIMITER);
 
 impl<'a> Stuffed<'a> {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 /// Declares the kinds of messages: all are plain data.
 macro_rules! messages {
     ($($(#[$attribute:meta])* $name:ident { $($(#[$note:meta])* $field:ident: $type:ty,)* })*) => {
-        /// What a frame carries.
+        /// Content of a frame.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[non_exhaustive]
@@ -33,7 +33,7 @@ macro_rules! messages {
 messages! {
     /// A sample of an inertial sensor, in its own axes.
     Imu {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// m/s²; at rest +1 g upwards.
         specific_force: [f32; 3],
@@ -43,9 +43,9 @@ messages! {
 
     /// A distance to an anchor.
     Range {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
-        /// Which anchor.
+        /// Number of the anchor.
         anchor: u16,
         /// m.
         range: f32,
@@ -53,17 +53,17 @@ messages! {
 
     /// A path loss between a drone and a user.
     PathLoss {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
-        /// Where the drone was (m, east, north, up).
+        /// Position of the drone (m, east, north, up).
         place: [f32; 3],
         /// dB.
         loss: f32,
     }
 
-    /// What an aeroplane was told and what it measured.
+    /// Commands to an aeroplane, and its measurements.
     Flight {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// Elevator (rad) and throttle.
         inputs: [f32; 2],
@@ -73,7 +73,7 @@ messages! {
 
     /// An estimated place near the start or in a room.
     Position {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// m, in the estimator's local frame, z up.
         position: [f32; 3],
@@ -83,7 +83,7 @@ messages! {
 
     /// An estimated place on earth.
     GlobalPosition {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// m, earth-centred and earth-fixed.
         position: [f64; 3],
@@ -93,7 +93,7 @@ messages! {
 
     /// The state of an aeroplane's longitudinal motion, as its observer estimates it.
     State {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// Angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch (rad).
         state: [f32; 4],
@@ -101,7 +101,7 @@ messages! {
 
     /// A stride of the instrumented foot: where it came to stand.
     Footprint {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// m, in the tracker's earth frame, z up.
         position: [f32; 3],
@@ -109,9 +109,9 @@ messages! {
         length: f32,
     }
 
-    /// How the sender is doing, counted since it began.
+    /// Health of the sender: counts since it began.
     Health {
-        /// When (µs, the sender's clock).
+        /// Time (µs, the sender's clock).
         time_us: u64,
         /// Measurements that were taken in.
         accepted: u32,

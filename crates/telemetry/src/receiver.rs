@@ -9,11 +9,11 @@ use crate::frame::{CHECKSUM, CONTENT, CRC, VERSION};
 pub struct Frame {
     /// The sender's count of frames.
     pub sequence: u16,
-    /// What it carried.
+    /// Content of the frame.
     pub message: Message,
 }
 
-/// What became of everything that arrived.
+/// Counts of the frames that arrived, were damaged, or are missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
@@ -25,7 +25,7 @@ pub struct Counts {
     pub corrupt: u32,
     /// Frames of another version, or with a message that this receiver does not know.
     pub unknown: u32,
-    /// Numbers that are missing between those of the good frames, whatever became of theirs.
+    /// Sequence numbers that are missing between those of the good frames: torn, corrupt or never arrived.
     pub lost: u32,
 }
 
@@ -88,7 +88,7 @@ impl Receiver {
         }
     }
 
-    /// What became of everything so far.
+    /// Counts so far.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
@@ -121,7 +121,7 @@ impl Receiver {
     }
 }
 
-/// Reads what the checksum has vouched for, if this version knows it to the last byte.
+/// Reads a frame whose checksum is right, if this version understands it to the last byte.
 fn read(checked: &[u8]) -> Option<Frame> {
     let (&[version, low, high], message) = checked.split_first_chunk()?;
     if version != VERSION {

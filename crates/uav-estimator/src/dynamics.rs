@@ -21,7 +21,7 @@ pub enum Dynamics {
     Discrete {
         /// A and B of one step.
         step: Discrete<4, 2>,
-        /// How long a step is, s.
+        /// Interval of a step, s.
         interval: f64,
     },
 }
@@ -38,7 +38,7 @@ pub struct Step {
 }
 
 impl Dynamics {
-    /// What happens in `interval` (s), where white noise of these standard deviations (rad; 1) a `sample` (s)
+    /// Step of the model over `interval` (s), where white noise of these standard deviations (rad; 1) a `sample` (s)
     /// reaches the inputs δe and δt.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ impl Dynamics {
     }
 }
 
-/// So many steps, each with noise of this covariance.
+/// A sequence of `count` steps, each with noise of this covariance.
 fn repeated(step: &Discrete<4, 2>, once: &SMatrix<f64, 4, 4>, count: u32) -> Step {
     let mut all = Discrete { a: SMatrix::identity(), b: SMatrix::zeros() };
     let mut noise = SMatrix::zeros();

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why an estimator was not built, or refused a step. An estimate is as it was before the call.
+/// Reason for which an estimator was not built, or refused a step. An estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

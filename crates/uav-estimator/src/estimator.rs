@@ -16,7 +16,7 @@ pub enum Estimator<T: Scalar, const P: usize> {
     TimeVarying {
         /// The filter.
         filter: KalmanFilter<T, P>,
-        /// What happens between two samples.
+        /// Step from one sample to the next.
         transition: Transition<T>,
     },
 }
@@ -103,7 +103,7 @@ impl<T: Scalar, const P: usize> Estimator<T, P> {
     }
 }
 
-/// What was measured, and what is expected of the outputs that were not.
+/// Outputs as measured, and as expected where they are missing.
 fn completed<T: Scalar, const P: usize>(
     observer: &Predictor<T, 4, 2, P>,
     measured: &[Option<f64>; P],

@@ -91,7 +91,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         Ok(innovations)
     }
 
-    /// What was measured, and what is expected of the outputs that were not.
+    /// Outputs as measured, and as expected where they are missing.
     fn completed(
         &self,
         observer: &CurrentObserver<T, 4, 2, P>,

@@ -59,7 +59,7 @@ pub struct KalmanFilter<T: Scalar, const P: usize> {
     /// Rows of C as columns, and the variances of their noise: both in the outputs' units inside.
     rows: SMatrix<T, 4, P>,
     variances: SVector<T, P>,
-    /// Of the outputs: powers of two.
+    /// Units of the outputs: powers of two.
     units: SVector<f64, P>,
 }
 

@@ -1,10 +1,10 @@
 use nalgebra::SVector;
 
-/// What was applied and measured at one time, in deviations from the model's steady flight.
+/// Inputs and outputs of one time, in deviations from the model's steady flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sample<const P: usize> {
-    /// When it was measured, µs since any epoch.
+    /// Time of the sample, µs since any epoch.
     pub time_us: i64,
     /// δe (rad) and δt (0 to 1), applied from this time until the next sample.
     pub input: SVector<f64, 2>,
@@ -17,8 +17,8 @@ pub struct Sample<const P: usize> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Noise<const P: usize> {
-    /// What reaches the aircraft beside δe (rad) and δt, a sample.
+    /// Standard deviations of what reaches the aircraft beside δe (rad) and δt, a sample.
     pub inputs: SVector<f64, 2>,
-    /// That of each output, in its unit.
+    /// Standard deviation of each output, in its unit.
     pub outputs: SVector<f64, P>,
 }

@@ -2,7 +2,7 @@ use nalgebra::SVector;
 
 use crate::{Dynamics, Error, Step};
 
-/// No gap is longer, in usual intervals.
+/// Longest gap, in usual intervals.
 const LONGEST_GAP: f64 = 1e6;
 
 /// Steps of a model over the intervals between samples; the last one for each remainder of the interval's
@@ -31,7 +31,7 @@ impl<S: Copy, const L: usize> Transitions<S, L> {
         self.known = [None; L];
     }
 
-    /// What happens in so many microseconds, in the form that `form` gives it.
+    /// Step over so many microseconds, in the form that `form` gives it.
     pub(crate) fn over(&self, interval_us: i64, form: impl FnOnce(&Step) -> S) -> Result<S, Error> {
         if let Some(Some((known_us, step))) = self.known.get(Self::place(interval_us))
             && *known_us == interval_us

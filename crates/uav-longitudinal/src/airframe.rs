@@ -67,18 +67,18 @@ pub struct Lift {
     pub pitch_rate: f64,
     /// `C_Lδe`, per radian.
     pub elevator: f64,
-    /// How the flow leaves the wing; none: it stays attached.
+    /// Stall of the wing; none: the flow stays attached.
     pub stall: Option<Stall>,
 }
 
-/// Beyond ±α₀ the wing is a flat plate of lift 2·sign(α)·sin²α·cos α.
+/// Stall beyond ±α₀, where the wing is a flat plate of lift 2·sign(α)·sin²α·cos α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stall {
     /// α₀, rad.
     pub alpha: f64,
-    /// How sharp the transition is M, per radian.
+    /// Sharpness of the transition M, per radian.
     pub sharpness: f64,
 }
 
@@ -126,15 +126,15 @@ pub struct Propeller {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SideCoefficients {
-    /// Of the sideslip angle β.
+    /// Coefficient of the sideslip angle β, per rad.
     pub sideslip: f64,
-    /// Of the roll rate p.
+    /// Coefficient of the roll rate p, of its pure number p·b/(2·V).
     pub roll_rate: f64,
-    /// Of the yaw rate r.
+    /// Coefficient of the yaw rate r, of its pure number r·b/(2·V).
     pub yaw_rate: f64,
-    /// Of the aileron δa.
+    /// Coefficient of the aileron δa, per rad.
     pub aileron: f64,
-    /// Of the rudder δr.
+    /// Coefficient of the rudder δr, per rad.
     pub rudder: f64,
 }
 
@@ -203,7 +203,7 @@ impl Airframe {
 }
 
 impl Stall {
-    /// That of the Aerosonde.
+    /// Stall of the Aerosonde.
     pub fn aerosonde() -> Self {
         Self { alpha: 0.4712, sharpness: 50.0 }
     }

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why there is no answer.
+/// Reason for which there is no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -36,7 +36,7 @@ pub struct Trim {
 }
 
 impl Airframe {
-    /// How the state α, q, V, θ changes with elevator δe and throttle δt, per second.
+    /// Rates of the state α, q, V, θ under elevator δe and throttle δt, per second.
     ///
     /// With lift L, drag D, thrust T along the body's x axis, pitching moment M and γ = θ − α:
     /// α̇ = q − (L + T·sin α)/(m·V) + g·cos γ/V, q̇ = M/Jy, V̇ = (T·cos α − D)/m − g·sin γ, θ̇ = q.

@@ -80,7 +80,7 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
 }
 
 impl<T: Scalar, const M: usize> Beacon<T, M> {
-    /// Without measurements.
+    /// A beacon of which nothing has been measured.
     pub fn new(channel: FreeSpace<T>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };
         Self { channel, measurements: Vec::new() }
@@ -94,7 +94,7 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         self.measurements.push(*measurement).map_err(|_| FilterError::TooMany.into())
     }
 
-    /// Where in a region the transmitter is, if it is where `inside` says that it can be.
+    /// Posterior of the transmitter in a region, restricted to places that are `inside`.
     ///
     /// # Errors
     /// [`Error::Filter`] with `Degenerate` if it can be nowhere.

@@ -5,7 +5,7 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// What is less than e⁻¹⁰ of the largest density is given up when the lattice is laid anew.
+/// Depth below the largest log-density, 10, beyond which points are given up when the lattice is laid anew.
 const DEPTH: f64 = 10.0;
 /// The lattice is laid anew when its weight is on less than this share of its points.
 const SHARE: f64 = 0.05;

@@ -9,7 +9,7 @@ use crate::Error;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PublishedSettings<T> {
-    /// Law of resampling.
+    /// Resampling scheme.
     pub resampler: Resampler,
     /// Share of effective particles below which they are resampled: `N_th/L`.
     pub threshold: T,

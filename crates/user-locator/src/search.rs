@@ -30,7 +30,7 @@ pub struct BeaconSearch<T, const M: usize, const N: usize> {
 }
 
 impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
-    /// Without measurements.
+    /// A search in an area before its first measurement.
     #[inline]
     pub fn new(channel: FreeSpace<T>, area: Area<T, N>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };
@@ -49,13 +49,13 @@ impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
         self.measurements.as_slice()
     }
 
-    /// Where the transmitter is searched for.
+    /// Area in which the transmitter is searched.
     #[inline]
     pub fn area(&self) -> &Area<T, N> {
         &self.area
     }
 
-    /// Where in the area the transmitter is, on a lattice of L points over its box.
+    /// Posterior of the transmitter in the area, on a lattice of L points over its bounding box.
     ///
     /// # Errors
     /// [`Error::Filter`] with `Degenerate` if no point of the lattice lies inside and explains the measurements.

@@ -1,9 +1,9 @@
 use heapless::Vec;
 
-/// Values of a stream of unknown length in room for M: at any time evenly many of them, and the last.
+/// Evenly spaced values of a stream of unknown length, up to M of them with the last one.
 ///
 /// Measurements of a flight that are close together say much the same: of a long one, few tell where the user is. When
-/// the room is full every other value is given up, and from then on half as many are kept.
+/// the room is full every other value is dropped, and from then on half as many are kept.
 #[derive(Clone, Debug)]
 pub struct Thinned<V, const M: usize> {
     /// One in `stride`, and the last value of all, whether or not it is one of these.
@@ -12,12 +12,12 @@ pub struct Thinned<V, const M: usize> {
     is_passing: bool,
     /// A power of two.
     stride: u64,
-    /// How many values there were.
+    /// Number of values so far.
     count: u64,
 }
 
 impl<V: Copy, const M: usize> Thinned<V, M> {
-    /// Without values.
+    /// An empty collection.
     #[inline]
     pub const fn new() -> Self {
         const { assert!(M >= 3, "two that stay, and the last") };
@@ -44,7 +44,7 @@ impl<V: Copy, const M: usize> Thinned<V, M> {
         self.count & (self.stride - 1) == 0
     }
 
-    /// Gives up every other value.
+    /// Drops every other value.
     fn halve(&mut self) {
         let mut left = 0;
         while let Some(&value) = self.kept.get(2 * left) {
@@ -58,13 +58,13 @@ impl<V: Copy, const M: usize> Thinned<V, M> {
         self.stride = self.stride.checked_mul(2).unwrap_or(self.stride);
     }
 
-    /// What is left, in the order in which it came.
+    /// The values that are left, in the order in which they came.
     #[inline]
     pub fn as_slice(&self) -> &[V] {
         &self.kept
     }
 
-    /// How many values there were, those that were given up included.
+    /// Number of values so far, including those that were dropped.
     #[inline]
     pub fn count(&self) -> u64 {
         self.count

@@ -58,7 +58,7 @@ impl<T: Scalar> Motion<T> {
 /// Each particle is a place and the mean velocity that its own path implies; the velocity's variance is the same
 /// for all, because it follows a Kalman filter whose measurements are the steps drawn (a Rao–Blackwellised
 /// filter: Schön, Gustafsson and Nordlund, IEEE Trans. Signal Processing 53(7), 2005). A cloud of places *and*
-/// velocities would need many times as many particles, and diverges from a start that knows neither.
+/// velocities would need many times as many particles, and diverges from a start in which neither is known.
 /// 28·L bytes in single precision.
 #[derive(Clone, Debug)]
 pub struct Tracker<T, const L: usize, C = Channel<T>> {
@@ -139,7 +139,7 @@ where
         }
     }
 
-    /// Lets `interval` (s) pass.
+    /// Predicts over `interval` (s).
     ///
     /// # Errors
     /// [`Error::Filter`] with `NotFinite` or `NotPositive` for such an interval; then nothing has changed.

@@ -26,7 +26,7 @@ impl AntennaDelay {
         self.0
     }
 
-    /// How much too long a distance between the two radios is (m), to be subtracted from it.
+    /// Excess of a distance between the two radios (m), to be subtracted from it.
     pub fn excess<T: Scalar>(self, other: Self) -> T {
         light_distance(i128::from(self.0).wrapping_add(i128::from(other.0)), 2)
     }

@@ -56,7 +56,7 @@ impl<T: Scalar, const K: usize> LevelBias<T, K> {
         if K == 0 || !rising { Err(Error::UnorderedTable) } else { Ok(Self { levels, biases }) }
     }
 
-    /// What a range received at `level` (dBm) is too long by, m: the first or last knot's beyond the ends.
+    /// Excess of a range received at `level` (dBm), m: the first or last knot's beyond the ends.
     pub fn bias(&self, level: T) -> T {
         let mut below: Option<(T, T)> = None;
         for (&knot, &bias) in self.levels.iter().zip(&self.biases) {

@@ -4,7 +4,7 @@ use heapless::Vec;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What each of A anchors measures too long, from points that are known and points that are not.
+/// Biases of A anchors, from points that are known and points that are not.
 ///
 /// At every point the tag stands still for a while, and the median range of each anchor is taken. At
 /// an unknown point, what the ranges say about its place is eliminated, and the rest says something about
@@ -21,14 +21,14 @@ pub struct Calibration<T: Scalar, const A: usize> {
     right: [T; A],
 }
 
-/// What a link errs by from place to place, m.
+/// Standard deviation of a link from place to place, m.
 const LINK_SIGMA: f64 = 0.07;
-/// What anchors differ in, m: less where few anchors leave little to learn from.
+/// Standard deviation of an anchor's bias around the common one, m: less where few anchors leave little to learn from.
 const ANCHOR_SIGMA: f64 = 0.1;
 const ANCHOR_SIGMA_OF_FEW: f64 = 0.06;
-/// What they have in common, m.
+/// Standard deviation of the common bias, m.
 const COMMON_SIGMA: f64 = 0.3;
-/// How well a marked point is known, m.
+/// Standard deviation of a marked point, m.
 const MARK_SIGMA: f64 = 0.02;
 
 impl<T: Scalar, const A: usize> Calibration<T, A> {

@@ -1,4 +1,4 @@
-//! How much faster one radio's clock runs than another's.
+//! Clock offsets between two radios.
 
 use crate::{Error, Ticks};
 use kestirim_scalar::Scalar;
@@ -35,7 +35,7 @@ pub enum DataRate {
     Kbps850OrMore,
 }
 
-/// How much faster the local (initiator's) clock runs than the remote one, as a fraction: an interval of the
+/// Rate of the local (initiator's) clock relative to the remote one, less one: an interval of the
 /// remote clock times (1 + offset) is the same interval on the local clock. Within ±1953 ppm; DW1000s allow each
 /// other ±40 ppm.
 ///

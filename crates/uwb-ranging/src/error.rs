@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why there is no answer. Nothing was changed.
+/// Reason for which there is no result. Nothing was changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -11,7 +11,7 @@ pub struct Observation<T: Scalar> {
     pub anchor: SVector<T, 3>,
     /// The measured distance, m.
     pub range: T,
-    /// Its variance, m².
+    /// Variance of the range, m².
     pub variance: T,
 }
 
@@ -40,13 +40,13 @@ impl<T: Scalar> Huber<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fix<T: Scalar, const D: usize> {
-    /// Where the tag is, m.
+    /// Position of the tag, m, in the frame of the anchors.
     pub position: SVector<T, D>,
-    /// How uncertain that is, m².
+    /// Covariance of the position, m².
     pub covariance: SMatrix<T, D, D>,
-    /// What all ranges are too long by, m; 0 unless it was asked for.
+    /// Bias common to all ranges, m; 0 unless it was asked for.
     pub common_bias: T,
-    /// How uncertain the common bias is, m².
+    /// Variance of the common bias, m².
     pub common_bias_variance: T,
     /// The weighted squares (Huber's beyond his threshold) that are left: as many as there are ranges
     /// beyond the unknowns, on average.
@@ -62,12 +62,12 @@ pub struct Fix<T: Scalar, const D: usize> {
 pub struct Solver<T> {
     /// The tag's height in two dimensions, m.
     pub height: T,
-    /// Where the tag can be.
+    /// Bounds of the position.
     pub room: Option<Room<T>>,
     /// The standard deviation that a bias common to all ranges may have, m: it is estimated if there are
     /// ranges enough.
     pub common_bias: Option<T>,
-    /// How residuals are doubted, if at all.
+    /// Thresholds of the robust weights, if any.
     pub huber: Option<Huber<T>>,
 }
 
@@ -139,7 +139,7 @@ impl<T: Scalar> Solver<T> {
         (best_inside, best)
     }
 
-    /// Where the steps from one start lead; `None` if that is the place that is known already.
+    /// Minimum that the steps from one start reach; `None` if it is known already.
     fn descend<const D: usize>(
         &self,
         observations: &[Observation<T>],
@@ -264,7 +264,7 @@ fn limited<T: Scalar>(step: [T; MOST]) -> [T; MOST] {
     step.map(|component| T::TWO * component.divided_by(divisor))
 }
 
-/// Where to begin: the given place, the anchors' centre, and places around it.
+/// Starting points: the given place, the anchors' centre, and places around it.
 fn starts<T: Scalar, const D: usize>(
     observations: &[Observation<T>],
     given: Option<SVector<T, D>>,

@@ -3,7 +3,7 @@ use kestirim_scalar::Scalar;
 /// Median and quartiles of a stream, in constant memory: the P² algorithm (Jain and Chlamtac 1985) with
 /// its five markers at the minimum, the quartiles and the maximum.
 ///
-/// A tenth of wild values moves the median by a fraction of the spread, however wild they are: beyond the
+/// A tenth of outliers moves the median by a fraction of the spread, however large they are: beyond the
 /// limits it only counts on which side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -11,20 +11,20 @@ use kestirim_scalar::Scalar;
 pub struct Quartiles<T> {
     /// Values at the markers, in rising order.
     heights: [T; 5],
-    /// How many values are at or below each marker.
+    /// Number of values at or below each marker.
     positions: [u32; 5],
     count: u32,
     limits: (T, T),
 }
 
 impl<T: Scalar> Quartiles<T> {
-    /// Of values that are expected between `low` and `high`.
+    /// Quartiles of values that are expected between `low` and `high`.
     pub fn within(low: T, high: T) -> Self {
         let limits = (low.min(high), low.max(high));
         Self { heights: [T::ZERO; 5], positions: [1, 2, 3, 4, 5], count: 0, limits }
     }
 
-    /// How many values there were.
+    /// Number of values so far.
     pub fn count(&self) -> u32 {
         self.count
     }
@@ -54,7 +54,7 @@ impl<T: Scalar> Quartiles<T> {
         }
     }
 
-    /// The median; none of nothing.
+    /// The median; none before the first value.
     pub fn median(&self) -> Option<T> {
         self.quantile(2)
     }

@@ -1,7 +1,7 @@
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What an anchor at a known place should measure, and how that changes with the tag's position.
+/// Expected range to an anchor at a known place, and its derivatives by the tag's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ExpectedRange<T, const D: usize> {

@@ -1,7 +1,7 @@
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// Where the tag can be at all: a box with its sides along the room's axes (m).
+/// Bounds of the tag's position: a box with its sides along the room's axes (m).
 ///
 /// Three anchors see a tag and its mirror image alike; only the walls tell them apart.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 type Place<T> = SVector<T, 2>;
 
-/// Where A anchors stand, from the ranges between them.
+/// Positions of A anchors from the ranges between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Survey<T: Scalar, const A: usize> {
@@ -24,7 +24,7 @@ const SWEEPS_OF_TRIAL: u16 = 200;
 const SETTLED: f64 = 1e-4;
 /// Shapes of which an anchor differs by more are different, m.
 const DIFFERENT: f64 = 0.3;
-/// What two shapes' sums of squares may differ by before the data decide, m²: 4.5 times (7 cm)².
+/// Largest difference of two shapes' sums of squares that leaves them undecided, m²: 4.5 times (7 cm)².
 const ALIKE: f64 = 0.022;
 
 /// Horizontal distances between anchors, as far as they are known.
@@ -103,7 +103,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         (0..A).flat_map(move |i| (0..i).filter_map(move |j| Some((i, j, self.between(i, j)?))))
     }
 
-    /// First places: the longest pair, then whoever has the most neighbours that are placed.
+    /// First places: the longest pair, then the anchor with the most neighbours that are placed.
     fn placed(&self) -> Result<[Place<T>; A], Error> {
         let mut places = [None; A];
         let longest = self.pairs().fold(None, |best: Option<(usize, usize, T)>, pair| {
@@ -136,7 +136,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         Ok(all)
     }
 
-    /// Of all crossings of two circles around placed neighbours, the one that fits the others best.
+    /// The crossing of two circles around placed neighbours that fits the others best.
     fn best_crossing(&self, anchor: usize, places: &[Option<Place<T>>; A]) -> Option<Place<T>> {
         let placed =
             |other: usize| Some((*places.get(other)?.as_ref()?, self.between(anchor, other)?));
@@ -229,7 +229,7 @@ fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bo
     })
 }
 
-/// Where two circles (centre, radius) cross, or come nearest; none if they are concentric.
+/// Points in which two circles (centre, radius) cross, or come nearest; none if they are concentric.
 fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>; 2]> {
     let apart = b.0 - a.0;
     let length = T::norm(&apart.data.0[0]);

@@ -5,7 +5,7 @@
 pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 /// The frequency of the counter (Hz): 128 · 499.2 MHz (DW1000 user manual, 4.1.6 and 7.2.8).
 pub const TICKS_PER_SECOND: f64 = 128.0 * 499.2e6;
-/// What light travels in one tick (m): 4.69 mm.
+/// Distance that light travels in one tick (m): 4.69 mm.
 pub const METRES_PER_TICK: f64 = SPEED_OF_LIGHT / TICKS_PER_SECOND;
 
 const MASK: u64 = (1 << 40) - 1;

@@ -49,7 +49,7 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
         Ok(Self { anchors, pseudo_inverse })
     }
 
-    /// Where the tag is whose ranges (m) are these; `height` (m) is not read in three dimensions.
+    /// Position of the tag (m) with these ranges (m); `height` (m) is not read in three dimensions.
     ///
     /// # Errors
     /// [`Error::NotFinite`].

@@ -102,7 +102,7 @@ impl DoubleSided {
         light_distance(i128::from(difference), 4)
     }
 
-    /// How much faster the initiator's clock ran than the responder's in this exchange: the times from the
+    /// Offset of the initiator's clock from the responder's in this exchange: the times from the
     /// first departure to the last, and from the first arrival to the last, are equal.
     ///
     /// # Errors

@@ -2,28 +2,28 @@ use kestirim_adaptive_kalman::Learning;
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Huber, Room};
 
-/// What a tracker assumes of its radio and of what carries the tag.
+/// Settings of a tracker: its radio, and what carries the tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config<T> {
     /// Standard deviation of a range to begin with, m.
     pub range_sigma: T,
-    /// How each anchor's variance (m²) is learnt, if at all.
+    /// Learning of each anchor's variance (m²), if any.
     pub learning: Option<Learning<T>>,
-    /// How ranges that do not fit are weakened, if at all.
+    /// Thresholds of the robust weights of ranges, if any.
     pub huber: Option<Huber<T>>,
     /// The NIS above which a range is left out, if any is.
     pub gate: Option<T>,
     /// Power spectral density of the acceleration, m²/s³.
     pub acceleration_density: T,
-    /// How long a velocity lasts, s.
+    /// Time constant with which a velocity decays, s; none: it does not.
     pub decay_time: Option<T>,
     /// Standard deviation of the bias common to all ranges, m, for trackers that estimate it.
     pub common_bias_sigma: T,
     /// Height of the tag in two dimensions, m.
     pub height: T,
-    /// Where the tag can be.
+    /// Bounds of the position.
     pub room: Option<Room<T>>,
 }
 
@@ -40,7 +40,7 @@ impl<T: Scalar> Config<T> {
         Self::robust(height, 0.1)
     }
 
-    /// The textbook's extended filter: every range counts, always the same.
+    /// The textbook's extended Kalman filter: all ranges have the same variance and are taken in.
     #[inline]
     pub fn plain(height: T) -> Self {
         Self {
@@ -56,12 +56,12 @@ impl<T: Scalar> Config<T> {
         }
     }
 
-    /// All that real rooms ask for. The constants are physical, and broad in their effect: the book has the
+    /// Constants for real rooms. They are physical, and broad in their effect: the book has the
     /// table of what half and twice of each does to every recording.
     #[inline(always)] // So that the constants fold.
     fn robust(height: T, least_sigma: f64) -> Self {
         let number = T::from_f64;
-        // An anchor's variance is remembered over a hundred ranges. Behind a person it is metres.
+        // An anchor's variance averages over a hundred ranges. Behind a person it is metres.
         let learning = Learning::new(number(0.99), number(least_sigma * least_sigma), number(9.0));
         Self {
             learning: learning.ok(),

@@ -7,7 +7,7 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Error as NoPosition, Observation, Solver, trilaterate};
 use nalgebra::SVector;
 
-/// How the ranges of one moment become a position.
+/// Method by which the ranges of one moment become a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -26,7 +26,7 @@ pub struct EpochSolver<T: Scalar, const A: usize> {
     method: EpochMethod,
     solver: Solver<T>,
     anchors: Vec<Anchor<T>, A>,
-    /// When each anchor was last heard (µs), and its range, freed of its bias, m.
+    /// Time of the last range of each anchor (µs), and the range without its bias, m.
     last: [Option<(u64, T)>; A],
 }
 

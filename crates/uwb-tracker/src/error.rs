@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Why a sample was refused. The tracker is as it was before the call.
+/// Reason for which a sample was refused. The tracker is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -12,13 +12,13 @@ pub enum Error {
     ImplausibleRange,
     /// No robot accelerates or drives like this: beyond 500 m/s², 100 m/s or 100 rad/s.
     ImplausibleMotion,
-    /// There is no anchor of this number.
+    /// No anchor has this number.
     NoSuchAnchor,
     /// More anchors than the tracker has room for.
     TooManyAnchors,
     /// The same anchor's range for the same time came before.
     Duplicate,
-    /// The sample is older than what the tracker already knows. If all are, the clock has jumped: make a new
+    /// The sample is older than the estimate. If all are, the clock has jumped: make a new
     /// tracker.
     OutOfOrder,
     /// The estimate refused it.

@@ -1,26 +1,26 @@
 use kestirim_scalar::Scalar;
 
-/// What a tracker's position is worth.
+/// State of a tracker's position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum State {
-    /// There has been no position yet.
+    /// No position has been found yet.
     Initialising,
     /// Ranges come in and fit.
     Tracking,
     /// No range came for a second: the position is extrapolated.
     Coasting,
-    /// There was a position, and it is worth nothing any more: the next ranges make a new one.
+    /// The position has become worthless: the next ranges make a new one.
     Lost,
 }
 
-/// How a tracker feels.
+/// Health of a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Health<T> {
-    /// What the position is worth.
+    /// State of the position.
     pub state: State,
     /// Mean NIS of the last twenty ranges or so that were taken in: 1 when the model is right.
     pub nis: T,
@@ -40,7 +40,7 @@ pub struct Health<T> {
     pub still: bool,
 }
 
-/// What is counted on the way.
+/// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Counters<T> {
     pub(crate) nis: T,
@@ -49,7 +49,7 @@ pub(crate) struct Counters<T> {
     /// Two for each that was rejected lately, less one for each that was taken in.
     pub(crate) distrust: u16,
     pub(crate) starts: u16,
-    /// How often a position was tried to be made in vain.
+    /// Failed attempts to find a position.
     pub(crate) tries: u8,
 }
 

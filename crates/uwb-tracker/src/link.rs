@@ -8,24 +8,24 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Anchor<T: Scalar> {
-    /// Its place in the room's axes (right-handed, z up), m.
+    /// Position in the room's axes (right-handed, z up), m.
     pub position: SVector<T, 3>,
-    /// What its ranges are too long by, m; zero if that is not known.
+    /// Bias of its ranges, m: what they are too long by; zero if that is not known.
     pub bias: T,
 }
 
 impl<T: Scalar> Anchor<T> {
-    /// Refuses an anchor that is nowhere.
+    /// Refuses an anchor whose position or bias is not finite.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let numbers = self.position.iter().chain([&self.bias]);
         if numbers.copied().all(T::is_finite) { Ok(()) } else { Err(Error::NotFinite) }
     }
 }
 
-/// A range older than this says nothing about now (µs).
+/// Age beyond which a range is not used (µs).
 pub(crate) const FRESH_US: u64 = 1_000_000;
 
-/// An anchor and what its ranges have been like.
+/// An anchor, its last range, and the noise and gate of its ranges.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<T: Scalar> {
     pub(crate) anchor: Anchor<T>,
@@ -38,7 +38,7 @@ pub(crate) struct Link<T: Scalar> {
 }
 
 impl<T: Scalar> Link<T> {
-    /// After so many ranges in a row that do not fit, one is believed all the same.
+    /// Number of ranges in a row that do not fit after which one is taken in all the same.
     const PATIENCE: u16 = 20;
 
     pub(crate) fn new(anchor: Anchor<T>, config: &Config<T>) -> Self {
@@ -64,14 +64,14 @@ impl<T: Scalar> Link<T> {
         self.next_us
     }
 
-    /// Remembers a range, freed of its bias.
+    /// Keeps a range, freed of its bias.
     #[inline]
     pub(crate) fn hear(&mut self, time_us: u64, range: T) {
         self.next_us = time_us.wrapping_add(1);
         self.range = range;
     }
 
-    /// The same link when a new estimate begins: it was not to blame for the old one.
+    /// The same link for a new estimate: noise and gate begin anew.
     pub(crate) fn begun(&self, config: &Config<T>) -> Self {
         Self { next_us: self.next_us, range: self.range, ..Self::new(self.anchor, config) }
     }

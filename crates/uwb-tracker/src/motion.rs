@@ -1,10 +1,10 @@
-//! How the estimate moves on between measurements.
+//! Prediction of the estimate between measurements.
 
 use crate::Config;
 use kestirim_kalman::{ConstantVelocity, Error, Gaussian};
 use kestirim_scalar::Scalar;
 
-/// What the common bias may change by, m²/s.
+/// Random walk of the common bias, m²/s.
 const BIAS_DENSITY: f64 = 1e-5;
 
 /// Moves the estimate on by `interval` (s).

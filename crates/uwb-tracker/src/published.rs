@@ -7,7 +7,7 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Error as NoPosition, Solver, expected_range};
 use nalgebra::{SMatrix, SVector};
 
-/// What the paper leaves open.
+/// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PublishedConfig<T: Scalar, const D: usize> {
@@ -26,7 +26,7 @@ pub struct PublishedConfig<T: Scalar, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
-    /// With these the paper's table comes out of biased ranges, if the filter is started at the truth. With
+    /// Settings with which biased ranges give the paper's table, if the filter is started at the truth. With
     /// everyday ones eq. 18 makes R indefinite.
     pub fn adaptive(height: T) -> Self {
         Self {
@@ -45,18 +45,18 @@ impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
     }
 }
 
-/// What became of an epoch.
+/// Outcome of an epoch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PublishedOutcome {
-    /// Not every anchor has been heard: the epoch goes on.
+    /// The epoch goes on, as not every anchor has been heard.
     Incomplete,
-    /// Its ranges make no first position.
+    /// The ranges determine no first position.
     NoPosition(NoPosition),
-    /// It made the first position.
+    /// The epoch gave the first position.
     Started,
-    /// It was taken in.
+    /// The epoch was taken in.
     Taken,
     /// A step of the filter was refused, as when eq. 18 has made R indefinite: its ranges are left out.
     Refused(Refusal),
@@ -71,16 +71,16 @@ pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: 
     config: PublishedConfig<T, D>,
     /// The anchors' ranges, and the first position.
     ranges: EpochSolver<T, A>,
-    /// Which anchors were heard in this epoch.
+    /// Anchors that were heard in this epoch.
     heard: [bool; A],
     filter: Option<PublishedAdaptiveKalman<T, N, A>>,
-    /// When the filter's estimate holds (µs).
+    /// Time of the filter's estimate (µs).
     time_us: u64,
     push: Option<[T; D]>,
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker<T, D, N, A> {
-    /// A filter for these anchors, which does not know yet where it is.
+    /// A filter for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -153,7 +153,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         }
     }
 
-    /// Where the tag is, m; none before the first position.
+    /// Position of the tag, m; none before the first one.
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))

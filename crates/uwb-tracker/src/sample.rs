@@ -8,16 +8,16 @@ use nalgebra::SVector;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RangeSample<T> {
-    /// When it was measured (µs since any moment).
+    /// Time of the measurement (µs since any moment).
     pub time_us: u64,
-    /// Which anchor it is from: its place in the list that the tracker was made with.
+    /// Index of its anchor in the list that the tracker was made with.
     pub anchor: usize,
-    /// The distance, m; a little below zero is possible, and meant.
+    /// The distance, m; small negative ones are accepted.
     pub range: T,
 }
 
 impl<T: Scalar> RangeSample<T> {
-    /// What no radio measures, m.
+    /// Bounds of what a radio measures, m.
     const SHORTEST: f64 = -1.0;
     const LONGEST: f64 = 200.0;
 
@@ -32,26 +32,26 @@ impl<T: Scalar> RangeSample<T> {
     }
 }
 
-/// What an IMU says about the motion of the tag.
+/// Sample of an IMU on the tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InertialSample<T: Scalar, const D: usize> {
-    /// When it was measured (µs since the same moment as the ranges).
+    /// Time of the measurement (µs since the same moment as the ranges).
     pub time_us: u64,
-    /// What the accelerometer shows, in the body's axes, with or without gravity, m/s². From its
-    /// restlessness the tracker tells standing from moving.
+    /// Acceleration in the body's axes, with or without gravity, m/s². From the energy of its
+    /// changes the tracker tells standing from moving.
     pub acceleration: SVector<T, 3>,
     /// The acceleration without gravity in the room's axes, m/s², if the prediction is to be driven by
     /// it (the paper's eq. 9). For a slow robot that does more harm than good.
     pub push: Option<[T; D]>,
 }
 
-/// What the wheels say.
+/// Sample of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdometrySample<T> {
-    /// When it was measured (µs since the same moment as the ranges).
+    /// Time of the measurement (µs since the same moment as the ranges).
     pub time_us: u64,
     /// Mean speed of the wheels, m/s.
     pub speed: T,
@@ -59,31 +59,31 @@ pub struct OdometrySample<T> {
     pub turn_rate: T,
 }
 
-/// What became of a range.
+/// Outcome of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome {
-    /// It is kept for a first position, for which more are needed.
+    /// The range is kept for a first position, for which more are needed.
     Collected,
-    /// It made a first position possible, or a new one after the tracker was lost.
+    /// The range made a first position possible, or a new one after the tracker was lost.
     Started,
-    /// It was taken in with its full weight.
+    /// The range was taken in with its full weight.
     Taken,
-    /// It was taken in with less: it is longer or shorter than expected.
+    /// The range was taken in with less weight: it is longer or shorter than expected.
     Weakened,
-    /// It was left out.
+    /// The range was left out.
     Rejected,
-    /// It was taken in against expectation: too many had been left out.
+    /// The range was taken in although it does not fit: too many had been left out.
     Recovered,
 }
 
-/// What became of a range, and what it said.
+/// Outcome of a range, and its innovation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report<T> {
-    /// What became of it.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Innovation (m), its variance and NIS, before any weakening; none without an estimate.
     pub innovation: Option<Innovation<T>>,

@@ -8,12 +8,13 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Observation, Solver};
 use nalgebra::{SMatrix, SVector};
 
-/// What the fit's covariance does not know: the biases, m.
+/// Standard deviation that biases add to the fit's, m.
 const POSITION_SIGMA: f64 = 0.1;
-/// How fast a tag may be when it is first heard, m/s.
+/// Standard deviation of the velocity of a tag when it is first heard, m/s.
 const VELOCITY_SIGMA: f64 = 0.5;
 
-/// A fit that costs more is of ranges of which one is wild: three standard deviations a range cost 3.
+/// Largest cost of a fit; one that costs more has an outlier among its ranges: three standard
+/// deviations a range cost 3.
 const LARGEST_COST: f64 = 12.0;
 
 /// The estimate that the fresh ranges make, if they are enough and, unless there is no more `patience`, agree

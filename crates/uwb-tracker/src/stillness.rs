@@ -1,7 +1,7 @@
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// Tells standing from moving by how restless an accelerometer is.
+/// Tells standing from moving by the energy of an accelerometer's changes.
 ///
 /// The acceleration's deviation from its own mean over the last half second is squared and averaged
 /// over the last 0.15 s. Whatever is constant, gravity or a bias, does not matter. A robot's wheels
@@ -16,13 +16,13 @@ pub(crate) struct Stillness<T: Scalar> {
 }
 
 impl<T: Scalar> Stillness<T> {
-    /// Restlessness below which the tag stands, m/s².
+    /// Root mean square of the changes below which the tag stands, m/s².
     const LIMIT: f64 = 0.3;
-    /// Over how long the mean is taken, s.
+    /// Time over which the mean is taken, s.
     const MEAN_TIME: f64 = 0.5;
-    /// Over how long the squares are averaged, s.
+    /// Time over which the squares are averaged, s.
     const SQUARE_TIME: f64 = 0.15;
-    /// Without a sample for so long nothing is known (µs).
+    /// Longest gap between samples after which stillness is still known (µs).
     const GAP_US: u64 = 500_000;
 
     pub(crate) fn new() -> Self {

@@ -9,7 +9,7 @@ const HIGHEST_ORDER: usize = 5;
 /// Ten digits before the point and three behind it fill a field.
 const LARGEST_VALUE: u64 = 9_999_999_999_999;
 
-/// What the next epoch of a satellite builds upon.
+/// State of a satellite that the next epoch builds upon.
 #[derive(Debug)]
 pub(super) struct Satellite {
     pub(super) name: [u8; 3],

@@ -13,7 +13,7 @@ use crate::time::{GpsTime, full_year};
 pub(super) struct Body {
     header: Header,
     epochs: Vec<RawEpoch>,
-    /// Of all epochs, one after the other: satellite, and the end of its part of `raw`.
+    /// Records of all epochs, one after the other: satellite, and the end of its part of `raw`.
     records: Vec<(u8, usize)>,
     raw: Vec<Raw>,
     moved: bool,
@@ -237,14 +237,14 @@ fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec
     Ok(names)
 }
 
-/// What a name stands for.
+/// Meaning of a satellite's name.
 #[derive(Debug, Clone, Copy)]
 enum Named {
     Gps(u8),
     Other,
 }
 
-/// What satellite a name stands for, if it is one.
+/// The satellite of a name, if it is one.
 fn satellite(name: [u8; 3]) -> Option<Named> {
     match name {
         [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Gps),

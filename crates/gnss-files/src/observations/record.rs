@@ -23,7 +23,7 @@ pub struct Observations {
     pub epochs: Vec<Epoch>,
     /// The signals taken from each satellite, by its number.
     pub signals: BTreeMap<u8, Signals>,
-    /// What a user should know of the file.
+    /// Warnings about the file.
     pub warnings: Vec<Warning>,
 }
 

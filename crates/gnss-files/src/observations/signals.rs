@@ -26,7 +26,7 @@ impl fmt::Display for Signal {
 }
 
 impl Signal {
-    /// What an observation code of RINEX 3, or one of RINEX 2, means; none if nothing is made of it.
+    /// The signal of an observation code of RINEX 3 or 2; none if it is not used.
     pub(super) fn new(code: &[u8]) -> Option<Self> {
         let (kind, band, tracking) = match *code {
             [kind @ (b'C' | b'L'), band @ (b'1' | b'2'), tracking] => (kind, band, tracking),
@@ -51,7 +51,7 @@ pub(super) struct Raw {
     pub(super) lock_lost: bool,
 }
 
-/// How often each signal was observed of each satellite.
+/// Number of observations of each signal of each satellite.
 #[derive(Debug, Default)]
 pub(super) struct Seen(BTreeMap<u8, Vec<(Signal, usize)>>);
 

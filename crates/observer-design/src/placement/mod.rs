@@ -14,7 +14,7 @@ use crate::poles::{arrange, multiplicity};
 use nalgebra::{Complex, SMatrix};
 use problem::{Checked, Problem};
 
-/// A gain and what it does.
+/// A gain and the poles that it gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Placement<const N: usize, const P: usize> {
@@ -23,9 +23,9 @@ pub struct Placement<const N: usize, const P: usize> {
     /// The eigenvalues which A − L C really has, in the order in which they were wanted: computed with 106 bits
     /// from the doubles in `gain`.
     pub poles: [PlacedPole; N],
-    /// How far the worst of them is off, beside its own size (beside that of the system, if it should be zero).
+    /// Error of the worst of them, relative to its own size (to that of the system, if it should be zero).
     pub error: f64,
-    /// How well the outputs see the least visible mode, see [`observability`](crate::observability).
+    /// Observability of the least observable mode, see [`observability`](crate::observability).
     pub visibility: f64,
 }
 
@@ -41,7 +41,7 @@ pub struct PlacedPole {
 }
 
 impl<const N: usize, const P: usize> Placement<N, P> {
-    /// How many of the 16 digits of a double the worst pole has lost, because the gain is rounded to doubles.
+    /// Number of the 16 digits of a double that the worst pole has lost, because the gain is rounded to doubles.
     pub fn digits_lost(&self) -> f64 {
         libm::log10((self.error / f64::EPSILON).max(1.0))
     }

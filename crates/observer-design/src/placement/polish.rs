@@ -1,6 +1,6 @@
 //! The best neighbour of a rounded gain.
 //!
-//! Poles that lie close together feel the last bit of every gain. There are more gains than poles, or at least
+//! Poles that lie close together depend on the last bit of every gain. There are more gains than poles, or at least
 //! as many: among the doubles around the exact gain some place the poles far better than the nearest ones.
 
 use super::problem::{Checked, Problem};
@@ -10,7 +10,7 @@ use crate::number::{Times, complex, extend, extend_complex, round_complex};
 use crate::sequence::Sequence;
 use nalgebra::{Complex, SMatrix, SVector};
 
-/// Nothing to gain below this.
+/// Relative error below which no pole is improved any more.
 const GOOD_ENOUGH: f64 = 4.0 * f64::EPSILON;
 /// Random neighbours that are tried, so many units in the last place away at most.
 const NEIGHBOURS: u32 = 400;

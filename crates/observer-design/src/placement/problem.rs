@@ -32,7 +32,7 @@ pub(super) struct Problem<'a, const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> Problem<'_, N, P> {
-    /// Where the poles are.
+    /// The poles that a gain places, and their errors.
     pub(super) fn check(&self, gain: &SMatrix<f64, N, P>) -> Result<Checked<N, P>, Error> {
         if !finite(gain) {
             return Err(Error::NotFinite);
@@ -70,7 +70,7 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
         self.pair.balanced(&(extend(self.a) - extend(gain).times(&extend(self.c))))
     }
 
-    /// What the error of a pole is measured by: its own size, or that of the system if it should be zero.
+    /// Size relative to which the error of a pole is measured: its own, or that of the system if it should be zero.
     pub(super) fn reference(&self, pole: Complex<f64>) -> f64 {
         if size(pole) > 0.0 { size(pole) } else { self.system() }
     }

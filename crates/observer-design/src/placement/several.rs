@@ -147,7 +147,7 @@ fn sweep<const N: usize>(
     Some(inverted)
 }
 
-/// Where the pole is the second of a pair nothing, as the first has set both vectors.
+/// Does nothing for the second pole of a pair, as the first has set both vectors.
 fn set<const N: usize>(
     vectors: &mut Square<Narrow, N>,
     index: usize,

@@ -26,9 +26,9 @@ impl<T: Scalar> Default for Adaptive<T> {
 impl<T: Scalar> Adaptive<T> {
     /// 1.4 s, longer than a slow stride.
     const MEMORY_BINS: usize = 14;
-    /// Of the smallest T; any value from 1.5 to 3 finds the same strides.
+    /// Threshold as a multiple of the smallest T; any value from 1.5 to 3 finds the same strides.
     const FACTOR: f64 = 2.0;
-    /// T₀, (rad/s)²: below 0.3 rad/s of unrest the foot always stands.
+    /// T₀, (rad/s)²: below 0.3 rad/s the foot always stands.
     const FLOOR: f64 = 0.1;
     /// The bound begins to grow this long after a stance (µs), threefold a second …
     const PATIENCE_US: u32 = 500_000;
@@ -56,7 +56,7 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
     }
 }
 
-/// How many bins there is room for.
+/// Largest number of bins.
 const CAPACITY: usize = 16;
 
 /// The smallest value of the recent past, in bins of a tenth of a second.
@@ -76,7 +76,7 @@ impl<T> RecentMinimum<T> {
 }
 
 impl<T: Scalar> RecentMinimum<T> {
-    /// Remembers `memory` bins and the one being filled; at most 15.
+    /// Keeps `memory` bins and the one being filled; at most 15.
     pub(crate) fn new(memory: usize) -> Self {
         Self {
             bins: [T::MAX; CAPACITY],
@@ -87,7 +87,7 @@ impl<T: Scalar> RecentMinimum<T> {
         }
     }
 
-    /// Takes the value at `time_us` and returns the smallest remembered.
+    /// Takes the value at `time_us` and returns the smallest that is kept.
     #[inline]
     pub(crate) fn push(&mut self, time_us: u32, value: T) -> T {
         let begun_us = *self.begun_us.get_or_insert(time_us);
@@ -99,7 +99,7 @@ impl<T: Scalar> RecentMinimum<T> {
         self.smallest()
     }
 
-    /// The smallest value remembered.
+    /// The smallest value that is kept.
     #[inline]
     pub(crate) fn smallest(&self) -> T {
         self.bins[self.newest % CAPACITY].min(self.older)

@@ -1,4 +1,4 @@
-//! When does the foot stand? Detectors behind one trait, each O(1) a sample in fixed memory.
+//! Detectors of stance behind one trait, each O(1) a sample in fixed memory.
 
 mod adaptive;
 mod shoe;
@@ -13,10 +13,10 @@ pub use simple::{AngularRateEnergy, Magnitude, MovingVariance};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// What a detector is shown: a sample whose biases are taken off, in units in which one is everyday.
+/// Input of a detector: a sample without its biases, in units in which everyday values are about one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<T: Scalar> {
-    /// When (µs; wraps every 71 minutes).
+    /// Time (µs; wraps every 71 minutes).
     pub time_us: u32,
     /// Specific force without its bias, in units of standard gravity (body).
     pub force_g: SVector<T, 3>,
@@ -24,14 +24,14 @@ pub struct Motion<T: Scalar> {
     pub angular_rate: SVector<T, 3>,
 }
 
-/// What a detector says of the newest sample.
+/// Decision of a detector about the newest sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Verdict<T> {
     /// The foot stands.
     pub stance: bool,
-    /// How still it is: the SHOE statistic T in (rad/s)², or 0 from a detector that knows only yes and no.
-    /// A zero-velocity update trusts a still foot more.
+    /// The SHOE statistic T, (rad/s)²: small for a foot at rest; 0 from a detector without a statistic.
+    /// A zero-velocity update weighs the more the smaller it is.
     pub unrest: T,
 }
 

@@ -22,7 +22,7 @@ impl<T: Scalar> Shoe<T> {
     pub(crate) const WINDOW_US: u32 = 47_500;
     /// κ, (rad/s)² per g².
     const FORCE_WEIGHT: f64 = 2.885;
-    /// What one sample can add at most, so that the sums stay small in fixed point: far beyond any stance.
+    /// Largest contribution of one sample, so that the sums stay small in fixed point: far beyond any stance.
     const CEILING: f64 = 60.0;
 
     /// Takes the next sample and returns T.

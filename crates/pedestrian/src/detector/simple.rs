@@ -5,7 +5,7 @@ use kestirim_scalar::Scalar;
 /// The detector of the paper (AHRS and ZUPT on a Razor IMU, eq. 2): stance where the magnitude of a single sample is within a
 /// threshold of 1 g.
 ///
-/// Taken literally, as here, it fires many times inside every swing, where |f| passes through 1 g, and
+/// As published, and here, it fires many times inside every swing, where |f| passes through 1 g, and
 /// loses most of the path. It is offered for comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct Magnitude<T> {
@@ -75,7 +75,7 @@ impl<T: Scalar> AngularRateEnergy<T> {
     pub const THRESHOLD: f64 = 0.4;
     /// The window (µs).
     const WINDOW_US: u32 = 47_500;
-    /// What one sample can add at most, (rad/s)².
+    /// Largest contribution of one sample, (rad/s)².
     const CEILING: f64 = 60.0;
 
     /// Stance below `threshold`, in (rad/s)².

@@ -1,6 +1,6 @@
 use kestirim_scalar::Scalar;
 
-/// How many samples a window can hold: 50 ms at up to 640 Hz; of a faster stream it holds the newest.
+/// Capacity of a window in samples: 50 ms at up to 640 Hz; of a faster stream it holds the newest.
 const CAPACITY: usize = 32;
 
 /// Means of `K` features over the last stretch of time, O(1) a sample.
@@ -14,7 +14,7 @@ pub(crate) struct SlidingMean<T, const K: usize> {
     count: usize,
     sums: [T; K],
     span_us: u32,
-    /// 1/count, kept because a division is dear and the count seldom changes.
+    /// 1/count, kept because a division is expensive and the count seldom changes.
     reciprocal: T,
 }
 
@@ -61,7 +61,7 @@ impl<T: Scalar, const K: usize> SlidingMean<T, K> {
         self.sums.map(|sum| sum * self.reciprocal)
     }
 
-    /// Where the sample of this age is, the newest being of age 0.
+    /// Index of the sample of this age, the newest being of age 0.
     #[inline]
     fn index(&self, age: usize) -> usize {
         self.newest.wrapping_sub(age) % CAPACITY

@@ -30,7 +30,7 @@ pub struct Ekf<T: Scalar> {
 }
 
 impl<T: Scalar> Ekf<T> {
-    /// What all covariances are multiplied by.
+    /// Scale of all covariances.
     const SCALE: f64 = 1000.0;
     /// Standard deviation of the first tilt (rad).
     const TILT: f64 = 0.02;
@@ -38,9 +38,9 @@ impl<T: Scalar> Ekf<T> {
     const ZERO_VELOCITY: f64 = 0.02;
     /// At another interval the variance changes in proportion, so that a second of stance weighs the same (s).
     const REFERENCE_INTERVAL: f64 = 0.005;
-    /// The variance doubles at this unrest, (rad/s)².
+    /// Value of the SHOE statistic T at which the variance doubles, (rad/s)².
     const UNREST: f64 = 0.3;
-    /// The uncertainty grows no further in a longer swing (s): the next stance will be believed anyway.
+    /// Longest swing in which the uncertainty grows (s): beyond it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
     /// The covariance of the error, 6 × 6 in (m/s, rad)² × 1000.

@@ -21,7 +21,7 @@ pub struct Lite<T: Scalar> {
 }
 
 impl<T: Scalar> Lite<T> {
-    /// How much of the tilt that would explain a stride's drift is believed.
+    /// Share of the tilt that would explain a stride's drift by which the attitude is corrected.
     const TILT_SHARE: f64 = 0.5;
     /// A drift within less than this (s) says nothing of the tilt.
     const SHORTEST_SWING: f64 = 0.3;

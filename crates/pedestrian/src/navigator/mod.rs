@@ -16,7 +16,7 @@ use nalgebra::SVector;
 /// One step of time with what moved the foot in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<T: Scalar> {
-    /// Its length (s).
+    /// Interval of the step (s).
     pub interval: T,
     /// Specific force without its bias (units of standard gravity, body), held over the step.
     pub force_g: SVector<T, 3>,
@@ -31,7 +31,7 @@ pub struct Step<T: Scalar> {
 pub struct ZeroVelocity<T: Scalar> {
     /// The sensor's velocity (m/s, earth): zero, or that of a foot which rolls on the ground.
     pub velocity: SVector<T, 3>,
-    /// The unrest T of the detector's verdict, (rad/s)².
+    /// The SHOE statistic T of the detector's verdict, (rad/s)².
     pub unrest: T,
     /// The step that ends in this sample (s).
     pub interval: T,
@@ -43,16 +43,16 @@ pub struct ZeroVelocity<T: Scalar> {
 ///
 /// Steps are checked before they come here: finite, bounded, of positive length.
 pub trait Navigator<T: Scalar> {
-    /// At the origin, at rest.
+    /// A navigator at the origin, at rest.
     fn start(sensor: SensorClass, orientation: Orientation<T>) -> Self;
     /// Moves by one step.
     fn propagate(&mut self, step: &Step<T>, stance: bool);
     /// The foot stands at the end of this step.
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>);
-    /// Where the sensor is (m, earth, from the start).
+    /// Position of the sensor (m, earth, from the start).
     fn position(&self) -> SVector<T, 3>;
-    /// How it moves (m/s, earth).
+    /// Velocity of the sensor (m/s, earth).
     fn velocity(&self) -> SVector<T, 3>;
-    /// How it is turned, body → earth.
+    /// Orientation of the sensor, body → earth.
     fn orientation(&self) -> Orientation<T>;
 }

@@ -66,7 +66,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
     }
 }
 
-/// What a division by zero gives: the rail of the dividend's sign, the lower one for 0/0.
+/// Quotient of a division by zero: the rail of the dividend's sign, the lower one for 0/0.
 fn over_zero<const FRAC: u32>(dividend: Fixed<FRAC>) -> Fixed<FRAC> {
     Fixed(if dividend.to_bits() > 0 { i32::MAX } else { i32::MIN })
 }

@@ -42,7 +42,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
     pub(super) fn arc_tangent(y: Self, x: Self) -> Self {
         /// π in Q29.
         const PI: i32 = 1_686_629_713;
-        /// Of odd powers, highest first, in Q30.
+        /// Coefficients of odd powers, highest first, in Q30.
         const C: [i32; 7] = [
             468_102_589,
             -1_154_631_809,
@@ -121,7 +121,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
 /// ln 2 in Q26.
 const LN_2: i32 = 46_516_320;
 
-/// Of a number from 1 to 2 in Q31: how many times ln 2, and what remains of its logarithm in Q30.
+/// Logarithm of a number from 1 to 2 in Q31: multiples of ln 2, and the remainder in Q30.
 ///
 /// Where the number's half is nearer to 1, that is taken.
 #[inline]

@@ -1,4 +1,4 @@
-//! Measurement models, a file each: the physics, its source, its Jacobian, and when it is believed.
+//! Measurement models, a file each: physics, source, Jacobian, and the test that a measurement must pass.
 //!
 //! Each is an [`Observation`](kestirim_kalman::Observation) of the tracker's states: D coordinates (m), D
 //! velocities (m/s), perhaps a common bias (m).
@@ -11,5 +11,5 @@ pub(crate) use range::Range;
 pub(crate) use speed::Speed;
 pub(crate) use standstill::Standstill;
 
-/// A measurement of the velocity that contradicts the estimate by more than 3 σ is not believed (NIS).
+/// Largest NIS of a measurement of the velocity, 3 σ; beyond it the measurement is left out.
 const CONTRADICTION: f64 = 9.0;

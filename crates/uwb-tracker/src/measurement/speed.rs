@@ -3,11 +3,11 @@ use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// How fast the wheels turn: the size of the velocity, along itself.
+/// Speed of the wheels: the size of the velocity, along itself.
 ///
 /// Physics: h(x) = |v|. A robot on wheels drives straight on; forwards and backwards are the same.
 ///
-/// Jacobian: ∂h/∂v = v/|v|, nothing else. Where the estimate does not know which way the robot drives, there
+/// Jacobian: ∂h/∂v = v/|v|, nothing else. Where the direction in which the robot drives is not known, there
 /// is none.
 ///
 /// Source: wheel odometry (Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4), of which the turn is left out.
@@ -17,9 +17,9 @@ pub(crate) struct Speed<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Speed<T, D> {
-    /// The wheels slip, and the tag is not between them, m/s.
+    /// Standard deviation of the speed, m/s: the wheels slip, and the tag is not between them.
     const SIGMA: f64 = 0.1;
-    /// A velocity this small has no direction, m/s.
+    /// Least velocity that has a direction, m/s.
     const LEAST: f64 = 0.02;
 
     /// Takes it in, unless the velocity has no direction yet or contradicts it.
@@ -48,7 +48,7 @@ impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Speed<T, D
         let velocity: [T; D] =
             core::array::from_fn(|axis| mean.data.0[0].get(D + axis).copied().unwrap_or(T::ZERO));
         let (size, measured) = (T::norm(&velocity), self.measured.abs());
-        // Which way it drives must be known before how fast helps.
+        // The direction must be known before the speed helps.
         if size < measured * T::HALF || size <= T::from_f64(Self::LEAST) {
             return Err(Error::NotLinearisable);
         }

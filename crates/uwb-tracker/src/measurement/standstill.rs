@@ -16,7 +16,7 @@ pub(crate) struct Standstill {
 }
 
 impl Standstill {
-    /// A standing tag moves by no more than this, m/s.
+    /// Standard deviation of the velocity of a standing tag, m/s.
     const SIGMA: f64 = 0.015;
 
     /// Takes in that all D components of the velocity are zero.
@@ -30,7 +30,7 @@ impl Standstill {
         Ok(())
     }
 
-    /// Whether the velocity may be zero: no component is clearly beyond what is not known of it.
+    /// Whether the velocity may be zero: no component is beyond 3 σ.
     #[inline]
     pub(crate) fn agrees<T: Scalar, const D: usize, const N: usize>(
         estimate: &Gaussian<T, N>,

@@ -1,4 +1,4 @@
-//! How a tracker feels.
+//! Health of a tracker.
 
 use super::Tracker;
 use crate::{Health, State};
@@ -6,7 +6,7 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// How the tracker feels at `time_us`.
+    /// Health of the tracker at `time_us`.
     pub fn health(&self, time_us: u64) -> Health<T> {
         let counters = &self.counters;
         let heard = self.count_heard(time_us);

@@ -1,4 +1,4 @@
-//! What a range makes of the estimate.
+//! Updates of the estimate by ranges.
 
 use super::Tracker;
 use crate::measurement::Range;
@@ -69,7 +69,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(Report { outcome, innovation: Some(seen) })
     }
 
-    /// Counts a range that was left out; when half of them are, the place is wrong, not they.
+    /// Counts a range that was left out; when half of them are, the position is given up.
     pub(super) fn reject(&mut self) {
         self.counters.reject();
         if self.counters.distrust > 2 * u16::from(self.heard.max(D as u8)) {

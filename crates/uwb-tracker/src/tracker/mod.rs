@@ -29,20 +29,20 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     config: Config<T>,
     links: Vec<Link<T>, A>,
     estimate: Option<Gaussian<T, N>>,
-    /// When the estimate holds.
+    /// Time of the estimate, µs.
     time_us: u64,
     stillness: Stillness<T>,
     wheels: Option<OdometrySample<T>>,
-    /// Until then, what says that the tag stands is not believed.
+    /// Time until which standstills are not taken in, µs.
     doubted_until_us: u64,
     heard: u8,
     counters: Counters<T>,
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// What nothing that carries a tag does, m/s² …
+    /// Largest plausible acceleration of what carries a tag, m/s² …
     const LARGEST_ACCELERATION: f64 = 500.0;
-    /// … and m/s, or rad/s.
+    /// … and largest speed, m/s or rad/s.
     const LARGEST_SPEED: f64 = 100.0;
     /// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
     /// after an exchange of messages.
@@ -50,7 +50,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Between ranges, the estimate follows the IMU in steps of this (µs).
     const INERTIAL_STEP_US: u64 = 100_000;
 
-    /// A tracker for these anchors, which does not know yet where it is.
+    /// A tracker for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
@@ -74,14 +74,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         })
     }
 
-    /// Where the tag is, m; none before the first position, or when it is lost.
+    /// Position of the tag, m; none before the first one, or when it is lost.
     #[inline]
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate.as_ref()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))
     }
 
-    /// How fast it moves, m/s.
+    /// Velocity of the tag, m/s.
     #[inline]
     pub fn velocity(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate.as_ref()?;

@@ -1,4 +1,4 @@
-//! How the estimate follows the time, and whether the tag stands meanwhile.
+//! Time of the estimate, and standstills of the tag.
 
 use super::Tracker;
 use crate::measurement::{Speed, Standstill};
@@ -10,22 +10,22 @@ use kestirim_scalar::Scalar;
 pub(super) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// Odometry older than this says nothing about now (µs).
+    /// Age beyond which odometry is not used (µs).
     const WHEELS_US: u64 = 500_000;
-    /// A position this uncertain is none, m.
+    /// Standard deviation beyond which a position is given up, m.
     const LOST_SIGMA: f64 = 2.0;
-    /// Nor is one that nothing has been heard of for so long (µs).
+    /// Time without a sample after which a position is given up (µs).
     const LOST_US: u64 = 60_000_000;
-    /// Ranges whose mean NIS is above this do not come from a tag that stands.
+    /// Mean NIS of ranges above which a standstill is doubted.
     const NIS_OF_MOTION: f64 = 4.0;
-    /// For so long standing is doubted then (µs), …
+    /// Time for which standstills are doubted then (µs), …
     const DOUBT_US: u64 = 30_000_000;
     /// … and the velocity is as uncertain as at the start, (m/s)².
     const DOUBTED_VARIANCE: f64 = 0.25;
-    /// A robot turning faster changes its direction between two ranges, rad/s.
+    /// Turn rate above which a robot changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
-    /// What [`Tracker::advance`] changes.
+    /// Fields that [`Tracker::advance`] changes.
     #[inline]
     pub(super) fn timed(&self) -> Timed<T, N> {
         (self.estimate, self.time_us, self.heard, self.doubted_until_us)
@@ -82,7 +82,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.wheels.as_ref().filter(fresh)
     }
 
-    /// Whether IMU or wheels say that the tag stands, and may be believed.
+    /// Whether IMU or wheels show that the tag stands, and are not in doubt.
     #[inline]
     pub(super) fn is_still(&self, time_us: u64) -> bool {
         let wheels_stand =

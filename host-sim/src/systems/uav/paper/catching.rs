@@ -9,7 +9,7 @@ use crate::systems::uav::paper::published::{KALMAN_CAUGHT, LUENBERGER_CAUGHT, SI
 use crate::systems::uav::simulate::flight::{Flight, Moment};
 use crate::systems::uav::simulate::plant::{Outputs, Plant};
 use crate::systems::uav::simulate::scenario::{
-    FAR, INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START,
+    FAR, Inputs, NEAR, Noise, SAMPLES, START,
 };
 use crate::systems::uav::track::design::{FAST, Family, Kind, MIDDLE, SLOW};
 
