@@ -10,8 +10,8 @@ use clap::{Parser, ValueEnum};
 use host_sim::random::{normal, stream};
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
 use host_sim::systems::robot::simulate::scenario::{Office, line};
-use host_sim::systems::uav::plant::Plant;
-use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, SAMPLES, fly};
+use host_sim::systems::uav::simulate::plant::Plant;
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, SAMPLES, fly};
 use kestirim_telemetry::{CAPACITY, Flight, Imu, Message, PathLoss, Range, encode};
 
 #[derive(Parser)]
@@ -79,12 +79,13 @@ fn measurements(system: System, seed: u64) -> Vec<(u64, Message)> {
             let start = [0.0, 0.0, 2.0, 0.05].into();
             let flight =
                 fly(Plant::P3.discrete(INTERVAL_S), start, Inputs::Sine, Noise::SENSORS, rng);
-            let message = |(number, sample): (usize, host_sim::systems::uav::scenario::Sample)| {
-                let time_us = (number as f64 * INTERVAL_S * 1e6).round() as u64;
-                let inputs = [0, 1].map(|input| sample.u[input] as f32);
-                let outputs = [1, 2, 3].map(|state| sample.y[state] as f32);
-                (time_us, Flight { time_us, inputs, outputs }.into())
-            };
+            let message =
+                |(number, sample): (usize, host_sim::systems::uav::simulate::scenario::Sample)| {
+                    let time_us = (number as f64 * INTERVAL_S * 1e6).round() as u64;
+                    let inputs = [0, 1].map(|input| sample.u[input] as f32);
+                    let outputs = [1, 2, 3].map(|state| sample.y[state] as f32);
+                    (time_us, Flight { time_us, inputs, outputs }.into())
+                };
             flight.take(SAMPLES).enumerate().map(message).collect()
         }
     }

@@ -79,6 +79,10 @@ pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Ac
     refuse_clashes(&wanted, &files)?;
     system.refuse_idle(&settings)?;
     let source = match matches.get_one::<String>("synthetic") {
+        // A file whose name is no value of the setting of the same name.
+        Some(_) if files.paths().next().is_some() => {
+            return Err(Error::Usage("--synthetic needs no file".to_owned()));
+        }
         Some(name) => Source::Synthetic(name.clone()),
         None => Source::Files(files),
     };

@@ -111,19 +111,22 @@ impl<S: System> Opened for Open<S> {
     }
 
     fn answer(&self, settings: &Settings) -> Result<Answer, Error> {
-        let trace = self.trace(settings, Detail::Every)?;
-        let Account { facts, warnings, .. } = S::account(&self.recording, settings, &trace)?;
         let disabled = settings.table().iter().filter_map(|setting| {
             let idle = self.idle(settings, setting.name)?;
             Some((setting.name, idle.reason().to_owned()))
         });
+        let disabled: Vec<_> = disabled.collect();
+        // A page that was left with them sends them still, and the command line refuses them.
+        let settings = &settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name));
+        let trace = self.trace(settings, Detail::Every)?;
+        let Account { facts, warnings, .. } = S::account(&self.recording, settings, &trace)?;
         let command = ["host-sim", "replay", S::NAME].map(str::to_owned).into_iter();
         let command = command.chain(self.source.arguments()).chain(settings.arguments());
         let mut answer = Answer {
             facts,
             warnings,
             figures: Vec::new(),
-            disabled: disabled.collect(),
+            disabled,
             command: text::command_line(command),
             firmware: S::firmware(Some(&self.recording), settings),
         };

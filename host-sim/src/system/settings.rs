@@ -119,8 +119,14 @@ impl Settings {
     /// Without those that choose what is shown of a track.
     #[must_use]
     pub fn without_views(&self) -> Self {
+        self.without(|name| self.table.iter().any(|s| s.name == name && s.is_view))
+    }
+
+    /// Without those that are so.
+    #[must_use]
+    pub fn without(&self, is_so: impl Fn(&str) -> bool) -> Self {
         let mut settings = self.clone();
-        settings.given.retain(|name, _| !self.table.iter().any(|s| s.name == *name && s.is_view));
+        settings.given.retain(|name, _| !is_so(name));
         settings
     }
 

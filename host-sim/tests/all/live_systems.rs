@@ -9,8 +9,8 @@ use host_sim::random::stream;
 use host_sim::systems::drone::settings::choices::EnvironmentKind;
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
 use host_sim::systems::robot::simulate::scenario::{ANCHORS, Office, line};
-use host_sim::systems::uav::plant::Plant;
-use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, fly};
+use host_sim::systems::uav::simulate::plant::Plant;
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, fly};
 use kestirim_telemetry::{Flight, Imu, Message, PathLoss, Range};
 use serde_json::Value;
 

@@ -4,8 +4,8 @@ use std::fs;
 use std::process::Command;
 
 use crate::program::{Desk, host_sim, json, messages, refusal, text};
-use host_sim::systems::uav::plant::Plant;
-use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
+use host_sim::systems::uav::simulate::plant::Plant;
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
 use serde_json::Value;
 
 fn numbers(value: &Value) -> Vec<f64> {

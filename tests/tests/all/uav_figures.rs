@@ -5,7 +5,7 @@
 use std::error::Error;
 
 use host_sim::system::RunOptions;
-use host_sim::systems::uav::{chapter, experiment};
+use host_sim::systems::uav::paper::{chapter, experiment};
 use kestirim_tests::book;
 
 #[test]

@@ -6,6 +6,7 @@ pub mod states;
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
+use super::Uav;
 use super::recording::Recording;
 use super::recording::model::STATE_COLUMNS;
 use super::settings::EstimatorKind;
@@ -13,7 +14,7 @@ use super::track::Track;
 use super::track::estimators::Estimate;
 use crate::Error;
 use crate::metrics::rms;
-use crate::system::{Account, Table};
+use crate::system::{Account, System, Table};
 
 /// What a replay prints. Units rad, rad/s, m/s, rad.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -70,7 +71,7 @@ pub(super) fn account(
         Residual { output: output.to_owned(), measured: innovations.len(), rms: rms(innovations) }
     });
     let report = Report {
-        system: "uav",
+        system: Uav::NAME,
         estimator,
         samples: flight.log.samples.len(),
         interval_s: flight.log.interval_s,

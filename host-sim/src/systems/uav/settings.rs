@@ -158,7 +158,7 @@ enum NoiseKind {
 }
 
 /// Everything that can be chosen about the estimators.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Which one.
     pub estimator: EstimatorKind,
@@ -190,8 +190,8 @@ impl Options {
     }
 
     /// The same with another estimator.
-    pub fn with(&self, estimator: EstimatorKind) -> Self {
-        Self { estimator, ..self.clone() }
+    pub const fn with(&self, estimator: EstimatorKind) -> Self {
+        Self { estimator, ..*self }
     }
 
     /// Standard deviations of the inputs' noise with this Q/R.

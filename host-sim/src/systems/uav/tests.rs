@@ -1,15 +1,23 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::*;
-use crate::explore::{Answer, Settings};
+use crate::system::{AnySystem, Opened, Source};
 
-fn answer(explorer: &dyn Explorer, sent: &Value) -> Answer {
-    let sent: &Map<String, Value> = sent.as_object().unwrap();
-    let settings = Settings::sent(&explorer.controls(), sent).unwrap();
-    explorer.answer(&settings).unwrap()
+fn open(name: &str) -> Box<dyn Opened> {
+    let settings = Settings::new(settings::table());
+    Uav.open(Source::Synthetic(name.to_owned()), &settings).unwrap()
+}
+
+fn tried(opened: &dyn Opened, sent: &Value) -> Result<Answer, Error> {
+    let sent = sent.as_object().cloned().unwrap_or_default();
+    opened.answer(&Settings::sent(opened.settings(), &sent).unwrap())
+}
+
+fn answer(opened: &dyn Opened, sent: &Value) -> Answer {
+    tried(opened, sent).unwrap()
 }
 
 fn values<'a>(answer: &'a Answer, figure: &str, series: &str) -> &'a [f64] {
@@ -18,11 +26,11 @@ fn values<'a>(answer: &'a Answer, figure: &str, series: &str) -> &'a [f64] {
 }
 
 #[test]
-fn bundled_flights_answer_with_the_same_figures_whatever_the_settings() {
-    for (name, _) in SOURCE.bundled {
-        let explorer = (SOURCE.open_bundled)(name).unwrap();
+fn synthetic_flights_answer_with_the_same_figures_whatever_the_settings() {
+    for (name, _) in Uav::SYNTHETIC {
+        let opened = open(name);
         let ids = |sent: Value| -> Vec<String> {
-            let answer = answer(&*explorer, &sent);
+            let answer = answer(&*opened, &sent);
             assert!(answer.warnings.is_empty(), "{:?}", answer.warnings);
             answer.figures.into_iter().map(|figure| figure.id).collect()
         };
@@ -32,36 +40,65 @@ fn bundled_flights_answer_with_the_same_figures_whatever_the_settings() {
             ["alpha", "pitch-rate", "airspeed", "pitch", "error", "poles", "against"]
         );
         for sent in [
-            json!({ "noise": "none", "gain": "varying", "wrong": 0 }),
-            json!({ "outputs": "Vtheta", "plant": "P3", "scalar": "fixed", "noise": "sensors" }),
-            json!({ "outputs": "qVtheta", "plant": "P1", "duration": 60, "scalar": "f32" }),
+            json!({ "noise": "none", "gain": "varying", "wrong-start": 0 }),
+            json!({ "outputs": "V-theta", "model": "P3", "scalar": "fixed", "noise": "sensors" }),
+            json!({ "outputs": "q-V-theta", "model": "P1", "duration": 60, "scalar": "f32" }),
         ] {
             assert_eq!(ids(sent), first);
         }
     }
-    assert!((SOURCE.open_bundled)("cosine").is_err());
+    assert!(Recording::synthetic("cosine").is_err());
 }
 
 #[test]
 fn a_slider_moves_what_it_is_for_and_nothing_else() {
-    let explorer = (SOURCE.open_bundled)("constant").unwrap();
-    let first = answer(&*explorer, &json!({}));
-    let faster = answer(&*explorer, &json!({ "faster": 4 }));
+    let opened = open("constant");
+    let observer = |sent: Value| {
+        let mut sent = sent;
+        sent["estimator"] = "luenberger".into();
+        answer(&*opened, &sent)
+    };
+    let (first, faster) = (observer(json!({})), observer(json!({ "faster": 4 })));
     assert_ne!(values(&first, "alpha", "Luenberger"), values(&faster, "alpha", "Luenberger"));
     assert_eq!(values(&first, "alpha", "Kalman"), values(&faster, "alpha", "Kalman"));
-    let trusting = answer(&*explorer, &json!({ "ratio": 0.01 }));
+    assert_ne!(first.facts, faster.facts);
+    let first = answer(&*opened, &json!({}));
+    let trusting = answer(&*opened, &json!({ "ratio": 0.01 }));
     assert_ne!(values(&first, "pitch", "Kalman"), values(&trusting, "pitch", "Kalman"));
     assert_eq!(values(&first, "pitch", "truth"), values(&trusting, "pitch", "truth"));
-    let seeded = answer(&*explorer, &json!({ "seed": 1 }));
+    let seeded = answer(&*opened, &json!({ "seed": 1 }));
     assert_ne!(values(&first, "pitch", "truth"), values(&seeded, "pitch", "truth"));
 }
 
 #[test]
-fn without_noise_the_poles_are_where_the_sliders_put_them() {
-    let explorer = (SOURCE.open_bundled)("sine").unwrap();
-    let sent =
-        json!({ "noise": "none", "pole_1": -12, "pole_2": -14, "pole_3": -16, "pole_4": -18 });
-    let answer = answer(&*explorer, &sent);
+fn what_is_not_disabled_changes_the_answer_and_what_is_does_not() {
+    let opened = open("sine");
+    let others = json!({
+        "estimator": "luenberger", "model": "P3", "poles": "-5,-6,-7+1i,-7-1i", "faster": 2.0, "absolute": true,
+        "input-noise": "0.1,0.2", "output-noise": "0.1,0.2,0.3,0.4", "ratio": 3.0, "scalar": "f32",
+        "outputs": "q-V-theta", "gain": "varying", "noise": "sensors", "sigma": 0.1, "wrong-start": 2.0,
+        "duration": 5.0, "seed": 3,
+    });
+    let others = others.as_object().unwrap();
+    assert_eq!(others.len(), settings::table().len());
+    for base in [json!({}), json!({ "estimator": "luenberger", "noise": "none" })] {
+        let first = answer(&*opened, &base);
+        for (name, value) in others.iter().filter(|(name, value)| base.get(name) != Some(value)) {
+            let mut sent = base.clone();
+            sent[name] = value.clone();
+            let second = answer(&*opened, &sent);
+            let is_idle = second.disabled.iter().any(|(idle, _)| idle == name);
+            let same = (&first.facts, &first.figures) == (&second.facts, &second.figures);
+            assert_eq!(same, is_idle, "{name} beside {base}");
+            assert_eq!(second.command.contains(&format!("--{name}")), !is_idle, "{name}");
+        }
+    }
+}
+
+#[test]
+fn without_noise_the_poles_are_where_the_setting_puts_them() {
+    let sent = json!({ "noise": "none", "estimator": "luenberger", "poles": "-12,-14,-16,-18" });
+    let answer = answer(&*open("sine"), &sent);
     let poles = answer.figures.iter().find(|figure| figure.id == "poles").unwrap();
     let observer = poles.series.iter().find(|series| series.name == "Luenberger").unwrap();
     let mut found = observer.x.clone();
@@ -69,29 +106,49 @@ fn without_noise_the_poles_are_where_the_sliders_put_them() {
     for (found, asked) in found.iter().zip([-18.0, -16.0, -14.0, -12.0]) {
         assert!((found - asked).abs() < 1e-6, "{found}");
     }
-    let caught = answer.facts.iter().find(|(name, _)| name.contains("Luenberger: caught"));
+    let caught = answer.facts.iter().find(|(name, _)| name.contains("Luenberger, caught"));
     assert_eq!(caught.unwrap().1, "0.25 0.22 0.25 0.19");
 }
 
 #[test]
 fn an_observer_that_is_missing_is_explained() {
-    let explorer = (SOURCE.open_bundled)("constant").unwrap();
+    let opened = open("constant");
     for (outputs, scalar, pole) in [
-        ("Vtheta", "f64", -3.0),
-        ("Vtheta", "fixed", -30.0),
-        ("qVtheta", "fixed", -30.0),
-        ("all", "f32", -30.0),
+        ("V-theta", "f64", "-3"),
+        ("V-theta", "fixed", "-30"),
+        ("q-V-theta", "fixed", "-30"),
+        ("all", "f32", "-30"),
     ] {
-        let sent = json!({
-            "outputs": outputs, "scalar": scalar, "faster": 10, "plant": "P1",
-            "pole_1": pole, "pole_2": pole, "pole_3": pole, "pole_4": pole,
+        let poles = [pole; 4].join(",");
+        let mut sent = json!({
+            "outputs": outputs, "scalar": scalar, "faster": 10, "model": "P1",
+            "estimator": "luenberger", "poles": poles,
         });
-        let answer = answer(&*explorer, &sent);
-        let missing = values(&answer, "alpha", "Luenberger").is_empty();
-        let told = answer.warnings.iter().any(|warning| warning.contains("Luenberger"));
-        assert_eq!(missing, told, "{outputs} {scalar}: {:?}", answer.warnings);
-        assert!(!values(&answer, "alpha", "Kalman").is_empty());
+        match tried(&*opened, &sent) {
+            Ok(answer) => assert!(!values(&answer, "alpha", "Luenberger").is_empty()),
+            Err(problem) => assert!(!problem.to_string().contains('\n'), "{problem}"),
+        }
+        sent["estimator"] = "kalman".into();
+        assert!(!values(&answer(&*opened, &sent), "alpha", "Kalman").is_empty());
     }
+}
+
+#[test]
+fn firmware_says_the_estimator_and_its_scalar() {
+    let opened = open("constant");
+    for (sent, expected) in [
+        (json!({}), "Estimator::<f64, 4>::constant_gain("),
+        (json!({ "gain": "varying", "scalar": "f32" }), "Estimator::<f32, 4>::time_varying("),
+        (
+            json!({ "estimator": "luenberger", "scalar": "fixed", "outputs": "V-theta" }),
+            "Estimator::<kestirim_scalar::Q16_16, 2>::constant_gain(",
+        ),
+    ] {
+        let firmware = answer(&*opened, &sent).firmware;
+        assert!(firmware.contains(expected), "{firmware}");
+    }
+    let settings = Settings::new(settings::table());
+    assert!(firmware::firmware(None, &settings).contains("FlightFilter::<f64, 3>::new("));
 }
 
 #[test]
@@ -106,23 +163,27 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
         writeln!(text, "{t:.2},0,0,{rate:.6},{cosine:.6},{pitch:.6}").unwrap();
     }
     fs::write(&log, text).unwrap();
+    let settings = Settings::new(settings::table());
     let mut files = Files::default();
-    assert!((SOURCE.open)(&files).is_err());
+    assert!(Recording::read(&files).is_err());
     files.add("log", &log);
-    let explorer = (SOURCE.open)(&files).unwrap();
-    let first = answer(&*explorer, &json!({}));
+    let opened = Uav.open(Source::Files(files.clone()), &settings).unwrap();
+    let first = answer(&*opened, &json!({}));
+    assert!(first.warnings[0].contains("P2 thesis-like is assumed"), "{:?}", first.warnings);
     assert_eq!(values(&first, "airspeed", "measured").len(), 200);
     assert!(values(&first, "alpha", "measured").is_empty());
     assert_eq!(values(&first, "alpha", "Kalman").len(), 200);
-    let other = answer(&*explorer, &json!({ "plant": "P3", "faster": 2 }));
+    let other = answer(&*opened, &json!({ "model": "P3", "scalar": "f32" }));
     assert_ne!(values(&first, "alpha", "Luenberger"), values(&other, "alpha", "Luenberger"));
-    let settings = Settings::sent(
-        &explorer.controls(),
-        json!({ "absolute": true, "plant": "P2" }).as_object().unwrap(),
-    );
-    let refusal = explorer.answer(&settings.unwrap()).unwrap_err().to_string();
-    assert!(refusal.contains("needs a model with a trim"), "{refusal}");
+    assert!(other.warnings.is_empty());
+    for (name, value) in [("absolute", json!(true)), ("seed", json!(3))] {
+        let sent = json!({ "model": "P2", name: value });
+        let settings = Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap();
+        let refusal = opened.replay(&settings, &crate::system::Wanted::default());
+        assert!(refusal.unwrap_err().to_string().contains(name));
+        assert!(answer(&*opened, &sent).disabled.iter().any(|(idle, _)| *idle == name));
+    }
     fs::write(&log, "t,delta_e,delta_t,q\n0,0,0,x\n").unwrap();
-    let refusal = (SOURCE.open)(&files).err().unwrap().to_string();
+    let refusal = Recording::read(&files).unwrap_err().to_string();
     assert!(refusal.contains("line 2"), "{refusal}");
 }

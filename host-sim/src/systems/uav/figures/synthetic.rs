@@ -61,7 +61,7 @@ fn against<const P: usize>(
         factors.filter_map(|factor| Some([factor, worst(&kind(factor)).ok()?])).collect::<Vec<_>>()
     };
     let filters = sweep(&|factor| {
-        let options = Options { ratio: options.ratio * factor, ..options.clone() };
+        let options = Options { ratio: options.ratio * factor, ..*options };
         Kind::Matched(Noise { inputs: options.weighted(assumed.inputs), ..assumed })
     });
     let observers = sweep(&|factor| Kind::Luenberger(faster(options.poles, factor)));

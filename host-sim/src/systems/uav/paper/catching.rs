@@ -8,9 +8,7 @@ use crate::systems::uav::account::states::caught;
 use crate::systems::uav::paper::published::{KALMAN_CAUGHT, LUENBERGER_CAUGHT, SINE_CAUGHT};
 use crate::systems::uav::simulate::flight::{Flight, Moment};
 use crate::systems::uav::simulate::plant::{Outputs, Plant};
-use crate::systems::uav::simulate::scenario::{
-    FAR, Inputs, NEAR, Noise, SAMPLES, START,
-};
+use crate::systems::uav::simulate::scenario::{FAR, Inputs, NEAR, Noise, SAMPLES, START};
 use crate::systems::uav::track::design::{FAST, Family, Kind, MIDDLE, SLOW};
 
 /// A start, and what follows.
@@ -181,6 +179,7 @@ fn chases() -> Vec<Chase> {
 mod tests {
     use super::*;
     use crate::systems::uav::account::states::BANDS;
+    use crate::systems::uav::simulate::scenario::INTERVAL_S;
 
     /// With a pole for each state, every error falls as e^(p·t).
     #[test]

@@ -9,6 +9,8 @@ mod summary;
 use crate::Error;
 use crate::figure::Figure;
 use crate::report::{Chapter, Made};
+use crate::system::System;
+use crate::systems::uav::Uav;
 use crate::systems::uav::paper::report::Report;
 use crate::systems::uav::simulate::plant::{STATE_NAMES, STATE_SLUGS, STATE_UNITS, STATES};
 
@@ -21,10 +23,9 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     items.extend(flights::items(report)?);
     items.extend(conclusions::items(report)?);
     Ok(Chapter {
-        system: "uav",
+        system: Uav::NAME,
         title: "UAV: longitudinal motion by Luenberger observer and Kalman filter",
-        paper: "Longitudinal states of a fixed-wing UAV by Luenberger observer and Kalman filter, MSc \
-                thesis in Turkish, 2020",
+        paper: Uav::PAPER,
         about: "The thesis prints figures and words, but neither its aircraft nor its gains nor a number \
                 of its errors. So there are three aircraft, of which P2 is fitted to its prose; and every \
                 conclusion is measured, on the truth of simulated flights."
