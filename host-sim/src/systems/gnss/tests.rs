@@ -30,7 +30,7 @@ fn synthetic_recordings_answer_with_the_same_figures() {
         assert!(answer.facts.iter().any(|(name, _)| name == "final error"), "{:?}", answer.facts);
         assert!(answer.warnings.is_empty(), "{:?}", answer.warnings);
     }
-    assert!(Gnss::synthetic("winter").is_err());
+    assert!(Recording::synthetic("winter").is_err());
 }
 
 #[test]
