@@ -147,7 +147,7 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
         None => synthetic
             .map(|recording| idle_of(recording, settings, name))
             .into_iter()
-            .reduce(|one, other| one.and(other))
+            .reduce(Option::and)
             .flatten(),
     }
 }

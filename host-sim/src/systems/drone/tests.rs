@@ -197,3 +197,35 @@ fn settings_are_refused_only_where_no_recording_has_them() {
     assert!(!refused(&[("environment", "open"), ("height", "300"), ("noise", "1")]));
     assert!(refused(&[("trajectory", "grid"), ("radius", "300")]));
 }
+
+#[test]
+fn firmware_says_which_filter_and_what_differs() {
+    let flight = |quantity| {
+        let flight = recording::flight::Flight { quantity, stops: Vec::new(), unusable: 0 };
+        let recorded = recording::Recorded { log: "a.csv".into(), flight, area: None, truth: None };
+        Recording::Flight(Box::new(recorded))
+    };
+    let level = flight(recording::flight::Quantity::Level);
+    let loss = flight(recording::flight::Quantity::PathLoss);
+    for (recording, given, expected) in [
+        (Some(&level), &[][..], "FreeSpace::new(None)"),
+        (Some(&loss), &[], "LevelPrior { mean: -38.46"),
+        (Some(&level), &[("environment", "high-rise")], "Locator::<f32, 2000, 400, 3>"),
+        (Some(&Recording::Staying), &[("particles", "250")], "Locator::<f32, 250, 12, 2>"),
+        (
+            Some(&Recording::Staying),
+            &[("filter", "published"), ("resampler", "residual")],
+            "resampler: Resampler::Residual,",
+        ),
+        (Some(&Recording::Moving), &[("flight", "low")], "Height::Between(100.0, 1000.0)"),
+        (Some(&Recording::Moving), &[("flight", "hover")], "jitter: 16.0,"),
+        (Some(&Recording::Moving), &[], "Height::Fixed(500.0)"),
+        (None, &[], "BeaconSearch::<f32, 101, 8>"),
+    ] {
+        let mut settings = Settings::new(settings::table(recording));
+        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        let firmware = settings::firmware(recording, &settings);
+        println!("{{\n{firmware}\n}}");
+        assert!(firmware.contains(expected), "{firmware}");
+    }
+}
