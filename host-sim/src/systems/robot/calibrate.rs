@@ -19,7 +19,7 @@ pub(super) struct Calibrate;
 
 impl Calibration for Calibrate {
     fn command(&self) -> Command {
-        Options::augment_args(Command::new(Robot::NAME).about("What each anchor measures too long"))
+        Options::augment_args(Command::new(Robot::NAME)).about("What each anchor measures too long")
     }
 
     fn run(&self, matches: &ArgMatches) -> Result<(), Error> {

@@ -1,9 +1,11 @@
 //! What a recording and its track look like.
 
+pub mod plan;
 pub mod streams;
 
+use self::plan::{ellipse, rectangle, room};
+use super::recording::Recording;
 use super::recording::event::Event;
-use super::recording::{Recording, Truth};
 use super::settings::{Setup, TrackerKind};
 use super::track::follow::{self, Reception};
 use super::track::{Trace, track};
@@ -13,8 +15,6 @@ use crate::metrics::distance;
 use crate::system::Answer;
 
 const TIME: &str = "time, s";
-/// χ² of two degrees of freedom, 95 %.
-const CHI_SQUARE_2: f64 = 5.991;
 /// χ² of one degree of freedom, 95 %.
 const CHI_SQUARE_1: f64 = 3.841;
 /// Ellipses along a track.
@@ -238,79 +238,4 @@ pub fn errors(id: &str, series: impl IntoIterator<Item = Series>) -> Figure {
         .axes(TIME, "horizontal error, cm")
         .caption("The distance from the true place, where that is known.")
         .with_all(series)
-}
-
-/// A map with the anchors, the rectangle about them, and the true path.
-pub fn room(id: &str, recording: &Recording) -> Figure {
-    let places = || recording.anchors.positions.iter().map(|&[x, y, _]| [x, y]);
-    let anchors = Series::points("anchors", places())
-        .labelled(recording.anchors.names.clone())
-        .coloured(Colour::Truth);
-    let around = rectangle("rectangle of the anchors", recording.anchors.rectangle());
-    let mut figure = Figure::new(id, "Plan")
-        .axes("x, m", "y, m")
-        .map()
-        .with(around.coloured(Colour::Truth))
-        .with(anchors);
-    let (mut points, mut names) = (Vec::new(), Vec::new());
-    for part in &recording.parts {
-        match &part.truth {
-            Some(Truth::Course(course)) => {
-                let path = course.rows().iter().map(|(_, place)| *place);
-                let path = Series::path("true path", path).marked(Mark::Dashes);
-                figure.series.push(path.coloured(Colour::Truth));
-            }
-            Some(Truth::Point(point)) => {
-                points.push(*point);
-                names.push(part.name.clone());
-            }
-            None => {}
-        }
-    }
-    if !points.is_empty() {
-        let points = Series::points("true points", points).labelled(names);
-        figure.series.push(points.coloured(Colour::Truth));
-    }
-    figure
-}
-
-/// A rectangle between two opposite corners.
-fn rectangle(name: &str, [x0, y0, x1, y1]: [f64; 4]) -> Series {
-    Series::path(name, [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
-}
-
-/// The ellipse that holds 95 % of a normal distribution.
-fn ellipse([x, y]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Vec<[f64; 2]> {
-    let (mean, half) = (f64::midpoint(xx, yy), f64::midpoint(xx, -yy));
-    let root = half.hypot(xy);
-    let [long, short] = [mean + root, mean - root].map(|v| (CHI_SQUARE_2 * v.max(0.0)).sqrt());
-    let (sin, cos) = (xy.atan2(half) / 2.0).sin_cos();
-    let point = |step: u32| {
-        let (s, c) = (std::f64::consts::TAU * f64::from(step) / 24.0).sin_cos();
-        let (along, across) = (long * c, short * s);
-        [x + cos * along - sin * across, y + sin * along + cos * across]
-    };
-    (0..=24).map(point).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::systems::robot::recording::anchors::Anchors;
-
-    #[test]
-    fn an_ellipse_lies_along_its_longer_axis() {
-        let points = ellipse([1.0, 2.0], [2.5, 1.5, 2.5]);
-        let positions = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
-        let [x0, y0, x1, y1] = Anchors { positions, ..Anchors::default() }.rectangle();
-        // Variances 4 along the diagonal and 1 across it.
-        let extent = (CHI_SQUARE_2 * 2.5).sqrt();
-        for (found, expected) in [(x1 - 1.0, extent), (1.0 - x0, extent), (y1 - 2.0, extent)] {
-            assert!((found - expected).abs() < 0.05 * extent, "{found} / {expected}");
-        }
-        assert!((y0 - (2.0 - extent)).abs() < 0.05 * extent);
-        let farthest = points.iter().map(|&p| distance(p, [1.0, 2.0])).fold(0.0, f64::max);
-        assert!((farthest - 2.0 * CHI_SQUARE_2.sqrt()).abs() < 1e-9);
-        assert!((points[0][0] - 1.0 - (points[0][1] - 2.0)).abs() < 1e-9);
-    }
 }

@@ -23,6 +23,7 @@ use self::online::Tag;
 use self::paper::experiment;
 use self::recording::{Driven, Recording};
 use self::settings::Setup;
+use self::simulate::scenario::office_anchors;
 use self::track::{Trace, follow};
 use crate::Error;
 use crate::report::Chapter;
@@ -138,7 +139,7 @@ impl System for Robot {
     }
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
-        let office = || Setup::of(settings, &Recording::default().anchors, None);
+        let office = || Setup::of(settings, &office_anchors(), None);
         recording
             .map_or_else(office, |recording| recording.setup(settings))
             .firmware(recording.is_some())

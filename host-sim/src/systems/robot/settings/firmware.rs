@@ -28,10 +28,9 @@ impl Setup {
             TrackerKind::Aekf => {
                 let [forgetting, least, most] =
                     TrackerKind::AEKF_LEARNING.map(|value| self.number(value));
-                let learning = format!("Learning::new({forgetting}, {least}, {most}).ok()");
-                self.with_noises(of_the_tracker("plain"))
-                    .import("kestirim_adaptive_kalman::Learning")
-                    .field("learning", learning)
+                let learning = "kestirim_adaptive_kalman::Learning::new";
+                let learning = format!("{learning}({forgetting}, {least}, {most}).ok()");
+                self.with_noises(of_the_tracker("plain")).field("learning", learning)
             }
             TrackerKind::Default if self.biases.is_some() => {
                 self.with_robustness(of_the_tracker("calibrated"))
@@ -71,41 +70,34 @@ impl Setup {
 
     fn with_robustness(&self, literal: Literal) -> Literal {
         let (tuning, own) = (self.tuning, Tuning::default());
-        let some = |value: Option<String>| match value {
-            Some(value) => format!("Some({value})"),
-            None => "None".to_owned(),
-        };
-        let mut literal = self.with_noises(literal);
-        if tuning.gate_sigmas != own.gate_sigmas {
-            let square = tuning.gate_sigmas.map(|sigmas| self.number(sigmas * sigmas));
-            literal = literal.field("gate", some(square));
-        }
-        if tuning.huber_sigmas != own.huber_sigmas {
-            if tuning.huber_sigmas.is_some() {
-                literal = literal.import("kestirim_uwb_ranging::Huber");
-            }
-            let huber = tuning.huber_sigmas.map(|sigmas| sigmas.map(|sigma| self.number(sigma)));
-            let huber =
-                huber.map(|[long, short]| format!("Huber {{ long: {long}, short: {short} }}"));
-            literal = literal.field("huber", some(huber));
-        }
-        if tuning.learns != own.learns {
-            literal = literal.field("learning", "None");
-        }
-        if tuning.decay_time_s != own.decay_time_s {
-            let seconds = tuning.decay_time_s.map(|seconds| self.number(seconds));
-            literal = literal.field("decay_time", some(seconds));
-        }
-        literal
+        let number = |value| self.number(value);
+        let huber = tuning.huber_sigmas.map(|sigmas| {
+            let [long, short] = sigmas.map(number);
+            format!("kestirim_uwb_ranging::Huber {{ long: {long}, short: {short} }}")
+        });
+        let gate = tuning.gate_sigmas.map(|sigmas| number(sigmas * sigmas));
+        let fields = [
+            ("gate", tuning.gate_sigmas != own.gate_sigmas, gate),
+            ("huber", tuning.huber_sigmas != own.huber_sigmas, huber),
+            ("learning", tuning.learns != own.learns, None),
+            (
+                "decay_time",
+                tuning.decay_time_s != own.decay_time_s,
+                tuning.decay_time_s.map(number),
+            ),
+        ];
+        let differing = fields.into_iter().filter(|(_, differs, _)| *differs);
+        differing.fold(self.with_noises(literal), |literal, (name, _, value)| {
+            let value = value.map_or_else(|| "None".to_owned(), |value| format!("Some({value})"));
+            literal.field(name, value)
+        })
     }
 
     fn with_room(&self, literal: Literal) -> Literal {
         let acts = !matches!(self.tracker, TrackerKind::Lsq | TrackerKind::AekfPublished);
         let Some(corners) = self.room.filter(|_| acts) else { return literal };
         let corners = corners.map(|metres| self.number(metres)).join(", ");
-        literal
-            .import("kestirim_uwb_ranging::Room")
-            .field("room", format!("Some(Room::plane({corners}))"))
+        literal.field("room", format!("Some(kestirim_uwb_ranging::Room::plane({corners}))"))
     }
 
     fn with_anchors(&self, literal: Literal) -> Literal {
@@ -117,20 +109,14 @@ impl Setup {
         let anchors = anchors.collect::<String>();
         let (scalar, count) = (Literal::number_type(self.scalar), self.anchors.len());
         let (axes, states) = (self.axes(), 2 * self.axes());
-        let method = match self.tracker {
-            TrackerKind::Lsq => "EpochMethod::Trilateration, ",
-            TrackerKind::Nls => "EpochMethod::LeastSquares, ",
-            _ => "",
-        };
-        let (name, parameters) = match self.tracker {
-            TrackerKind::Lsq | TrackerKind::Nls => ("EpochSolver", format!("{scalar}, {count}")),
-            TrackerKind::AekfPublished => {
-                ("PublishedTracker", format!("{scalar}, {axes}, {states}, {count}"))
-            }
+        let (name, parameters, method) = match self.tracker {
+            TrackerKind::Lsq => ("EpochSolver", String::new(), "EpochMethod::Trilateration, "),
+            TrackerKind::Nls => ("EpochSolver", String::new(), "EpochMethod::LeastSquares, "),
+            TrackerKind::AekfPublished => ("PublishedTracker", format!("{axes}, {states}, "), ""),
             TrackerKind::Default if self.biases.is_none() => {
-                ("Tracker", format!("{scalar}, {axes}, {}, {count}", states + 1))
+                ("Tracker", format!("{axes}, {}, ", states + 1), "")
             }
-            _ => ("Tracker", format!("{scalar}, {axes}, {states}, {count}")),
+            _ => ("Tracker", format!("{axes}, {states}, "), ""),
         };
         let mut literal = literal
             .import("kestirim_uwb_tracker::Anchor")
@@ -138,8 +124,9 @@ impl Setup {
         if !method.is_empty() {
             literal = literal.import("kestirim_uwb_tracker::EpochMethod");
         }
+        let tracker = format!("{name}::<{scalar}, {parameters}{count}>");
         literal
             .then(format!("let anchors = [{anchors}\n];"))
-            .then(format!("let tracker = {name}::<{parameters}>::new({method}config, &anchors);"))
+            .then(format!("let tracker = {tracker}::new({method}config, &anchors);"))
     }
 }

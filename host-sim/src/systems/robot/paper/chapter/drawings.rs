@@ -2,14 +2,14 @@
 
 use super::day::Day;
 use crate::figure::{Colour, Figure, Mark, Series};
-use crate::systems::robot::figures::{self, Shown};
+use crate::systems::robot::figures::{self, Shown, plan};
 use crate::systems::robot::paper::experiment::{Report, Row};
 use crate::systems::robot::recording::{Recording, Truth};
 use crate::systems::robot::track::Trace;
 
 /// Fig. 3: the office.
 pub(super) fn office(points: &Day, line: &Day) -> Figure {
-    let mut figure = figures::room("robot-figure-3", &points.recording);
+    let mut figure = plan::room("robot-figure-3", &points.recording);
     let paths = line.recording.parts.iter().filter_map(|part| match &part.truth {
         Some(Truth::Course(course)) => Some(course.rows().iter().map(|(_, place)| *place)),
         _ => None,
@@ -79,7 +79,7 @@ fn three(day: &Day, ids: [&str; 3], numbers: [&str; 3], what: &str) -> [Figure; 
     let honest = |traces| of("honest start", traces, Colour::Other(3));
     let told = |traces| of("started at the truth", traces, Colour::Alarm);
     let figure = |i: usize, by: &str, series: Vec<Series>, caption: &str| {
-        let figure = figures::room(ids[i], &day.recording).with_all(series);
+        let figure = plan::room(ids[i], &day.recording).with_all(series);
         // A filter that runs away must not shrink the office to a dot.
         titled(within(figure, &day.recording), &format!("{}: {what}, {by}", numbers[i]), caption)
     };
@@ -114,9 +114,9 @@ pub(super) fn ours(day: &Day, id: &str, title: &str) -> Figure {
         raw.track("trilateration", Mark::Dots).coloured(Colour::Published),
         uncalibrated.track("uncalibrated", Mark::Line).coloured(Colour::Other(4)),
     ];
-    let plan = Shown::new(&day.recording, &day.calibrated).plan(id, others);
+    let figure = Shown::new(&day.recording, &day.calibrated).plan(id, others);
     titled(
-        within(plan, &day.recording),
+        within(figure, &day.recording),
         title,
         "The default tracker with its anchors calibrated, with 95 % ellipses, without calibration, and trilateration.",
     )
