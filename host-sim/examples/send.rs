@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use clap::{Parser, ValueEnum};
 use host_sim::random::{normal, stream};
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
-use host_sim::systems::robot::scenario::{Office, line};
+use host_sim::systems::robot::simulate::scenario::{Office, line};
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, SAMPLES, fly};
 use kestirim_telemetry::{CAPACITY, Flight, Imu, Message, PathLoss, Range, encode};
@@ -58,7 +58,7 @@ fn measurements(system: System, seed: u64) -> Vec<(u64, Message)> {
         }
         System::Robot => {
             let rows = Office::draw(&mut rng).measure(&mut rng, &line());
-            let range = |row: host_sim::systems::robot::ranges::RangeRow| {
+            let range = |row: host_sim::systems::robot::recording::ranges::RangeRow| {
                 let (time_us, anchor) = (row.time_us as u64, row.anchor as u16);
                 Some((time_us, Range { time_us, anchor, range: row.range? as f32 }.into()))
             };

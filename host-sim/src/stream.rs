@@ -3,7 +3,7 @@
 /// A table over time, such as the samples of a sensor or a track.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stream {
-    /// What it is, as a path: `/pedestrian/truth`.
+    /// What it is, as a path: `/system/truth`.
     pub topic: String,
     /// What stands in the columns, each with its unit: `x_m`, `gx_rad_s`.
     ///

@@ -2,13 +2,13 @@
 
 mod sender;
 
+use std::ffi::OsString;
 use std::fs;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
-use clap::Parser;
-use host_sim::cli::{Cli, Command};
-use host_sim::live::Live;
+use host_sim::commands;
+use host_sim::commands::live::Live;
 use host_sim::random::{stream, uniform};
 use kestirim_telemetry::{Health, Imu, Message, Position, Range, VERSION};
 use rand_core::Rng;
@@ -23,10 +23,10 @@ fn start(folder: &TempDir) -> (Live, PathBuf) {
     let record = path.to_str().expect("a plain name");
     let arguments = ["host-sim", "live", "--udp", "127.0.0.1:0", "--system", "pedestrian"];
     let arguments = [&arguments[..], &["--record", record]].concat();
-    match Cli::try_parse_from(arguments).expect("good arguments").command {
-        Some(Command::Live(options)) => (Live::start(&options).expect("it listens"), path),
-        other => panic!("{other:?}"),
-    }
+    let typed: Vec<_> = arguments.iter().map(OsString::from).collect();
+    let matches = commands::command(&typed).get_matches_from(&typed);
+    let live = matches.subcommand_matches("live").expect("the command");
+    (Live::of(live).expect("it listens"), path)
 }
 
 /// A message like those of a walker who also ranges, of which one in a thousand cannot be true.

@@ -2,7 +2,7 @@
 //! the scenario starts from.
 
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::expected_range;
 use nalgebra::SVector;
 use target_bench::streams::ANCHORS;
@@ -25,7 +25,7 @@ pub fn motion<T: Scalar>(density: f64) -> ConstantVelocity<T, 2> {
 
 /// The row and the expectation of a range.
 pub fn expected<T: Scalar>(mean: &SVector<T, 4>, anchor: &SVector<T, 3>) -> (SparseRow<T, 2>, T) {
-    let [x, y, ..] = mean.data.0[0];
+    let [x, y, ..] = *mean.as_array();
     let range = expected_range(&SVector::from([x, y]), T::ZERO, anchor);
     (SparseRow::new([(0, range.direction[0]), (1, range.direction[1])]), range.distance)
 }
@@ -57,6 +57,6 @@ impl<T: Scalar> Ekf<T> {
             let innovation = T::from_f64(measured) - distance;
             self.estimate.update(&row, innovation, self.variance).expect("a finite range");
         }
-        self.estimate.mean.data.0[0].map(T::to_f64)
+        self.estimate.mean.as_array().map(T::to_f64)
     }
 }

@@ -1,10 +1,11 @@
 //! Recorded GNSS observations with truth, from `../shared/data/gnss` beside the repository.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use host_sim::systems::gnss::accuracy::{Accuracy, Fix};
-use host_sim::systems::gnss::options::STATES;
-use host_sim::systems::gnss::recording::{Files, Recording};
+use host_sim::system::Files;
+use host_sim::systems::gnss::account::accuracy::{Accuracy, Fix};
+use host_sim::systems::gnss::recording::Recording;
+use host_sim::systems::gnss::settings::STATES;
 use kestirim_gnss_ppp::{Corrections, sagnac};
 use kestirim_ppp_filter::{Config, PppFilter, SatelliteObservation};
 use nalgebra::Vector3;
@@ -67,17 +68,17 @@ impl Station {
     /// # Panics
     /// A file cannot be read: those beside the repository can.
     pub fn read(&self, folder: &Path) -> Recording {
-        let paths =
-            |names: &[&str]| names.iter().map(|name| folder.join(name)).collect::<Vec<PathBuf>>();
-        let loading = self.ocean_loading.map(|name| folder.join(name));
-        let files = Files {
-            observations: &folder.join(self.observations),
-            orbits: &paths(self.orbits),
-            clocks: &paths(self.clocks),
-            antennas: &folder.join(self.antennas),
-            ocean_loading: loading.as_deref(),
-        };
-        Recording::read(&files, Corrections::ALL).expect("files that can be read")
+        let mut files = Files::default();
+        for (field, names) in [
+            ("obs", &[self.observations][..]),
+            ("sp3", self.orbits),
+            ("clk", self.clocks),
+            ("antex", &[self.antennas]),
+            ("blq", self.ocean_loading.as_slice()),
+        ] {
+            names.iter().for_each(|name| files.add(field, folder.join(name)));
+        }
+        Recording::read(&files).expect("files that can be read")
     }
 
     /// Follows a receiver that is `away(t)` (ECEF, m) from the marker at second t of the day, and whose other
@@ -96,7 +97,7 @@ impl Station {
         let mut fixes = Vec::new();
         for epoch in recording.epochs(Some(self.until)) {
             let t = recording.seconds(epoch);
-            let known = |observed| recording.products().sighting(epoch.time, observed).ok();
+            let known = |observed| recording.products().observation(epoch.time, observed).ok();
             let mut observations: Vec<_> = epoch.satellites.iter().filter_map(known).collect();
             for observation in &mut observations {
                 move_receiver(observation, &marker, &(marker + away(t)));

@@ -4,10 +4,10 @@ use std::env;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use host_sim::systems::pedestrian::accuracy::against_footprints;
-use host_sim::systems::pedestrian::options::Options;
-use host_sim::systems::pedestrian::run::walk;
-use host_sim::systems::pedestrian::{log, resample, truth};
+use host_sim::systems::pedestrian::account::accuracy::against_footprints;
+use host_sim::systems::pedestrian::recording::{log, resample, truth};
+use host_sim::systems::pedestrian::settings::Options;
+use host_sim::systems::pedestrian::track::walk;
 
 /// The walks with footprints measured by a ruler that are not fast …
 pub const GCP: [u32; 8] = [31, 36, 41, 46, 48, 57, 72, 81];

@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
-use host_sim::cli::ScalarKind;
-use host_sim::systems::robot::accuracy::Accuracy;
-use host_sim::systems::robot::anchors::{self, Anchors};
-use host_sim::systems::robot::calibration::Residuals;
-use host_sim::systems::robot::feed::{self, Company, Followed};
-use host_sim::systems::robot::follow::{self, Follow};
-use host_sim::systems::robot::motion;
-use host_sim::systems::robot::options::{Dimensions, Setup, TrackerKind};
-use host_sim::systems::robot::points::{self, Course};
-use host_sim::systems::robot::ranges::{self, RangeRow};
+use host_sim::system::ScalarKind;
+use host_sim::systems::robot::account::accuracy::Accuracy;
+use host_sim::systems::robot::recording::anchors::{self, Anchors};
+use host_sim::systems::robot::recording::calibration::Residuals;
+use host_sim::systems::robot::recording::event::Sensors;
+use host_sim::systems::robot::recording::motion;
+use host_sim::systems::robot::recording::points::{self, Course};
+use host_sim::systems::robot::recording::ranges::{self, RangeRow};
+use host_sim::systems::robot::settings::{Setup, TrackerKind};
+use host_sim::systems::robot::track::follow::{self, Follow};
+use host_sim::systems::robot::track::{self, Trace};
 use kestirim_uwb_tracker::Config;
 
 /// A change of the default tracker's constants.
@@ -36,12 +37,9 @@ impl Method {
     fn setup(self, anchors: &Anchors, height_m: f64, biases: Option<Vec<f64>>) -> Setup {
         Setup {
             tracker: self.tracker,
-            dimensions: Dimensions::Two,
             scalar: self.scalar,
-            room: None,
-            height_m,
-            anchors: anchors.positions.clone(),
             biases,
+            ..Setup::new(&anchors.positions, height_m)
         }
     }
 
@@ -58,9 +56,8 @@ impl Method {
 #[derive(Clone, Debug)]
 pub struct Recording {
     anchors: Anchors,
-    rows: Vec<RangeRow>,
+    sensors: Sensors,
     truth: Course<3>,
-    company: Company,
     height_m: f64,
 }
 
@@ -82,15 +79,16 @@ impl Recording {
         let heights: Vec<f64> =
             rows.iter().filter_map(|row| Some(truth.held(row.time_us)?[2])).collect();
         let height_m = host_sim::metrics::mean(&heights);
-        Self { anchors, rows, truth, company: Company { inertial, ..Company::default() }, height_m }
+        let sensors = Sensors { inertial, ..Sensors::ranges(rows) };
+        Self { anchors, sensors, truth, height_m }
     }
 
     /// What each anchor measures too long, m, from the first `seconds` of the recording.
     pub fn biases(&self, seconds: f64) -> Vec<f64> {
         let mut residuals = Residuals::new(&self.anchors);
-        let start_us = self.rows.first().map_or(0, |row| row.time_us);
+        let start_us = self.sensors.ranges.first().map_or(0, |row| row.time_us);
         let end_us = start_us.saturating_add((seconds * 1e6) as i64);
-        for row in self.rows.iter().take_while(|row| row.time_us <= end_us) {
+        for row in self.sensors.ranges.iter().take_while(|row| row.time_us <= end_us) {
             if let (Some(range), Some(place)) = (row.range, self.truth.within(row.time_us)) {
                 residuals.add(&self.anchors, row.anchor, range, place);
             }
@@ -103,7 +101,7 @@ impl Recording {
     pub fn spoiled(&self) -> Self {
         let wild = [337.0, -143.0, 60.0, 100.0, 12.0, 0.2].iter().cycle();
         let mut spoiled = self.clone();
-        for (row, &wild) in spoiled.rows.iter_mut().step_by(20).zip(wild) {
+        for (row, &wild) in spoiled.sensors.ranges.iter_mut().step_by(20).zip(wild) {
             row.range = Some(wild);
         }
         spoiled
@@ -113,11 +111,11 @@ impl Recording {
     ///
     /// # Panics
     /// The tracker cannot be built, or finds no position at all.
-    pub fn track(&self, method: Method, biases: Option<Vec<f64>>) -> (Accuracy, Followed) {
+    pub fn track(&self, method: Method, biases: Option<Vec<f64>>) -> (Accuracy, Trace) {
         let setup = method.setup(&self.anchors, self.height_m, biases);
         let mut tracker = method.build(&setup);
-        let followed = feed::follow(tracker.as_mut(), &self.rows, &self.company);
-        let pairs: Vec<_> = followed
+        let trace = track::follow(tracker.as_mut(), &self.sensors.events());
+        let pairs: Vec<_> = trace
             .epochs
             .iter()
             .filter_map(|epoch| {
@@ -125,7 +123,7 @@ impl Recording {
                 Some((epoch.position, [x, y]))
             })
             .collect();
-        (Accuracy::of(&pairs).expect("positions"), followed)
+        (Accuracy::of(&pairs).expect("positions"), trace)
     }
 }
 
@@ -194,8 +192,8 @@ impl Points {
         let found = self.points.iter().map(|(_, [x, y, z], rows)| {
             let setup = method.setup(&self.anchors, *z, biases.map(<[f64]>::to_vec));
             let mut tracker = method.build(&setup);
-            let followed = feed::follow(tracker.as_mut(), rows, &Company::default());
-            (followed.epochs.last().and_then(|epoch| epoch.position), [*x, *y])
+            let trace = track::follow(tracker.as_mut(), &Sensors::ranges(rows.clone()).events());
+            (trace.last(), [*x, *y])
         });
         Accuracy::of(&found.collect::<Vec<_>>()).expect("positions")
     }

@@ -1,6 +1,6 @@
 use crate::Learning;
 use kestirim_kalman::Covariance;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// The diagonal process noise Q of N states, learnt from how far updates move them.
@@ -40,7 +40,7 @@ impl<T: Scalar, const N: usize> ProcessNoise<T, N> {
     #[inline]
     pub fn learn(&mut self, moved: &SVector<T, N>) {
         for ((variance, learning), &moved) in
-            self.variances.iter_mut().zip(&self.learning).zip(&moved.data.0[0])
+            self.variances.iter_mut().zip(&self.learning).zip(moved.as_array())
         {
             *variance = learning.learn(*variance, moved * moved);
         }

@@ -1,6 +1,6 @@
 use crate::Error;
 use kestirim_kalman::{BlockInnovation, Covariance, Gaussian, Process};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// The adaptive filter with eqs 18 and 19 as published. **Unsafe to navigate by**: use
@@ -90,12 +90,12 @@ impl<T: Scalar, const N: usize, const M: usize> PublishedAdaptiveKalman<T, N, M>
         // ν νᵀ − H P⁻ Hᵀ = ν νᵀ − S + R.
         let sample = |i: usize, j: usize| {
             let expected = entry(&report.covariance, i, j) - entry(&self.measurement_noise, i, j);
-            innovation.data.0[0][i] * innovation.data.0[0][j] - expected
+            innovation.as_array()[i] * innovation.as_array()[j] - expected
         };
         next.measurement_noise =
             blend(&self.measurement_noise, self.forgetting_measurement, sample);
         // K ν is what the update moved.
-        let moved = (next.estimate.mean - self.estimate.mean).data.0[0];
+        let moved = *(next.estimate.mean - self.estimate.mean).as_array();
         next.process_noise =
             blend(&self.process_noise, self.forgetting_process, |i, j| moved[i] * moved[j]);
         if !(next.measurement_noise.is_finite() && next.process_noise.is_finite()) {
@@ -116,11 +116,11 @@ fn blend<T: Scalar, const D: usize>(
     forgetting: T,
     sample: impl Fn(usize, usize) -> T,
 ) -> Covariance<T, D> {
-    let mut blended = SMatrix::zeros();
+    let mut blended = SMatrix::<T, D, D>::zeros();
     for column in 0..D {
         for row in column..D {
             let kept = T::mac(T::accumulator(), forgetting, entry(covariance, row, column));
-            blended.data.0[column][row] =
+            blended.as_columns_mut()[column][row] =
                 T::finish(T::mac(kept, T::ONE - forgetting, sample(row, column)));
         }
     }

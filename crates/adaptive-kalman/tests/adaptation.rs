@@ -4,7 +4,7 @@ use kestirim_adaptive_kalman::{
     AdaptiveKalman, Error, Learning, ProcessNoise, PublishedAdaptiveKalman,
 };
 use kestirim_kalman::{Covariance, Error as Refusal, Gaussian, Process, SparseRow};
-use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_scalar::{Components, Q12_20, Scalar};
 use nalgebra::{SMatrix, SVector, matrix, vector};
 use proptest::prelude::*;
 
@@ -49,7 +49,7 @@ fn blocked<T: Scalar>(learn: bool) -> (AdaptiveKalman<T, 2, 4>, f64) {
             }
         }
     }
-    let [x, y] = filter.estimate().mean.map(T::to_f64).data.0[0];
+    let [x, y] = *filter.estimate().mean.map(T::to_f64).as_array();
     (filter, (x - 2.0).hypot(y + 1.0))
 }
 

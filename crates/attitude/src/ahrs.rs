@@ -1,6 +1,6 @@
 use crate::Orientation;
 use core::fmt;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Reason for which an [`Ahrs`] refused a sample. Its state is as it was.
@@ -132,7 +132,7 @@ impl<T: Scalar> Ahrs<T> {
     /// it is not finite.
     fn tilt_error(&self, specific_force: &SVector<T, 3>) -> Option<SVector<T, 3>> {
         let force = specific_force * T::from_f64(1.0 / Self::GRAVITY);
-        let [x, y, z] = force.data.0[0];
+        let [x, y, z] = *force.as_array();
         let square = T::dot(&[x, y, z], &[x, y, z]);
         if !square.is_finite() {
             return None;
@@ -142,7 +142,7 @@ impl<T: Scalar> Ahrs<T> {
         if square < least * least || square > most * most {
             return Some(SVector::zeros());
         }
-        let [ux, uy, uz] = self.orientation.up_in_body().data.0[0];
+        let [ux, uy, uz] = *self.orientation.up_in_body().as_array();
         Some(SVector::from([y * uz - z * uy, z * ux - x * uz, x * uy - y * ux]))
     }
 }

@@ -1,4 +1,4 @@
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// A unit quaternion that turns vectors of the **body** into vectors of the **earth**.
@@ -46,7 +46,7 @@ impl<T: Scalar> Orientation<T> {
     /// Its heading means nothing yet: it is whatever the shortest turn leaves. `None` where the
     /// force is zero or not finite and so has no direction.
     pub fn from_specific_force(force: &SVector<T, 3>) -> Option<Self> {
-        let [x, y, z] = force.data.0[0];
+        let [x, y, z] = *force.as_array();
         let norm = x.hypot(y).hypot(z);
         if !norm.is_finite() || norm <= T::ZERO {
             return None;
@@ -118,7 +118,7 @@ impl<T: Scalar> Orientation<T> {
     #[inline]
     fn rotate(&self, v: &SVector<T, 3>, w: T) -> SVector<T, 3> {
         let q = [self.x, self.y, self.z];
-        let v = v.data.0[0];
+        let v = *v.as_array();
         let t = cross(&q, &v).map(|component| component + component);
         let u = cross(&q, &t);
         SVector::from([v[0] + w * t[0] + u[0], v[1] + w * t[1] + u[1], v[2] + w * t[2] + u[2]])
@@ -128,7 +128,7 @@ impl<T: Scalar> Orientation<T> {
     /// sine and cosine beyond.
     #[inline(always)]
     fn from_rotation_vector(rotation: &SVector<T, 3>) -> Self {
-        let [x, y, z] = rotation.data.0[0];
+        let [x, y, z] = *rotation.as_array();
         let square = T::dot(&[x, y, z], &[x, y, z]);
         let (w, scale) = if square < T::from_f64(0.25) {
             (

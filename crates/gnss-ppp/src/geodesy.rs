@@ -1,3 +1,4 @@
+use kestirim_scalar::Components;
 use nalgebra::{Matrix3, Vector3};
 
 /// Semi-major axis of the GRS 80 ellipsoid, m.
@@ -26,7 +27,7 @@ impl Geodetic {
     /// Fixed-point iteration on the latitude, below a micrometre between 10 km below ground and the
     /// orbits of satellites. At the Earth's centre the latitude is meaningless, but finite.
     pub fn from_ecef(position: &Vector3<f64>) -> Self {
-        let [x, y, z] = position.data.0[0];
+        let [x, y, z] = *position.as_array();
         let equatorial = libm::hypot(x, y);
         let mut shifted = z;
         let mut normal = SEMI_MAJOR;
@@ -87,7 +88,7 @@ pub struct Direction {
 impl Direction {
     /// The direction of the unit vector `sight` (ECEF, receiver to satellite) at `place`.
     pub fn of(sight: &Vector3<f64>, place: &Geodetic) -> Self {
-        let [east, north, up] = (place.enu_from_ecef() * sight).data.0[0];
+        let [east, north, up] = *(place.enu_from_ecef() * sight).as_array();
         let azimuth = libm::atan2(east, north);
         Self {
             elevation: libm::asin(up.clamp(-1.0, 1.0)),

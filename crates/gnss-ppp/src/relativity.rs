@@ -1,3 +1,4 @@
+use kestirim_scalar::Components;
 use nalgebra::Vector3;
 
 use crate::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
@@ -36,7 +37,7 @@ pub fn sagnac(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
 /// With the time of flight, a satellite's position at transmission in the axes of the reception.
 pub fn carried_along(vector: &Vector3<f64>, seconds: f64) -> Vector3<f64> {
     let (sine, cosine) = libm::sincos(EARTH_ROTATION * seconds);
-    let [x, y, z] = vector.data.0[0];
+    let [x, y, z] = *vector.as_array();
     Vector3::new(cosine * x + sine * y, cosine * y - sine * x, z)
 }
 

@@ -1,7 +1,7 @@
 //! Several measurements with correlated noise at once.
 
 use crate::{Covariance, Error, Gaussian, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// Innovation of M correlated measurements: their differences from what was expected.
@@ -37,9 +37,10 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let mut next = *self;
         let mut nis = T::ZERO;
         for m in 0..M {
-            let row = SparseRow::<T, N>::new(core::array::from_fn(|n| (n, rows.data.0[n][m])));
+            let row =
+                SparseRow::<T, N>::new(core::array::from_fn(|n| (n, rows.as_columns()[n][m])));
             let moved = row.dot(&(next.mean - self.mean)).ok_or(Error::IndexOutOfRange)?;
-            nis += next.update(&row, independent.data.0[0][m] - moved, variances[m])?.nis;
+            nis += next.update(&row, independent.as_array()[m] - moved, variances[m])?.nis;
         }
         *self = next;
         Ok(BlockInnovation { innovation: *innovation, covariance, nis })
@@ -57,16 +58,16 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
             for (i, cross) in cross.iter_mut().enumerate() {
                 let mut sum = T::accumulator();
                 for n in 0..N {
-                    sum = T::mac(sum, self.covariance.at(i, n), rows.data.0[n][m]);
+                    sum = T::mac(sum, self.covariance.at(i, n), rows.as_columns()[n][m]);
                 }
                 *cross = T::finish(sum);
             }
             for other in m..M {
                 let mut sum = T::accumulator();
                 for n in 0..N {
-                    sum = T::mac(sum, rows.data.0[n][other], cross[n]);
+                    sum = T::mac(sum, rows.as_columns()[n][other], cross[n]);
                 }
-                spread.data.0[m][other] = T::finish(sum);
+                spread.as_columns_mut()[m][other] = T::finish(sum);
             }
         }
         let mut covariance = Covariance::from_lower_triangle(&spread);
@@ -86,24 +87,24 @@ fn decorrelated<T: Scalar, const M: usize, const N: usize>(
     let (mut rows, mut innovation, mut rest) = (*rows, *innovation, noise.to_matrix());
     let mut variances = [T::ZERO; M];
     for pivot in 0..M {
-        let variance = rest.data.0[pivot][pivot];
+        let variance = rest.as_columns()[pivot][pivot];
         if variance <= T::ZERO {
             return Err(Error::NotPositive);
         }
         variances[pivot] = variance;
         let divisor = variance.divisor();
         for row in pivot + 1..M {
-            let factor = rest.data.0[pivot][row].divided_by(divisor);
+            let factor = rest.as_columns()[pivot][row].divided_by(divisor);
             for column in pivot + 1..M {
-                let taken = factor * rest.data.0[column][pivot];
-                rest.data.0[column][row] -= taken;
+                let taken = factor * rest.as_columns()[column][pivot];
+                rest.as_columns_mut()[column][row] -= taken;
             }
             for column in 0..N {
-                let taken = factor * rows.data.0[column][pivot];
-                rows.data.0[column][row] -= taken;
+                let taken = factor * rows.as_columns()[column][pivot];
+                rows.as_columns_mut()[column][row] -= taken;
             }
-            let taken = factor * innovation.data.0[0][pivot];
-            innovation.data.0[0][row] -= taken;
+            let taken = factor * innovation.as_array()[pivot];
+            innovation.as_array_mut()[row] -= taken;
         }
     }
     // NaN passes every comparison above.

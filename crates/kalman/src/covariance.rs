@@ -1,4 +1,4 @@
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// A symmetric N × N covariance P, of which one triangle is kept.
@@ -44,7 +44,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         let mut covariance = Self::zero();
         for column in 0..N {
             for row in column..N {
-                covariance.lower.data.0[column][row] = matrix.data.0[column][row];
+                covariance.lower.as_columns_mut()[column][row] = matrix.as_columns()[column][row];
             }
         }
         covariance
@@ -56,7 +56,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         let mut matrix = self.lower;
         for column in 0..N {
             for row in column..N {
-                matrix.data.0[row][column] = matrix.data.0[column][row];
+                matrix.as_columns_mut()[row][column] = matrix.as_columns()[column][row];
             }
         }
         matrix
@@ -65,15 +65,15 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P\[i, j\], or `None` beyond the state.
     #[inline(always)]
     pub fn get(&self, i: usize, j: usize) -> Option<T> {
-        self.lower.data.0.get(i.min(j))?.get(i.max(j)).copied()
+        self.lower.as_columns().get(i.min(j))?.get(i.max(j)).copied()
     }
 
     /// The N variances, the diagonal of P.
     #[inline]
     pub fn variances(&self) -> SVector<T, N> {
-        let mut variances = SVector::zeros();
+        let mut variances = SVector::<T, N>::zeros();
         for index in 0..N {
-            variances.data.0[0][index] = self.lower.data.0[index][index];
+            variances.as_array_mut()[index] = self.lower.as_columns()[index][index];
         }
         variances
     }
@@ -81,12 +81,12 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// Whether no kept entry is NaN, infinite or on a rail.
     #[inline]
     pub fn is_finite(&self) -> bool {
-        T::all_finite(self.lower.data.0.as_flattened())
+        T::all_finite(self.lower.as_columns().as_flattened())
     }
 
     #[inline(always)]
     pub(crate) fn has_finite_variances(&self) -> bool {
-        let variances: [T; N] = core::array::from_fn(|index| self.lower.data.0[index][index]);
+        let variances: [T; N] = core::array::from_fn(|index| self.lower.as_columns()[index][index]);
         T::all_finite(&variances)
     }
 
@@ -95,7 +95,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     pub fn add(&mut self, noise: &Self) {
         for column in 0..N {
             for row in column..N {
-                self.lower.data.0[column][row] += noise.lower.data.0[column][row];
+                self.lower.as_columns_mut()[column][row] += noise.lower.as_columns()[column][row];
             }
         }
     }
@@ -103,7 +103,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← a·P, for a ≥ 0: all standard deviations grow by √a.
     #[inline]
     pub fn scale(&mut self, a: T) {
-        for entry in self.lower.data.0.as_flattened_mut() {
+        for entry in self.lower.as_columns_mut().as_flattened_mut() {
             *entry *= a;
         }
     }
@@ -162,9 +162,9 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
             for column in 0..N {
                 let mut sum = T::accumulator();
                 for k in 0..N {
-                    sum = T::mac(sum, f.data.0[k][row], p.data.0[column][k]);
+                    sum = T::mac(sum, f.as_columns()[k][row], p.as_columns()[column][k]);
                 }
-                fp.data.0[column][row] = T::finish(sum);
+                fp.as_columns_mut()[column][row] = T::finish(sum);
             }
         }
         let mut result = Self::zero();
@@ -172,9 +172,9 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
             for row in column..N {
                 let mut sum = T::accumulator();
                 for k in 0..N {
-                    sum = T::mac(sum, fp.data.0[k][row], f.data.0[k][column]);
+                    sum = T::mac(sum, fp.as_columns()[k][row], f.as_columns()[k][column]);
                 }
-                result.lower.data.0[column][row] = T::finish(sum);
+                result.lower.as_columns_mut()[column][row] = T::finish(sum);
             }
         }
         result
@@ -186,7 +186,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         self.absorb_rounding();
         for column in 0..N {
             for row in column..N {
-                self.lower.data.0[column][row] -= gain[row] * g[column];
+                self.lower.as_columns_mut()[column][row] -= gain[row] * g[column];
             }
         }
     }
@@ -198,7 +198,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         for column in 0..N {
             for row in column..N {
                 if row != I && column != I {
-                    self.lower.data.0[column][row] -= gain[row] * g[column];
+                    self.lower.as_columns_mut()[column][row] -= gain[row] * g[column];
                 }
             }
         }
@@ -221,7 +221,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     #[inline(always)]
     pub(crate) fn absorb_rounding(&mut self) {
         for index in 0..N {
-            let variance = &mut self.lower.data.0[index][index];
+            let variance = &mut self.lower.as_columns_mut()[index][index];
             *variance += variance.rounding(Self::ROUNDINGS);
         }
     }
@@ -231,17 +231,21 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     #[inline(always)]
     pub(crate) fn known(&self, i: usize, j: usize) -> T {
         let place = i.min(j).wrapping_mul(N).wrapping_add(i.max(j));
-        self.lower.data.0.as_flattened().get(place).copied().unwrap_or(T::ZERO)
+        self.lower.as_columns().as_flattened().get(place).copied().unwrap_or(T::ZERO)
     }
 
     /// P\[i, j\] for indices known to be below N.
     #[inline(always)]
     pub(crate) fn at(&self, i: usize, j: usize) -> T {
-        if i >= j { self.lower.data.0[j][i] } else { self.lower.data.0[i][j] }
+        if i >= j { self.lower.as_columns()[j][i] } else { self.lower.as_columns()[i][j] }
     }
 
     #[inline(always)]
     pub(crate) fn entry(&mut self, i: usize, j: usize) -> &mut T {
-        if i >= j { &mut self.lower.data.0[j][i] } else { &mut self.lower.data.0[i][j] }
+        if i >= j {
+            &mut self.lower.as_columns_mut()[j][i]
+        } else {
+            &mut self.lower.as_columns_mut()[i][j]
+        }
     }
 }

@@ -1,6 +1,6 @@
 use crate::innovation::Weights;
 use crate::{Covariance, Error, Innovation, Linear, Observation, Process, SparseRow, Weighed};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// A state estimate: mean x and covariance P of N states.
@@ -51,7 +51,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         process.advance(&mut next);
         next.covariance.absorb_rounding();
         // No covariance is larger than its variances: √(P[i, i]·P[j, j]).
-        if !(T::all_finite(&next.mean.data.0[0]) && next.covariance.has_finite_variances()) {
+        if !(T::all_finite(next.mean.as_array()) && next.covariance.has_finite_variances()) {
             return Err(Error::NotFinite);
         }
         *self = next;
@@ -95,7 +95,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !(mean.is_finite() && variance.is_finite()) {
             return Err(Error::NotFinite);
         }
-        self.mean.data.0[0][index] = mean;
+        self.mean.as_array_mut()[index] = mean;
         for other in 0..N {
             *self.covariance.entry(index, other) = T::ZERO;
         }
@@ -259,7 +259,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         cross: &[T; N],
         gain: &mut [T; N],
     ) -> Result<(), Error> {
-        let mut mean = self.mean.data.0[0];
+        let mut mean = *self.mean.as_array();
         for i in 0..N {
             gain[i] = weights.by_variance(cross[i]);
             mean[i] += gain[i] * weights.innovation;
@@ -268,7 +268,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
-        self.mean.data.0[0] = mean;
+        *self.mean.as_array_mut() = mean;
         Ok(())
     }
 }

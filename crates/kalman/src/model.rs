@@ -1,7 +1,7 @@
 //! Models of a system: its process and its measurements.
 
 use crate::{Covariance, Error, Gaussian, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// Process model: the change of a state of N components over one step.
@@ -40,13 +40,14 @@ pub struct Linear<'a, T: Scalar, const N: usize> {
 impl<T: Scalar, const N: usize> Process<T, N> for Linear<'_, T, N> {
     #[inline]
     fn advance(&self, estimate: &mut Gaussian<T, N>) {
-        let mut mean = SVector::zeros();
+        let mut mean = SVector::<T, N>::zeros();
         for row in 0..N {
             let mut sum = T::accumulator();
             for column in 0..N {
-                sum = T::mac(sum, self.f.data.0[column][row], estimate.mean.data.0[0][column]);
+                sum =
+                    T::mac(sum, self.f.as_columns()[column][row], estimate.mean.as_array()[column]);
             }
-            mean.data.0[0][row] = T::finish(sum);
+            mean.as_array_mut()[row] = T::finish(sum);
         }
         estimate.mean = mean;
         estimate.covariance = estimate.covariance.transformed(self.f);

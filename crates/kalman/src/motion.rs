@@ -1,5 +1,5 @@
 use crate::{Gaussian, Process};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 
 /// Motion at a velocity that white acceleration changes, in D dimensions.
 ///
@@ -53,7 +53,7 @@ impl<T: Scalar, const D: usize, const N: usize> Process<T, N> for ConstantVeloci
     fn advance(&self, estimate: &mut Gaussian<T, N>) {
         const { assert!(2 * D <= N, "each coordinate has a position and a velocity") };
         let (reach, decay, [position, cross, velocity]) = self.coefficients();
-        let mean = &mut estimate.mean.data.0[0];
+        let mean = estimate.mean.as_array_mut();
         for axis in 0..D {
             mean[axis] += reach * mean[D + axis];
             mean[D + axis] *= decay;

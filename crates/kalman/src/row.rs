@@ -1,4 +1,4 @@
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// One row of a measurement matrix H, of which only `K` entries are not zero.
@@ -30,7 +30,7 @@ impl<T: Scalar, const K: usize> SparseRow<T, K> {
     pub fn dot<const N: usize>(&self, state: &SVector<T, N>) -> Option<T> {
         let mut sum = T::accumulator();
         for &(index, value) in &self.entries {
-            sum = T::mac(sum, value, *state.data.0[0].get(index)?);
+            sum = T::mac(sum, value, *state.as_array().get(index)?);
         }
         Some(T::finish(sum))
     }

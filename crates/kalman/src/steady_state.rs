@@ -1,7 +1,7 @@
 //! The gain a filter settles at when neither its model nor its sensors change.
 
 use crate::{Covariance, Error, Gaussian};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// Gain and covariances at which a time-invariant filter settles.
@@ -56,13 +56,13 @@ fn gain<T: Scalar, const N: usize, const M: usize>(
     h: &SMatrix<T, M, N>,
     r: &Covariance<T, M>,
 ) -> Result<SMatrix<T, N, M>, Error> {
-    let mut gain = SMatrix::zeros();
+    let mut gain = SMatrix::<T, N, M>::zeros();
     for column in 0..M {
         let mut unit = SVector::<T, M>::zeros();
-        unit.data.0[0][column] = T::ONE;
+        unit.as_array_mut()[column] = T::ONE;
         let mut filter = Gaussian::new(SVector::zeros(), *prior);
         filter.update_block(h, &unit, r)?;
-        gain.data.0[column] = filter.mean.data.0[0];
+        gain.as_columns_mut()[column] = *filter.mean.as_array();
     }
     Ok(gain)
 }

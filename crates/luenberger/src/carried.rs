@@ -1,5 +1,5 @@
 use crate::Error;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// A state, and what rounding has left of its last step: steps far below the last place add up.
@@ -29,7 +29,7 @@ impl<T: Scalar + defmt::Format, const N: usize> defmt::Format for Carried<T, N> 
 
 impl<T: Scalar, const N: usize> Carried<T, N> {
     pub(crate) fn new(value: &SVector<T, N>) -> Result<Self, Error> {
-        if !T::all_finite(&value.data.0[0]) {
+        if !T::all_finite(value.as_array()) {
             return Err(Error::NotFinite);
         }
         Ok(Self { value: *value, rest: SMatrix::from([[T::accumulator(); N]; 1]) })
@@ -38,7 +38,7 @@ impl<T: Scalar, const N: usize> Carried<T, N> {
     /// The sums by which a step begins.
     #[inline(always)]
     pub(crate) fn sums(&self) -> [T::Accumulator; N] {
-        self.rest.data.0[0]
+        *self.rest.as_array()
     }
 
     /// The state moved on by these sums, if it stays finite.
@@ -49,9 +49,9 @@ impl<T: Scalar, const N: usize> Carried<T, N> {
         shifts: &SVector<u32, N>,
     ) -> Result<Self, Error> {
         let mut next = *self;
-        let (value, rest) = (&mut next.value.data.0[0], &mut next.rest.data.0[0]);
+        let (value, rest) = (next.value.as_array_mut(), next.rest.as_array_mut());
         for i in 0..N {
-            (value[i], rest[i]) = value[i].advanced(sums[i], shifts.data.0[0][i]);
+            (value[i], rest[i]) = value[i].advanced(sums[i], shifts.as_array()[i]);
         }
         if T::all_finite(value) { Ok(next) } else { Err(Error::NotFinite) }
     }
@@ -66,7 +66,7 @@ pub(crate) fn mac<T: Scalar, const R: usize, const C: usize>(
 ) {
     for column in 0..C {
         for row in 0..R {
-            let (a, b) = (block.data.0[column][row], vector.data.0[0][column]);
+            let (a, b) = (block.as_columns()[column][row], vector.as_array()[column]);
             sums[row] = T::mac_within(sums[row], a, b);
         }
     }

@@ -4,7 +4,7 @@ use crate::full_order::{FullOrder, FullOrderGains};
 use crate::increment::IntegerIncrement;
 use crate::integers::{and_magnitudes, exponents, larger};
 use crate::{Error, Plant};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// The coefficients of a [`CurrentObserver`], independent of its scalar.
@@ -119,7 +119,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
 
     #[inline(always)]
     fn predicted(&self, input: &SVector<T, M>) -> Result<Carried<T, N>, Error> {
-        if !T::all_finite(&input.data.0[0]) {
+        if !T::all_finite(input.as_array()) {
             return Err(Error::NotFinite);
         }
         let FullOrder { estimate, step, .. } = &self.core;
@@ -134,7 +134,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     ) -> Result<(Carried<T, N>, SVector<T, P>), Error> {
         let innovation = self.core.innovation(prior, measured);
         // A rail may hide in a difference.
-        if !(T::all_finite(&measured.data.0[0]) && T::all_finite(&innovation.data.0[0])) {
+        if !(T::all_finite(measured.as_array()) && T::all_finite(innovation.as_array())) {
             return Err(Error::NotFinite);
         }
         let mut sums = prior.sums();

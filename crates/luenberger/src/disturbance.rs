@@ -4,7 +4,7 @@ use crate::increment::{Increment, IntegerIncrement};
 use crate::integers::{and_magnitudes, exponents, integers, scaled};
 use crate::rows::{IntegerRows, Rows};
 use crate::{Error, Plant};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// The coefficients of a [`DisturbanceObserver`], independent of its scalar.
@@ -158,8 +158,8 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         measured: &SVector<T, P>,
     ) -> Result<SVector<T, P>, Error> {
         let innovation = self.innovation(measured);
-        let arguments = [&innovation.data.0[0], &measured.data.0[0]];
-        if !(T::all_finite(&input.data.0[0]) && arguments.iter().all(|&all| T::all_finite(all))) {
+        let arguments = [innovation.as_array(), measured.as_array()];
+        if !(T::all_finite(input.as_array()) && arguments.iter().all(|&all| T::all_finite(all))) {
             return Err(Error::NotFinite);
         }
         let mut sums = self.step.driven(&self.estimate, input);

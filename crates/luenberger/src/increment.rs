@@ -2,7 +2,7 @@ use crate::Error;
 use crate::carried::{Carried, mac};
 use crate::dense::Dense;
 use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// An [`Increment`] on its way to a scalar.
@@ -100,7 +100,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Increment<T, N, 
         input: &SVector<T, M>,
         output: &SVector<T, P>,
     ) -> Result<Carried<T, N>, Error> {
-        if !(T::all_finite(&input.data.0[0]) && T::all_finite(&output.data.0[0])) {
+        if !(T::all_finite(input.as_array()) && T::all_finite(output.as_array())) {
             return Err(Error::NotFinite);
         }
         let mut sums = self.driven(state, input);

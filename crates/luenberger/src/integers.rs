@@ -3,7 +3,7 @@
 
 use crate::Error;
 use crate::dense::Dense;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// An entry is its integer · 2^(exponent of its row − 62).
@@ -107,9 +107,9 @@ pub(crate) fn scaled<T: Scalar, const R: usize, const C: usize>(
     exponents: &[i32; R],
     shifts: &SVector<u32, R>,
 ) -> SMatrix<T, R, C> {
-    let mut block = SMatrix::from([[T::ZERO; R]; C]);
-    for (scaled, integers) in block.data.0.iter_mut().zip(integers) {
-        let scales = exponents.iter().zip(&shifts.data.0[0]);
+    let mut block = SMatrix::<T, R, C>::from([[T::ZERO; R]; C]);
+    for (scaled, integers) in block.as_columns_mut().iter_mut().zip(integers) {
+        let scales = exponents.iter().zip(shifts.as_array());
         for ((scaled, &integer), (&exponent, &shift)) in scaled.iter_mut().zip(integers).zip(scales)
         {
             let exponent = exponent - BITS + shift as i32;

@@ -2,7 +2,7 @@ use crate::dense::{less_identity, less_product};
 use crate::full_order::{FullOrder, FullOrderGains};
 use crate::increment::IntegerIncrement;
 use crate::{Error, Plant};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// The coefficients of a [`Predictor`], independent of its scalar.
@@ -99,7 +99,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     #[inline]
     pub fn coast(&mut self, input: &SVector<T, M>) -> Result<(), Error> {
         let mut expected = self.innovation(&SMatrix::from([[T::ZERO; P]; 1]));
-        for output in &mut expected.data.0[0] {
+        for output in expected.as_array_mut() {
             *output = -*output;
         }
         self.step(input, &expected)

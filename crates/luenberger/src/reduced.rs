@@ -3,7 +3,7 @@ use crate::carried::Carried;
 use crate::dense::{Dense, all, less_identity, less_product, negative, part};
 use crate::increment::{Increment, IntegerIncrement};
 use crate::rows::{IntegerRows, Rows};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// The coefficients of a [`ReducedObserver`] of N states, of which P are measured and R are not, with M inputs;
@@ -163,12 +163,12 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
     /// All states at the time of this measurement; the measured ones are as measured.
     #[inline]
     pub fn estimate(&self, measured: &SVector<T, P>) -> SVector<T, N> {
-        let mut estimate = SMatrix::from([[T::ZERO; N]; 1]);
+        let mut estimate = SVector::<T, N>::from([T::ZERO; N]);
         let estimated = self.unmeasured(measured);
-        let values = measured.data.0[0].iter().chain(&estimated.data.0[0]);
-        let indices = self.measured.data.0[0].iter().chain(&self.unmeasured.data.0[0]);
+        let values = measured.as_array().iter().chain(estimated.as_array());
+        let indices = self.measured.as_array().iter().chain(self.unmeasured.as_array());
         for (&index, &value) in indices.zip(values) {
-            if let Some(state) = estimate.data.0[0].get_mut(index) {
+            if let Some(state) = estimate.as_array_mut().get_mut(index) {
                 *state = value;
             }
         }
@@ -192,7 +192,7 @@ fn start<T: Scalar, const P: usize, const R: usize>(
     unmeasured: &SVector<T, R>,
     measured: &SVector<T, P>,
 ) -> Result<Carried<T, R>, Error> {
-    if !(T::all_finite(&unmeasured.data.0[0]) && T::all_finite(&measured.data.0[0])) {
+    if !(T::all_finite(unmeasured.as_array()) && T::all_finite(measured.as_array())) {
         return Err(Error::NotFinite);
     }
     Carried::new(&hidden.added(unmeasured, measured))

@@ -2,7 +2,7 @@ use crate::Error;
 use crate::carried::{Carried, mac};
 use crate::dense::Dense;
 use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix on its way to a scalar.
@@ -59,8 +59,8 @@ impl<T: Scalar, const R: usize, const C: usize> Rows<T, R, C> {
         let mut sums = [T::accumulator(); R];
         mac(&mut sums, &self.matrix, vector);
         let mut result = *start;
-        for (row, value) in result.data.0[0].iter_mut().enumerate() {
-            *value = value.advanced(sums[row], self.shifts.data.0[0][row]).0;
+        for (row, value) in result.as_array_mut().iter_mut().enumerate() {
+            *value = value.advanced(sums[row], self.shifts.as_array()[row]).0;
         }
         result
     }

@@ -1,5 +1,5 @@
 use crate::Error;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// The limits of M actuators, in the units of the inputs.
@@ -28,7 +28,7 @@ impl<T: Scalar, const M: usize> Saturation<T, M> {
     /// # Errors
     /// [`Error::WrongLimits`].
     pub fn new(low: &SVector<T, M>, high: &SVector<T, M>) -> Result<Self, Error> {
-        let (lows, highs) = (&low.data.0[0], &high.data.0[0]);
+        let (lows, highs) = (low.as_array(), high.as_array());
         if lows.iter().zip(highs).all(|(low, high)| low <= high) {
             Ok(Self { low: *low, high: *high })
         } else {
@@ -40,8 +40,8 @@ impl<T: Scalar, const M: usize> Saturation<T, M> {
     #[inline]
     pub fn applied(&self, command: &SVector<T, M>) -> SVector<T, M> {
         let mut applied = *command;
-        let limits = self.low.data.0[0].iter().zip(&self.high.data.0[0]);
-        for (input, (&low, &high)) in applied.data.0[0].iter_mut().zip(limits) {
+        let limits = self.low.as_array().iter().zip(self.high.as_array());
+        for (input, (&low, &high)) in applied.as_array_mut().iter_mut().zip(limits) {
             *input = input.clamp(low, high);
         }
         applied

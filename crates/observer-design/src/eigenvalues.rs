@@ -9,6 +9,7 @@ use crate::number::{
 };
 use crate::orthonormal::{normalised, oblique};
 use crate::solve::Eliminated;
+use kestirim_scalar::Columns;
 use nalgebra::{Complex, SMatrix, SVector};
 
 type Wide = Complex<Extended>;
@@ -140,7 +141,7 @@ impl Rotation {
         [first, second]: [usize; 2],
         from: usize,
     ) {
-        for column in h.data.0.iter_mut().skip(from) {
+        for column in h.as_columns_mut().iter_mut().skip(from) {
             if let Ok([a, b]) = column.get_disjoint_mut([first, second]) {
                 (*a, *b) = (
                     self.cosine.conjugate() * *a + self.sine.conjugate() * *b,
@@ -157,7 +158,9 @@ impl Rotation {
         [first, second]: [usize; 2],
         to: usize,
     ) {
-        let Ok([first, second]) = h.data.0.get_disjoint_mut([first, second]) else { return };
+        let Ok([first, second]) = h.as_columns_mut().get_disjoint_mut([first, second]) else {
+            return;
+        };
         for (a, b) in first.iter_mut().zip(second).take(to) {
             (*a, *b) = (
                 *a * self.cosine + *b * self.sine,

@@ -3,6 +3,7 @@
 use core::ops::Neg;
 
 use crate::extended::Extended;
+use kestirim_scalar::Columns;
 use nalgebra::{Complex, SMatrix};
 use num_traits::NumAssign;
 
@@ -144,8 +145,8 @@ impl<T: Number, const R: usize, const K: usize, const C: usize> Times<T, K, C>
     #[inline(never)]
     fn times(&self, other: &SMatrix<T, K, C>) -> SMatrix<T, R, C> {
         let mut product = SMatrix::<T, R, C>::zeros();
-        for (sums, factors) in product.data.0.iter_mut().zip(&other.data.0) {
-            for (column, &factor) in self.data.0.iter().zip(factors) {
+        for (sums, factors) in product.as_columns_mut().iter_mut().zip(other.as_columns()) {
+            for (column, &factor) in self.as_columns().iter().zip(factors) {
                 for (sum, &element) in sums.iter_mut().zip(column) {
                     *sum += element * factor;
                 }
@@ -165,7 +166,7 @@ pub(crate) fn adjoint<T: Number, const R: usize, const C: usize>(
 /// The largest sum of magnitudes in a column.
 pub(crate) fn norm<T: Number, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> f64 {
     let sum = |column: &[T; R]| column.iter().map(|value| value.magnitude()).sum::<f64>();
-    matrix.data.0.iter().map(sum).fold(0.0, f64::max)
+    matrix.as_columns().iter().map(sum).fold(0.0, f64::max)
 }
 
 /// Whether every element is a number.

@@ -2,6 +2,7 @@
 
 use crate::extended::Extended;
 use crate::number::{Number, Real, Square};
+use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SVector};
 
 /// A basis of the whole space whose first `count` vectors span, one after the other, the first `count` columns;
@@ -13,13 +14,13 @@ pub(crate) fn complete<T: Number, const N: usize>(
     let mut basis = Square::<T, N>::zeros();
     for index in 0..N {
         let vector = if index < count {
-            let column = SVector::from(columns.data.0[index]);
+            let column = SVector::from(columns.as_columns()[index]);
             normalised(&column, 0.0)
                 .and_then(|column| normalised(&residual(&column, &basis, index), 1e-24))
         } else {
             farthest(&basis, index)
         };
-        [basis.data.0[index]] = vector?.data.0;
+        basis.as_columns_mut()[index] = *vector?.as_array();
     }
     Some(basis)
 }
@@ -30,7 +31,7 @@ fn farthest<T: Number, const N: usize>(
     count: usize,
 ) -> Option<SVector<T, N>> {
     let mut covered = [0.0; N];
-    for vector in basis.data.0.iter().take(count) {
+    for vector in basis.as_columns().iter().take(count) {
         for (covered, part) in covered.iter_mut().zip(vector) {
             *covered += part.squared().rounded();
         }
@@ -49,7 +50,7 @@ fn residual<T: Number, const N: usize>(
 ) -> SVector<T, N> {
     let mut rest = *vector;
     for _ in 0..2 {
-        for &base in basis.data.0.iter().take(count) {
+        for &base in basis.as_columns().iter().take(count) {
             let base = SVector::from(base);
             let part = inner(&base, &rest);
             rest -= base * part;

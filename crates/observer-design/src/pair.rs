@@ -4,6 +4,7 @@ use crate::Error;
 use crate::extended::Extended;
 use crate::number::{Number, Square, Times, extend, finite, norm};
 use crate::orthonormal::{inner, length};
+use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SMatrix, SVector};
 
 /// x = D x̃ with powers of two D: Ã = D⁻¹ A D and S = W C D, where W has as many rows as C has independent ones.
@@ -58,8 +59,9 @@ impl<const N: usize> Pair<N> {
     /// The power of two by which a state has to be rescaled, if any.
     fn evening(&self, state: usize) -> Option<f64> {
         let size = |value: &Extended| value.to_f64().abs();
-        let (driven, seen) = (self.dynamics.data.0.get(state)?, self.outputs.data.0.get(state)?);
-        let driving = self.dynamics.data.0.iter().filter_map(|column| column.get(state));
+        let (driven, seen) =
+            (self.dynamics.as_columns().get(state)?, self.outputs.as_columns().get(state)?);
+        let driving = self.dynamics.as_columns().iter().filter_map(|column| column.get(state));
         let mut column: f64 = seen.iter().map(size).sum();
         let mut row = 0.0;
         for (index, (driven, driving)) in driven.iter().zip(driving).enumerate() {
@@ -161,7 +163,8 @@ fn merge<const N: usize, const P: usize>(
     let mut weights = [Extended::from(0.0); P];
     let mut rest = extend(c);
     for row in 0..P {
-        let size = c.data.0.iter().fold(0.0, |largest: f64, column| largest.max(column[row].abs()));
+        let size =
+            c.as_columns().iter().fold(0.0, |largest: f64, column| largest.max(column[row].abs()));
         if size > 0.0 {
             weights[row] = Extended::from(libm::exp2(-libm::floor(libm::log2(size))));
         }
@@ -173,9 +176,9 @@ fn merge<const N: usize, const P: usize>(
     let mut basis = SMatrix::<Extended, P, N>::zeros();
     let mut largest = 0.0;
     let mut rank = 0;
-    for direction in basis.data.0.iter_mut().take(N) {
+    for direction in basis.as_columns_mut().iter_mut().take(N) {
         let size = |column: &SVector<Extended, P>| length(column).to_f64();
-        let columns = rest.data.0.iter().map(|&column| SVector::from(column));
+        let columns = rest.as_columns().iter().map(|&column| SVector::from(column));
         let Some(pivot) = columns.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
         largest = f64::max(largest, size(&pivot));
         if size(&pivot) <= NEGLIGIBLE * largest {
@@ -183,11 +186,11 @@ fn merge<const N: usize, const P: usize>(
         }
         let reciprocal = Extended::from(1.0) / length(&pivot);
         let unit = pivot.map(|value| value * reciprocal);
-        [*direction] = unit.data.0;
+        *direction = *unit.as_array();
         rank += 1;
-        for column in &mut rest.data.0 {
+        for column in rest.as_columns_mut() {
             let vector = SVector::from(*column);
-            [*column] = (vector - unit * inner(&unit, &vector)).data.0;
+            *column = *(vector - unit * inner(&unit, &vector)).as_array();
         }
     }
     let outputs = basis.transpose().times(&weighted);

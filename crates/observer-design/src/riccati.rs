@@ -9,6 +9,7 @@ use crate::number::{Square, Times, extend, finite, norm, round, symmetrised};
 use crate::observability::hidden;
 use crate::pair::Pair;
 use crate::solve::{Eliminated, solve};
+use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 
 /// Steady-state Kalman filter of x⁺ = A x + w, y = C x + v.
@@ -161,10 +162,12 @@ impl<const N: usize> Equation<N> {
 /// prior is no measure: beside a large noise in one direction, what the gain depends on may be tiny in another.
 fn negligible<const N: usize>(step: &Square<Extended, N>, posterior: &Square<Extended, N>) -> bool {
     let mut deviations = [0.0; N];
-    for (state, (deviation, column)) in deviations.iter_mut().zip(&posterior.data.0).enumerate() {
+    for (state, (deviation, column)) in
+        deviations.iter_mut().zip(posterior.as_columns()).enumerate()
+    {
         *deviation = column.get(state).map_or(0.0, |variance| libm::sqrt(variance.to_f64().abs()));
     }
-    step.data.0.iter().zip(deviations).all(|(column, across)| {
+    step.as_columns().iter().zip(deviations).all(|(column, across)| {
         let largest = |down: f64| SETTLED * across * down;
         column.iter().zip(deviations).all(|(step, down)| step.to_f64().abs() <= largest(down))
     })

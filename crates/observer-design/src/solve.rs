@@ -3,6 +3,7 @@
 use core::mem;
 
 use crate::number::{Number, Square};
+use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 
 /// A matrix after elimination with row exchanges, ready for any number of right sides.
@@ -16,7 +17,7 @@ pub(crate) struct Eliminated<T: Number, const N: usize> {
 impl<T: Number, const N: usize> Eliminated<T, N> {
     /// None if the matrix is singular to the last bit.
     pub(crate) fn new(matrix: &Square<T, N>) -> Option<Self> {
-        let (mut a, mut pivots) = (matrix.data.0, [0; N]);
+        let (mut a, mut pivots) = (*matrix.as_columns(), [0; N]);
         for place in 0..N {
             let (pivot, magnitude) = largest(&a[place], place)?;
             if magnitude == 0.0 || !magnitude.is_finite() {
@@ -45,7 +46,7 @@ impl<T: Number, const N: usize> Eliminated<T, N> {
     /// X of A X = B.
     pub(crate) fn solve<const M: usize>(&self, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let mut x = *b;
-        for x in &mut x.data.0 {
+        for x in x.as_columns_mut() {
             for place in 0..N {
                 swap(x, place, self.pivots[place]);
             }

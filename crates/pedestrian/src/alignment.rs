@@ -1,6 +1,6 @@
 use crate::ImuSample;
 use crate::sensor::{Prior, SensorClass};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Standard gravity (m/s²).
@@ -149,7 +149,7 @@ impl<T: Scalar> Alignment<T> {
         let run = &mut self.standstill;
         run.blocks += 1;
         run.rate_sum += step;
-        run.rate_square += T::dot(&step.data.0[0], &step.data.0[0]);
+        run.rate_square += T::dot(step.as_array(), step.as_array());
         run.force_sum += force_step;
         if run.blocks < Self::BLOCKS {
             return None;
@@ -164,11 +164,11 @@ impl<T: Scalar> Alignment<T> {
         let run = &self.standstill;
         let share = T::from_f64(0.25);
         let mean_step = run.rate_sum * share;
-        let square = T::dot(&mean_step.data.0[0], &mean_step.data.0[0]);
+        let square = T::dot(mean_step.as_array(), mean_step.as_array());
         let spread = (run.rate_square * share - square).max(T::ZERO) * T::from_f64(1.0 / 3.0);
         let rate = run.rate + mean_step * T::from_f64(0.01);
         let force = run.force + run.force_sum * share;
-        let [x, y, z] = force.data.0[0];
+        let [x, y, z] = *force.as_array();
         let magnitude = x.hypot(y).hypot(z);
 
         let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
@@ -188,5 +188,5 @@ impl<T: Scalar> Alignment<T> {
 }
 
 fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {
-    vector.data.0[0].iter().fold(T::ZERO, |largest, component| largest.max(component.abs()))
+    vector.as_array().iter().fold(T::ZERO, |largest, component| largest.max(component.abs()))
 }

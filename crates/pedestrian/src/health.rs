@@ -1,5 +1,5 @@
 use crate::{ImuSample, SensorClass};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Suspicious findings about a stream. Flags once raised stay raised.
@@ -53,9 +53,9 @@ impl<T: Scalar> Repeats<T> {
     #[inline]
     fn update(&mut self, value: &SVector<T, 3>, large: T) -> bool {
         for axis in 0..3 {
-            let (new, old) = (value.data.0[0][axis], self.last.data.0[0][axis]);
+            let (new, old) = (value.as_array()[axis], self.last.as_array()[axis]);
             if new != old {
-                self.last.data.0[0][axis] = new;
+                self.last.as_array_mut()[axis] = new;
                 self.counts[axis] = 0;
             } else if new.abs() > large {
                 self.counts[axis] = self.counts[axis].saturating_add(1);
@@ -100,7 +100,7 @@ impl<T: Scalar> Health<T> {
         let large = T::from_f64(ImuSample::<T>::LARGE_RATE);
         self.warnings.gyroscope_saturated |= self.rate.update(rate, large);
         let limit = T::from_f64(Self::LARGEST_RATE);
-        self.warnings.rate_implausible |= rate.data.0[0].iter().any(|rate| rate.abs() > limit);
+        self.warnings.rate_implausible |= rate.as_array().iter().any(|rate| rate.abs() > limit);
     }
 
     /// Samples are missing.
@@ -122,7 +122,7 @@ impl<T: Scalar> Health<T> {
     /// A swing ended with this velocity (m/s, earth) where there should be none.
     pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>) {
         let limit = T::from_f64(Self::LANDING);
-        if velocity.data.0[0].iter().any(|component| component.abs() > limit) {
+        if velocity.as_array().iter().any(|component| component.abs() > limit) {
             self.bad_landings = self.bad_landings.saturating_add(1);
         }
         self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;

@@ -1,5 +1,5 @@
 use crate::Error;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// One sample of the foot's IMU, in body axes (right-handed).
@@ -58,12 +58,12 @@ fn is_large<T: Scalar>(vector: &SVector<T, 3>, large: f64, max: f64) -> Result<b
     if within(vector, T::from_f64(max)) {
         return Ok(true);
     }
-    let finite = vector.data.0[0].iter().all(|component| component.is_finite());
+    let finite = vector.as_array().iter().all(|component| component.is_finite());
     Err(if finite { Error::Implausible } else { Error::NotFinite })
 }
 
 /// Whether every component is a number of at most this size; a NaN is not.
 #[inline]
 fn within<T: Scalar>(vector: &SVector<T, 3>, limit: T) -> bool {
-    vector.data.0[0].iter().all(|component| component.abs() < limit)
+    vector.as_array().iter().all(|component| component.abs() < limit)
 }

@@ -1,4 +1,4 @@
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// A stride: from one stance of the instrumented foot to the next.
@@ -77,7 +77,7 @@ impl<T: Scalar> Strides<T> {
             self.last = Some(footprint);
             return None;
         };
-        let [x, y, _] = (footprint.position - last.position).data.0[0];
+        let [x, y, _] = *(footprint.position - last.position).as_array();
         let length = x.hypot(y);
         if length < T::from_f64(Self::SHORTEST) {
             return None;

@@ -3,6 +3,7 @@
 use crate::states::{CLOCK, COMMON, WET};
 use crate::{Config, Motion, SatelliteObservation, Slipped};
 use kestirim_gnss_ppp::{Expected, Site, ionosphere_free, ionosphere_free_phase};
+use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
 /// A row of H.
@@ -79,7 +80,7 @@ impl Line {
 
     /// The row of the phase; that of the code ends before the ambiguity.
     pub(crate) fn row(&self) -> Row {
-        let [x, y, z] = self.expected.sight.data.0[0];
+        let [x, y, z] = *self.expected.sight.as_array();
         let wet = (WET, self.expected.wet_mapping);
         [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet, (self.state, 1.0)]
     }
@@ -91,7 +92,7 @@ impl Line {
         mean: &SVector<f64, N>,
         offset: &Vector3<f64>,
     ) -> [f64; 2] {
-        let of = |state: usize| mean.data.0[0].get(state).copied().unwrap_or(0.0);
+        let of = |state: usize| mean.as_array().get(state).copied().unwrap_or(0.0);
         let common =
             of(CLOCK) + self.expected.wet_mapping * of(WET) - self.expected.sight.dot(offset);
         [self.code - common, self.phase - common - of(self.state)]

@@ -5,6 +5,7 @@ use crate::running::{Decisions, Lines, Running};
 use crate::states::{CLOCK, WET};
 use crate::{Config, Health, Motion, SatelliteReport, Solution};
 use kestirim_gnss_ppp::Site;
+use kestirim_scalar::Components;
 use nalgebra::Matrix3;
 
 /// Standard deviation of a position whose ambiguities are known, m.
@@ -31,7 +32,7 @@ impl<const N: usize> Running<N> {
                 slipped: line.slipped,
             }
         });
-        let state = |index: usize| self.estimate.mean.data.0[0].get(index).copied().unwrap_or(0.0);
+        let state = |index: usize| self.estimate.mean.as_array().get(index).copied().unwrap_or(0.0);
         let spread = libm::sqrt(covariance.trace());
         let heard = decisions.iter().filter(|[_, phase]| phase.weight > 0.0).count();
         Solution {

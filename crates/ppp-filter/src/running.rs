@@ -11,6 +11,7 @@ use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement};
+use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
 /// Variance of a coordinate from codes, m².
@@ -50,7 +51,7 @@ impl<const N: usize> Running<N> {
     pub(crate) fn start(time: GpsTime, start: &CodePosition, config: &Config) -> Self {
         let mut mean = SVector::<f64, N>::zeros();
         let mut variances = [0.0; N];
-        let [x, y, z] = start.position.data.0[0];
+        let [x, y, z] = *start.position.as_array();
         let known = [
             (x, START_VARIANCE),
             (y, START_VARIANCE),
@@ -58,7 +59,7 @@ impl<const N: usize> Running<N> {
             (start.clock, CLOCK_VARIANCE),
             (WET_DELAY, config.wet_delay * config.wet_delay),
         ];
-        let places = mean.data.0[0].iter_mut().zip(&mut variances);
+        let places = mean.as_array_mut().iter_mut().zip(&mut variances);
         for ((mean, variance), known) in places.zip(known) {
             (*mean, *variance) = known;
         }
@@ -275,7 +276,7 @@ impl<const N: usize> Running<N> {
     }
 
     pub(crate) fn position(&self) -> Vector3<f64> {
-        let of = |state: usize| self.estimate.mean.data.0[0].get(state).copied().unwrap_or(0.0);
+        let of = |state: usize| self.estimate.mean.as_array().get(state).copied().unwrap_or(0.0);
         Vector3::new(of(0), of(1), of(2))
     }
 }

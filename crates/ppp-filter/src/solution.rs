@@ -1,6 +1,7 @@
 use heapless::Vec;
 use kestirim_gnss_ppp::{Direction, GpsTime, Slip};
 use kestirim_robust_kalman::Decision;
+use kestirim_scalar::Columns;
 use nalgebra::{Matrix3, Vector3};
 
 /// Reason for which a satellite's ambiguity began anew.
@@ -73,7 +74,7 @@ impl<const N: usize> Solution<N> {
     /// Standard deviations to the east, north and up, m.
     pub fn deviations_enu(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
-            let row = self.covariance_enu.data.0.get(axis);
+            let row = self.covariance_enu.as_columns().get(axis);
             libm::sqrt(row.and_then(|row| row.get(axis)).copied().unwrap_or(0.0))
         })
     }

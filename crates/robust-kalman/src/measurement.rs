@@ -1,5 +1,5 @@
 use kestirim_kalman::{Gaussian, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 
 /// One scalar measurement of an epoch, linearised at the predicted state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ impl<'a, T: Scalar> Measurement<'a, T> {
     /// as zeros: the update has refused them before.
     #[inline(always)]
     pub(crate) fn left<const N: usize>(&self, prior: &Gaussian<T, N>, now: &Gaussian<T, N>) -> T {
-        let (before, after) = (&prior.mean.data.0[0], &now.mean.data.0[0]);
+        let (before, after) = (prior.mean.as_array(), now.mean.as_array());
         let mut sum = T::accumulator();
         for &(index, value) in self.row {
             if let (Some(&before), Some(&after)) = (before.get(index), after.get(index)) {

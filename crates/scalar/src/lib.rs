@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod components;
 mod double;
 mod fixed;
 mod float;
@@ -9,5 +10,6 @@ mod interop;
 mod single;
 mod traits;
 
+pub use components::{Columns, Components};
 pub use fixed::{Fixed, FixedDivisor, Q8_24, Q12_20, Q16_16};
 pub use traits::Scalar;

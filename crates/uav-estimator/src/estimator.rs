@@ -1,6 +1,6 @@
 use kestirim_luenberger::{Plant, Predictor, PredictorGains};
 use kestirim_observer_design::Discrete;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 use crate::{Error, KalmanFilter, Step, Transition};
@@ -112,7 +112,7 @@ fn completed<T: Scalar, const P: usize>(
     if measured.iter().any(Option::is_none) {
         all = -observer.innovation(&all);
     }
-    for (value, measured) in all.data.0[0].iter_mut().zip(measured) {
+    for (value, measured) in all.as_array_mut().iter_mut().zip(measured) {
         if let Some(measured) = measured {
             *value = T::from_f64(*measured);
         }

@@ -1,6 +1,6 @@
 use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant};
 use kestirim_observer_design::{Complex, Discrete};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 use crate::transitions::{Transitions, interval_us};
@@ -86,7 +86,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         let mut innovations = [None; P];
         for output in 0..P {
             innovations[output] =
-                sample.measured[output].map(|_| innovation.data.0[0][output].to_f64());
+                sample.measured[output].map(|_| innovation.as_array()[output].to_f64());
         }
         Ok(innovations)
     }
@@ -98,7 +98,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         measured: &[Option<f64>; P],
     ) -> SVector<T, P> {
         let mut all = self.c * observer.estimate().map(T::to_f64);
-        for (value, measured) in all.data.0[0].iter_mut().zip(measured) {
+        for (value, measured) in all.as_array_mut().iter_mut().zip(measured) {
             *value = measured.unwrap_or(*value);
         }
         all.map(T::from_f64)
@@ -108,10 +108,10 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
     fn measured_states(&self, measured: &[Option<f64>; P]) -> SVector<f64, 4> {
         let mut states = SVector::<f64, 4>::zeros();
         for output in 0..P {
-            let row = self.c.data.0.map(|column| column[output]);
+            let row = self.c.as_columns().map(|column| column[output]);
             let single = row.iter().filter(|part| **part != 0.0).count() == 1;
             let Some(measured) = measured[output].filter(|_| single) else { continue };
-            for (state, part) in states.data.0[0].iter_mut().zip(row) {
+            for (state, part) in states.as_array_mut().iter_mut().zip(row) {
                 if part != 0.0 {
                     *state = measured / part;
                 }

@@ -1,7 +1,7 @@
 use core::array::from_fn;
 
 use kestirim_kalman::{Covariance, Gaussian, Innovation, LinearObservation, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 use crate::{Error, Step};
@@ -81,30 +81,30 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         let mut variances = SVector::<T, P>::zeros();
         let mut output_units = SVector::<f64, P>::zeros();
         for output in 0..P {
-            let row: [f64; 4] = from_fn(|state| seen.data.0[state][output]);
+            let row: [f64; 4] = from_fn(|state| seen.as_columns()[state][output]);
             let unit = power_of_two(row.iter().fold(0.0, |sum, part| sum + part.abs()));
-            let sigma = sigmas.data.0[0][output];
-            rows.data.0[output] = row.map(|part| T::from_f64(part / unit));
-            variances.data.0[0][output] = T::from_f64(sigma * sigma / (unit * unit));
-            output_units.data.0[0][output] = unit;
+            let sigma = sigmas.as_array()[output];
+            rows.as_columns_mut()[output] = row.map(|part| T::from_f64(part / unit));
+            variances.as_array_mut()[output] = T::from_f64(sigma * sigma / (unit * unit));
+            output_units.as_array_mut()[output] = unit;
         }
         let known = (in_units * start_sigmas).map(|sigma| T::from_f64(sigma * sigma));
         let mean = (in_units * start).map(T::from_f64);
         let given = c.iter().chain(sigmas).chain(start).chain(start_sigmas);
         if !(given.copied().all(f64::is_finite)
-            && T::all_finite(&mean.data.0[0])
-            && T::all_finite(&known.data.0[0])
-            && T::all_finite(&variances.data.0[0]))
+            && T::all_finite(mean.as_array())
+            && T::all_finite(known.as_array())
+            && T::all_finite(variances.as_array()))
         {
             return Err(Error::NotFinite);
         }
-        let state = Gaussian::new(mean, Covariance::from_variances(&known.data.0[0]));
+        let state = Gaussian::new(mean, Covariance::from_variances(known.as_array()));
         Ok(Self { state, rows, variances, units: output_units })
     }
 
     /// x̂: α (rad), q (rad/s), V (m/s), θ (rad).
     pub fn estimate(&self) -> SVector<f64, 4> {
-        SVector::from(from_fn::<_, 4, _>(|i| self.state.mean.data.0[0][i].to_f64() * UNITS[i]))
+        SVector::from(from_fn::<_, 4, _>(|i| self.state.mean.as_array()[i].to_f64() * UNITS[i]))
     }
 
     /// P, the covariance of the estimate's error, in the states' units.
@@ -117,7 +117,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
     pub fn sigma(&self) -> SVector<f64, 4> {
         let variances = self.state.covariance.variances();
         SVector::from(from_fn::<_, 4, _>(|i| {
-            libm::sqrt(variances.data.0[0][i].to_f64().max(0.0)) * UNITS[i]
+            libm::sqrt(variances.as_array()[i].to_f64().max(0.0)) * UNITS[i]
         }))
     }
 
@@ -136,13 +136,13 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         let mut next = self.state;
         next.predict(&transition.a, &transition.noise)?;
         let input = input.map(T::from_f64);
-        let [elevator, throttle] = &transition.b.data.0;
+        let [elevator, throttle] = transition.b.as_columns();
         for (mean, (&elevator, &throttle)) in
-            next.mean.data.0[0].iter_mut().zip(elevator.iter().zip(throttle))
+            next.mean.as_array_mut().iter_mut().zip(elevator.iter().zip(throttle))
         {
-            *mean += T::dot(&[elevator, throttle], &input.data.0[0]);
+            *mean += T::dot(&[elevator, throttle], input.as_array());
         }
-        if !T::all_finite(&next.mean.data.0[0]) {
+        if !T::all_finite(next.mean.as_array()) {
             return Err(Error::NotFinite);
         }
         self.state = next;
@@ -165,11 +165,11 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
             if !measured.is_finite() {
                 return Err(Error::NotFinite);
             }
-            let unit = self.units.data.0[0][output];
-            let parts = &self.rows.data.0[output];
+            let unit = self.units.as_array()[output];
+            let parts = &self.rows.as_columns()[output];
             let row = SparseRow::<T, 4>::new(from_fn(|state| (state, parts[state])));
             let observation = LinearObservation { row, measured: T::from_f64(measured / unit) };
-            let innovation = next.observe(&observation, self.variances.data.0[0][output])?;
+            let innovation = next.observe(&observation, self.variances.as_array()[output])?;
             innovations[output] = Some(Innovation {
                 innovation: innovation.innovation.to_f64() * unit,
                 variance: innovation.variance.to_f64() * (unit * unit),

@@ -1,6 +1,6 @@
 //! Flights with gaps and missing outputs.
 
-use kestirim_kalman::{Covariance, Gaussian, SparseRow};
+use kestirim_kalman::{Covariance, Gaussian, LinearObservation, SparseRow};
 use kestirim_observer_design::{Complex, zero_order_hold};
 use kestirim_uav_estimator::{
     Dynamics, Error, Estimator, FlightFilter, FlightObserver, KalmanFilter, Noise, Sample,
@@ -121,7 +121,9 @@ fn units_inside_change_no_bit() {
         for (output, measured) in measured.into_iter().enumerate() {
             let row = SparseRow::<f64, 4>::new(std::array::from_fn(|i| (i, c[(output, i)])));
             let variance = sigmas[output] * sigmas[output];
-            let told = measured.map(|measured| plain.observe(&row, measured, variance).unwrap());
+            let told = measured.map(|measured| {
+                plain.observe(&LinearObservation { row, measured }, variance).unwrap()
+            });
             assert_eq!(innovations[output], told);
         }
         filter.predict(&transition, &input(index)).unwrap();

@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 
+use kestirim_scalar::Components;
 use nalgebra::{SMatrix, SVector};
 
 use crate::dual::Dual;
@@ -214,8 +215,8 @@ struct Forces {
 }
 
 fn variables(state: &SVector<f64, 4>, input: &SVector<f64, 2>) -> [Dual; 6] {
-    let [alpha, rate, airspeed, pitch] = state.data.0[0];
-    let [elevator, throttle] = input.data.0[0];
+    let [alpha, rate, airspeed, pitch] = *state.as_array();
+    let [elevator, throttle] = *input.as_array();
     let mut index = 0..;
     [alpha, rate, airspeed, pitch, elevator, throttle]
         .map(|value| Dual::variable(value, index.next().unwrap_or_default()))

@@ -1,3 +1,4 @@
+use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 
 use crate::Error;
@@ -12,7 +13,7 @@ pub(crate) fn solve<const N: usize, const M: usize>(
     if a.iter().chain(b.iter()).any(|number| !number.is_finite()) {
         return Err(Error::NotFinite);
     }
-    let (left, right) = (&mut a.data.0, &mut b.data.0);
+    let (left, right) = (a.as_columns_mut(), b.as_columns_mut());
     let size = left.map(|column| column.iter().fold(0.0, |most: f64, x| most.max(libm::fabs(*x))));
     for column in 0..N {
         let (mut pivot, mut largest) = (column, libm::fabs(left[column][column]));

@@ -1,7 +1,7 @@
 use crate::symmetric::{MOST, NormalEquations};
 use crate::{Error, Observation, Solver, expected_range};
 use heapless::Vec;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Biases of A anchors, from points that are known and points that are not.
@@ -37,7 +37,7 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
     /// # Errors
     /// [`Error::NotFinite`].
     pub fn new(anchors: [SVector<T, 3>; A]) -> Result<Self, Error> {
-        if !anchors.iter().all(|anchor| T::all_finite(&anchor.data.0[0])) {
+        if !anchors.iter().all(|anchor| T::all_finite(anchor.as_array())) {
             return Err(Error::NotFinite);
         }
         let own = if A <= 5 { ANCHOR_SIGMA_OF_FEW } else { ANCHOR_SIGMA };

@@ -1,6 +1,6 @@
 use crate::symmetric::{MOST, NormalEquations};
 use crate::{Error, Room, expected_range};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// A range from a place that is known.
@@ -127,7 +127,7 @@ impl<T: Scalar> Solver<T> {
         if inside != best_inside {
             return if inside { (true, fix) } else { (best_inside, best) };
         }
-        let apart = T::norm(&(fix.position - best.position).data.0[0]) > T::HALF;
+        let apart = T::norm((fix.position - best.position).as_array()) > T::HALF;
         // Four is two standard deviations.
         let alike = (fix.cost - best.cost).abs() < T::TWO + T::TWO;
         let ambiguous = fix.ambiguous || best.ambiguous || (apart && alike);
@@ -179,7 +179,7 @@ impl<T: Scalar> Solver<T> {
                 equations.factorised(T::from_f64(1e-4)).ok_or(Error::DegenerateGeometry)?;
             let moved = limited(factors.solve(&equations.b));
             for axis in 0..D {
-                position.data.0[0][axis] += moved[axis];
+                position.as_array_mut()[axis] += moved[axis];
             }
             bias += moved.get(D).copied().unwrap_or(T::ZERO);
             if !position.iter().all(|coordinate| coordinate.is_finite()) {
@@ -189,7 +189,7 @@ impl<T: Scalar> Solver<T> {
                 continue;
             }
             if let Some(known) = known
-                && T::norm(&(position - known).data.0[0]) < T::from_f64(Self::SAME)
+                && T::norm((position - known).as_array()) < T::from_f64(Self::SAME)
             {
                 return Ok(None);
             }
@@ -273,13 +273,13 @@ fn starts<T: Scalar, const D: usize>(
     let mut centre = SVector::<T, D>::zeros();
     for observation in observations {
         for axis in 0..D {
-            centre.data.0[0][axis] += observation.anchor.data.0[0][axis] * share;
+            centre.as_array_mut()[axis] += observation.anchor.as_array()[axis] * share;
         }
     }
     let mut extent = T::ZERO;
     for observation in observations {
         let offset: [T; D] = core::array::from_fn(|axis| {
-            observation.anchor.data.0[0][axis] - centre.data.0[0][axis]
+            observation.anchor.as_array()[axis] - centre.as_array()[axis]
         });
         extent = extent.max(T::norm(&offset));
     }
@@ -288,7 +288,7 @@ fn starts<T: Scalar, const D: usize>(
         let mut start = centre;
         if let Some(axis) = index.checked_sub(1) {
             let side = if axis % 2 == 0 { reach } else { -reach };
-            if let Some(coordinate) = start.data.0[0].get_mut(axis / 2) {
+            if let Some(coordinate) = start.as_array_mut().get_mut(axis / 2) {
                 *coordinate += side;
             }
         }

@@ -1,4 +1,4 @@
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Expected range to an anchor at a known place, and its derivatives by the tag's position.
@@ -25,8 +25,8 @@ pub fn expected_range<T: Scalar, const D: usize>(
     const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
     let mut offset = [T::ZERO; 3];
     for axis in 0..3 {
-        let tag = if axis < D { position.data.0[0][axis] } else { height };
-        offset[axis] = tag - anchor.data.0[0][axis];
+        let tag = if axis < D { position.as_array()[axis] } else { height };
+        offset[axis] = tag - anchor.as_array()[axis];
     }
     let distance = T::norm(&offset);
     // Where the distance is zero, so is the offset.

@@ -1,5 +1,5 @@
 use crate::Error;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 type Place<T> = SVector<T, 2>;
@@ -64,7 +64,7 @@ pub fn survey<T: Scalar, const A: usize>(
     let pairs = T::from_micro(distances.pairs().count().clamp(1, 2000) as i32 * 1_000_000);
     let residual = (stress / pairs).sqrt();
     let positions = turned(&places).ok_or(Error::DegenerateGeometry)?;
-    if !positions.iter().all(|place| T::all_finite(&place.data.0[0])) {
+    if !positions.iter().all(|place| T::all_finite(place.as_array())) {
         return Err(Error::NotFinite);
     }
     Ok(Survey { positions, residual, ambiguous })
@@ -142,7 +142,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
             |other: usize| Some((*places.get(other)?.as_ref()?, self.between(anchor, other)?));
         let misfit = |place: &Place<T>| {
             (0..A).filter_map(placed).fold(T::ZERO, |sum, (other, distance)| {
-                let error = T::norm(&(place - other).data.0[0]) - distance;
+                let error = T::norm((place - other).as_array()) - distance;
                 sum + error * error
             })
         };
@@ -170,7 +170,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
                 for j in 0..A {
                     let Some(distance) = self.between(i, j) else { continue };
                     let apart = places[i] - places[j];
-                    let length = T::norm(&apart.data.0[0]).max(T::EPSILON);
+                    let length = T::norm(apart.as_array()).max(T::EPSILON);
                     sum += places[j] + apart * (distance / length);
                     count += 1;
                 }
@@ -178,7 +178,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
                     continue;
                 }
                 let mean = sum * T::from_micro(count * 1_000_000).recip();
-                farthest = farthest.max(T::norm(&(mean - places[i]).data.0[0]));
+                farthest = farthest.max(T::norm((mean - places[i]).as_array()));
                 places[i] = mean;
             }
             if farthest <= T::from_f64(SETTLED) {
@@ -187,7 +187,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         }
         self.pairs().fold(T::ZERO, |sum, (i, j, distance)| {
             let (Some(a), Some(b)) = (places.get(i), places.get(j)) else { return sum };
-            let error = T::norm(&(a - b).data.0[0]) - distance;
+            let error = T::norm((a - b).as_array()) - distance;
             sum + error * error
         })
     }
@@ -204,7 +204,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         let centre = near().fold(Place::zeros(), |sum, (_, place)| sum + place * share);
         let (mut xx, mut xy, mut yy) = (T::ZERO, T::ZERO, T::ZERO);
         for (_, place) in near() {
-            let [x, y] = (place - centre).data.0[0];
+            let [x, y] = *(place - centre).as_array();
             xx += x * x * share;
             xy += x * y * share;
             yy += y * y * share;
@@ -213,7 +213,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         let line = Place::from([cos, sin]);
         let Some(place) = places.get_mut(anchor) else { return false };
         let offset = *place - centre;
-        let along = T::dot(&offset.data.0[0], &line.data.0[0]);
+        let along = T::dot(offset.as_array(), line.as_array());
         *place = centre + line * (along + along) - offset;
         true
     }
@@ -221,7 +221,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
 
 /// Whether two shapes differ: by the distances within them, which no gauge changes.
 fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bool {
-    let apart = |one: &Place<T>, other: &Place<T>| T::norm(&(one - other).data.0[0]);
+    let apart = |one: &Place<T>, other: &Place<T>| T::norm((one - other).as_array());
     let mut places = a.iter().zip(b).enumerate();
     places.any(|(i, (a_i, b_i))| {
         let mut before = a.iter().zip(b).take(i);
@@ -232,11 +232,11 @@ fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bo
 /// Points in which two circles (centre, radius) cross, or come nearest; none if they are concentric.
 fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>; 2]> {
     let apart = b.0 - a.0;
-    let length = T::norm(&apart.data.0[0]);
+    let length = T::norm(apart.as_array());
     if length <= T::from_f64(0.01) {
         return None;
     }
-    let [x, y] = (apart * length.recip()).data.0[0];
+    let [x, y] = *(apart * length.recip()).as_array();
     let along = (length + (a.1 - b.1) * (a.1 + b.1) / length) * T::HALF;
     let square = (a.1 - along) * (a.1 + along);
     let height = square.max(T::ZERO).sqrt();
@@ -249,20 +249,20 @@ fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>;
 fn turned<T: Scalar, const A: usize>(places: &[Place<T>; A]) -> Option<[Place<T>; A]> {
     let (origin, first) = (*places.first()?, *places.get(1)?);
     let axis = first - origin;
-    let length = T::norm(&axis.data.0[0]);
+    let length = T::norm(axis.as_array());
     if length <= T::from_f64(0.01) {
         return None;
     }
-    let [cos, sin] = (axis * length.recip()).data.0[0];
+    let [cos, sin] = *(axis * length.recip()).as_array();
     let mut turned = places.map(|place| {
-        let [x, y] = (place - origin).data.0[0];
+        let [x, y] = *(place - origin).as_array();
         Place::from([cos * x + sin * y, cos * y - sin * x])
     });
     let beside =
-        turned.iter().map(|place| place.data.0[0][1]).find(|y| y.abs() > T::from_f64(0.01));
+        turned.iter().map(|place| place.as_array()[1]).find(|y| y.abs() > T::from_f64(0.01));
     if beside.is_some_and(|y| y < T::ZERO) {
         for place in &mut turned {
-            place.data.0[0][1] = -place.data.0[0][1];
+            place.as_array_mut()[1] = -place.as_array()[1];
         }
     }
     Some(turned)

@@ -1,6 +1,6 @@
 use crate::symmetric::{MOST, NormalEquations};
 use crate::{Error, Observation};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// A pivot smaller than this share of the largest: the anchors do not determine the position.
@@ -57,7 +57,7 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
         let (Some(first), Some(&first_range)) = (self.anchors.first(), ranges.first()) else {
             return Err(Error::TooFewRanges);
         };
-        let mut position = SVector::<T, D>::from_fn(|axis, _| first.data.0[0][axis]);
+        let mut position = SVector::<T, D>::from_fn(|axis, _| first.as_array()[axis]);
         let mut right = [T::ZERO; A];
         for ((right, anchor), &range) in right.iter_mut().zip(&self.anchors).zip(ranges) {
             *right = right_side::<T, D>((first, first_range), (anchor, range), height);
@@ -99,7 +99,7 @@ pub fn trilaterate<T: Scalar, const D: usize>(
         let right = right_side::<T, D>((&first.anchor, first.range), other, height);
         sums = core::array::from_fn(|axis| T::mac(sums[axis], column[axis], right));
     }
-    let place = &first.anchor.data.0[0];
+    let place = first.anchor.as_array();
     let position = SVector::<T, D>::from_fn(|axis, _| place[axis] + T::finish(sums[axis]));
     let finite = position.iter().all(|coordinate| coordinate.is_finite());
     if finite { Ok(position) } else { Err(Error::NotFinite) }
@@ -115,10 +115,10 @@ fn right_side<T: Scalar, const D: usize>(
 ) -> T {
     let mut sum = (first_range - range) * (first_range + range);
     for axis in 0..3 {
-        let apart = anchor.data.0[0][axis] - first.data.0[0][axis];
+        let apart = anchor.as_array()[axis] - first.as_array()[axis];
         sum += apart * apart;
         if axis >= D {
-            let tag = height - first.data.0[0][axis];
+            let tag = height - first.as_array()[axis];
             sum -= T::TWO * apart * tag;
         }
     }
@@ -129,7 +129,7 @@ fn right_side<T: Scalar, const D: usize>(
 fn row<T: Scalar, const D: usize>(anchor: &SVector<T, 3>, first: &SVector<T, 3>) -> [T; MOST] {
     let mut row = [T::ZERO; MOST];
     for axis in 0..D {
-        row[axis] = anchor.data.0[0][axis] - first.data.0[0][axis];
+        row[axis] = anchor.as_array()[axis] - first.as_array()[axis];
     }
     row
 }

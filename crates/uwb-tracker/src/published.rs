@@ -3,7 +3,7 @@
 use crate::{Anchor, EpochMethod, EpochSolver, Error, RangeSample};
 use kestirim_adaptive_kalman::{Error as Refusal, PublishedAdaptiveKalman};
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use kestirim_uwb_ranging::{Error as NoPosition, Solver, expected_range};
 use nalgebra::{SMatrix, SVector};
 
@@ -156,7 +156,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
     /// Position of the tag, m; none before the first one.
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
-        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))
+        Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[axis]))
     }
 
     /// Mean and covariance of all states; none before the first position.
@@ -169,7 +169,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         let mut mean = SVector::<T, N>::zeros();
         let mut variances = [T::ZERO; N];
         for axis in 0..D {
-            mean.data.0[0][axis] = position.data.0[0][axis];
+            mean.as_array_mut()[axis] = position.as_array()[axis];
             variances[axis] = config.position_variance;
         }
         PublishedAdaptiveKalman::new(
@@ -191,16 +191,16 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         let interval = T::from_micro(elapsed_us.min(i32::MAX as u64) as i32);
         let motion = ConstantVelocity::<T, D>::new(interval, T::ZERO);
         filter.predict(&ConstantVelocity { acceleration: self.push, ..motion })?;
-        let mean = &filter.estimate().mean.data.0[0];
+        let mean = filter.estimate().mean.as_array();
         let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
         let mut rows = SMatrix::<T, A, N>::zeros();
         let mut innovation = SVector::<T, A>::zeros();
-        let innovations = innovation.data.0[0].iter_mut().enumerate();
+        let innovations = innovation.as_array_mut().iter_mut().enumerate();
         for ((index, innovation), (anchor, range)) in innovations.zip(self.ranges.heard()) {
             let expected = expected_range(&position, self.ranges.height(), &anchor.position);
             *innovation = range.unwrap_or(expected.distance) - expected.distance;
             for axis in 0..D {
-                rows.data.0[axis][index] = expected.direction[axis];
+                rows.as_columns_mut()[axis][index] = expected.direction[axis];
             }
         }
         filter.update(&rows, &innovation).map(|_| ())

@@ -4,7 +4,7 @@ use crate::Config;
 use crate::link::Link;
 use heapless::Vec;
 use kestirim_kalman::{Covariance, Gaussian};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use kestirim_uwb_ranging::{Observation, Solver};
 use nalgebra::{SMatrix, SVector};
 
@@ -47,17 +47,18 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     let mut mean = SVector::<T, N>::zeros();
     let mut covariance = SMatrix::<T, N, N>::zeros();
     for axis in 0..D {
-        mean.data.0[0][axis] = fix.position.data.0[0][axis];
+        mean.as_array_mut()[axis] = fix.position.as_array()[axis];
         for other in axis..D {
-            covariance.data.0[axis][other] = fix.covariance.data.0[axis][other];
+            covariance.as_columns_mut()[axis][other] = fix.covariance.as_columns()[axis][other];
         }
-        covariance.data.0[axis][axis] += T::from_f64(POSITION_SIGMA * POSITION_SIGMA);
-        covariance.data.0[D + axis][D + axis] = T::from_f64(VELOCITY_SIGMA * VELOCITY_SIGMA);
+        covariance.as_columns_mut()[axis][axis] += T::from_f64(POSITION_SIGMA * POSITION_SIGMA);
+        covariance.as_columns_mut()[D + axis][D + axis] =
+            T::from_f64(VELOCITY_SIGMA * VELOCITY_SIGMA);
     }
     if estimates_bias {
-        mean.data.0[0][2 * D] = fix.common_bias;
+        mean.as_array_mut()[2 * D] = fix.common_bias;
         let known = fix.common_bias_variance > T::ZERO;
-        covariance.data.0[2 * D][2 * D] = if known {
+        covariance.as_columns_mut()[2 * D][2 * D] = if known {
             fix.common_bias_variance
         } else {
             config.common_bias_sigma * config.common_bias_sigma

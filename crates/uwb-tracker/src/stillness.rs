@@ -1,4 +1,4 @@
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Tells standing from moving by the energy of an accelerometer's changes.
@@ -51,7 +51,7 @@ impl<T: Scalar> Stillness<T> {
         let share = |time: T| dt / (time + dt);
         self.mean += deviation * share(T::from_f64(Self::MEAN_TIME));
         // Beyond a few metres per second squared it moves, however much: the square stays in range.
-        let size = T::norm(&deviation.data.0[0]).min(T::TWO);
+        let size = T::norm(deviation.as_array()).min(T::TWO);
         self.variance += (size * size - self.variance) * share(T::from_f64(Self::SQUARE_TIME));
         let calm = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
         self.still = calm && push < T::from_f64(Self::LIMIT);

@@ -18,7 +18,7 @@ use clap_complete::Shell;
 use self::arguments::{read, sentence};
 use self::design::Design;
 use self::serve::Serve;
-use crate::system::AnySystem;
+use crate::system::{Account, AnySystem};
 use crate::systems::ALL;
 use crate::{Error, output};
 
@@ -94,6 +94,17 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
         "list" => output::print(&list::list()),
         _ => completions(matches),
     }
+}
+
+/// What came of the recording that a command line of `replay` names; files that it asks for are written.
+///
+/// # Errors
+/// One sentence.
+pub fn replayed(matches: &ArgMatches) -> Result<Account, Error> {
+    let replay = matches.subcommand_matches("replay");
+    let replay = replay.ok_or_else(|| Error::Usage("expected replay".to_owned()))?;
+    let (system, matches) = arguments::chosen(replay)?;
+    replay::account(system, matches)
 }
 
 /// Prints what makes a shell complete this program's options.

@@ -64,6 +64,11 @@ fn file(name: &'static str, value_name: &'static str, help: &'static str) -> Arg
 /// Reads, tracks, compares, writes and prints; nothing is printed if anything is wrong.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
+    show(&account(system, matches)?, matches.get_flag("json"))
+}
+
+/// Reads, tracks, compares and writes.
+pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Account, Error> {
     let mut settings = Settings::matched(system.settings(), matches);
     let files = Files::matched(system.files(), matches, &mut settings);
     let outputs = system.outputs().iter();
@@ -77,9 +82,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
         Some(name) => Source::Synthetic(name.clone()),
         None => Source::Files(files),
     };
-    let opened = system.open(source, &settings)?;
-    let account = opened.replay(&settings, &wanted)?;
-    show(&account, matches.get_flag("json"))
+    system.open(source, &settings)?.replay(&settings, &wanted)
 }
 
 fn show(account: &Account, json: bool) -> Result<(), Error> {

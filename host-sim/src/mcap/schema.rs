@@ -88,8 +88,8 @@ mod tests {
     #[test]
     fn names_become_identifiers_and_stay_apart() {
         let columns = ["x_m", "A-1 m", "A 1 m", "2nd"].map(str::to_owned);
-        let layout = Layout::new("/robot/ranges", &columns);
-        assert_eq!(layout.name(), "kestirim.robot_ranges");
+        let layout = Layout::new("/vehicle/ranges", &columns);
+        assert_eq!(layout.name(), "kestirim.vehicle_ranges");
         assert_eq!(layout.fields, ["x_m", "A_1_m", "A_1_m_3", "_2nd"]);
     }
 }

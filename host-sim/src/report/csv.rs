@@ -38,20 +38,20 @@ mod tests {
         let made = Made { command: String::new(), seed: 0, trials: String::new() };
         let table = |id: &str| Comparison::new(id, "T").row("error, cm", "2.6", "1.9", "");
         let chapter = Chapter {
-            system: "robot",
+            system: "vehicle",
             title: "",
             paper: "",
             about: String::new(),
             summary: table("summary"),
-            items: vec![made.item(table("robot-table-1")), made.item(table("robot-table-2"))],
+            items: vec![made.item(table("vehicle-table-1")), made.item(table("vehicle-table-2"))],
             streams: Vec::new(),
         };
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("comparisons.csv");
         write(&path, &[chapter])?;
         let expected = "system,table,quantity,published,ours,limit\n\
-                        robot,robot-table-1,\"error, cm\",2.6,1.9,\n\
-                        robot,robot-table-2,\"error, cm\",2.6,1.9,\n";
+                        vehicle,vehicle-table-1,\"error, cm\",2.6,1.9,\n\
+                        vehicle,vehicle-table-2,\"error, cm\",2.6,1.9,\n";
         assert_eq!(std::fs::read_to_string(path)?, expected);
         Ok(())
     }

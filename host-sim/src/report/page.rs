@@ -135,33 +135,33 @@ mod tests {
     #[test]
     fn the_page_shows_everything_and_fetches_nothing() {
         let made = Made {
-            command: "host-sim run robot".to_owned(),
+            command: "host-sim run vehicle".to_owned(),
             seed: 7,
             trials: "200 days".to_owned(),
         };
         let table =
-            Comparison::new("robot-table-1", "Table 1 <b>").row("mean, cm", "2.52", "13.0", "");
-        let figure = Figure::new("robot-plan", "Plan </script>").with(Series::line(
+            Comparison::new("vehicle-table-1", "Table 1 <b>").row("mean, cm", "2.52", "13.0", "");
+        let figure = Figure::new("vehicle-plan", "Plan </script>").with(Series::line(
             "ours",
             vec![0.0, 1.0],
             vec![0.0, 1.0],
         ));
         let chapter = Chapter {
-            system: "robot",
-            title: "A robot",
+            system: "vehicle",
+            title: "A vehicle",
             paper: "Somebody, 2020",
             about: "It drives.".to_owned(),
-            summary: Comparison::new("robot-summary", "In short"),
+            summary: Comparison::new("vehicle-summary", "In short"),
             items: vec![made.item(table), made.item(figure)],
             streams: vec![],
         };
         let page = render(&[chapter]);
         for text in
-            ["Table 1 &lt;b&gt;", "2.52", "13.0", "seed 7", "200 days", "host-sim run robot"]
+            ["Table 1 &lt;b&gt;", "2.52", "13.0", "seed 7", "200 days", "host-sim run vehicle"]
         {
             assert!(page.contains(text), "{text}");
         }
-        assert!(page.contains(r#"data-figure="robot-plan""#));
+        assert!(page.contains(r#"data-figure="vehicle-plan""#));
         assert!(page.contains(r"Plan <\/script>"));
         let own = page.replace(PLOTLY, "");
         for address in ["http:", "https:", "src=\"", "@import", "url("] {

@@ -90,6 +90,12 @@ pub trait System: Sync + 'static {
         None
     }
 
+    /// Why these settings give no tables and no streams to write, in words that complete `--track …`; none if
+    /// they do.
+    fn lacks_output(_settings: &Settings) -> Option<&'static str> {
+        None
+    }
+
     /// Reads a recording. Settings tell no more than how to read.
     ///
     /// # Errors
@@ -201,6 +207,7 @@ pub trait Calibration {
 }
 
 /// What came of an experiment.
+#[derive(Debug, Clone)]
 pub struct Experiment {
     /// What `--json` prints.
     pub report: Value,

@@ -18,7 +18,13 @@ pub struct Wanted {
 impl Wanted {
     /// Whether anything is to be written.
     pub fn any(&self) -> bool {
-        !self.tables.is_empty() || self.mcap.is_some()
+        self.first().is_some()
+    }
+
+    /// The first option that names a file to write.
+    fn first(&self) -> Option<&'static str> {
+        let table = self.tables.first().map(|(output, _)| *output);
+        table.or_else(|| self.mcap.as_ref().map(|_| "mcap"))
     }
 }
 
@@ -88,6 +94,9 @@ impl<S: System> Opened for Open<S> {
 
     fn replay(&self, settings: &Settings, wanted: &Wanted) -> Result<Account, Error> {
         refuse(settings, |name| self.idle(settings, name))?;
+        if let (Some(output), Some(reason)) = (wanted.first(), S::lacks_output(settings)) {
+            return Err(Error::Usage(format!("--{output} {reason}")));
+        }
         let views = settings.table().iter().any(|it| it.is_view && settings.is_given(it.name));
         let detail = if wanted.any() || views { Detail::Every } else { Detail::Result };
         let trace = self.trace(settings, detail)?;

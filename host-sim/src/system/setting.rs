@@ -390,11 +390,18 @@ impl Setting {
         };
         match unit {
             "" => "N".to_owned(),
-            "m" => "METRES".to_owned(),
-            "s" => "SECONDS".to_owned(),
-            "°" => "DEGREES".to_owned(),
-            unit => unit.to_uppercase(),
+            unit => in_words(unit).to_uppercase(),
         }
+    }
+}
+
+/// A unit as it is spoken, where that is short.
+fn in_words(unit: &'static str) -> &'static str {
+    match unit {
+        "m" => "metres",
+        "s" => "seconds",
+        "°" => "degrees",
+        unit => unit,
     }
 }
 
@@ -411,7 +418,7 @@ impl Number {
         let number = number.filter(|value| (self.min..=self.max).contains(value));
         number.filter(|value| !whole || value.fract() == 0.0).ok_or_else(|| {
             let what = if whole { "a whole number" } else { "a number" };
-            let Self { min, max, unit, .. } = self;
+            let (Self { min, max, .. }, unit) = (self, in_words(self.unit));
             format!("expected {what} from {min} to {max} {unit}").trim_end().to_owned()
         })
     }

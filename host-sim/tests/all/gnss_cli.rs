@@ -227,8 +227,8 @@ fn all_filters_are_compared() {
         report(&files, &["--filter", "gkf", "--mode", "kinematic", "--process-noise", "1e-4"]);
     assert_eq!(alone["position_ecef_m"], filters[0]["position_ecef_m"]);
     let table = host_sim(&with(&all, &["--printed"]));
-    assert!(text(&table.stdout).contains("rkf (printed)"));
-    assert!(!text(&table.stdout).contains("gkf (printed)"));
+    assert!(text(&table.stdout).contains("rkf (published)"));
+    assert!(!text(&table.stdout).contains("gkf (published)"));
     // The same answer at any number of threads.
     let run = |threads: &str| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_host-sim"));

@@ -6,9 +6,9 @@ use std::fs;
 use crate::program::{Desk, host_sim, json, refusal, text};
 use crate::sender::frames;
 use host_sim::random::stream;
-use host_sim::systems::drone::scenario::EnvironmentKind;
+use host_sim::systems::drone::settings::choices::EnvironmentKind;
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
-use host_sim::systems::robot::scenario::{ANCHORS, Office, line};
+use host_sim::systems::robot::simulate::scenario::{ANCHORS, Office, line};
 use host_sim::systems::uav::plant::Plant;
 use host_sim::systems::uav::scenario::{INTERVAL_S, Inputs, Noise, fly};
 use kestirim_telemetry::{Flight, Imu, Message, PathLoss, Range};
@@ -95,7 +95,13 @@ fn a_user_is_found_where_a_replay_finds_them() {
         let place = [300.0 * cos, 300.0 * sin, 120.0].map(|metres| metres as f32);
         let [x, y, h] = place.map(f64::from);
         let user = [80.0, -120.0];
-        let loss = host_sim::systems::drone::scenario::measure(&channel, user, [x, y], h, &mut rng);
+        let loss = host_sim::systems::drone::simulate::scenario::measure(
+            &channel,
+            user,
+            [x, y],
+            h,
+            &mut rng,
+        );
         let loss = loss as f32;
         writeln!(log, "{step},{x},{y},{h},{}", f64::from(loss)).unwrap();
         messages.push(PathLoss { time_us: step * 1_000_000, place, loss }.into());

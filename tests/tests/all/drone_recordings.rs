@@ -3,28 +3,27 @@
 //! It stands beside the repository in `../shared/data/drone`. Where it is absent this test says SKIPPED and
 //! passes; with `KESTIRIM_REQUIRE_DATA=1` it fails instead.
 
-use host_sim::systems::drone::replay::Replay;
+use host_sim::system::{AnySystem, Files, Settings, Source, Wanted};
+use host_sim::systems::drone::Drone;
 use kestirim_tests::recordings::folder_of;
 
 #[test]
 fn a_rover_is_found_from_the_air() {
     let Some(folder) = folder_of("drone") else { return };
     let flight = folder.join("afar_1204");
-    let replay = Replay {
-        log: flight.join("stops.csv"),
-        truth: Some(flight.join("truth.csv")),
-        environment: None,
-        free_space: true,
-        area: Some(flight.join("area.csv")),
-        track: None,
-        mcap: None,
-        json: true,
-    };
-    let report = replay.report().expect("a recording can be read");
-    let accuracy = report.accuracy.expect("there is a truth");
-    println!("{:.1} m off, expected {:.1} m; {accuracy:?}", accuracy.error_m, report.sd_m);
-    let ten_minutes = accuracy.error_after_s.iter().find(|after| after.s == 600.0);
-    assert!(ten_minutes.is_some_and(|after| after.error_m <= 80.0), "{accuracy:?}");
-    assert_eq!(accuracy.in_90_percent_region, Some(true));
-    assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+    let mut files = Files::default();
+    for (field, name) in [("log", "stops.csv"), ("truth", "truth.csv"), ("area", "area.csv")] {
+        files.add(field, flight.join(name));
+    }
+    let settings = Settings::new(Drone.settings());
+    let opened = Drone.open(Source::Files(files), &settings).expect("a recording can be read");
+    let account = opened.replay(&settings, &Wanted::default()).expect("the user is found");
+    let accuracy = &account.report["accuracy"];
+    println!("{accuracy}, expected {} m", account.report["sd_m"]);
+    let after = accuracy["error_after_s"].as_array().expect("there is a truth");
+    let ten_minutes = after.iter().find(|after| after["s"] == 600.0);
+    let error = ten_minutes.and_then(|after| after["error_m"].as_f64());
+    assert!(error.is_some_and(|error| error <= 80.0), "{accuracy}");
+    assert_eq!(accuracy["in_90_percent_region"], true);
+    assert!(account.warnings.is_empty(), "{:?}", account.warnings);
 }

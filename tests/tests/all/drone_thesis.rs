@@ -1,11 +1,11 @@
 //! The drone against its thesis: published numbers, limits, credible regions, degeneracy.
 
-use host_sim::cli::ScalarKind;
 use host_sim::metrics::{mean, standard_deviation};
-use host_sim::systems::drone::moving_user::{self, LOST_M, Policy, Walk};
-use host_sim::systems::drone::report::Row;
-use host_sim::systems::drone::static_user::{self, Geometry, Job, Outcome, Paper};
-use host_sim::systems::drone::sweeps::StaticSweeps;
+use host_sim::system::ScalarKind;
+use host_sim::systems::drone::paper::report::Row;
+use host_sim::systems::drone::paper::static_user::{self, Geometry, Job, Outcome, PublishedFilter};
+use host_sim::systems::drone::paper::sweeps::StaticSweeps;
+use host_sim::systems::drone::simulate::moving_user::{self, LOST_M, Policy, Walk};
 use kestirim_particle_filter::Resampler;
 use rayon::prelude::*;
 
@@ -31,7 +31,7 @@ fn published_numbers_are_within_their_own_error_and_ours_are_on_the_limit() {
         assert!(outcomes.iter().all(|outcome| outcome.refused == 0));
         for cell in cells {
             let paper: Vec<f64> =
-                outcomes.iter().map(|outcome| outcome.papers[cell.paper]).collect();
+                outcomes.iter().map(|outcome| outcome.published[cell.published_filter]).collect();
             let published = cell.published.expect("a published number");
             let row = if cell.maximum {
                 Row::of_maximum(&paper, published)
@@ -52,11 +52,12 @@ fn published_numbers_are_within_their_own_error_and_ours_are_on_the_limit() {
     }
 }
 
-fn at_800_m(papers: Vec<Paper>, bests: Vec<usize>) -> Job {
-    Job { geometry: Geometry::circle(12, 800.0), papers, bests, limit: false }
+fn at_800_m(published: Vec<PublishedFilter>, bests: Vec<usize>) -> Job {
+    Job { geometry: Geometry::circle(12, 800.0), published, bests, limit: false }
 }
 
-const SYSTEMATIC: Paper = Paper { particles: 500, resampler: Resampler::Systematic };
+const SYSTEMATIC: PublishedFilter =
+    PublishedFilter { particles: 500, resampler: Resampler::Systematic };
 
 #[test]
 fn credible_regions_are_honest() {
@@ -79,11 +80,11 @@ fn every_number_type_finds_the_user_alike() {
     let means = SCALARS.map(|scalar| {
         let outcomes = fly(&job, scalar, 300);
         let of = |error: fn(&Outcome) -> f64| mean(&outcomes.iter().map(error).collect::<Vec<_>>());
-        (of(|outcome| outcome.papers[0]), of(|outcome| outcome.bests[0]))
+        (of(|outcome| outcome.published[0]), of(|outcome| outcome.bests[0]))
     });
     println!("{means:?}");
     for (paper, best) in means {
-        // The printed filter is chaotic: its clouds differ after the first rounding.
+        // The published filter is chaotic: its clouds differ after the first rounding.
         assert!((paper / means[1].0 - 1.0).abs() < 0.06, "{means:?}");
         assert!((best - means[1].1).abs() < 0.5, "{means:?}");
     }

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use host_sim::figure::{Figure, svg};
 use host_sim::systems::gnss::figures::{errors, left};
-use host_sim::systems::gnss::follow::{Followed, follow};
-use host_sim::systems::gnss::options::{FilterKind, PROCESS_NOISE};
+use host_sim::systems::gnss::settings::{FilterKind, PROCESS_NOISE};
+use host_sim::systems::gnss::track::followed::{Followed, follow};
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::{Config, Motion};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station};

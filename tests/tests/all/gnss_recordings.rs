@@ -4,7 +4,7 @@
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use host_sim::metrics::rms;
-use host_sim::systems::gnss::accuracy::Accuracy;
+use host_sim::systems::gnss::account::accuracy::Accuracy;
 use host_sim::systems::gnss::recording::Recording;
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
@@ -86,8 +86,8 @@ fn faults_of_other_days() {
         for seed in 1..=3 {
             let mut dice = Xoshiro256PlusPlus::seed_from_u64(seed);
             let mut slips = [0.0; 33];
-            let spoil = |t: f64, sighting: &mut SatelliteObservation<'_>| {
-                spoil(t, sighting, &mut dice, &mut slips);
+            let spoil = |t: f64, observation: &mut SatelliteObservation<'_>| {
+                spoil(t, observation, &mut dice, &mut slips);
             };
             let config = Config::new(Motion::Static);
             let still = |_| Vector3::zeros();
@@ -103,7 +103,7 @@ fn faults_of_other_days() {
 /// detector sees, and 10 m on the codes of three satellites for a quarter of an hour, twice.
 fn spoil(
     t: f64,
-    sighting: &mut SatelliteObservation<'_>,
+    observation: &mut SatelliteObservation<'_>,
     dice: &mut Xoshiro256PlusPlus,
     slips: &mut [f64; 33],
 ) {
@@ -113,14 +113,14 @@ fn spoil(
         if uniform() < 0.5 { size } else { -size }
     };
     let (code, phase, slip) = (either(3.0, 27.0), either(0.05, 0.95), either(0.05, 0.95));
-    let prn = usize::from(sighting.satellite);
+    let prn = usize::from(observation.satellite);
     if uniform() < 24.0 / 32_700.0 {
         slips[prn] += slip;
     }
     let bias = if prn % 8 < 3 && (t + 7_000.0) % 43_200.0 < 900.0 { 10.0 } else { 0.0 };
     let code = bias + if uniform() < 0.02 { code } else { 0.0 };
     let phase = slips[prn] + if uniform() < 0.01 { phase } else { 0.0 };
-    lengthen(sighting, code, phase);
+    lengthen(observation, code, phase);
 }
 
 /// A sine of half a metre and a step of a metre are followed where the process noise is far below both: motion

@@ -5,7 +5,7 @@
 
 use anyhow::{Context, Result};
 use kestirim_pedestrian::{Config, Ekf, ImuSample, Lite, Navigator, Tracker};
-use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_scalar::{Components, Q12_20, Scalar};
 use nalgebra::SVector;
 use target_bench::streams::{Encode, Sample, walk};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
@@ -25,7 +25,7 @@ fn on_host<T: Scalar, N: Navigator<T>>(samples: &[Sample]) -> (Vec<(i64, [f64; 3
             })
             .expect("a sensor can measure this");
         if (index + 1) % 50 == 0 || index + 1 == samples.len() {
-            path.push((time_us as i64, estimate.position.data.0[0].map(T::to_f64)));
+            path.push((time_us as i64, estimate.position.as_array().map(T::to_f64)));
         }
     }
     tracker.finish();

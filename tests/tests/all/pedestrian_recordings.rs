@@ -5,9 +5,9 @@
 //! is printed.
 
 use host_sim::metrics::{mean, median};
-use host_sim::systems::pedestrian::log;
-use host_sim::systems::pedestrian::options::{Options, SensorClass};
-use host_sim::systems::pedestrian::run::{Walk, walk};
+use host_sim::systems::pedestrian::recording::log;
+use host_sim::systems::pedestrian::settings::{Options, SensorClass};
+use host_sim::systems::pedestrian::track::{Walk, walk};
 use kestirim_tests::recordings::{self, GCP, GCP_FAST, Group, gcp, vicon};
 
 fn industrial(causal: bool) -> Options {

@@ -2,11 +2,10 @@
 //!
 //! `cargo test --release -p kestirim-tests --test all pedestrian_table:: -- --ignored --nocapture`
 
-use host_sim::cli::ScalarKind;
 use host_sim::metrics::{mean, median};
-use host_sim::systems::pedestrian::options::{
-    DetectorKind, Options, SensorClass, TrackerKind, parse_detector,
-};
+use host_sim::system::{ScalarKind, Settings, System};
+use host_sim::systems::pedestrian::Pedestrian;
+use host_sim::systems::pedestrian::settings::{Options, SensorClass, TrackerKind};
 use kestirim_tests::recordings::{self, GCP, GCP_FAST, Group, gcp, vicon};
 
 #[test]
@@ -16,7 +15,11 @@ fn table() {
     let industrial = Options { sensor: SensorClass::Industrial, ..Options::default() };
     let lite = Options { tracker: TrackerKind::Lite, ..industrial };
     let fixed = Options { scalar: ScalarKind::Fixed, ..industrial };
-    let detector = |name| parse_detector(name).unwrap_or(DetectorKind::Adaptive);
+    let detector = |name| {
+        let mut settings = Settings::new(Pedestrian::settings(None));
+        settings.set("detector", name).expect("a detector");
+        Options::of(&settings).detector
+    };
     let rows = [
         ("ekf", industrial),
         ("ekf --causal", Options { causal: true, ..industrial }),

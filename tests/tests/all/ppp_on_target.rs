@@ -5,6 +5,7 @@
 
 use anyhow::{Context, Result, ensure};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteReport};
+use kestirim_scalar::Components;
 use kestirim_tests::ppp::{EPOCHS, Epoch, Epochs, Filter, OUTLIERS, receiver, station};
 use nalgebra::Vector3;
 use target_bench::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
@@ -27,7 +28,7 @@ fn on_host(config: Config) -> Result<Vec<Told>> {
     let mut filter = Filter::new(config);
     let solve = |epoch: Epoch| {
         let solution = filter.process(epoch.time, &receiver(), &epoch.observations)?;
-        let [x, y, z] = solution.position.data.0[0];
+        let [x, y, z] = *solution.position.as_array();
         let treated = |is: fn(&SatelliteReport) -> bool| {
             solution.satellites.iter().filter(|report| is(report)).count() as i64
         };

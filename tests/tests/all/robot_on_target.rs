@@ -6,7 +6,7 @@
 use anyhow::{Context, Result};
 use kestirim_adaptive_kalman::{AdaptiveKalman, Learning, ProcessNoise, PublishedAdaptiveKalman};
 use kestirim_kalman::Covariance;
-use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_scalar::{Components, Q12_20, Scalar};
 use kestirim_tests::common_scenario::{Ekf, anchors, expected, motion, start};
 use kestirim_uwb_tracker::{Anchor, Config, RangeSample, Tracker};
 use nalgebra::{SMatrix, SVector};
@@ -42,7 +42,7 @@ fn aekf<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
             let (row, distance) = expected(&filter.estimate().mean, anchor);
             filter.update(index, &row, number(range) - distance).expect("a finite range");
         }
-        filter.estimate().mean.map(T::to_f64).data.0[0]
+        *filter.estimate().mean.map(T::to_f64).as_array()
     };
     ranges.iter().map(step).collect()
 }
@@ -67,7 +67,7 @@ fn published<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
             }
         }
         filter.update(&rows, &innovation).expect("R stays positive with these constants");
-        filter.estimate().mean.map(T::to_f64).data.0[0]
+        *filter.estimate().mean.map(T::to_f64).as_array()
     };
     ranges.iter().map(step).collect()
 }

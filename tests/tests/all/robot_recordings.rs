@@ -3,9 +3,9 @@
 //! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
-use host_sim::cli::ScalarKind;
 use host_sim::metrics::{mean, median, rms};
-use host_sim::systems::robot::options::TrackerKind;
+use host_sim::system::ScalarKind;
+use host_sim::systems::robot::settings::TrackerKind;
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Method, Points, Recording, blocked};
 use kestirim_uwb_ranging::LevelBias;

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use host_sim::metrics::mean;
-use host_sim::systems::robot::{anchors, points, ranges};
+use host_sim::systems::robot::recording::{anchors, points, ranges};
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian};
 use kestirim_robust_kalman::{Block, Decision, Measurement, Robust};
 use kestirim_tests::recordings::folder_of;

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use host_sim::metrics::mean;
-use host_sim::systems::robot::options::TrackerKind;
+use host_sim::systems::robot::settings::TrackerKind;
 use kestirim_adaptive_kalman::Learning;
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Change, Method, Points, Recording, blocked};
@@ -86,7 +86,7 @@ fn trackers() {
         ("`nls`", of(TrackerKind::Nls)),
         ("`ekf`", of(TrackerKind::Ekf)),
         ("`aekf`", of(TrackerKind::Aekf)),
-        ("`aekf-printed`", of(TrackerKind::AekfPrinted)),
+        ("`aekf-published`", of(TrackerKind::AekfPublished)),
         ("`default`", Method::DEFAULT),
     ];
     print(&folder, &Data::read(&folder), &rows);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use host_sim::design::{Answer, Report, Solution, answers};
+use host_sim::commands::design::{Answer, Report, Solution, answers};
 use kestirim_observer_design::{
     Complex, StateSpace, discrete_noise, eigenvalues, error_covariance, singular_values, tustin,
 };

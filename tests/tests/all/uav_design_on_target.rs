@@ -4,6 +4,7 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result};
+use kestirim_scalar::Columns;
 use kestirim_tests::design;
 use nalgebra::SMatrix;
 use target_bench::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
@@ -17,7 +18,7 @@ fn agree<const R: usize, const C: usize>(
     key: &str,
     host: &SMatrix<f64, R, C>,
 ) -> Result<()> {
-    let bits = host.data.0.map(|column| column.map(|number| number.to_bits() as i64));
+    let bits = host.as_columns().map(|column| column.map(|number| number.to_bits() as i64));
     assert_eq!(output.rows::<R>(key)?, bits, "{key}: the very bits");
     Ok(())
 }

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use host_sim::cli::RunOptions;
+use host_sim::system::RunOptions;
 use host_sim::systems::uav::{chapter, experiment};
 use kestirim_tests::book;
 

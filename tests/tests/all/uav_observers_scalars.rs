@@ -5,7 +5,7 @@
 use host_sim::random::{normal, stream};
 use kestirim_kalman::{Covariance, steady_state};
 use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant, Predictor, PredictorGains};
-use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_scalar::{Components, Q16_16, Scalar};
 use kestirim_tests::uav;
 use nalgebra::{Matrix4, SMatrix, SVector};
 
@@ -86,8 +86,8 @@ fn apart(a: &[SVector<f64, 4>], b: &[SVector<f64, 4>]) -> SVector<f64, 4> {
 fn check(what: &str, truth: &Estimates, [double, single, fixed]: [Estimates; 3], most: [f64; 2]) {
     let error = apart(&double, truth);
     let fractions = [single, fixed].map(|other| apart(&other, &double).component_div(&error));
-    let [f32, q16] = fractions.map(|of_states| of_states.data.0[0].map(|f| format!("{f:.1e}")));
-    println!("{what}: error {:?}\n    f32 {f32:?}, Q16.16 {q16:?}", error.data.0[0]);
+    let [f32, q16] = fractions.map(|of_states| of_states.as_array().map(|f| format!("{f:.1e}")));
+    println!("{what}: error {:?}\n    f32 {f32:?}, Q16.16 {q16:?}", *error.as_array());
     for (fraction, most) in fractions.iter().zip(most) {
         assert!(fraction.max() <= most, "{what}: {fraction} of the error");
     }
@@ -104,7 +104,7 @@ fn compare<const P: usize>(
     let noise = plant.b * SMatrix::from_diagonal(&SVector::from(INPUT_SIGMAS.map(|s| s * s)));
     let q = Covariance::from_lower_triangle(&(noise * plant.b.transpose()));
     let r = Covariance::from_variances(
-        &(plant.c * SVector::from(STATE_SIGMAS)).map(|s| s * s).data.0[0],
+        (plant.c * SVector::from(STATE_SIGMAS)).map(|s| s * s).as_array(),
     );
     let kalman = steady_state(&plant.a, &q, &plant.c, &r).expect("it settles").gain;
     for sine in [false, true] {

@@ -5,7 +5,7 @@
 
 use anyhow::{Context, Result};
 use kestirim_luenberger::Predictor;
-use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_scalar::{Components, Q16_16, Scalar};
 use nalgebra::SVector;
 use target_bench::streams::{Encode, Flight, fly};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target, uav};
@@ -17,7 +17,7 @@ fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
     let step = |sample: &[f32; 5]| {
         let [u0, u1, y0, y1, y2] = sample.map(T::from_f32);
         observer.step(&SVector::from([u0, u1]), &SVector::from([y0, y1, y2])).expect("a sample");
-        observer.estimate().data.0[0].map(|value| i64::from(value.to_f32().to_bits()))
+        observer.estimate().as_array().map(|value| i64::from(value.to_f32().to_bits()))
     };
     let states: Vec<_> = flight.iter().map(step).collect();
     states.chunks_exact(50).map(|chunk| chunk[49]).collect()

@@ -204,3 +204,68 @@ fn packages_hold_what_they_need() -> Result<()> {
     }
     Ok(())
 }
+
+/// Folders of `host-sim/src/systems`: the names of the systems.
+fn systems() -> Result<BTreeSet<String>> {
+    let entries = fs::read_dir(root().join("host-sim/src/systems"))?;
+    let folders = entries.filter_map(|entry| entry.ok().filter(|entry| entry.path().is_dir()));
+    Ok(folders.filter_map(|folder| folder.file_name().into_string().ok()).collect())
+}
+
+/// Rust sources below a folder, those of `systems` apart.
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() && !path.ends_with("host-sim/src/systems") {
+            sources(&path, found)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_program_knows_no_system_by_name() -> Result<()> {
+    let names = systems()?;
+    ensure!(names.len() >= 5, "the systems stand in host-sim/src/systems: {names:?}");
+    let mut all = Vec::new();
+    sources(&root().join("host-sim/src"), &mut all)?;
+    for path in all {
+        for (number, line) in fs::read_to_string(&path)?.lines().enumerate() {
+            let words = line.split(|letter: char| !letter.is_ascii_alphanumeric());
+            let named = words.map(str::to_lowercase).find(|word| names.contains(word));
+            ensure!(
+                named.is_none(),
+                "{}:{}: names {named:?}; only host-sim/src/systems knows a system",
+                path.display(),
+                number + 1
+            );
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn there_is_one_list_of_the_systems() -> Result<()> {
+    let names = systems()?;
+    let list = fs::read_to_string(root().join("host-sim/src/systems/mod.rs"))?;
+    let listed = list.lines().find(|line| line.contains("pub static ALL")).context("the list")?;
+    ensure!(listed.contains(&format!("; {}]", names.len())), "{listed} is not of {names:?}");
+    for name in &names {
+        ensure!(list.contains(&format!("pub mod {name};")), "{name} is no module");
+    }
+    // No system knows another one.
+    for name in &names {
+        let mut files = Vec::new();
+        sources(&root().join("host-sim/src/systems").join(name), &mut files)?;
+        for path in files {
+            let text = fs::read_to_string(&path)?;
+            let other = names
+                .iter()
+                .find(|other| *other != name && text.contains(&format!("systems::{other}::")));
+            ensure!(other.is_none(), "{} uses {other:?}", path.display());
+        }
+    }
+    Ok(())
+}

@@ -8,6 +8,7 @@ use crate::orthonormal::{complete, normalised};
 use crate::pair::Pair;
 use crate::sequence::Sequence;
 use crate::solve::{inverse, solve};
+use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SVector};
 
 type Wide = Complex<Extended>;
@@ -66,13 +67,15 @@ fn eigenvectors<const N: usize>(
     rank: usize,
 ) -> Option<Square<Wide, N>> {
     let mut conditions = Square::<Wide, N>::zeros();
-    let outside = range.data.0.iter().skip(rank);
-    for (condition, &direction) in conditions.data.0.iter_mut().zip(outside) {
-        [*condition] = adjoint(distance).times(&SVector::from(direction)).data.0;
+    let outside = range.as_columns().iter().skip(rank);
+    for (condition, &direction) in conditions.as_columns_mut().iter_mut().zip(outside) {
+        *condition = *adjoint(distance).times(&SVector::from(direction)).as_array();
     }
     let basis = complete(&conditions, N - rank)?;
     let mut space = Square::<Wide, N>::zeros();
-    for (vector, free) in space.data.0.iter_mut().zip(basis.data.0.iter().skip(N - rank)) {
+    for (vector, free) in
+        space.as_columns_mut().iter_mut().zip(basis.as_columns().iter().skip(N - rank))
+    {
         *vector = *free;
     }
     Some(space)
@@ -157,14 +160,14 @@ fn set<const N: usize>(
     if is_second(index, poles) {
         return;
     }
-    let mut columns = vectors.data.0.iter_mut().skip(index);
+    let mut columns = vectors.as_columns_mut().iter_mut().skip(index);
     if let Some(first) = columns.next() {
-        [*first] = vector.data.0;
+        *first = *vector.as_array();
     }
     if is_second(index + 1, poles)
         && let Some(second) = columns.next()
     {
-        [*second] = vector.map(Number::conjugate).data.0;
+        *second = *vector.map(Number::conjugate).as_array();
     }
 }
 

@@ -5,6 +5,7 @@ use crate::number::{Square, Times, norm};
 use crate::orthonormal::{inner, length, normalised};
 use crate::pair::Pair;
 use crate::sequence::Sequence;
+use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SVector};
 
 /// The gain of the first output of (A, S), in the first column.
@@ -24,12 +25,12 @@ pub(crate) fn place<const N: usize>(
     let mut product = length(&first);
     let mut direction = normalised(&first, 0.0)?;
     for column in 0..N {
-        [basis.data.0[column]] = direction.data.0;
+        basis.as_columns_mut()[column] = *direction.as_array();
         let mut vector = transposed.times(&direction);
         // Twice, as once leaves rounding behind.
         for _ in 0..2 {
-            let parts = &mut hessenberg.data.0[column];
-            for (&base, sum) in basis.data.0.iter().zip(parts).take(column + 1) {
+            let parts = &mut hessenberg.as_columns_mut()[column];
+            for (&base, sum) in basis.as_columns().iter().zip(parts).take(column + 1) {
                 let base = SVector::from(base);
                 let part = inner(&base, &vector);
                 vector -= base * part;

@@ -1,6 +1,6 @@
 use super::window::SlidingMean;
 use super::{Motion, StanceDetector, Verdict};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 
 /// The statistic of the stance hypothesis optimal estimator (Skog et al., IEEE TBME 2010, eq. 14) over 50 ms.
 ///
@@ -29,9 +29,9 @@ impl<T: Scalar> Shoe<T> {
     #[inline]
     pub fn update(&mut self, motion: &Motion<T>) -> T {
         let ceiling = T::from_f64(Self::CEILING);
-        let [x, y, z] = motion.force_g.data.0[0];
+        let [x, y, z] = *motion.force_g.as_array();
         let force_square = T::dot(&[x, y, z], &[x, y, z]).min(ceiling);
-        let rate = &motion.angular_rate.data.0[0];
+        let rate = motion.angular_rate.as_array();
         let rate_square = T::dot(rate, rate).min(ceiling);
         let [x, y, z, force_square, rate_square] =
             self.window.push(motion.time_us, [x, y, z, force_square, rate_square]);

@@ -1,6 +1,6 @@
 use super::window::SlidingMean;
 use super::{Motion, StanceDetector, Verdict};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 
 /// The detector of the paper (AHRS and ZUPT on a Razor IMU, eq. 2): stance where the magnitude of a single sample is within a
 /// threshold of 1 g.
@@ -25,7 +25,7 @@ impl<T: Scalar> Magnitude<T> {
 impl<T: Scalar> StanceDetector<T> for Magnitude<T> {
     #[inline]
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
-        let [x, y, z] = motion.force_g.data.0[0];
+        let [x, y, z] = *motion.force_g.as_array();
         let deviation = x.hypot(y).hypot(z) - T::ONE;
         Verdict { stance: deviation.abs() < self.threshold_g, unrest: T::ZERO }
     }
@@ -55,7 +55,7 @@ impl<T: Scalar> MovingVariance<T> {
 impl<T: Scalar> StanceDetector<T> for MovingVariance<T> {
     #[inline]
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
-        let [x, y, z] = motion.force_g.data.0[0];
+        let [x, y, z] = *motion.force_g.as_array();
         // The deviation from 1 g: its square loses fewer digits than the magnitude's.
         let deviation = (x.hypot(y).hypot(z) - T::ONE).min(T::from_f64(Self::CEILING));
         let [mean, square] = self.window.push(motion.time_us, [deviation, deviation * deviation]);
@@ -87,7 +87,7 @@ impl<T: Scalar> AngularRateEnergy<T> {
 impl<T: Scalar> StanceDetector<T> for AngularRateEnergy<T> {
     #[inline]
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
-        let rate = &motion.angular_rate.data.0[0];
+        let rate = motion.angular_rate.as_array();
         let square = T::dot(rate, rate).min(T::from_f64(Self::CEILING));
         let [energy] = self.window.push(motion.time_us, [square]);
         Verdict { stance: energy < self.threshold, unrest: T::ZERO }

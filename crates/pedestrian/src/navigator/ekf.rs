@@ -4,7 +4,7 @@ use crate::SensorClass;
 use crate::sensor::Noise;
 use kestirim_attitude::Orientation;
 use kestirim_kalman::{Covariance, Gaussian};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// An error-state Kalman filter on zero velocities (Foxlin 2005; Skog et al. 2010).
@@ -53,7 +53,7 @@ impl<T: Scalar> Ekf<T> {
     fn propagate_covariance(&mut self, pushed: &SVector<T, 3>, dt: T) {
         let p = &mut self.error.covariance;
         // δv ← δv + θ × u.
-        let [x, y, z] = pushed.data.0[0];
+        let [x, y, z] = *pushed.as_array();
         p.shear::<0, 4>(z);
         p.shear::<0, 5>(-y);
         p.shear::<1, 5>(x);
@@ -70,7 +70,7 @@ impl<T: Scalar> Ekf<T> {
     /// Moves what the updates found of the error into the estimate.
     #[inline]
     fn inject(&mut self) {
-        let [vx, vy, vz, tx, ty, tz] = self.error.mean.data.0[0];
+        let [vx, vy, vz, tx, ty, tz] = *self.error.mean.as_array();
         let velocity = SVector::from([vx, vy, vz]);
         self.strapdown.position += velocity * (self.swing * T::HALF);
         self.strapdown.velocity += velocity;
@@ -115,11 +115,11 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         );
         let trust = T::ONE + zero.unrest * T::from_f64(1.0 / Self::UNREST);
         let variance = base * trust / zero.interval.max(T::from_f64(0.001));
-        let [x, y, z] = (zero.velocity - self.strapdown.velocity).data.0[0];
+        let [x, y, z] = *(zero.velocity - self.strapdown.velocity).as_array();
         // An update is refused only where P has left the range of numbers; the others still hold.
         let _ = self.error.update_component::<0>(x, variance);
-        let _ = self.error.update_component::<1>(y - self.error.mean.data.0[0][1], variance);
-        let _ = self.error.update_component::<2>(z - self.error.mean.data.0[0][2], variance);
+        let _ = self.error.update_component::<1>(y - self.error.mean.as_array()[1], variance);
+        let _ = self.error.update_component::<2>(z - self.error.mean.as_array()[2], variance);
         self.inject();
         self.swing = T::ZERO;
     }

@@ -3,7 +3,7 @@ use super::{Navigator, Step, ZeroVelocity};
 use crate::SensorClass;
 use crate::alignment::STANDARD_GRAVITY;
 use kestirim_attitude::{Ahrs, Gains, Orientation};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// The paper's own architecture: an attitude reference, integration, and the drift of each stride taken
@@ -64,7 +64,7 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         if zero.landing {
             let swing = self.drifted.max(T::from_f64(Self::SHORTEST_SWING));
             let share = T::from_f64(Self::TILT_SHARE / STANDARD_GRAVITY) / swing;
-            let [x, y, _] = error.data.0[0];
+            let [x, y, _] = *error.as_array();
             self.ahrs.turn_in_earth(&SVector::from([y * share, -x * share, T::ZERO]));
         }
         self.drifted = T::ZERO;

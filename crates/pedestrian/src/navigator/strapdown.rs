@@ -1,7 +1,7 @@
 use super::Step;
 use crate::alignment::STANDARD_GRAVITY;
 use kestirim_attitude::Orientation;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Position and velocity by integration of the specific force (earth axes).
@@ -34,7 +34,7 @@ impl<T: Scalar> Strapdown<T> {
         let pushed = orientation.to_earth(&(body + cross(&step.turn, &body) * T::HALF));
         let before = self.velocity;
         self.velocity += pushed;
-        self.velocity.data.0[0][2] -= fall;
+        self.velocity.as_array_mut()[2] -= fall;
         self.position += (before + self.velocity) * (dt * T::HALF);
         pushed
     }
@@ -51,12 +51,12 @@ pub(crate) fn velocity_of_rolling<T: Scalar>(
     angular_rate: &SVector<T, 3>,
     height: T,
 ) -> SVector<T, 3> {
-    let [x, y, _] = orientation.to_earth(angular_rate).data.0[0];
+    let [x, y, _] = *orientation.to_earth(angular_rate).as_array();
     SVector::from([y * height, -x * height, T::ZERO])
 }
 
 #[inline]
 fn cross<T: Scalar>(a: &SVector<T, 3>, b: &SVector<T, 3>) -> SVector<T, 3> {
-    let (a, b) = (a.data.0[0], b.data.0[0]);
+    let (a, b) = (*a.as_array(), *b.as_array());
     SVector::from([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }

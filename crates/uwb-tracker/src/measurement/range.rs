@@ -1,5 +1,5 @@
 use kestirim_kalman::{Error, Observation};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{ExpectedRange, expected_range};
 use nalgebra::SVector;
 
@@ -38,7 +38,7 @@ impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Range<'_, 
 
     #[inline(always)]
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error> {
-        let mean = &mean.data.0[0];
+        let mean = mean.as_array();
         let position = SVector::<T, D>::from_fn(|axis, _| mean[axis]);
         let ExpectedRange { distance, direction } =
             expected_range(&position, self.height, self.anchor);

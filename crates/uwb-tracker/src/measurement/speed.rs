@@ -1,6 +1,6 @@
 use super::CONTRADICTION;
 use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Speed of the wheels: the size of the velocity, along itself.
@@ -46,7 +46,7 @@ impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Speed<T, D
     #[inline]
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error> {
         let velocity: [T; D] =
-            core::array::from_fn(|axis| mean.data.0[0].get(D + axis).copied().unwrap_or(T::ZERO));
+            core::array::from_fn(|axis| mean.as_array().get(D + axis).copied().unwrap_or(T::ZERO));
         let (size, measured) = (T::norm(&velocity), self.measured.abs());
         // The direction must be known before the speed helps.
         if size < measured * T::HALF || size <= T::from_f64(Self::LEAST) {

@@ -1,6 +1,6 @@
 use super::CONTRADICTION;
 use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// Standing still: one component of the velocity is measured to be zero.
@@ -50,7 +50,7 @@ impl<T: Scalar, const N: usize> Observation<T, N> for Standstill {
 
     #[inline]
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error> {
-        let velocity = mean.data.0[0].get(self.index).copied().unwrap_or(T::ZERO);
+        let velocity = mean.as_array().get(self.index).copied().unwrap_or(T::ZERO);
         Ok((-velocity, SparseRow::new([(self.index, T::ONE)])))
     }
 }

@@ -8,7 +8,7 @@ use crate::stillness::Stillness;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
 use heapless::Vec;
 use kestirim_kalman::Gaussian;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// A tag in the plane at a known height, with the anchors' common bias among the five states.
@@ -78,14 +78,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     #[inline]
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate.as_ref()?;
-        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][axis]))
+        Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[axis]))
     }
 
     /// Velocity of the tag, m/s.
     #[inline]
     pub fn velocity(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate.as_ref()?;
-        Some(SVector::from_fn(|axis, _| estimate.mean.data.0[0][D + axis]))
+        Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[D + axis]))
     }
 
     /// Mean and covariance of all states.

@@ -164,7 +164,7 @@ mod tests {
         let foot = Footprint { time_us: 0, position: [0.5, 0.5, f32::NAN], length: 1.0 };
         feed.take(&foot.into(), &mut state)?;
         assert_eq!(state.counts.refused, 2);
-        assert_eq!(state.senders_way.iter().collect::<Vec<_>>(), [[1.0, 1.0], [2.0, 1.0]]);
+        assert_eq!(state.senders_path.iter().collect::<Vec<_>>(), [[1.0, 1.0], [2.0, 1.0]]);
         assert_eq!(state.footprints.iter().count(), 1);
         Ok(())
     }
@@ -179,9 +179,9 @@ mod tests {
             feed.take(&message.into(), &mut state)?;
         }
         assert_eq!(state.counts.refused, 1);
-        let way: Vec<_> = state.senders_way.iter().collect();
-        assert_eq!(way.len(), 2);
-        assert!((way[1][0] - 3.0).abs() < 1e-6 && (way[1][1] - 4.0).abs() < 1e-6, "{way:?}");
+        let path: Vec<_> = state.senders_path.iter().collect();
+        assert_eq!(path.len(), 2);
+        assert!((path[1][0] - 3.0).abs() < 1e-6 && (path[1][1] - 4.0).abs() < 1e-6, "{path:?}");
         Ok(())
     }
 

@@ -109,6 +109,15 @@ impl Stopper {
 }
 
 impl Live {
+    /// What a command line of `live` asks for.
+    ///
+    /// # Errors
+    /// As [`Live::start`], and whatever is wrong with options and files.
+    pub fn of(matches: &ArgMatches) -> Result<Self, Error> {
+        let (stream, following) = options::read(matches)?;
+        Self::start(&stream, &following)
+    }
+
     /// Begins to listen, to record and to follow; or plays a recording back.
     ///
     /// # Errors

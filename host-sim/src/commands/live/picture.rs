@@ -2,7 +2,7 @@
 
 use kestirim_telemetry::Health;
 
-use super::state::{State, Way};
+use super::state::{Path, State};
 use super::window::Window;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::STANDARD_GRAVITY;
@@ -57,19 +57,21 @@ impl State {
     }
 
     fn map_figure(&self) -> Figure {
-        let way = |name: &str, way: &Way| Series::path(name, way.iter());
+        let path = |name: &str, path: &Path| Series::path(name, path.iter());
         let here = self.position.map(|[x, y, _]| [x, y]);
         Figure::new("live-path", "Path")
             .axes("x or east, m", "y or north, m")
             .map()
-            .caption("Where the estimator and the sender itself see the way so far.")
+            .caption("Where the estimator and the sender itself see the path so far.")
             .with_all(self.map.iter().cloned())
-            .with(way("sender", &self.flown).marked(Mark::Dots).coloured(Colour::Other(2)))
-            .with(way("sender's estimate", &self.senders_way).coloured(SENDERS))
+            .with(path("sender", &self.flown).marked(Mark::Dots).coloured(Colour::Other(2)))
+            .with(path("sender's estimate", &self.senders_path).coloured(SENDERS))
             .with(
-                way("sender's footprints", &self.footprints).marked(Mark::Points).coloured(SENDERS),
+                path("sender's footprints", &self.footprints)
+                    .marked(Mark::Points)
+                    .coloured(SENDERS),
             )
-            .with(way("estimate", &self.way))
+            .with(path("estimate", &self.path))
             .with(Series::points("now", here).coloured(Colour::Alarm))
     }
 
@@ -128,7 +130,7 @@ impl State {
         let points = self.losses.iter().map(|(time, loss)| [time, f64::from(*loss)]);
         Figure::new("live-loss", "Path loss of the last 30 s")
             .axes(TIME, "dB")
-            .caption("The nearer the drone is to the user, the smaller.")
+            .caption("The nearer the sender is to what it hears, the smaller.")
             .with(Series::points("path loss", points).marked(Mark::LineAndPoints))
     }
 

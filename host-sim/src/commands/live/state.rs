@@ -16,11 +16,11 @@ use crate::figure::Series;
 use crate::system::{Answer, Online, Outcome, Panel, Plan};
 use crate::table::FARTHEST_POSITION;
 
-/// Points of a way on the map.
-const WAY: usize = 4096;
+/// Points of a path on the map.
+const POINTS: usize = 4096;
 
-/// A way on the map, m.
-pub(super) type Way = Thinned<[f64; 2]>;
+/// A path on the map, m.
+pub(super) type Path = Thinned<[f64; 2]>;
 
 /// All that is shown.
 #[derive(Debug, Clone)]
@@ -39,12 +39,12 @@ pub(super) struct State {
     suspicions: Vec<String>,
     pub(super) map: Vec<Series>,
     /// By the estimator here.
-    pub(super) way: Way,
+    pub(super) path: Path,
     /// By the sender's own.
-    pub(super) senders_way: Way,
-    pub(super) footprints: Way,
-    /// Of the drone.
-    pub(super) flown: Way,
+    pub(super) senders_path: Path,
+    pub(super) footprints: Path,
+    /// Where path losses were measured.
+    pub(super) flown: Path,
     pub(super) inertial: Window<Inertial>,
     /// Anchors, ranges, and whether they were refused.
     pub(super) ranges: Window<(u16, f32, bool)>,
@@ -67,7 +67,7 @@ impl State {
     /// Before anything has come.
     pub(super) fn new(following: &Following) -> Self {
         let plan = following.plan.as_deref();
-        let way = Way::new(WAY);
+        let path = Path::new(POINTS);
         Self {
             system: following.name,
             panels: following.panels,
@@ -80,10 +80,10 @@ impl State {
             assumptions: plan.map(Plan::assumptions).unwrap_or_default(),
             suspicions: Vec::new(),
             map: plan.map(Plan::map).unwrap_or_default(),
-            way: way.clone(),
-            senders_way: way.clone(),
-            footprints: way.clone(),
-            flown: way,
+            path: path.clone(),
+            senders_path: path.clone(),
+            footprints: path.clone(),
+            flown: path,
             inertial: Window::default(),
             ranges: Window::default(),
             losses: Window::default(),
@@ -102,13 +102,13 @@ impl State {
 
     /// The sender has begun anew: what was drawn is no more.
     pub(super) fn restart(&mut self) {
-        let way = Way::new(WAY);
+        let path = Path::new(POINTS);
         self.counts.restarts += 1;
         self.position = None;
-        self.way = way.clone();
-        self.senders_way = way.clone();
-        self.footprints = way.clone();
-        self.flown = way;
+        self.path = path.clone();
+        self.senders_path = path.clone();
+        self.footprints = path.clone();
+        self.flown = path;
         self.inertial = Window::default();
         self.ranges = Window::default();
         self.losses = Window::default();
@@ -155,7 +155,7 @@ impl State {
 
     fn move_to(&mut self, position: Option<[f64; 3]>) {
         if let Some([x, y, _]) = position.filter(|_| position != self.position) {
-            self.way.push([x, y]);
+            self.path.push([x, y]);
         }
         self.position = position;
     }
@@ -172,14 +172,14 @@ impl State {
     pub(super) fn tell(&mut self, message: &Message) {
         let believed = match *message {
             Message::Position(Position { position: [x, y, _], .. }) => {
-                push(&mut self.senders_way, [x, y].map(f64::from))
+                push(&mut self.senders_path, [x, y].map(f64::from))
             }
             Message::Footprint(Footprint { position: [x, y, _], .. }) => {
                 push(&mut self.footprints, [x, y].map(f64::from))
             }
             Message::GlobalPosition(GlobalPosition { position, .. }) => {
                 let place = self.near(position);
-                push(&mut self.senders_way, place)
+                push(&mut self.senders_path, place)
             }
             Message::State(kestirim_telemetry::State { time_us, state }) => {
                 let believed = state.iter().all(|number| number.is_finite());
@@ -244,11 +244,11 @@ impl State {
     }
 }
 
-/// Draws a way on, unless nobody can be there.
-fn push(way: &mut Way, place: [f64; 2]) -> bool {
+/// Draws a path on, unless nobody can be there.
+fn push(path: &mut Path, place: [f64; 2]) -> bool {
     let believed = place.iter().all(|coordinate| coordinate.abs() <= FARTHEST_POSITION);
     if believed {
-        way.push(place);
+        path.push(place);
     }
     believed
 }

@@ -1,4 +1,4 @@
-//! A long way in little memory.
+//! A long path in little memory.
 
 /// Values in their order, of which fewer are kept the more there are: at any time evenly many, and the last.
 #[derive(Debug, Clone)]

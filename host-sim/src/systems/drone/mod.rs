@@ -1,8 +1,6 @@
 //! A drone base station that finds and follows a user on the ground.
 //!
-//! `trajectory` and `scenario` make measurements; `static_user` and `moving_user` run one cell of the thesis'
-//! tables; `experiment` runs them all; `flight` and `area` read recordings, in which
-//! `search` finds the user for a [replay](replay::Replay).
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes.
 //!
 //! Frame: a plane in metres (such as east and north), heights above the user.
 
@@ -11,31 +9,134 @@
     reason = "what is expected holds for all that the command line lets through"
 )]
 
-pub mod area;
-pub mod beyond;
-pub mod chapter;
-pub mod cloud;
-pub mod experiment;
-pub mod explorer;
-pub mod film;
-pub mod flight;
-pub mod moving_user;
-pub mod online;
-pub mod options;
-pub mod replay;
-pub mod report;
-pub mod scenario;
-mod search;
-pub mod static_user;
-mod survey;
-pub mod sweeps;
-pub mod trajectory;
+pub mod account;
+pub mod figures;
+mod online;
+pub mod paper;
+pub mod recording;
+pub mod settings;
+pub mod simulate;
+pub mod track;
 
-/// What `host-sim list` says of this system.
-pub(super) const DESCRIPTION: &str = "\
-drone       where a user on the ground is, from the path loss to a drone
-  scenario  a user who stays in 2000 m × 2000 m, measured from a circle or a grid
-  scenario  a user who walks a circle in 4000 m × 4000 m, followed by the drone
-  log       CSV with columns t,x,y,h and path_loss_db or rssi_db in s, m and dB
-  area      CSV with columns x,y in m: the corners of a polygon
-  truth     CSV with columns x,y in m, one line";
+use std::sync::Arc;
+
+use self::paper::{experiment, report::Report};
+use self::recording::Recording;
+use self::track::trace::Track;
+use crate::Error;
+use crate::report::Chapter;
+use crate::stream::Stream;
+use crate::system::{
+    Account, Answer, Detail, FileField, Files, Idle, OutputField, Panel, Plan, RunOptions, Setting,
+    Settings, System, Table,
+};
+
+/// The system.
+#[derive(Debug, Clone, Copy)]
+pub struct Drone;
+
+impl System for Drone {
+    const NAME: &'static str = "drone";
+    const TITLE: &'static str = "where a user on the ground is, from the path loss to a drone";
+    const PAPER: &'static str = "RSSI localisation of a user by a drone base station with a particle filter, MSc thesis in \
+                                 Turkish (MATLAB)";
+    const FILES: &'static [FileField] = &[
+        FileField::required(
+            "log",
+            "Flight: CSV with columns t,x,y,h and path_loss_db or rssi_db (s, m, dB)",
+        ),
+        FileField::optional(
+            "truth",
+            "Where the user really is: CSV with columns x,y and one line (m); serves accuracy alone",
+        ),
+        FileField::optional(
+            "area",
+            "Where the user can be: CSV with columns x,y, the corners of a polygon (m)",
+        )
+        .live(),
+    ];
+    const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
+        ("moving", "A user who walks a circle in 4000 m × 4000 m, followed by the drone"),
+        ("staying", "A user who stays in 2000 m × 2000 m, measured from a circle or a grid"),
+    ];
+    const OUTPUTS: &'static [OutputField] =
+        &[OutputField { name: "track", help: "Write t,x,y,sd of each measurement to this file" }];
+    const PANELS: &'static [Panel] = &[Panel::Map, Panel::Losses];
+
+    type Recording = Recording;
+    type Trace = Track;
+    type Experiment = Report;
+
+    fn settings(recording: Option<&Recording>) -> Vec<Setting> {
+        settings::table(recording)
+    }
+
+    fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        settings::idle(recording, settings, name)
+    }
+
+    fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
+        Recording::read(files.required("log")?, files.one("truth"), files.one("area"))
+    }
+
+    fn synthetic(name: &str) -> Result<Recording, Error> {
+        Recording::synthetic(name)
+    }
+
+    fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {
+        track::track(recording, settings, detail)
+    }
+
+    fn account(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+    ) -> Result<Account, Error> {
+        account::account(recording, settings, track)
+    }
+
+    fn figures(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+        answer: &mut Answer,
+    ) -> Result<(), Error> {
+        figures::draw(recording, settings, track, answer);
+        Ok(())
+    }
+
+    fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
+        account::table(track)
+    }
+
+    fn streams(_: &Recording, _: &Settings, track: &Track) -> Vec<Stream> {
+        figures::streams::streams(track)
+    }
+
+    fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
+        settings::firmware(recording, settings)
+    }
+
+    fn cell() -> Vec<Setting> {
+        settings::cell::table()
+    }
+
+    fn cell_idle(cell: &Settings, name: &str) -> Option<Idle> {
+        settings::cell::idle(cell, name)
+    }
+
+    fn experiment(run: &RunOptions, cell: &Settings) -> Result<Report, Error> {
+        experiment::run(run, cell)
+    }
+
+    fn chapter(report: &Report) -> Result<Chapter, Error> {
+        paper::chapter::chapter(report)
+    }
+
+    fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        Ok(Some(Arc::new(online::Listening::read(settings, files)?)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,38 +1,108 @@
-//! Where a user is, while the drone still flies.
+//! A user on the ground, heard by a drone that still flies.
 
-use super::area::Area;
-use super::flight::{Flight, Quantity, Stop};
-use super::search::{Estimate, MOST_OPEN, Search};
+use kestirim_telemetry::{Message, PathLoss};
+use kestirim_user_locator::Thinned;
+
+use super::recording::area::{self, Area};
+use super::recording::flight::{Quantity, Stop};
+use super::settings::built;
+use super::settings::choices::EnvironmentKind;
+use super::track::search::{MOST_OPEN, Search};
+use super::track::trace::Estimate;
+use crate::Error;
+use crate::figure::{Colour, Mark, Series};
+use crate::system::{Files, Online, Outcome, Plan, Settings};
 use crate::table::FARTHEST_POSITION;
 
-/// Most measurements that a place is found from.
-pub const MOST: usize = MOST_OPEN;
-
-/// Where the user is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Found {
-    /// As x and y of the measurements, m.
-    pub place: [f64; 2],
-    /// Root mean square distance that the filter expects, m.
-    pub sd_m: f64,
+/// Where the user can be, and what is built there.
+#[derive(Debug, Clone)]
+pub(super) struct Listening {
+    area: Option<Box<Area>>,
+    environment: Option<EnvironmentKind>,
 }
 
-/// Finds the user over open ground from at most [`MOST`] path losses, as a replay does; none if no place explains
-/// them, and from fewer than three.
-pub fn locate(stops: Vec<Stop>, area: Option<&Area>) -> Option<Found> {
-    if stops.len() < 3 {
-        return None;
+impl Listening {
+    /// Reads the files.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the area.
+    pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
+        let area = files.one("area").map(area::read).transpose()?;
+        Ok(Self { area, environment: built(settings) })
     }
-    let flight = Flight { quantity: Quantity::PathLoss, stops, unusable: 0 };
-    let estimates = Search::new(&flight, area, None, true).in_free_space(flight.quantity);
-    let Estimate { place, sd_m, .. } = *estimates.last()?;
-    Some(Found { place, sd_m })
 }
 
-impl Stop {
-    /// Whether it was measured somewhere on earth, and a channel can use it.
-    pub fn is_somewhere(&self) -> bool {
-        self.place.iter().all(|coordinate| coordinate.abs() <= FARTHEST_POSITION)
-            && self.is_usable()
+impl Plan for Listening {
+    fn build(&self) -> Result<Box<dyn Online>, Error> {
+        let plan = self.clone();
+        Ok(Box::new(Listener { stops: Box::default(), plan, is_new: false, found: None }))
+    }
+
+    fn map(&self) -> Vec<Series> {
+        let border = self.area.iter().map(|area| {
+            let corners = area.corners();
+            let closed = corners.iter().chain(corners.first()).copied();
+            Series::path("area", closed).marked(Mark::Dashes).coloured(Colour::Truth)
+        });
+        border.collect()
+    }
+}
+
+/// Looks for the place as a replay does, from all that was heard, evenly thinned where it is much.
+#[derive(Debug)]
+struct Listener {
+    stops: Box<Thinned<Stop, MOST_OPEN>>,
+    plan: Listening,
+    /// Whether something was heard that is not yet in what was found.
+    is_new: bool,
+    found: Option<Estimate>,
+}
+
+impl Listener {
+    /// Where the user is; none if no place explains the path losses, and from fewer than three.
+    fn locate(&self) -> Option<Estimate> {
+        let stops = self.stops.as_slice();
+        if stops.len() < 3 {
+            return None;
+        }
+        let Listening { area, environment } = &self.plan;
+        let search = Search::new(stops, area.as_deref(), None, true, false);
+        search.find(*environment, Quantity::PathLoss).pop()
+    }
+}
+
+impl Online for Listener {
+    fn take(&mut self, message: &Message) -> Outcome {
+        let Message::PathLoss(PathLoss { time_us, place, loss }) = *message else {
+            return Outcome::NotMine;
+        };
+        let [x, y, height] = place.map(f64::from);
+        let stop = Stop { t: time_us as f64 * 1e-6, place: [x, y], height, loss: f64::from(loss) };
+        let is_on_earth = stop.place.iter().all(|axis| axis.abs() <= FARTHEST_POSITION);
+        if !is_on_earth || !stop.is_usable() {
+            return Outcome::Refused;
+        }
+        self.stops.push(stop);
+        self.is_new = true;
+        Outcome::Taken
+    }
+
+    fn settle(&mut self) {
+        if std::mem::take(&mut self.is_new) {
+            self.found = self.locate().or(self.found.take());
+        }
+    }
+
+    fn finish(&mut self) {
+        self.settle();
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        self.found.as_ref().map(|Estimate { place: [x, y], .. }| [*x, *y, 0.0])
+    }
+
+    fn facts(&self) -> Vec<(String, String)> {
+        let found = self.found.iter();
+        found.map(|it| ("standard deviation".to_owned(), format!("{:.0} m", it.sd_m))).collect()
     }
 }

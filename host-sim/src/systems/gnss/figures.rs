@@ -1,13 +1,17 @@
 //! Figures of what filters made of a recording.
 
+pub mod streams;
+
 use std::collections::BTreeMap;
 
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
 
-use super::follow::Followed;
-use super::options::FilterKind;
+use super::account::accuracy::BEGINNING;
+use super::settings::FilterKind;
+use super::track::Track;
+use super::track::followed::Followed;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::median;
 
@@ -22,6 +26,39 @@ const GAP_EPOCHS: f64 = 10.5;
 
 /// Code or phase of a satellite.
 pub type Kind = fn(&SatelliteReport) -> &Decision<f64>;
+
+/// The page's figures: all filters of a track in the first, the one that is shown closely in the others.
+pub(super) fn draw(track: &Track, truth: Option<&Vector3<f64>>) -> Vec<Figure> {
+    let (main, about) = (track.main(), &track.about(truth));
+    let origin = if truth.is_some() { "the truth" } else { "the last position" };
+    let of = match &*track.filters {
+        [_] => "",
+        _ => " Of the default filter.",
+    };
+    let caption = |text: &str| format!("{text}{of}");
+    let filters = track.filters.iter().map(|(filter, followed)| (*filter, followed));
+    let close = "Over √(Qᵥ/γ), a colour a satellite; the legend shows the rejected ones.";
+    vec![
+        errors(Figure::new("error", "Distance"), filters, about)
+            .caption(format!("Distance from {origin}.")),
+        components(Figure::new("components", "East, north, up"), main, about)
+            .caption(caption(&format!("To the east, north and up of {origin}."))),
+        residuals(Figure::new("residuals", "Residuals of the codes"), main, |it| &it.code)
+            .caption(caption(close)),
+        residuals(Figure::new("phases", "Residuals of the phases"), main, |it| &it.phase)
+            .caption(caption(close)),
+        deviations(Figure::new("sigma", "Standard deviations as reported"), main, truth).caption(
+            caption(
+                "What the filter says of itself, and how far off it is where the truth is known.",
+            ),
+        ),
+        satellites(Figure::new("satellites", "Satellites"), main).caption(caption(
+            "When each was used, what of it was rejected, and where its ambiguity began anew.",
+        )),
+        plan(Figure::new("plan", "Plan"), main, about)
+            .caption(caption(&format!("About {origin}; the legend shows the first hour."))),
+    ]
+}
 
 /// In which colour a filter is drawn.
 pub fn colour(filter: FilterKind) -> Colour {
@@ -163,8 +200,7 @@ pub fn satellites(figure: Figure, followed: &Followed) -> Figure {
 pub fn plan(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
     let begin = followed.fixes.first().map_or(0.0, |fix| fix.t);
     let places = followed.fixes.iter().zip(followed.enu_from(about));
-    let (early, late): (Vec<_>, Vec<_>) =
-        places.partition(|(fix, _)| fix.t < begin + super::accuracy::BEGINNING);
+    let (early, late): (Vec<_>, Vec<_>) = places.partition(|(fix, _)| fix.t < begin + BEGINNING);
     let points = |places: Vec<(_, [f64; 3])>| places.into_iter().map(|(_, [e, n, _])| [e, n]);
     // A short recording has nothing else to show.
     let hide = |series: Series| if late.is_empty() { series } else { series.hidden() };

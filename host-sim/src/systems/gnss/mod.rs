@@ -1,40 +1,149 @@
 //! GNSS receivers at a fixed or moving place.
 //!
-//! `sky` makes observations, and `experiment` repeats the paper's tables on them.
-//! `kestirim-gnss-files` reads the files, and `model` gives what they hold the types of the observation model;
-//! `products` and `recording` put together what a filter needs. `follow` feeds one and counts what becomes of the observations, `accuracy` compares with the
-//! truth; `session` runs one filter or all for a [replay](replay::Replay) and for the `explorer`. `chapter` is the
-//! system's part of the report; `figures` and `streams` show what a filter made of a recording.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes.
 //!
 //! Times are seconds since the midnight before the first epoch, positions those of the marker, ECEF.
 
-pub mod accounts;
-pub mod accuracy;
-pub mod chapter;
-pub mod comparison;
-pub mod experiment;
-pub mod explorer;
+pub mod account;
 pub mod figures;
-pub mod follow;
-pub mod model;
-pub mod options;
-pub mod outage;
-pub mod parts;
-pub mod products;
+pub mod paper;
 pub mod recording;
-pub mod replay;
-pub mod report;
-pub mod session;
-pub mod sky;
-pub mod streams;
-pub mod tables;
+pub mod settings;
+pub mod simulate;
+pub mod track;
 
-/// What `host-sim list` says of this system.
-pub(super) const DESCRIPTION: &str = "\
-gnss        where a GPS receiver is, to a centimetre, from precise orbits and clocks
-  scenario  days of a station under a synthetic sky, static and kinematic, with and without faults
-  obs       RINEX 2, 3 or 4 observations of GPS on L1 and L2, as all these files perhaps packed with gzip; CRINEX
-  sp3, clk  precise orbits (SP3) and clocks (RINEX), one file or more
-  antex     phase centres of antennas (ANTEX)
-  blq       ocean loading of stations (BLQ)
-  truth     X,Y,Z of the marker in m, ECEF, on the command line";
+use self::figures::streams;
+use self::paper::experiment;
+use self::recording::Recording;
+use self::settings::{Choice, Setup};
+use self::track::Track;
+use crate::Error;
+use crate::report::Chapter;
+use crate::stream::Stream;
+use crate::system::{
+    Account, Answer, Detail, FileField, Files, Idle, OutputField, RunOptions, Setting, Settings,
+    System, Table,
+};
+
+/// The system.
+#[derive(Debug, Clone, Copy)]
+pub struct Gnss;
+
+impl System for Gnss {
+    const NAME: &'static str = "gnss";
+    const TITLE: &'static str =
+        "where a GPS receiver is, to a centimetre, from precise orbits and clocks";
+    const PAPER: &'static str =
+        "Bahadur and Nohutcu 2020, robust Kalman filters for precise point positioning";
+    const FILES: &'static [FileField] = &[
+        FileField::required(
+            "obs",
+            "What the receiver observed: RINEX 2, 3 or 4 or CRINEX, GPS on L1 and L2; any file may be packed with gzip",
+        ),
+        FileField::required(
+            "sp3",
+            "Precise orbits, SP3, one file or more: those of the day before and after help at its ends",
+        )
+        .several(),
+        FileField::optional(
+            "clk",
+            "Precise clocks, RINEX, one file or more [default: the clocks of the orbit files]",
+        )
+        .several(),
+        FileField::required(
+            "antex",
+            "Phase centres of the satellites' and the receiver's antennas, ANTEX",
+        ),
+        FileField::optional("blq", "Ocean loading of the station, BLQ [default: not corrected]"),
+        FileField::optional("truth", "a file of which the first line is X,Y,Z"),
+    ];
+    const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
+        ("faults", "8 h of a synthetic station: outliers, biases, slips that nothing shows"),
+        ("clean", "the same without faults"),
+    ];
+    const OUTPUTS: &'static [OutputField] = &[
+        OutputField {
+            name: "track",
+            help: "Write t,x,y,z (s, ECEF m) of each epoch with a solution to this file",
+        },
+        OutputField {
+            name: "residuals",
+            help: "Write residuals, weights and reasons of each observation to this file",
+        },
+    ];
+
+    type Recording = Recording;
+    type Trace = Track;
+    type Experiment = experiment::Report;
+
+    fn settings(recording: Option<&Recording>) -> Vec<Setting> {
+        settings::table(recording)
+    }
+
+    fn idle(_: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        settings::idle(settings, name)
+    }
+
+    fn lacks_output(settings: &Settings) -> Option<&'static str> {
+        let all = settings.chosen::<Choice>("filter") == Choice::All;
+        all.then_some("is of one filter, not of --filter all")
+    }
+
+    fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
+        Recording::read(files)
+    }
+
+    fn synthetic(name: &str) -> Result<Recording, Error> {
+        Recording::synthetic(name)
+    }
+
+    fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {
+        Track::of(recording, &Setup::of(settings), detail)
+    }
+
+    fn account(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+    ) -> Result<Account, Error> {
+        account::account(recording, &Setup::of(settings), track)
+    }
+
+    fn figures(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+        answer: &mut Answer,
+    ) -> Result<(), Error> {
+        let truth = Setup::of(settings).truth(recording);
+        answer.figures = figures::draw(track, truth.as_ref());
+        Ok(())
+    }
+
+    fn table(output: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
+        match output {
+            "track" => account::tables::track(&track.main().fixes),
+            _ => account::tables::residuals(&track.main().residuals),
+        }
+    }
+
+    fn streams(recording: &Recording, settings: &Settings, track: &Track) -> Vec<Stream> {
+        let truth = Setup::of(settings).truth(recording);
+        streams::streams(track.main(), &track.about(truth.as_ref()), truth.is_some())
+    }
+
+    fn firmware(_: Option<&Recording>, settings: &Settings) -> String {
+        Setup::of(settings).firmware()
+    }
+
+    fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
+        experiment::run(*run)
+    }
+
+    fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {
+        paper::chapter::chapter(experiment)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,36 +1,34 @@
-//! The files of a replay, read.
+//! What a receiver recorded: from files or synthetic.
 
-use std::path::{Path, PathBuf};
+pub mod model;
+pub mod products;
+pub mod truth;
+
+use std::path::PathBuf;
 
 use kestirim_gnss_files::{
     Antenna, Antennas, Clocks, Observations, Orbits, StationLoading, Warning,
 };
 use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
+use nalgebra::Vector3;
 
-use super::model::{self, Epoch, error, patterns};
-use super::products::Products;
-use super::sky::{Day, MIDNIGHT, UTC_MINUS_GPS};
+use self::model::{Epoch, error, patterns};
+use self::products::Products;
+use super::simulate::{Day, INTERVAL_S, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::Error;
+use crate::system::Files;
 use crate::text::printable_path;
 
-/// Which files to read.
-#[derive(Debug, Clone, Copy)]
-pub struct Files<'a> {
-    /// What the receiver observed.
-    pub observations: &'a Path,
-    /// Orbits, and clocks where there are no others.
-    pub orbits: &'a [PathBuf],
-    /// Clocks.
-    pub clocks: &'a [PathBuf],
-    /// Antennas.
-    pub antennas: &'a Path,
-    /// Ocean loading.
-    pub ocean_loading: Option<&'a Path>,
-}
+/// How much of a synthetic day is a recording, s.
+const SYNTHETIC_S: f64 = 8.0 * 3600.0;
 
 /// What a receiver recorded, and all that must be known for a position.
 #[derive(Debug)]
 pub struct Recording {
+    /// Where the observations were read.
+    pub path: PathBuf,
+    /// Where the marker really is, ECEF, m, if that is known.
+    pub truth: Option<Vector3<f64>>,
     epochs: Vec<Epoch>,
     approximate_position: Option<[f64; 3]>,
     /// The antenna's reference point above, east and north of the marker, m.
@@ -44,8 +42,8 @@ pub struct Recording {
     pub midnight: GpsTime,
     /// The first and the last time of an orbit, s since the midnight.
     pub orbits_span: [f64; 2],
-    /// What a user should know of the files.
-    pub warnings: Vec<String>,
+    /// What a user should know of the files, some of it only if a correction is applied.
+    warnings: Vec<(Option<Correction>, String)>,
 }
 
 impl Recording {
@@ -53,31 +51,34 @@ impl Recording {
     ///
     /// # Errors
     /// The file, the line, and what was expected there.
-    pub fn read(files: &Files<'_>, corrections: Corrections) -> Result<Self, Error> {
-        let clocks = || (!files.clocks.is_empty()).then(|| Clocks::read(files.clocks)).transpose();
+    pub fn read(files: &Files) -> Result<Self, Error> {
+        let (path, antex) = (files.required("obs")?, files.required("antex")?);
+        files.required("sp3")?;
+        let truth = files.one("truth").map(truth::read).transpose()?;
+        let clocks = files.all("clk");
+        let clocks = || (!clocks.is_empty()).then(|| Clocks::read(clocks)).transpose();
         let (observations, (orbits, clocks)) = rayon::join(
-            || Observations::read(files.observations),
-            || rayon::join(|| Orbits::read(files.orbits), clocks),
+            || Observations::read(path),
+            || rayon::join(|| Orbits::read(files.all("sp3")), clocks),
         );
         let observations = observations.map_err(error)?;
         let (orbits, clocks) = (orbits.map_err(error)?, clocks.map_err(error)?);
-        let antennas = Antennas::read(files.antennas, &observations.antenna).map_err(error)?;
-        let loading = match files.ocean_loading {
-            Some(path) => {
-                let place = observations.approximate_position;
-                let loading = StationLoading::read(path, &observations.marker, place);
-                Some(loading.map_err(error)?)
-            }
-            None => None,
-        };
+        let antennas = Antennas::read(antex, &observations.antenna).map_err(error)?;
+        let near = observations.approximate_position;
+        let loading = files
+            .one("blq")
+            .map(|path| StationLoading::read(path, &observations.marker, near).map_err(error));
+        let loading = loading.transpose()?;
         let Some(start) = observations.epochs.first().map(|epoch| epoch.time) else {
             return Err(Error::File {
-                path: files.observations.to_path_buf(),
+                path: path.to_path_buf(),
                 problem: "expected observations of GPS satellites, found none".to_owned(),
             });
         };
         let mut warnings = Vec::new();
-        let mut warn = |more: &[Warning]| warnings.extend(more.iter().map(Warning::to_string));
+        let mut warn = |more: &[Warning]| {
+            warnings.extend(more.iter().map(|warning| (None, warning.to_string())));
+        };
         warn(&observations.warnings);
         warn(&orbits.warnings);
         if let Some(clocks) = &clocks {
@@ -86,23 +87,26 @@ impl Recording {
         warn(&antennas.warnings);
         match &loading {
             Some(loading) => warn(&loading.warnings),
-            None if corrections.has(Correction::OceanLoading) => warnings.push(
+            None => warnings.push((
+                Some(Correction::OceanLoading),
                 "the load of the oceans' tides is not corrected, up to some centimetres (--blq)"
                     .to_owned(),
-            ),
-            None => {}
+            )),
         }
         let midnight = GpsTime::new(start.day(), 0.0);
-        let unknown = |&&prn: &&u8| {
+        let is_unknown = |&&prn: &&u8| {
             let antenna = antennas.satellite(prn, start);
             !orbits.satellite(prn).is_empty() && antenna.and_then(patterns).is_none()
         };
-        let strangers: Vec<_> = observations.signals.keys().filter(unknown).collect();
-        if !strangers.is_empty() && corrections.has(Correction::SatelliteAntenna) {
-            warnings.push(format!(
-                "{}: does not know the antennas of {}: they are off by a metre or more",
-                printable_path(files.antennas),
-                names(strangers.into_iter().copied()),
+        let unknown: Vec<_> = observations.signals.keys().filter(is_unknown).copied().collect();
+        if !unknown.is_empty() {
+            warnings.push((
+                Some(Correction::SatelliteAntenna),
+                format!(
+                    "{}: does not know the antennas of {}: they are off by a metre or more",
+                    printable_path(antex),
+                    names(unknown),
+                ),
             ));
         }
         let times = orbits.satellites().filter_map(|prn| {
@@ -117,6 +121,8 @@ impl Recording {
         let products = Products::new(start, &orbits, clocks.as_ref(), &antennas);
         let loading = loading.and_then(|station| station.loading);
         Ok(Self {
+            path: path.to_path_buf(),
+            truth,
             epochs: observations.epochs.into_iter().map(model::epoch).collect(),
             approximate_position: observations.approximate_position,
             antenna_delta_hen: observations.antenna_delta_hen,
@@ -130,9 +136,26 @@ impl Recording {
         })
     }
 
+    /// The first hours of a synthetic day by name.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is none of that name.
+    pub fn synthetic(name: &str) -> Result<Self, Error> {
+        let rates = match name {
+            "faults" => Rates::RECORDING,
+            "clean" => Rates::NONE,
+            _ => return Err(Error::Usage(format!("there is no synthetic day {name:?}"))),
+        };
+        let mut day = Day::new(0, 0, &rates);
+        day.epochs.truncate((SYNTHETIC_S / INTERVAL_S) as usize);
+        Ok(Self::of_day(day))
+    }
+
     /// A synthetic day: antennas are points, and oceans have no tides.
     pub fn of_day(day: Day) -> Self {
         Self {
+            path: PathBuf::from("synthetic day"),
+            truth: Some(day.marker),
             epochs: day.epochs,
             approximate_position: None,
             antenna_delta_hen: [0.0; 3],
@@ -151,6 +174,19 @@ impl Recording {
         // A receiver's clock is some milliseconds off at most.
         let last = until.map_or(f64::INFINITY, |until| until + 1e-2);
         &self.epochs[..self.epochs.partition_point(|epoch| self.seconds(epoch) <= last)]
+    }
+
+    /// Times of the first and the last epoch, s since the midnight before the first one.
+    pub fn span(&self) -> [f64; 2] {
+        let ends = [self.epochs.first(), self.epochs.last()];
+        ends.map(|epoch| epoch.map_or(0.0, |epoch| self.seconds(epoch)))
+    }
+
+    /// What a user should know of the files if some corrections are applied.
+    pub fn warnings(&self, corrections: Corrections) -> impl Iterator<Item = String> {
+        let concerns = move |of: &Option<Correction>| of.is_none_or(|it| corrections.has(it));
+        let some = self.warnings.iter().filter(move |(of, _)| concerns(of));
+        some.map(|(_, warning)| warning.clone())
     }
 
     /// Seconds since the midnight before the first epoch.

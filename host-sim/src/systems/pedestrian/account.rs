@@ -42,7 +42,7 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         let [x, y, z] = stride.position;
         StrideReport { t: stride.time_us as f64 / 1e6, x, y, z, length_m: stride.length_m }
     });
-    let accuracy = recording.accuracy(walk);
+    let accuracy = Accuracy::of(recording, walk);
     let report = Report {
         system: Pedestrian::NAME,
         samples: log.samples.len(),

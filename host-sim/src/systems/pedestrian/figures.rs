@@ -8,8 +8,8 @@ use super::Sample;
 use super::recording::Recording;
 use super::recording::position::TrackPoint;
 use super::settings::Options;
-use super::track::RunError;
 use super::track::trace::{Moment, Trace, trace, without_updates};
+use super::track::{RunError, refused};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::STANDARD_GRAVITY;
@@ -31,7 +31,7 @@ pub(super) fn draw(
     let samples = &recording.log.samples;
     type Tracker = fn(&[Sample], &Options) -> Result<Trace, RunError>;
     let traced = |tracker: Tracker, options: &Options| {
-        tracker(samples, options).map_err(|error| recording.refused(&error))
+        tracker(samples, options).map_err(|error| refused(recording, &error))
     };
     let (published_trace, drifting) =
         rayon::join(|| traced(trace, &published), || traced(without_updates, options));

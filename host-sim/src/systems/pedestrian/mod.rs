@@ -75,7 +75,7 @@ impl System for Pedestrian {
     type Experiment = experiment::Report;
 
     fn settings(recording: Option<&Recording>) -> Vec<Setting> {
-        settings::table(recording)
+        settings::table(recording.map(Recording::rates_hz))
     }
 
     fn idle(_: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {

@@ -10,10 +10,8 @@ use std::path::{Path, PathBuf};
 use self::log::Log;
 use self::position::TrackPoint;
 use self::truth::Footprint;
-use super::account::accuracy::{Accuracy, against_footprints, against_truth};
 use super::simulate::scenario::Scenario;
 use super::simulate::sensor;
-use super::track::{RunError, Walk};
 use crate::Error;
 use crate::random::stream;
 use crate::text::TextFile;
@@ -75,11 +73,6 @@ impl Recording {
         [1.0, own.round().max(1.0), 1.0]
     }
 
-    /// A complaint that no tracker takes it.
-    pub(super) fn refused(&self, error: &RunError) -> Error {
-        Error::File { path: self.path.clone(), problem: error.to_string() }
-    }
-
     /// Averaged down to this rate.
     ///
     /// # Errors
@@ -99,15 +92,6 @@ impl Recording {
         match &self.log.truth {
             Some(truth) if self.footprints.is_empty() => truth.clone(),
             _ => self.footprints.iter().map(flat).collect(),
-        }
-    }
-
-    /// How far a walk is from the truth; none if nobody knows it.
-    pub fn accuracy(&self, walk: &Walk) -> Option<Accuracy> {
-        match &self.log.truth {
-            _ if !self.footprints.is_empty() => Some(against_footprints(walk, &self.footprints)),
-            Some(truth) => Some(against_truth(walk, truth)),
-            None => None,
         }
     }
 }

@@ -3,7 +3,6 @@
 use clap::ValueEnum;
 use kestirim_pedestrian::detector::{AngularRateEnergy, FixedShoe, Magnitude, MovingVariance};
 
-use super::recording::Recording;
 use crate::metrics::STANDARD_GRAVITY;
 use crate::system::{Given, Idle, Literal, ScalarKind, Setting, SettingValue, Settings, Shorthand};
 
@@ -13,9 +12,9 @@ pub const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKi
 /// Least and greatest multiple of a detector's default threshold.
 const FACTORS: [f64; 2] = [1e-6, 1e6];
 
-/// What can be set.
-pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
-    let rates = recording.map_or([1.0, 10_000.0, 1.0], Recording::rates_hz);
+/// What can be set, for a recording that can be averaged down to these rates, Hz.
+pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
+    let rates = rates.unwrap_or([1.0, 10_000.0, 1.0]);
     vec![
         Setting::one_of("tracker", "Architecture of the tracker", &TrackerKind::default()).live(),
         Setting::one_of("detector", "How stance is recognised", &DetectorName::default())

@@ -50,7 +50,7 @@ impl Track {
             Detail::Result => walk(samples, options).map(|walk| Trace { walk, ..Trace::default() }),
             Detail::Every => trace::trace(samples, options),
         };
-        let trace = tracked.map_err(|error| recording.refused(&error))?;
+        let trace = tracked.map_err(|error| refused(recording, &error))?;
         Ok(Self { averaged, trace })
     }
 
@@ -58,6 +58,11 @@ impl Track {
     pub fn tracked<'a>(&'a self, recording: &'a Recording) -> &'a Recording {
         self.averaged.as_ref().unwrap_or(recording)
     }
+}
+
+/// A complaint that no tracker takes a recording.
+pub(super) fn refused(recording: &Recording, error: &RunError) -> Error {
+    Error::File { path: recording.path.clone(), problem: error.to_string() }
 }
 
 /// What a tracker makes of a walk, in the room frame.
@@ -121,7 +126,7 @@ pub fn walk(samples: &[Sample], options: &Options) -> Result<Walk, RunError> {
 }
 
 /// Tracks a walk and lets `see` each moment of it.
-pub(super) fn watched(
+fn watched(
     samples: &[Sample],
     options: &Options,
     updates: Updates,

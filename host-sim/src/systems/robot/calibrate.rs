@@ -3,16 +3,34 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use clap::{ArgMatches, Args, Command, FromArgMatches};
 use serde::Serialize;
 
-use super::anchors::Anchors;
-use super::calibration::{self, AnchorCalibration, Residuals};
-use super::{anchors, points, ranges};
+use super::Robot;
+use super::recording::anchors::{self, Anchors};
+use super::recording::calibration::{self, AnchorCalibration, Residuals};
+use super::recording::{points, ranges};
+use crate::system::{Calibration, System};
 use crate::{Error, output};
 
+/// The command.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Calibrate;
+
+impl Calibration for Calibrate {
+    fn command(&self) -> Command {
+        Options::augment_args(Command::new(Robot::NAME).about("What each anchor measures too long"))
+    }
+
+    fn run(&self, matches: &ArgMatches) -> Result<(), Error> {
+        let options = Options::from_arg_matches(matches);
+        options.map_err(|error| Error::Usage(error.to_string()))?.run()
+    }
+}
+
 /// Options of the command.
-#[derive(Debug, Clone, clap::Args)]
-pub struct Calibrate {
+#[derive(Debug, Clone, Args)]
+struct Options {
     /// Where the anchors are: CSV with columns anchor,x,y,z (m)
     #[arg(long, value_name = "FILE")]
     anchors: PathBuf,
@@ -33,12 +51,8 @@ pub struct Calibrate {
     json: bool,
 }
 
-impl Calibrate {
-    /// Reads, calibrates, writes and prints.
-    ///
-    /// # Errors
-    /// Whatever is wrong with the options or the files; then nothing is written.
-    pub fn run(&self) -> Result<(), Error> {
+impl Options {
+    fn run(&self) -> Result<(), Error> {
         let inputs =
             [Some(&self.anchors), Some(&self.log), self.points.as_ref(), self.truth.as_ref()];
         output::refuse_overwriting("--out", Some(&self.out), inputs.into_iter().flatten())?;
@@ -52,7 +66,7 @@ impl Calibrate {
             });
         }
         calibration::write(&self.out, &calibrations)?;
-        output::show(&Report { system: "robot", anchors: calibrations }, self.json)
+        output::show(&Report { system: Robot::NAME, anchors: calibrations }, self.json)
     }
 
     fn residuals(&self, anchors: &Anchors) -> Result<Residuals, Error> {

@@ -1,9 +1,16 @@
 //! What a recording and its track look like.
 
+pub mod streams;
+
+use super::recording::event::Event;
 use super::recording::{Recording, Truth};
-use super::trace::{Trace, sigma_m};
+use super::settings::{Setup, TrackerKind};
+use super::track::follow::{self, Reception};
+use super::track::{Trace, track};
+use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
+use crate::system::Answer;
 
 const TIME: &str = "time, s";
 /// χ² of two degrees of freedom, 95 %.
@@ -14,6 +21,32 @@ const CHI_SQUARE_1: f64 = 3.841;
 const ELLIPSES: usize = 30;
 /// Between the points of a static recording, s.
 const PAUSE_S: f64 = 0.5;
+
+/// The page's figures, with trilateration alone to compare with.
+pub(super) fn draw(
+    recording: &Recording,
+    setup: &Setup,
+    traces: &[Trace],
+    answer: &mut Answer,
+) -> Result<(), Error> {
+    let unfiltered = Setup { tracker: TrackerKind::Lsq, ..setup.clone() };
+    let unfiltered = track(recording, &unfiltered, follow::build)?;
+    let (shown, raw) = (Shown::new(recording, traces), Shown::new(recording, &unfiltered));
+    let room = setup.room.map(|corners| rectangle("room", corners).coloured(Colour::Limit));
+    let positions = raw.track("trilateration alone", Mark::Dots).coloured(Colour::Published);
+    let errors = [
+        raw.error("trilateration alone").coloured(Colour::Published),
+        shown.error("tracker").coloured(Colour::Ours),
+    ];
+    answer.figures = vec![
+        shown.plan("plan", room.into_iter().chain([positions]).collect()),
+        shown.ranges("ranges"),
+        shown.health("health"),
+        shown.position("position"),
+        self::errors("error", errors),
+    ];
+    Ok(())
+}
 
 /// A recording, what was made of it, and when its parts are shown.
 #[derive(Debug, Clone)]
@@ -31,7 +64,7 @@ impl<'a> Shown<'a> {
         let mut shifts_s = Vec::with_capacity(recording.parts.len());
         for part in &recording.parts {
             shifts_s.push(begin_s);
-            let last_us = part.rows.iter().map(|row| row.time_us).max().unwrap_or_default();
+            let last_us = part.events.iter().map(Event::time_us).max().unwrap_or_default();
             begin_s += last_us as f64 * 1e-6 + PAUSE_S;
         }
         Self { recording, traces, shifts_s }
@@ -59,7 +92,7 @@ impl<'a> Shown<'a> {
     /// Every position that was found.
     pub fn track(&self, name: &str, mark: Mark) -> Series {
         let positions = |trace: &Trace| {
-            let found = trace.followed.epochs.iter().map(|epoch| match epoch.position {
+            let found = trace.epochs.iter().map(|epoch| match epoch.position {
                 Some([x, y, _]) => [x, y],
                 None => [f64::NAN; 2],
             });
@@ -73,11 +106,13 @@ impl<'a> Shown<'a> {
         let mut points = Vec::new();
         for trace in self.traces {
             let every =
-                if self.traces.len() > 1 { usize::MAX } else { trace.spreads.len() / ELLIPSES };
-            let last = trace.spreads.len().saturating_sub(1);
-            for (index, (epoch, spread)) in trace.epochs().enumerate() {
+                if self.traces.len() > 1 { usize::MAX } else { trace.epochs.len() / ELLIPSES };
+            let last = trace.epochs.len().saturating_sub(1);
+            for (index, epoch) in trace.epochs.iter().enumerate() {
                 let chosen = index == last || (index + 1).is_multiple_of(every.max(1));
-                if let (true, Some([x, y, _]), Some(spread)) = (chosen, epoch.position, spread) {
+                if let (true, Some([x, y, _]), Some(spread)) =
+                    (chosen, epoch.position, epoch.spread)
+                {
                     points.extend(ellipse([x, y], spread));
                     points.push([f64::NAN; 2]);
                 }
@@ -86,10 +121,10 @@ impl<'a> Shown<'a> {
         Series::path("95 % ellipses", points).coloured(Colour::Other(3))
     }
 
-    /// The plan: walls, anchors, the true way, the track with its ellipses, and others behind it.
+    /// The plan: walls, anchors, the true path, the track with its ellipses, and others behind it.
     pub fn plan(&self, id: &str, others: Vec<Series>) -> Figure {
         room(id, self.recording)
-            .caption("Anchors, the true way where it is known, and the track; ellipses hold 95 % if the covariance is right.")
+            .caption("Anchors, the true path where it is known, and the track; ellipses hold 95 % if the covariance is right.")
             .with_all(others)
             .with(self.track("track", Mark::Line).coloured(Colour::Ours))
             .with(self.ellipses())
@@ -99,10 +134,10 @@ impl<'a> Shown<'a> {
     pub fn ranges(&self, id: &str) -> Figure {
         let of = |anchor: usize, taken: bool| {
             move |_: usize, trace: &Trace| -> Vec<(i64, f64)> {
-                let heard = trace.heard.iter().filter(move |(row, reception)| {
-                    row.anchor == anchor && reception.taken == taken
+                let of_anchor = trace.ranges.iter().filter(move |(range, reception)| {
+                    range.anchor == anchor && reception.taken == taken
                 });
-                heard.filter_map(|(row, _)| Some((row.time_us, row.range?))).collect()
+                of_anchor.map(|(range, _)| (range.time_us, range.metres)).collect()
             }
         };
         let names = &self.recording.anchors.names;
@@ -126,16 +161,18 @@ impl<'a> Shown<'a> {
     pub fn health(&self, id: &str) -> Figure {
         let nis = |taken: bool| {
             move |_: usize, trace: &Trace| -> Vec<(i64, f64)> {
-                let heard = trace.heard.iter().filter(move |(_, heard)| heard.taken == taken);
-                heard.filter_map(|(row, heard)| Some((row.time_us, heard.nis?))).collect()
+                let weighed =
+                    |reception: &Reception| reception.nis.filter(|_| reception.taken == taken);
+                let ranges = trace.ranges.iter();
+                ranges.filter_map(|(range, it)| Some((range.time_us, weighed(it)?))).collect()
             }
         };
         let sigma = |_: usize, trace: &Trace| {
-            let known = trace.epochs().filter_map(|(epoch, spread)| Some((epoch.time_us, spread?)));
-            known.map(|(time_us, spread)| (time_us, 100.0 * sigma_m(spread))).collect()
+            let epochs = trace.epochs.iter();
+            epochs.filter_map(|e| Some((e.time_us, 100.0 * e.sigma_m()?))).collect()
         };
         let bound = |_: usize, trace: &Trace| {
-            let epochs = &trace.followed.epochs;
+            let epochs = &trace.epochs;
             let ends = [epochs.first(), epochs.last()].into_iter().flatten();
             ends.map(|epoch| (epoch.time_us, CHI_SQUARE_1)).collect()
         };
@@ -155,7 +192,7 @@ impl<'a> Shown<'a> {
         let ours = ["x", "y", "z"].into_iter().enumerate().map(|(axis, name)| {
             let of = move |_: usize, trace: &Trace| {
                 let coordinate = |position: [f64; 3]| position[axis];
-                let epochs = trace.followed.epochs.iter();
+                let epochs = trace.epochs.iter();
                 epochs.map(|e| (e.time_us, e.position.map_or(f64::NAN, coordinate))).collect()
             };
             self.over_time(name, Mark::Line, of).coloured(Colour::Other(axis))
@@ -164,7 +201,7 @@ impl<'a> Shown<'a> {
         let truth = ["true x", "true y"].into_iter().enumerate().filter(|_| known);
         let truth = truth.map(|(axis, name)| {
             let of = move |part: usize, trace: &Trace| {
-                let epochs = trace.followed.epochs.iter();
+                let epochs = trace.epochs.iter();
                 let truth = |time_us| Some(self.truth(part, time_us)?[axis]);
                 epochs.map(|e| (e.time_us, truth(e.time_us).unwrap_or(f64::NAN))).collect()
             };
@@ -184,7 +221,7 @@ impl<'a> Shown<'a> {
                 let ([x, y, _], truth) = (position?, self.truth(part, time_us)?);
                 Some(100.0 * distance([x, y], truth))
             };
-            let epochs = trace.followed.epochs.iter();
+            let epochs = trace.epochs.iter();
             epochs.filter_map(|e| Some((e.time_us, error(e.position, e.time_us)?))).collect()
         };
         self.over_time(name, Mark::Line, of)
@@ -203,26 +240,25 @@ pub fn errors(id: &str, series: impl IntoIterator<Item = Series>) -> Figure {
         .with_all(series)
 }
 
-/// A map with the anchors, the rectangle about them, and the true way.
+/// A map with the anchors, the rectangle about them, and the true path.
 pub fn room(id: &str, recording: &Recording) -> Figure {
     let places = || recording.anchors.positions.iter().map(|&[x, y, _]| [x, y]);
     let anchors = Series::points("anchors", places())
         .labelled(recording.anchors.names.clone())
         .coloured(Colour::Truth);
-    let [x0, y0, x1, y1] = around(places());
-    let walls = [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]];
+    let around = rectangle("rectangle of the anchors", recording.anchors.rectangle());
     let mut figure = Figure::new(id, "Plan")
         .axes("x, m", "y, m")
         .map()
-        .with(Series::path("rectangle of the anchors", walls).coloured(Colour::Truth))
+        .with(around.coloured(Colour::Truth))
         .with(anchors);
     let (mut points, mut names) = (Vec::new(), Vec::new());
     for part in &recording.parts {
         match &part.truth {
             Some(Truth::Course(course)) => {
-                let way = course.rows().iter().map(|(_, place)| *place);
-                let way = Series::path("true way", way).marked(Mark::Dashes);
-                figure.series.push(way.coloured(Colour::Truth));
+                let path = course.rows().iter().map(|(_, place)| *place);
+                let path = Series::path("true path", path).marked(Mark::Dashes);
+                figure.series.push(path.coloured(Colour::Truth));
             }
             Some(Truth::Point(point)) => {
                 points.push(*point);
@@ -238,12 +274,9 @@ pub fn room(id: &str, recording: &Recording) -> Figure {
     figure
 }
 
-/// The smallest rectangle about some points: two opposite corners.
-pub fn around(points: impl Iterator<Item = [f64; 2]>) -> [f64; 4] {
-    points
-        .fold([f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY], |r, [x, y]| {
-            [r[0].min(x), r[1].min(y), r[2].max(x), r[3].max(y)]
-        })
+/// A rectangle between two opposite corners.
+fn rectangle(name: &str, [x0, y0, x1, y1]: [f64; 4]) -> Series {
+    Series::path(name, [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
 }
 
 /// The ellipse that holds 95 % of a normal distribution.
@@ -263,11 +296,13 @@ fn ellipse([x, y]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::systems::robot::recording::anchors::Anchors;
 
     #[test]
     fn an_ellipse_lies_along_its_longer_axis() {
         let points = ellipse([1.0, 2.0], [2.5, 1.5, 2.5]);
-        let [x0, y0, x1, y1] = around(points.iter().copied());
+        let positions = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
+        let [x0, y0, x1, y1] = Anchors { positions, ..Anchors::default() }.rectangle();
         // Variances 4 along the diagonal and 1 across it.
         let extent = (CHI_SQUARE_2 * 2.5).sqrt();
         for (found, expected) in [(x1 - 1.0, extent), (1.0 - x0, extent), (y1 - 2.0, extent)] {

@@ -1,46 +1,165 @@
 //! A robot among ultra-wideband anchors.
 //!
-//! `anchors`, `ranges`, `points`, `motion` read; `follow` is the trackers' one face; `feed` brings both
-//! together for a [replay](replay::Replay) and for the experiment; `accuracy` compares.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] draws, and
+//! [`calibrate`] finds what the anchors measure too long.
 //!
 //! Frame: *room*, right-handed with z up, as the anchors are given.
 
-pub mod accuracy;
-pub mod anchors;
-pub mod calibrate;
-pub mod calibration;
-pub mod chapter;
-pub mod each_epoch;
-pub mod experiment;
-pub mod explorer;
-pub mod feed;
+pub mod account;
+mod calibrate;
 pub mod figures;
-pub mod follow;
-pub mod limit;
-pub mod motion;
-pub mod options;
-pub mod points;
-pub mod published;
-pub mod ranges;
+mod online;
+pub mod paper;
 pub mod recording;
-pub mod replay;
-pub mod scenario;
-pub mod streams;
-pub mod trace;
-pub mod tuning;
+pub mod settings;
+pub mod simulate;
+pub mod track;
 
-pub use chapter::chapter;
-pub use explorer::SOURCE;
+use std::sync::Arc;
 
-/// What `host-sim list` says of this system.
-pub(super) const DESCRIPTION: &str = "\
-robot       where a tag is, from ranges to ultra-wideband anchors, with or without IMU and wheels
-  scenario  the paper's office, 15 points of 50 epochs each and a straight line
-  log       CSV with columns t,anchor,range in s and m, of a moving tag
-  log       CSV with columns point,k,anchor,range in m, of a tag put down, epochs k 0.1 s apart
-  anchors   CSV with columns anchor,x,y,z in m
-  truth     CSV with columns t,x,y in s and m (z is not compared)
-  points    CSV with columns point,x,y,z in m
-  biases    CSV with columns anchor,bias in m (--calibration), as `calibrate robot` writes it
-  imu       CSV with t and any of qw,qx,qy,qz gx,gy,gz ax,ay,az lax,lay,laz in SI
-  odom      CSV with columns t,v_left,v_right,track in s, m/s and m";
+use self::calibrate::Calibrate;
+use self::figures::streams;
+use self::online::Tag;
+use self::paper::experiment;
+use self::recording::{Driven, Recording};
+use self::settings::Setup;
+use self::track::{Trace, follow};
+use crate::Error;
+use crate::report::Chapter;
+use crate::stream::Stream;
+use crate::system::{
+    Account, Answer, Calibration, Detail, FileField, Files, Idle, OutputField, Panel, Plan,
+    RunOptions, Setting, Settings, System, Table,
+};
+
+/// The system.
+#[derive(Debug, Clone, Copy)]
+pub struct Robot;
+
+impl System for Robot {
+    const NAME: &'static str = "robot";
+    const TITLE: &'static str =
+        "where a tag is, from ranges to ultra-wideband anchors, with or without IMU and wheels";
+    const PAPER: &'static str = "Ultra-wideband ranging and an IMU on an ESP32 (in Turkish)";
+    const FILES: &'static [FileField] = &[
+        FileField::required("anchors", "Anchors: CSV anchor,x,y,z (m)").live(),
+        FileField::required(
+            "log",
+            "Ranges: CSV t,anchor,range (s, m) of a moving tag, or with --points point,k,anchor,range (m) of a tag \
+             put down, epochs k 0.1 s apart",
+        ),
+        FileField::optional(
+            "truth",
+            "True track of a moving tag: CSV t,x,y (s, m); serves accuracy alone",
+        ),
+        FileField::optional(
+            "points",
+            "Marked points of a tag put down: CSV point,x,y,z (m); x and y serve accuracy alone",
+        ),
+        FileField::optional(
+            "imu",
+            "IMU: CSV t and any of qw,qx,qy,qz gx,gy,gz ax,ay,az lax,lay,laz (SI, body)",
+        ),
+        FileField::optional("odom", "Wheels: CSV t,v_left,v_right,track (s, m/s, m)"),
+        FileField::optional(
+            "calibration",
+            "What the anchors measure too long: CSV anchor,bias (m), as calibrate robot writes it",
+        )
+        .live(),
+        FileField::optional(
+            "height",
+            "Heights of the tag: CSV t,z, or with --points point,z (s, m)",
+        ),
+    ];
+    const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
+        ("line", "The paper's office: a straight line"),
+        ("points", "The paper's office: fifteen points, 50 epochs each"),
+        ("crowded-round", "The paper's office: a round, with somebody before each anchor in turn"),
+    ];
+    const OUTPUTS: &'static [OutputField] = &[OutputField {
+        name: "track",
+        help: "Write t,x,y,z of every epoch (point,x,y,z with --points) to this file",
+    }];
+    const PANELS: &'static [Panel] = &[Panel::Map, Panel::Ranges];
+
+    type Recording = Recording;
+    type Trace = Vec<Trace>;
+    type Experiment = experiment::Report;
+
+    fn settings(recording: Option<&Recording>) -> Vec<Setting> {
+        settings::table(recording)
+    }
+
+    fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        settings::idle(recording, settings, name)
+    }
+
+    fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
+        Recording::read(files)
+    }
+
+    fn synthetic(name: &str) -> Result<Recording, Error> {
+        let driven = match name {
+            "line" => Driven::Line,
+            "points" => Driven::Points,
+            "crowded-round" => Driven::CrowdedRound,
+            _ => return Err(Error::Usage(format!("there is no synthetic recording {name:?}"))),
+        };
+        Ok(Recording::synthetic(driven, 0))
+    }
+
+    fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Vec<Trace>, Error> {
+        track::track(recording, &recording.setup(settings), follow::build)
+    }
+
+    fn account(
+        recording: &Recording,
+        settings: &Settings,
+        traces: &Vec<Trace>,
+    ) -> Result<Account, Error> {
+        account::account(recording, settings, traces)
+    }
+
+    fn figures(
+        recording: &Recording,
+        settings: &Settings,
+        traces: &Vec<Trace>,
+        answer: &mut Answer,
+    ) -> Result<(), Error> {
+        figures::draw(recording, &recording.setup(settings), traces, answer)
+    }
+
+    fn table(_: &str, recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Table {
+        account::table(recording, traces)
+    }
+
+    fn streams(recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Vec<Stream> {
+        streams::streams(recording, traces)
+    }
+
+    fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
+        let office = || Setup::of(settings, &Recording::default().anchors, None);
+        recording
+            .map_or_else(office, |recording| recording.setup(settings))
+            .firmware(recording.is_some())
+    }
+
+    fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
+        experiment::run(*run)
+    }
+
+    fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {
+        paper::chapter::chapter(experiment)
+    }
+
+    fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        Ok(Some(Arc::new(Tag::read(settings, files)?)))
+    }
+
+    fn calibration() -> Option<Box<dyn Calibration>> {
+        Some(Box::new(Calibrate))
+    }
+}
+
+#[cfg(test)]
+mod tests;

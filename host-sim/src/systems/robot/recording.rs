@@ -1,63 +1,65 @@
 //! What was recorded of a tag, with its truth where that is known: from files or synthetic.
 
-use std::path::Path;
+pub mod anchors;
+pub mod calibration;
+pub mod event;
+pub mod motion;
+pub mod points;
+pub mod ranges;
 
-use super::accuracy::Accuracy;
-use super::anchors::{self, Anchors};
-use super::feed::{Company, Followed};
-use super::points::{self, Course, Height, Point};
-use super::ranges::{self, RangeLog, RangeRow};
-use super::scenario::{self, ANCHORS, EPOCH_US, EPOCHS, Office};
-use super::{calibration, motion};
+use std::path::{Path, PathBuf};
+
+use self::anchors::Anchors;
+use self::event::{Event, Sensors};
+use self::points::Course;
+use self::ranges::RangeLog;
+use super::account::accuracy::Accuracy;
+use super::settings::Setup;
+use super::simulate::scenario::{self, EPOCH_US, EPOCHS, Office, office_anchors};
+use super::track::Trace;
 use crate::Error;
 use crate::random::stream;
-
-/// The files of a recording.
-#[derive(Debug, Clone, Copy)]
-pub struct Files<'a> {
-    /// Where the anchors are.
-    pub anchors: &'a Path,
-    /// The ranges.
-    pub log: &'a Path,
-    /// Marked points, if the tag was put down.
-    pub points: Option<&'a Path>,
-    /// The true track, if it moved.
-    pub truth: Option<&'a Path>,
-    /// Samples of the IMU.
-    pub imu: Option<&'a Path>,
-    /// Samples of the wheels.
-    pub odom: Option<&'a Path>,
-    /// What the anchors measure too long.
-    pub calibration: Option<&'a Path>,
-    /// Metres, or a file of heights.
-    pub height: Option<&'a str>,
-}
+use crate::system::{Files, Settings};
 
 /// What was recorded.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
+    /// Where the ranges were read; none of a synthetic one.
+    pub path: Option<PathBuf>,
     /// Where the anchors are.
     pub anchors: Anchors,
-    /// The one way of a moving tag, or every point at which it was put down: each is tracked by itself.
+    /// The one track of a moving tag, or every point at which it was put down: each is tracked by itself.
     pub parts: Vec<Part>,
-    /// What a moving tag recorded beside its ranges.
-    pub company: Company,
     /// What the anchors measure too long, m, if that is known.
     pub biases: Option<Vec<f64>>,
+    /// What is known of the tag's height.
+    pub heights: Heights,
     /// What is suspicious but readable.
     pub warnings: Vec<String>,
 }
 
-/// Ranges that belong together.
+/// What is known of a tag's height.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Heights {
+    /// Nothing.
+    #[default]
+    Unknown,
+    /// It is the anchors' mean height.
+    OfAnchors,
+    /// It was read from a file.
+    Read,
+}
+
+/// What belongs together.
 #[derive(Debug, Clone, Default)]
 pub struct Part {
     /// Name of the point; empty of a moving tag.
     pub name: String,
-    /// In the order of the log.
-    pub rows: Vec<RangeRow>,
+    /// What the sensors say, in the order in which trackers take it.
+    pub events: Vec<Event>,
     /// Where the tag was, if anybody knows.
     pub truth: Option<Truth>,
-    /// The height of the tag, m, if it is known.
+    /// The height of the tag at the point, m, if it was read.
     pub height_m: Option<f64>,
 }
 
@@ -66,7 +68,7 @@ pub struct Part {
 pub enum Truth {
     /// At a marked point, m.
     Point([f64; 2]),
-    /// Along a way.
+    /// Along a path.
     Course(Course<2>),
 }
 
@@ -96,60 +98,84 @@ impl Recording {
     ///
     /// # Errors
     /// The file, the line, and what was expected there.
-    pub fn read(files: &Files<'_>) -> Result<Self, Error> {
-        let mut recording = Self { anchors: anchors::read(files.anchors)?, ..Self::default() };
-        if let Some(path) = files.calibration {
-            let known = calibration::read(path, &recording.anchors)?;
-            recording.calibrate(&known);
+    pub fn read(files: &Files) -> Result<Self, Error> {
+        files.exclude("points", &["truth", "imu", "odom"])?;
+        let (anchors, log) = (files.required("anchors")?, files.required("log")?);
+        let height = files.one("height");
+        if height.is_some_and(|path| path.to_str().is_some_and(|it| it.parse::<f64>().is_ok())) {
+            let problem = "--height: expected metres above the floor, or a file";
+            return Err(Error::Usage(problem.to_owned()));
         }
-        match files.points {
-            Some(points) => recording.read_static(files, points)?,
-            None => recording.read_moving(files)?,
+        let mut recording = Self {
+            path: Some(log.to_path_buf()),
+            anchors: anchors::read(anchors)?,
+            heights: if height.is_some() { Heights::Read } else { Heights::Unknown },
+            ..Self::default()
+        };
+        if let Some(path) = files.one("calibration") {
+            let (biases, warnings) = calibration::of(path, &recording.anchors)?;
+            (recording.biases, recording.warnings) = (Some(biases), warnings);
+        }
+        match files.one("points") {
+            Some(points) => recording.read_static(log, points, height)?,
+            None => recording.read_moving(log, files)?,
         }
         Ok(recording)
     }
 
-    fn read_moving(&mut self, files: &Files<'_>) -> Result<(), Error> {
-        let mut log = ranges::read_moving(files.log, &self.anchors)?;
-        let truth = files.truth.map(|path| points::read_course(path, ["x", "y"])).transpose()?;
-        let height = files.height.map(|text| points::read_height(text, false)).transpose()?;
-        let mut company = Company {
-            inertial: files.imu.map_or(Ok(vec![]), motion::read_inertial)?,
-            wheels: files.odom.map_or(Ok(vec![]), motion::read_wheels)?,
-            height: None,
+    fn read_moving(&mut self, log: &Path, files: &Files) -> Result<(), Error> {
+        let log = ranges::read_moving(log, &self.anchors)?;
+        let truth = files.one("truth").map(|path| points::read_course(path, ["x", "y"]));
+        let height = files.one("height").map(|path| points::read_course(path, ["z"]));
+        let (truth, height) = (truth.transpose()?, height.transpose()?);
+        let mut sensors = Sensors {
+            ranges: log.rows,
+            inertial: files.one("imu").map_or(Ok(vec![]), motion::read_inertial)?,
+            wheels: files.one("odom").map_or(Ok(vec![]), motion::read_wheels)?,
+            height,
         };
-        if files.imu.is_some() && company.inertial.is_empty() {
+        if files.one("imu").is_some() && sensors.inertial.is_empty() {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
-        self.warn_of_strangers(log.strangers);
-        let ahead = ranges::drop_far_ahead(&mut log.rows, |row| row.time_us)
-            + ranges::drop_far_ahead(&mut company.inertial, |sample| sample.time_us)
-            + ranges::drop_far_ahead(&mut company.wheels, |sample| sample.time_us);
+        self.warn_of_unlisted(log.unlisted);
+        let ahead = ranges::drop_far_ahead(&mut sensors.ranges, |row| row.time_us)
+            + ranges::drop_far_ahead(&mut sensors.inertial, |sample| sample.time_us)
+            + ranges::drop_far_ahead(&mut sensors.wheels, |sample| sample.time_us);
         if ahead > 0 {
             self.warn(format!(
                 "{ahead} samples are more than 10 s ahead of what follows them: left out"
             ));
         }
-        let mut part = Part { rows: log.rows, truth: truth.map(Truth::Course), ..Part::default() };
-        match height {
-            Some(Height::Metres(metres)) => part.height_m = Some(metres),
-            Some(Height::Course(course)) => company.height = Some(course),
-            Some(Height::Points(_)) | None => {}
-        }
-        (self.parts, self.company) = (vec![part], company);
+        let truth = truth.map(Truth::Course);
+        self.parts = vec![Part { events: sensors.events(), truth, ..Part::default() }];
         Ok(())
     }
 
-    fn read_static(&mut self, files: &Files<'_>, points: &Path) -> Result<(), Error> {
+    fn read_static(
+        &mut self,
+        log: &Path,
+        points: &Path,
+        height: Option<&Path>,
+    ) -> Result<(), Error> {
         let points = points::read_points(points)?;
-        let mut logs = ranges::read_static(files.log, &self.anchors)?;
-        let height = files.height.map(|text| points::read_height(text, true)).transpose()?;
-        self.warn_of_strangers(logs.values().map(|log| log.strangers).sum());
+        let mut logs = ranges::read_static(log, &self.anchors)?;
+        let heights = height.map(points::read_heights).transpose()?;
+        self.warn_of_unlisted(logs.values().map(|log| log.unlisted).sum());
         for point in points {
             let RangeLog { rows, .. } = logs.remove(&point.name).unwrap_or_default();
-            let height_m = height_at(height.as_ref(), &point)?;
-            let truth = point.plane.map(Truth::Point);
-            self.parts.push(Part { name: point.name, rows, truth, height_m });
+            let height_m = heights.as_ref().map(|heights| {
+                let height = heights.get(&point.name).copied();
+                height.ok_or_else(|| {
+                    Error::Usage(format!("--height: point {} has no height", point.name))
+                })
+            });
+            let (events, truth) = (Sensors::ranges(rows).events(), point.plane.map(Truth::Point));
+            self.parts.push(Part {
+                name: point.name.clone(),
+                events,
+                truth,
+                height_m: height_m.transpose()?,
+            });
         }
         Ok(())
     }
@@ -158,9 +184,10 @@ impl Recording {
     pub fn synthetic(driven: Driven, seed: u64) -> Self {
         let mut rng = stream(seed, 0);
         let office = Office::draw(&mut rng);
-        let along = |way: &[[f64; 2]]| {
-            let rows = way.iter().enumerate().map(|(i, &at)| (i as i64 * EPOCH_US, at)).collect();
-            Some(Truth::Course(Course::new(rows)))
+        let along = |path: &[[f64; 2]], rows| {
+            let at = path.iter().enumerate().map(|(i, &at)| (i as i64 * EPOCH_US, at));
+            let truth = Some(Truth::Course(Course::new(at.collect())));
+            vec![Part { events: Sensors::ranges(rows).events(), truth, ..Part::default() }]
         };
         let parts = match driven {
             Driven::Points => scenario::points()
@@ -168,73 +195,55 @@ impl Recording {
                 .enumerate()
                 .map(|(i, &place)| Part {
                     name: format!("P{}", i + 1),
-                    rows: office.measure(&mut rng, &[place; EPOCHS]),
+                    events: Sensors::ranges(office.measure(&mut rng, &[place; EPOCHS])).events(),
                     truth: Some(Truth::Point(place)),
                     height_m: None,
                 })
                 .collect(),
             Driven::Line => {
-                let way = scenario::line();
-                let rows = office.measure(&mut rng, &way);
-                vec![Part { rows, truth: along(&way), ..Part::default() }]
+                let path = scenario::line();
+                along(&path, office.measure(&mut rng, &path))
             }
             Driven::CrowdedRound => {
-                let way = scenario::round();
-                let rows = office.measure_in_a_crowd(&mut rng, &way);
-                vec![Part { rows, truth: along(&way), ..Part::default() }]
+                let path = scenario::round();
+                along(&path, office.measure_in_a_crowd(&mut rng, &path))
             }
         };
-        let names = (1..=ANCHORS.len()).map(|number| format!("A{number}")).collect();
-        let anchors = Anchors { names, positions: ANCHORS.to_vec() };
+        let anchors = office_anchors();
         let biases = Some(office.calibrate(&mut rng));
-        Self { anchors, parts, biases, ..Self::default() }
+        Self { anchors, parts, biases, heights: Heights::OfAnchors, ..Self::default() }
+    }
+
+    /// Whether the tag was put down at points.
+    pub fn is_static(&self) -> bool {
+        !matches!(self.parts.as_slice(), [part] if part.name.is_empty())
+    }
+
+    /// How it is tracked.
+    pub(super) fn setup(&self, settings: &Settings) -> Setup {
+        Setup::of(settings, &self.anchors, self.biases.as_deref())
     }
 
     /// How far what came out is from the truth: at every epoch of a moving tag, at the last of each point.
-    pub fn accuracy<'a>(&self, all: impl IntoIterator<Item = &'a Followed>) -> Option<Accuracy> {
+    pub fn accuracy(&self, traces: &[Trace]) -> Option<Accuracy> {
         let mut pairs = Vec::new();
-        for (part, followed) in self.parts.iter().zip(all) {
+        for (part, trace) in self.parts.iter().zip(traces) {
             match &part.truth {
-                Some(Truth::Course(course)) => return Accuracy::of_track(&followed.epochs, course),
-                Some(Truth::Point(point)) => pairs.push((followed.last(), *point)),
+                Some(Truth::Course(course)) => return Accuracy::of_track(&trace.epochs, course),
+                Some(Truth::Point(point)) => pairs.push((trace.last(), *point)),
                 None => {}
             }
         }
         Accuracy::of(&pairs)
     }
 
-    /// Biases of all anchors: one that the calibration does not know is taken to be like the others.
-    fn calibrate(&mut self, known: &[Option<f64>]) {
-        let found: Vec<f64> = known.iter().flatten().copied().collect();
-        let mean = crate::metrics::mean(&found);
-        for (bias, name) in known.iter().zip(&self.anchors.names) {
-            if bias.is_none() {
-                self.warnings.push(format!(
-                    "the calibration does not know anchor {name}: the others' mean bias is assumed"
-                ));
-            }
-        }
-        self.biases = Some(known.iter().map(|bias| bias.unwrap_or(mean)).collect());
-    }
-
-    fn warn_of_strangers(&mut self, strangers: usize) {
-        if strangers > 0 {
-            self.warn(format!("{strangers} ranges are from anchors that are not listed: left out"));
+    fn warn_of_unlisted(&mut self, unlisted: usize) {
+        if unlisted > 0 {
+            self.warn(format!("{unlisted} ranges are from anchors that are not listed: left out"));
         }
     }
 
     fn warn(&mut self, warning: impl Into<String>) {
         self.warnings.push(warning.into());
-    }
-}
-
-fn height_at(height: Option<&Height>, point: &Point) -> Result<Option<f64>, Error> {
-    match height {
-        Some(Height::Metres(metres)) => Ok(Some(*metres)),
-        Some(Height::Points(heights)) => match heights.get(&point.name) {
-            Some(metres) => Ok(Some(*metres)),
-            None => Err(Error::Usage(format!("--height: point {} has no height", point.name))),
-        },
-        Some(Height::Course(_)) | None => Ok(None),
     }
 }

@@ -1,9 +1,6 @@
 //! The longitudinal motion of a fixed-wing aircraft, seen by Luenberger observers and Kalman filters.
 //!
-//! `plant` has the aircraft and what of them is measured, `scenario` flies them; `design` finds gains, which
-//! `kestirim-uav-estimator` runs in any scalar. `experiment` repeats the thesis: `responses` (its chapter 5),
-//! `catching` and `accuracy` (chapter 6), `claims` (chapter 7). `log` and `model` read what a
-//! [replay](replay::Replay) needs, `follow` runs the estimators along it.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiments track what [`simulate`] flies.
 //!
 //! States α, q, V, θ and inputs δe, δt are deviations from the flight that the model was linearised at; rad,
 //! rad/s, m/s.
@@ -13,33 +10,130 @@
     reason = "the designs of the experiment are for the plants of the experiment"
 )]
 
-pub mod accounts;
-pub mod accuracy;
-pub mod catching;
-pub mod chapter;
-pub mod claims;
-pub mod design;
-pub mod experiment;
-pub mod explorer;
-pub mod follow;
-pub mod log;
-pub mod model;
-pub mod options;
-pub mod plant;
+pub mod account;
+pub mod figures;
+mod online;
+pub mod paper;
 pub mod recording;
-pub mod replay;
-pub mod report;
-pub mod responses;
-pub mod scenario;
-mod streams;
-pub mod trip;
+pub mod settings;
+pub mod simulate;
+pub mod track;
 
-/// What `host-sim list` says of this system.
-pub(super) const DESCRIPTION: &str = "\
-uav         angle of attack, pitch rate, airspeed and pitch angle of a fixed-wing aircraft
-  scenario  10 s of an Aerosonde, of the thesis' aircraft and of a Navion, with constant and sine inputs,
-            with and without noise
-  log       CSV with columns t,delta_e,delta_t and some of alpha,q,V,theta in s, rad, rad/s, m/s
-  model     P1, P2, P3, or JSON: A (4 × 4), B (4 × 2), perhaps C with the names of its outputs, trim {x, u}, and
-            h (s) if A and B are of discrete time
-  truth     CSV with columns t and some of alpha,q,V,theta";
+use std::sync::Arc;
+
+use self::figures::streams;
+use self::paper::{experiment, report};
+use self::recording::Recording;
+use self::settings::firmware;
+use self::track::Track;
+use crate::Error;
+use crate::report::Chapter;
+use crate::stream::Stream;
+use crate::system::{
+    Account, Answer, Detail, FileField, Files, Idle, OutputField, Panel, Plan, RunOptions, Setting,
+    Settings, System, Table,
+};
+
+/// The system.
+#[derive(Debug, Clone, Copy)]
+pub struct Uav;
+
+impl System for Uav {
+    const NAME: &'static str = "uav";
+    const TITLE: &'static str =
+        "angle of attack, pitch rate, airspeed and pitch angle of a fixed-wing aircraft";
+    const PAPER: &'static str = "Longitudinal states of a fixed-wing UAV by Luenberger observer and Kalman filter, MSc \
+                                 thesis in Turkish, 2020";
+    const FILES: &'static [FileField] = &[
+        FileField::required(
+            "log",
+            "Flight: CSV with columns t,delta_e,delta_t and some of alpha,q,V,theta (s, rad, rad/s, m/s); an empty \
+             field was not measured",
+        ),
+        FileField::optional(
+            "model",
+            "JSON: A (4 × 4), B (4 × 2), perhaps C with the names of its outputs, trim {x, u}, and h (s) if A and B \
+             are of discrete time",
+        )
+        .live(),
+        FileField::optional(
+            "truth",
+            "What was really flown: CSV with columns t and some of alpha,q,V,theta; serves accuracy alone",
+        ),
+    ];
+    const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
+        ("constant", "Constant inputs, from a wrong start"),
+        ("sine", "Sine inputs, from a wrong start"),
+    ];
+    const OUTPUTS: &'static [OutputField] =
+        &[OutputField { name: "track", help: "Write t,alpha,q,V,theta of each line to this file" }];
+    const PANELS: &'static [Panel] = &[Panel::Angles, Panel::Airspeed];
+
+    type Recording = Recording;
+    type Trace = Track;
+    type Experiment = report::Report;
+
+    fn settings(_: Option<&Recording>) -> Vec<Setting> {
+        settings::table()
+    }
+
+    fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        settings::idle(recording, settings, name)
+    }
+
+    fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
+        Recording::read(files)
+    }
+
+    fn synthetic(name: &str) -> Result<Recording, Error> {
+        Recording::synthetic(name)
+    }
+
+    fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Track, Error> {
+        Track::of(recording, settings)
+    }
+
+    fn account(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+    ) -> Result<Account, Error> {
+        account::account(recording, settings.chosen("estimator"), track)
+    }
+
+    fn figures(
+        recording: &Recording,
+        settings: &Settings,
+        track: &Track,
+        answer: &mut Answer,
+    ) -> Result<(), Error> {
+        figures::draw(recording, settings, track, answer)
+    }
+
+    fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
+        account::table(track)
+    }
+
+    fn streams(_: &Recording, _: &Settings, track: &Track) -> Vec<Stream> {
+        streams::streams(track)
+    }
+
+    fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
+        firmware::firmware(recording, settings)
+    }
+
+    fn experiment(run: &RunOptions, _: &Settings) -> Result<report::Report, Error> {
+        experiment::run(*run)
+    }
+
+    fn chapter(experiment: &report::Report) -> Result<Chapter, Error> {
+        paper::chapter::chapter(experiment)
+    }
+
+    fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        Ok(Some(Arc::new(online::Flying::new(settings, files)?)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -89,7 +89,7 @@ where
         if let Ok(solution) = &epoch.solution {
             let position = GlobalPosition {
                 time_us,
-                position: solution.position.data.0[0],
+                position: solution.position.into(),
                 sigma: Some(libm::sqrt(solution.covariance.trace() / 3.0) as f32),
             };
             self.telemetry.send(position).map_err(|_| Error::Telemetry)?;

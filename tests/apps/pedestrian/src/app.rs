@@ -2,7 +2,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use embedded_io::Write;
 use kestirim_pedestrian::{Config, EkfTracker, Error as Refusal, Estimate, ImuSample, Stride};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_telemetry::{Footprint, Health, Position, Transmitter};
 use nalgebra::SVector;
 
@@ -168,5 +168,5 @@ impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
 }
 
 fn metres<T: Scalar>(position: &SVector<T, 3>) -> [f32; 3] {
-    position.data.0[0].map(T::to_f32)
+    position.as_array().map(T::to_f32)
 }

@@ -2,7 +2,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use embedded_io::Write;
 use kestirim_luenberger::{Error as Refusal, Predictor, PredictorGains};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_telemetry::{Flight, Health, State, Transmitter};
 use nalgebra::SVector;
 
@@ -85,7 +85,7 @@ impl<T: Scalar, I: I2c, A: I2c, D: DelayNs, P: Write> App<T, I, A, D, P> {
 
     /// The state at the time of the next step, as [`State`] has it.
     pub fn estimate(&self) -> [f32; 4] {
-        self.observer.estimate().data.0[0].map(T::to_f32)
+        self.observer.estimate().as_array().map(T::to_f32)
     }
 
     fn observe(&mut self, inputs: [f32; 2], outputs: [f32; 3]) -> Option<Event> {

@@ -2,7 +2,7 @@
 //! sensor costs before anything is done with it.
 
 use kestirim_attitude::{Ahrs, Gains, Orientation};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 use support::Class;
 
@@ -57,6 +57,6 @@ impl<T: Named> Tracker for Reference<T> {
 
     /// Not a place: where up is, in the body's axes.
     fn position(&self) -> [f32; 3] {
-        self.ahrs.orientation().up_in_body().data.0[0].map(T::to_f32)
+        self.ahrs.orientation().up_in_body().as_array().map(T::to_f32)
     }
 }

@@ -7,7 +7,7 @@ mod robust;
 use core::hint::black_box;
 
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, Innovation, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{ExpectedRange, expected_range};
 use nalgebra::SVector;
 use support::Class;
@@ -115,7 +115,7 @@ pub fn transition<T: Scalar>(scenario: &Scenario<T>) -> [[[T; 4]; 4]; 2] {
 }
 
 fn place<T: Scalar>(estimate: &Gaussian<T, 4>) -> [f32; 3] {
-    let [x, y, ..] = estimate.mean.data.0[0].map(T::to_f32);
+    let [x, y, ..] = estimate.mean.as_array().map(T::to_f32);
     [x, y, 0.0]
 }
 
@@ -153,7 +153,7 @@ impl<T: Named> Tracker for Ekf<T> {
         let places = self.scenario.anchors.iter().zip(ranges);
         for ((anchor, &range), told) in places.zip(&mut self.innovations) {
             let ExpectedRange { distance, direction: [x, y] } =
-                self.scenario.expected(&self.estimate.mean.data.0[0], anchor);
+                self.scenario.expected(self.estimate.mean.as_array(), anchor);
             let row = SparseRow::new([(0, x), (1, y)]);
             match self.estimate.update(&row, range - distance, self.scenario.range_variance) {
                 Ok(innovation) => *told = Some(innovation),

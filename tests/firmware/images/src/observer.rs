@@ -3,6 +3,7 @@
 use core::hint::black_box;
 
 use kestirim_luenberger::{Predictor, PredictorGains};
+use kestirim_scalar::Components;
 use nalgebra::SVector;
 use support::{Class, Meter, fail, line, line_of_text};
 
@@ -53,7 +54,7 @@ fn run<T: Named>(name: &str, gains: &PredictorGains<4, 2, 3>) {
         samples += 1;
         if samples.is_multiple_of(SAMPLES_A_STATE) {
             // Exact in fixed point, too, below 256.
-            let state = observer.estimate().data.0[0].map(T::to_f32);
+            let state = observer.estimate().as_array().map(T::to_f32);
             line("state", &state.map(|value| i64::from(value.to_bits())));
         }
     }

@@ -3,7 +3,7 @@
 use kestirim_pedestrian::{
     Config, Ekf, Estimate, ImuSample, Lite, Navigator, Tracker as Pedestrian,
 };
-use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_scalar::{Components, Q12_20, Scalar};
 use nalgebra::SVector;
 use support::Class;
 
@@ -72,6 +72,6 @@ impl<T: Scalar, N: Navigator<T> + Named> Tracker for Walk<T, N> {
     }
 
     fn position(&self) -> [f32; 3] {
-        self.position.data.0[0].map(T::to_f32)
+        self.position.as_array().map(T::to_f32)
     }
 }

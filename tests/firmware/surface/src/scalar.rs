@@ -3,10 +3,10 @@
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use kestirim_scalar::{Fixed, Q8_24, Q12_20, Q16_16, Scalar};
+use kestirim_scalar::{Columns, Components, Fixed, Q8_24, Q12_20, Q16_16, Scalar};
 use num_traits::{One, Zero};
 
-use super::values::{any, call_each, keep, number, numbers, slice, whole};
+use super::values::{any, call_each, keep, matrix, number, numbers, slice, whole};
 
 fn functions<T: Scalar>() {
     keep::<T>(Scalar::from_f32(number()));
@@ -43,6 +43,13 @@ fn sums<T: Scalar, const N: usize>() {
     keep(Scalar::advanced(number::<T>(), sum, whole()));
 }
 
+fn arrays<T: Scalar>() {
+    keep(*Components::as_array(&matrix::<T, 9, 1>()));
+    keep(Components::as_array_mut(&mut matrix::<T, 9, 1>()));
+    keep(*Columns::as_columns(&matrix::<T, 3, 4>()));
+    keep(Columns::as_columns_mut(&mut matrix::<T, 3, 4>()));
+}
+
 fn operators<const FRAC: u32>() {
     let mut x = any(Fixed::<FRAC>::from_bits(whole()));
     let y = any(x);
@@ -64,7 +71,7 @@ fn operators<const FRAC: u32>() {
 }
 
 fn all_of<T: Scalar>() {
-    call_each([functions::<T>, sums::<T, 3>, sums::<T, 9>]);
+    call_each([functions::<T>, sums::<T, 3>, sums::<T, 9>, arrays::<T>]);
 }
 
 /// Calls it all.

@@ -22,7 +22,7 @@ pub fn fly(plant: &Plant<4, 2, 3>) -> Vec<[f32; 5]> {
     let moment = |_| {
         let outputs = plant.c * state;
         let measured = [0.0087, 0.5, 0.0087].map(|sigma| normal(&mut rng, sigma));
-        let [rate, airspeed, pitch] = (outputs + SVector::from(measured)).data.0[0];
+        let [rate, airspeed, pitch]: [f64; 3] = (outputs + SVector::from(measured)).into();
         let noise = SVector::from([0.0087, 0.02].map(|sigma| normal(&mut rng, sigma)));
         state = plant.a * state + plant.b * (SVector::from([0.025, 0.155]) + noise);
         [0.025, 0.155, rate, airspeed, pitch].map(|number| number as f32)

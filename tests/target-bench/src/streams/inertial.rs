@@ -1,8 +1,9 @@
 //! An inertial sensor on a foot.
 
 use host_sim::random::stream;
-use host_sim::systems::pedestrian::scenario::Scenario;
-use host_sim::systems::pedestrian::{self, sensor};
+use host_sim::systems::pedestrian;
+use host_sim::systems::pedestrian::simulate::scenario::Scenario;
+use host_sim::systems::pedestrian::simulate::sensor;
 
 use super::{Encode, record, words};
 

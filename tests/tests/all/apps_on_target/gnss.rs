@@ -3,9 +3,10 @@
 
 use anyhow::{Result, bail, ensure};
 use gnss_app::{STATES, site};
-use host_sim::systems::gnss::products::Products;
+use host_sim::systems::gnss::recording::products::Products;
 use kestirim_gnss_files::{self as files, Antennas, Clocks, Orbits, Text};
 use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Slipped, Solution};
+use kestirim_scalar::Components;
 use kestirim_telemetry::{GlobalPosition, Message};
 use kestirim_tests::ppp::{OUTLIERS, START, station};
 use nalgebra::Vector3;
@@ -37,7 +38,8 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 phase: sighting.phase.map(Some),
                 loss_of_lock: [false, sighting.lock_lost],
             };
-            let sighting = products.sighting(epoch.time(), &observed).expect("there are products");
+            let sighting =
+                products.observation(epoch.time(), &observed).expect("there are products");
             SatelliteObservation { antenna: site::satellite_antenna(), ..sighting }
         };
         let sightings: Vec<_> = epoch.sightings.iter().map(sighting).collect();
@@ -50,7 +52,7 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
 fn position(index: usize, solution: &Solution<STATES>) -> GlobalPosition {
     let sigma = Some((solution.covariance.trace() / 3.0).sqrt() as f32);
     let time_us = INTERVAL_US * (index as u64 + 1);
-    GlobalPosition { time_us, position: solution.position.data.0[0], sigma }
+    GlobalPosition { time_us, position: *solution.position.as_array(), sigma }
 }
 
 /// What the target must log of a solution.

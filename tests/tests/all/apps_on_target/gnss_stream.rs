@@ -4,6 +4,7 @@
 use kestirim_gnss_ppp::GpsTime;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_ppp_filter::SatelliteObservation;
+use kestirim_scalar::Components;
 use kestirim_tests::ppp::{CLOCK, Epochs, INTERVAL, SATELLITES, in_orbit, station};
 
 /// In which epoch a satellite's phase on L2 slips, which satellite, and by how many cycles.
@@ -114,7 +115,7 @@ pub(crate) fn orbits() -> String {
         let [hour, minute, second] = calendar(43_200.0 + from_midday);
         let position = |satellite| {
             let state = in_orbit(satellite, INTERVAL + from_midday);
-            let [x, y, z] = (state.position / 1e3).data.0[0];
+            let [x, y, z] = *(state.position / 1e3).as_array();
             format!("PG{:02}{x:14.6}{y:14.6}{z:14.6} 999999.999999\n", satellite + 1)
         };
         format!("*  2020  6 25 {hour:2} {minute:2} {second:2}.00000000\n")

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use host_sim::systems::pedestrian::log;
+use host_sim::systems::pedestrian::recording::log;
 use host_sim::text::TextFile;
 use kestirim_pedestrian::{Config, EkfTracker, ImuSample};
-use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_scalar::{Components, Q12_20, Scalar};
 use kestirim_telemetry::{Footprint, Health, Imu, Message, Position};
 use nalgebra::SVector;
 use target_bench::streams::{Encode, Sample, walk};
@@ -22,7 +22,7 @@ const RATE_STEP: f64 = 0.001_065_264_436 / 2.0 + 1e-6;
 /// its order, and the length of the path (m).
 fn on_host<T: Scalar>(samples: &[Imu]) -> (Vec<Message>, f32) {
     let mut tracker = EkfTracker::<T>::new(Config::default());
-    let metres = |position: &SVector<T, 3>| position.data.0[0].map(T::to_f32);
+    let metres = |position: &SVector<T, 3>| position.as_array().map(T::to_f32);
     let footprint = |stride: kestirim_pedestrian::Stride<T>| {
         let (time_us, length) = (stride.time_us, stride.length.to_f32());
         Message::Footprint(Footprint { time_us, position: metres(&stride.position), length })

@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use host_sim::random::{normal, stream};
 use kestirim_luenberger::Predictor;
-use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_scalar::{Components, Q16_16, Scalar};
 use kestirim_telemetry::{Flight, Health, Message, State};
 use kestirim_tests::uav;
 use nalgebra::SVector;
@@ -37,9 +37,9 @@ fn fly() -> Vec<Moment> {
         let inputs = SVector::from([0.025, 0.155]);
         let disturbed = inputs + SVector::from([0.0087, 0.02].map(&mut noise));
         let moment = Moment {
-            inputs: inputs.data.0[0].map(|input| input as f32),
-            outputs: outputs.data.0[0].map(|output| output as f32),
-            state: state.data.0[0],
+            inputs: inputs.as_array().map(|input| input as f32),
+            outputs: outputs.as_array().map(|output| output as f32),
+            state: *state.as_array(),
         };
         state = plant.a * state + plant.b * disturbed;
         moment
@@ -78,7 +78,7 @@ fn on_host<T: Scalar>(measured: &[Flight]) -> Vec<State> {
         let inputs = SVector::from(flight.inputs.map(T::from_f32));
         let outputs = SVector::from(flight.outputs.map(T::from_f32));
         observer.step(&inputs, &outputs).expect("a measurement");
-        let state = observer.estimate().data.0[0].map(T::to_f32);
+        let state = observer.estimate().as_array().map(T::to_f32);
         State { time_us: flight.time_us + u64::from(INTERVAL_US), state }
     };
     measured.iter().map(step).collect()

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::metrics::{aligned_errors, polyline_length, relative_error_percent, rms};
+use crate::systems::pedestrian::recording::Recording;
 use crate::systems::pedestrian::recording::position::{TrackPoint, position_at};
 use crate::systems::pedestrian::recording::truth::Footprint;
 use crate::systems::pedestrian::track::Walk;
@@ -23,6 +24,17 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
+    /// How far a walk is from the truth of its recording; none if nobody knows it.
+    pub fn of(recording: &Recording, walk: &Walk) -> Option<Self> {
+        match &recording.log.truth {
+            _ if !recording.footprints.is_empty() => {
+                Some(against_footprints(walk, &recording.footprints))
+            }
+            Some(truth) => Some(against_truth(walk, truth)),
+            None => None,
+        }
+    }
+
     /// Names and values for people.
     pub fn in_words(&self) -> [(&'static str, String); 4] {
         let percent = |value: Option<f64>| match value {

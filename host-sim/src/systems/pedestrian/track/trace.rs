@@ -18,11 +18,11 @@ pub struct Moment {
 }
 
 /// What is called with every [`Moment`] of a walk, in order.
-pub(super) type See<'a> = dyn FnMut(Moment) + 'a;
+pub(in crate::systems::pedestrian) type See<'a> = dyn FnMut(Moment) + 'a;
 
 /// When zero velocities are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Updates {
+pub(in crate::systems::pedestrian) enum Updates {
     /// Whenever the chosen detector finds that the foot stands.
     InStance,
     /// Until the foot is lifted for the first time.
@@ -62,7 +62,7 @@ fn keep(samples: &[Sample], options: &Options, updates: Updates) -> Result<Trace
 
 /// A detector that sees the foot stand before its first step and never again.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct OnlyAtStart<T> {
+pub(in crate::systems::pedestrian) struct OnlyAtStart<T> {
     adaptive: Adaptive<T>,
     stood: bool,
     left: bool,

@@ -8,6 +8,7 @@
 
 use images::design::{held, placed, settled};
 use kestirim_observer_design::Error;
+use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 use support::{Class, Meter, fail, image, line};
 
@@ -37,7 +38,7 @@ fn designed<T>(name: &str, design: impl Fn() -> Result<T, Error>) -> T {
 }
 
 fn tell<const R: usize, const C: usize>(key: &str, matrix: &SMatrix<f64, R, C>) {
-    for column in &matrix.data.0 {
+    for column in matrix.as_columns() {
         line(key, &column.map(|number| number.to_bits() as i64));
     }
 }

@@ -15,6 +15,7 @@ use core::hint::black_box;
 
 use images::ppp::{Epochs, Filter, OUTLIERS, receiver, station};
 use kestirim_ppp_filter::{Config, Error, Estimator, Motion};
+use kestirim_scalar::Components;
 use support::{Class, Meter, fail, image, line, line_of_text};
 
 /// Deeper than any epoch reaches into the stack, in bytes.
@@ -55,7 +56,7 @@ fn position(keys: &[&str; 2], names: [&str; 3], config: Config) {
             if answer.is_ok() { Class::Update } else { Class::Rejected }
         });
         let Ok(solution) = answer else { fail("an epoch without a solution") };
-        let [x, y, z] = solution.position.data.0[0];
+        let [x, y, z] = *solution.position.as_array();
         let [solution_key, treated_key] = keys;
         let numbers = [x, y, z, solution.clock, solution.wet_delay];
         line(solution_key, &numbers.map(|number| number.to_bits() as i64));

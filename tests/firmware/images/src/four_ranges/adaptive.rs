@@ -2,7 +2,7 @@
 
 use kestirim_adaptive_kalman::{AdaptiveKalman, Learning, ProcessNoise, PublishedAdaptiveKalman};
 use kestirim_kalman::{Covariance, SparseRow};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Columns, Components, Scalar};
 use kestirim_uwb_ranging::ExpectedRange;
 use nalgebra::{SMatrix, SVector};
 use support::Class;
@@ -54,7 +54,7 @@ impl<T: Named> Tracker for Aekf<T> {
         }
         for (index, (anchor, &range)) in self.scenario.anchors.iter().zip(ranges).enumerate() {
             let ExpectedRange { distance, direction: [x, y] } =
-                self.scenario.expected(&self.filter.estimate().mean.data.0[0], anchor);
+                self.scenario.expected(self.filter.estimate().mean.as_array(), anchor);
             let row = SparseRow::new([(0, x), (1, y)]);
             if self.filter.update(index, &row, range - distance).is_err() {
                 return Class::Rejected;
@@ -116,10 +116,10 @@ impl<T: Named> Tracker for Published<T> {
         let mut innovation = SVector::<T, 4>::zeros();
         for (index, (anchor, &range)) in self.scenario.anchors.iter().zip(ranges).enumerate() {
             let ExpectedRange { distance, direction: [x, y] } =
-                self.scenario.expected(&mean.data.0[0], anchor);
-            innovation.data.0[0][index] = range - distance;
-            rows.data.0[0][index] = x;
-            rows.data.0[1][index] = y;
+                self.scenario.expected(mean.as_array(), anchor);
+            innovation.as_array_mut()[index] = range - distance;
+            rows.as_columns_mut()[0][index] = x;
+            rows.as_columns_mut()[1][index] = y;
         }
         if self.filter.update(&rows, &innovation).is_ok() { Class::Update } else { Class::Rejected }
     }

@@ -2,7 +2,7 @@
 
 use kestirim_kalman::Gaussian;
 use kestirim_robust_kalman::{Decision, Measurement, Robust as Weights};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::ExpectedRange;
 use support::Class;
 
@@ -53,7 +53,7 @@ impl<T: Named> Tracker for Robust<T> {
             places.zip(rows.iter_mut().zip(&mut innovations))
         {
             let ExpectedRange { distance, direction: [x, y] } =
-                self.scenario.expected(&self.estimate.mean.data.0[0], anchor);
+                self.scenario.expected(self.estimate.mean.as_array(), anchor);
             (*row, *innovation) = ([(0, x), (1, y)], range - distance);
         }
         let [a, b, c, d] = &rows;

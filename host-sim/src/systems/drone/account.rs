@@ -1,0 +1,119 @@
+//! What came of a flight.
+
+mod accuracy;
+
+use serde::Serialize;
+
+use self::accuracy::Accuracy;
+use super::Drone;
+use super::recording::Recording;
+use super::settings::expected_loss_db;
+use super::track::trace::{Estimate, Track};
+use crate::Error;
+use crate::metrics::mean;
+use crate::system::{Account, Settings, System, Table};
+
+/// What a replay prints.
+#[derive(Debug, Clone, Serialize)]
+struct Report {
+    system: &'static str,
+    /// How many were used.
+    measurements: usize,
+    /// Where the user is.
+    estimate: Place,
+    /// Root mean square distance from the estimate that the filter expects, m.
+    sd_m: f64,
+    /// Where the level was not known, what the transmitter sends, dB (received level = this − path loss); over
+    /// open ground, where no frequency is known either, what is received at one metre.
+    level_db: Option<f64>,
+    warnings: Vec<String>,
+    /// How far that is from the truth, if it is known.
+    accuracy: Option<Accuracy>,
+}
+
+/// A place, m.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct Place {
+    /// As x in the log.
+    x: f64,
+    /// As y in the log.
+    y: f64,
+}
+
+/// What came of a flight up to the measurement that is shown.
+pub(super) fn account(
+    recording: &Recording,
+    settings: &Settings,
+    track: &Track,
+) -> Result<Account, Error> {
+    let now = track.now(settings.number("step"));
+    let so_far = &track.estimates[..=now];
+    let shown = &so_far[now];
+    let is_last = so_far.len() == track.estimates.len();
+    let [x, y] = shown.place;
+    let accuracy = Accuracy::of(track, so_far);
+    let report = Report {
+        system: Drone::NAME,
+        measurements: if is_last { track.stops.len() } else { shown.stop + 1 },
+        estimate: Place { x, y },
+        sd_m: shown.sd_m,
+        level_db: shown.level_db,
+        warnings: track.warnings.clone(),
+        accuracy,
+    };
+    let mut account = Account::new(&report, report.warnings.clone())?;
+    account.fact("measurements", report.measurements.to_string());
+    account.fact("place", format!("{x:.1} m, {y:.1} m"));
+    account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
+    match recording {
+        Recording::Flight(recorded) => {
+            account.about = Some(recorded.log.clone());
+            if let Some(level) = shown.level_db {
+                let is_open = super::settings::built(settings).is_none();
+                let what = if is_open { "level at one metre" } else { "level of the transmitter" };
+                account.fact(what, format!("{level:.1} dB"));
+            }
+            for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
+                account.fact(name, value);
+            }
+        }
+        Recording::Moving | Recording::Staying => {
+            synthetic_facts(&mut account, settings, track, shown);
+        }
+    }
+    Ok(account)
+}
+
+/// What is known of a flight whose user and channel are.
+fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, shown: &Estimate) {
+    let errors = track.estimates.iter().filter_map(|estimate| track.error_m(estimate));
+    if let Some(error) = track.error_m(shown) {
+        account.fact("error", format!("{error:.1} m"));
+    }
+    let mean_error = mean(&errors.collect::<Vec<_>>());
+    account.fact("mean error of all steps", format!("{mean_error:.1} m"));
+    if let Some(effective) = shown.effective() {
+        account.fact("effective particles", format!("{effective:.0}"));
+    }
+    let stop = track.stop(shown);
+    account.fact("loss measured", format!("{:.1} dB", stop.loss));
+    if let Some(expected) = expected_loss_db(settings.chosen("environment"), &stop, shown.place) {
+        account.fact("loss expected at the estimate", format!("{expected:.1} dB"));
+    }
+    if let Some(flown) = &track.flown {
+        let speed = settings.decided("speed");
+        let energy = flown.energy_j(speed) / 1e3;
+        account.fact("path of the drone", format!("{:.1} km", flown.path_m / 1e3));
+        account.fact("energy of the flight", format!("{energy:.0} kJ at {speed} km/h"));
+    }
+}
+
+/// Time, place and expected distance after each measurement.
+pub(super) fn table(track: &Track) -> Table {
+    let row = |estimate: &Estimate| {
+        let [x, y] = estimate.place;
+        let numbers = [track.stop(estimate).t, x, y, estimate.sd_m];
+        numbers.map(|number| format!("{number:.3}")).to_vec()
+    };
+    Table { rows: track.estimates.iter().map(row).collect(), ..Table::new(&["t", "x", "y", "sd"]) }
+}

@@ -1,0 +1,9 @@
+//! The thesis: what it prints, its experiment, and its part of the report.
+
+pub mod beyond;
+pub mod chapter;
+pub mod experiment;
+pub mod published;
+pub mod report;
+pub mod static_user;
+pub mod sweeps;

@@ -1,0 +1,72 @@
+//! A flight as it was recorded, with the truth where that is known, or a synthetic one by name.
+
+pub mod area;
+pub mod flight;
+
+use std::path::{Path, PathBuf};
+
+use self::area::Area;
+use self::flight::Flight;
+use crate::Error;
+
+/// A recording.
+#[derive(Debug, Clone)]
+pub enum Recording {
+    /// A recorded flight.
+    Flight(Box<Recorded>),
+    /// A synthetic user who walks a circle, followed by the drone.
+    Moving,
+    /// A synthetic user who stays.
+    Staying,
+}
+
+/// A recorded flight.
+#[derive(Debug, Clone)]
+pub struct Recorded {
+    /// Where it was read.
+    pub log: PathBuf,
+    /// What was measured: at least three times.
+    pub flight: Flight,
+    /// Where the user can be.
+    pub area: Option<Box<Area>>,
+    /// Where the user really is.
+    pub truth: Option<[f64; 2]>,
+}
+
+impl Recording {
+    /// Reads the files.
+    ///
+    /// # Errors
+    /// The file, the line, and what was expected there; [`Error::File`] if there is too little.
+    pub fn read(log: &Path, truth: Option<&Path>, area: Option<&Path>) -> Result<Self, Error> {
+        let flight = flight::read(log)?;
+        let truth = truth.map(flight::read_truth).transpose()?;
+        let area = area.map(area::read).transpose()?;
+        let recorded = Recorded { log: log.to_path_buf(), flight, area, truth };
+        if recorded.flight.stops.len() < 3 {
+            return Err(recorded.refused(
+                "expected at least three measurements within ±300 dB, from above the ground",
+            ));
+        }
+        Ok(Self::Flight(Box::new(recorded)))
+    }
+
+    /// A synthetic one.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is none of that name.
+    pub fn synthetic(name: &str) -> Result<Self, Error> {
+        match name {
+            "moving" => Ok(Self::Moving),
+            "staying" => Ok(Self::Staying),
+            _ => Err(Error::Usage(format!("there is no synthetic flight {name:?}"))),
+        }
+    }
+}
+
+impl Recorded {
+    /// A complaint about the log.
+    pub(super) fn refused(&self, problem: &str) -> Error {
+        Error::File { path: self.log.clone(), problem: problem.to_owned() }
+    }
+}

@@ -1,0 +1,153 @@
+//! The same in firmware.
+
+use super::choices::{EnvironmentKind, FlightKind, ResamplerKind};
+use super::{Recording, Settings, built, filter_of, geometry, walk};
+use crate::system::{Literal, ScalarKind};
+use crate::systems::drone::recording::flight::Quantity;
+use crate::systems::drone::simulate::moving_user::{Policy, Walk};
+use crate::systems::drone::simulate::static_user::FilterSetting;
+use crate::systems::drone::track::search::{MOST, MOST_OPEN, POINTS, level_prior};
+
+const CHANNELS: &str = "kestirim_air_to_ground";
+const FILTERS: &str = "kestirim_particle_filter";
+const LOCATORS: &str = "kestirim_user_locator";
+
+/// What a firmware is configured with, in single precision.
+pub(in crate::systems::drone) fn firmware(
+    recording: Option<&Recording>,
+    settings: &Settings,
+) -> String {
+    let literal = match recording {
+        Some(Recording::Moving) => moving(settings, &walk(settings)),
+        Some(Recording::Staying) => staying(settings),
+        Some(Recording::Flight(recorded)) => recorded_flight(settings, recorded.flight.quantity),
+        None => recorded_flight(settings, Quantity::Level),
+    };
+    literal.to_string()
+}
+
+/// The search of a recorded flight.
+fn recorded_flight(settings: &Settings, quantity: Quantity) -> Literal {
+    if let Some(environment) = built(settings) {
+        return lattice(environment, POINTS, MOST, if quantity == Quantity::Level { 3 } else { 2 });
+    }
+    let level = level_prior(quantity);
+    let base = level.map_or_else(
+        || "FreeSpace::new(None)".to_owned(),
+        |level| {
+            let (mean, sigma) = (level.mean, level.sigma);
+            format!("FreeSpace::new(Some(LevelPrior {{ mean: {mean:?}, sigma: {sigma:?} }}))")
+        },
+    );
+    let literal = literal(&format!("{CHANNELS}::FreeSpace"), "FreeSpace::<f32>", &base);
+    let literal = match level {
+        Some(_) => literal.import(&format!("{CHANNELS}::LevelPrior")),
+        None => literal,
+    };
+    let most = MOST_OPEN + 1;
+    literal.import(&format!("{LOCATORS}::{{Area, BeaconSearch}}")).then(format!(
+        "let search = |area: Area<f32, 8>| BeaconSearch::<f32, {most}, 8>::new(config, area);"
+    ))
+}
+
+/// The filter of a synthetic user who stays.
+fn staying(settings: &Settings) -> Literal {
+    match filter_of(settings) {
+        FilterSetting::Best(points) => {
+            let geometry = geometry(settings);
+            lattice(geometry.environment, points, geometry.stops as usize, 2)
+        }
+        FilterSetting::Published(filter) => {
+            published(settings, filter.particles, geometry(settings).environment, None)
+        }
+    }
+}
+
+/// The filter of a synthetic user who moves, and the drone's flight plan.
+fn moving(settings: &Settings, walk: &Walk) -> Literal {
+    let Walk { particles, environment, .. } = *walk;
+    if let Policy::Hover(_) = walk.policy {
+        return published(settings, particles, environment, Some(walk.jitter_m()));
+    }
+    let height = match settings.chosen("flight") {
+        FlightKind::Low => "Height::Between(100.0, 1000.0)".to_owned(),
+        _ => format!("Height::Fixed({:?})", walk.height_m),
+    };
+    literal(&format!("{LOCATORS}::Motion"), "Motion::<f32>", "Motion::people()")
+        .import(&format!("{CHANNELS}::{{Channel, Environment}}"))
+        .import(&format!("{FILTERS}::{{Region, Xoshiro128PlusPlus}}"))
+        .import(&format!("{LOCATORS}::{{Height, Orbit, Tracker}}"))
+        .then(channel(environment))
+        .then(format!(
+            "let tracker = |region: &Region<f32, 2>, rng: &mut Xoshiro128PlusPlus| {{\n    \
+             Tracker::<f32, {particles}>::new(channel, config, region, rng)\n}};"
+        ))
+        .then(format!("let orbit = Orbit::<f32>::new({height});"))
+}
+
+/// The thesis' filter; its jitter if that is not the thesis' own, m.
+fn published(
+    settings: &Settings,
+    particles: usize,
+    environment: EnvironmentKind,
+    jitter_m: Option<f64>,
+) -> Literal {
+    let config = format!("{LOCATORS}::{{PublishedLocator, PublishedSettings}}");
+    let mut literal = literal(&config, "PublishedSettings::<f32>", "PublishedSettings::thesis()")
+        .number_field("jitter", jitter_m);
+    let resampler: ResamplerKind = settings.chosen("resampler");
+    if resampler != ResamplerKind::default() {
+        literal = literal
+            .import(&format!("{FILTERS}::Resampler"))
+            .field("resampler", format!("Resampler::{resampler:?}"));
+    }
+    literal
+        .import(&format!("{CHANNELS}::{{Channel, Environment}}"))
+        .import(&format!("{FILTERS}::{{Region, Xoshiro128PlusPlus}}"))
+        .then(channel(environment))
+        .then(format!(
+            "let locator = |region: &Region<f32, 2>, rng: &mut Xoshiro128PlusPlus| {{\n    \
+             PublishedLocator::<f32, {particles}>::new(channel, region, config, rng)\n}};"
+        ))
+}
+
+/// A lattice that is laid anew where the posterior is; with three dimensions the level is one of them.
+fn lattice(
+    environment: EnvironmentKind,
+    points: usize,
+    measurements: usize,
+    dimensions: usize,
+) -> Literal {
+    literal(
+        &format!("{CHANNELS}::{{Channel, Environment}}"),
+        "Channel::<f32>",
+        &through(environment),
+    )
+    .import(&format!("{FILTERS}::Region"))
+    .import(&format!("{LOCATORS}::Locator"))
+    .then(format!(
+        "let locator = |region: &Region<f32, {dimensions}>| {{\n    \
+         Locator::<f32, {points}, {measurements}, {dimensions}>::new(config, region)\n}};"
+    ))
+}
+
+fn literal(imports: &str, config: &str, base: &str) -> Literal {
+    Literal::new(imports, ScalarKind::F32, config, base)
+}
+
+fn channel(environment: EnvironmentKind) -> String {
+    format!(
+        "let channel = {};",
+        through(environment).replace("Channel::new", "Channel::<f32>::new")
+    )
+}
+
+fn through(environment: EnvironmentKind) -> String {
+    let environment = match environment {
+        EnvironmentKind::Suburban => "suburban",
+        EnvironmentKind::Urban => "urban",
+        EnvironmentKind::DenseUrban => "dense_urban",
+        EnvironmentKind::HighRise => "high_rise",
+    };
+    format!("Channel::new(&Environment::{environment}(), 0.15).expect(\"a wavelength above zero\")")
+}

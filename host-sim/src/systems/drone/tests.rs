@@ -1,0 +1,199 @@
+use std::fmt::Write as _;
+use std::fs;
+
+use serde_json::{Value, json};
+
+use super::*;
+use crate::system::{AnySystem, Opened, Source, Wanted};
+
+const IDS: [&str; 4] = ["map", "error", "spread", "path-loss"];
+
+fn open(name: &str) -> Box<dyn Opened> {
+    let settings = Settings::new(settings::table(None));
+    Drone.open(Source::Synthetic(name.to_owned()), &settings).unwrap()
+}
+
+fn answer(opened: &dyn Opened, sent: &Value) -> Answer {
+    opened.answer(&Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap()).unwrap()
+}
+
+fn points(answer: &Answer, figure: &str, series: &str) -> Vec<(f64, f64)> {
+    let figure = answer.figures.iter().find(|found| found.id == figure).unwrap();
+    let series = figure.series.iter().find(|found| found.name == series).unwrap();
+    series.x.iter().copied().zip(series.y.iter().copied()).collect()
+}
+
+fn ids(answer: &Answer) -> Vec<&str> {
+    answer.figures.iter().map(|figure| figure.id.as_str()).collect()
+}
+
+fn disabled(answer: &Answer) -> Vec<&str> {
+    answer.disabled.iter().map(|(name, _)| *name).collect()
+}
+
+#[test]
+fn synthetic_flights_answer_with_the_same_figures_whatever_the_settings() {
+    let staying = [
+        json!({}),
+        json!({ "filter": "published", "resampler": "residual", "trajectory": "grid", "step": 1 }),
+        json!({ "trajectory": "small-grid", "environment": "high-rise", "measurements": 40 }),
+    ];
+    let moving = [
+        json!({ "end-time": 100 }),
+        json!({ "end-time": 100, "flight": "hover", "user-radius": 0, "step": 1000 }),
+        json!({ "end-time": 100, "flight": "low", "environment": "suburban", "noise": 2 }),
+    ];
+    for (name, all) in [("staying", staying), ("moving", moving)] {
+        let opened = open(name);
+        for sent in all {
+            let answer = answer(&*opened, &sent);
+            assert_eq!(ids(&answer), IDS, "{sent}");
+            assert!(!points(&answer, "map", "particles").is_empty(), "{sent}");
+            assert!(!disabled(&answer).contains(&"environment"), "{sent}");
+        }
+    }
+    let settings = Settings::new(settings::table(None));
+    assert!(Drone.open(Source::Synthetic("flying".to_owned()), &settings).is_err());
+}
+
+#[test]
+fn every_setting_of_a_synthetic_user_changes_something_or_says_why_not() {
+    let staying: (&str, Value, &[(&str, Value)]) = (
+        "staying",
+        json!({}),
+        &[
+            ("step", json!(3)),
+            ("environment", json!("dense-urban")),
+            ("filter", json!("published")),
+            ("trajectory", json!("grid")),
+            ("radius", json!(300)),
+            ("measurements", json!(9)),
+            ("particles", json!(250)),
+            ("height", json!(400)),
+            ("speed", json!(60)),
+            ("seed", json!(1)),
+        ],
+    );
+    let moving: (&str, Value, &[(&str, Value)]) = (
+        "moving",
+        json!({ "end-time": 40 }),
+        &[
+            ("step", json!(3)),
+            ("environment", json!("dense-urban")),
+            ("flight", json!("low")),
+            ("particles", json!(250)),
+            ("height", json!(400)),
+            ("user-radius", json!(300)),
+            ("end-time", json!(50)),
+            ("noise", json!(2)),
+            ("speed", json!(60)),
+            ("seed", json!(1)),
+        ],
+    );
+    for (name, base, changes) in [staying, moving] {
+        let opened = open(name);
+        let before = answer(&*opened, &base);
+        let mut known = disabled(&before);
+        for (setting, value) in changes {
+            let mut sent = base.clone();
+            sent[*setting] = value.clone();
+            let after = answer(&*opened, &sent);
+            let same = after.facts == before.facts && after.figures == before.figures;
+            assert!(!same, "{name}: {setting}");
+            assert!(after.command.contains(&format!("--{setting} ")), "{}", after.command);
+            known.push(setting);
+        }
+        let mut all: Vec<_> = opened.settings().iter().map(|setting| setting.name).collect();
+        known.sort_unstable();
+        all.sort_unstable();
+        assert_eq!(known, all, "{name}");
+    }
+}
+
+#[test]
+fn stepping_moves_the_cloud_and_nothing_that_is_over_all_steps() {
+    let opened = open("moving");
+    let at = |step: u32| answer(&*opened, &json!({ "end-time": 100, "step": step }));
+    let (early, late) = (at(3), at(80));
+    assert_ne!(points(&early, "map", "particles"), points(&late, "map", "particles"));
+    assert_eq!(points(&early, "error", "error"), points(&late, "error", "error"));
+    assert_eq!(points(&late, "map", "drone").len(), 80);
+    let other = answer(&*opened, &json!({ "end-time": 100, "step": 80, "seed": 3 }));
+    assert_ne!(points(&late, "error", "error"), points(&other, "error", "error"));
+}
+
+#[test]
+fn the_cloud_gathers_where_the_user_is() {
+    let opened = open("staying");
+    for filter in ["best", "published"] {
+        let sent = json!({ "filter": filter, "measurements": 40 });
+        let answer = answer(&*opened, &sent);
+        let spread = points(&answer, "spread", "spread, m");
+        assert!(spread[39].1 < spread[0].1 / 2.0, "{filter}: {spread:?}");
+        assert!(points(&answer, "error", "error")[39].1 < 400.0, "{filter}");
+    }
+}
+
+#[test]
+fn a_replay_of_a_synthetic_user_is_of_the_step_that_is_shown() {
+    let opened = open("staying");
+    let replay = |given: &[(&str, &str)]| {
+        let mut settings = Settings::new(settings::table(None));
+        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        opened.replay(&settings, &Wanted::default())
+    };
+    let (all, third) = (replay(&[]).unwrap().report, replay(&[("step", "3")]).unwrap().report);
+    assert_eq!((&all["measurements"], &third["measurements"]), (&json!(12), &json!(3)));
+    assert!(all["accuracy"]["error_m"].is_f64() && all["accuracy"] != third["accuracy"]);
+    for (name, text, expected) in [
+        ("environment", "open", "--environment open is for a recorded flight"),
+        ("resampler", "residual", "--resampler is for --filter published"),
+        ("noise", "1", "--noise is for a synthetic recording: --synthetic moving"),
+    ] {
+        let refusal = replay(&[(name, text)]).unwrap_err().to_string();
+        assert!(refusal.contains(expected), "{refusal}");
+    }
+}
+
+#[test]
+fn a_log_is_searched_and_refused_as_on_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let (log, truth) = (folder.path().join("stops.csv"), folder.path().join("truth.csv"));
+    let mut text = "t,x,y,h,rssi_db\n".to_owned();
+    for k in 0..12 {
+        let t = f64::from(k);
+        let (x, y) = (40.0 * t, 30.0 * (t * 0.9).sin());
+        let far = (x - 200.0).hypot(y - 100.0).hypot(40.0);
+        writeln!(text, "{t},{x:.3},{y:.3},40,{:.3}", -40.0 - 20.0 * far.log10()).unwrap();
+    }
+    fs::write(&log, text).unwrap();
+    fs::write(&truth, "x,y\n200,100\n").unwrap();
+    let mut files = Files::default();
+    let settings = Settings::new(settings::table(None));
+    let open = |files: &Files| Drone.open(Source::Files(files.clone()), &settings);
+    assert!(open(&files).is_err());
+    files.add("log", &log);
+    files.add("truth", &truth);
+    let opened = open(&files).unwrap();
+    let first = answer(&*opened, &json!({ "step": 1 }));
+    let last = answer(&*opened, &json!({}));
+    assert_eq!(ids(&last), IDS);
+    assert_ne!(points(&first, "map", "particles"), points(&last, "map", "particles"));
+    assert!(points(&last, "error", "error")[11].1 < 60.0);
+    let all = opened.settings().len();
+    assert_eq!(disabled(&last).len() + 2, all, "step and environment are all that acts");
+    fs::write(&log, "t,x,y,h,rssi_db\n0,0,0,40,-60\n").unwrap();
+    let refusal = open(&files).err().unwrap().to_string();
+    assert!(refusal.contains("at least three measurements"), "{refusal}");
+}
+
+#[test]
+fn settings_are_refused_only_where_no_recording_has_them() {
+    let refused = |given: &[(&str, &str)]| {
+        let mut settings = Settings::new(settings::table(None));
+        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        Drone.refuse_idle(&settings).is_err()
+    };
+    assert!(!refused(&[("environment", "open"), ("height", "300"), ("noise", "1")]));
+    assert!(refused(&[("trajectory", "grid"), ("radius", "300")]));
+}

@@ -1,0 +1,98 @@
+//! Feeds a flight to the filters, recorded or synthetic.
+
+pub mod cloud;
+pub mod search;
+pub mod trace;
+
+use self::search::{BEYOND_M, MOST, MOST_OPEN, Search};
+use self::trace::Track;
+use super::recording::area::Area;
+use super::recording::flight::Stop;
+use super::recording::{Recorded, Recording};
+use super::settings::choices::EnvironmentKind;
+use super::settings::{built, filter_of, geometry, walk};
+use super::simulate::{moving_user, static_user};
+use crate::Error;
+use crate::system::{Detail, Settings};
+
+/// From here on a drone hears nothing, m.
+const FAR_M: f64 = 20_000.0;
+
+/// Tracks a user.
+///
+/// # Errors
+/// [`Error::File`] if no place explains a recorded flight.
+pub(super) fn track(
+    recording: &Recording,
+    settings: &Settings,
+    detail: Detail,
+) -> Result<Track, Error> {
+    let seed = settings.decided("seed") as u64;
+    match recording {
+        Recording::Flight(recorded) => find(recorded, built(settings), detail),
+        Recording::Moving => Ok(moving_user::track(&walk(settings), seed, 0)),
+        Recording::Staying => {
+            Ok(static_user::track(&geometry(settings), filter_of(settings), seed, 0))
+        }
+    }
+}
+
+/// Finds the user of a recorded flight.
+fn find(
+    recorded: &Recorded,
+    environment: Option<EnvironmentKind>,
+    detail: Detail,
+) -> Result<Track, Error> {
+    let Recorded { flight, truth, area, .. } = recorded;
+    let area = area.as_deref();
+    let (stops, mut warnings) = used(recorded, environment);
+    // What comes in between takes as long as the end, each time.
+    let only_last = truth.is_none() && detail == Detail::Result;
+    let search = Search::new(&stops, area, *truth, only_last, detail == Detail::Every);
+    let estimates = search.find(environment, flight.quantity);
+    if estimates.is_empty() {
+        return Err(recorded.refused("no place explains the measurements"));
+    }
+    if (environment.is_some() || !only_last) && estimates.len() < stops.len() {
+        warnings.push("some measurements are explained by no place: left out".to_owned());
+    }
+    let truth = truth.map_or_else(Vec::new, |truth| vec![truth; stops.len()]);
+    Ok(Track { stops, truth, estimates, warnings, flown: None })
+}
+
+/// As many measurements as can be remembered, and what a reader should know.
+fn used(recorded: &Recorded, environment: Option<EnvironmentKind>) -> (Vec<Stop>, Vec<String>) {
+    let Recorded { flight, area, .. } = recorded;
+    let mut warnings = Vec::new();
+    if flight.unusable > 0 {
+        let count = flight.unusable;
+        warnings.push(format!(
+            "rows left out: {count} (a height is above 0 and below 20000 m, a measurement within \
+             ±300 dB)"
+        ));
+    }
+    let most = if environment.is_some() { MOST } else { MOST_OPEN };
+    let count = flight.stops.len();
+    let stops = if count > most {
+        warnings.push(format!("of {count} measurements {most} are used, evenly"));
+        (0..most).map(|k| flight.stops[k * count / most]).collect()
+    } else {
+        flight.stops.clone()
+    };
+    match area {
+        None => warnings
+            .push(format!("the user is looked for up to {BEYOND_M} m beyond the flight (--area)")),
+        Some(area) if far(area, &stops) => {
+            warnings.push("no measurement was made within 20 km of the area".to_owned());
+        }
+        Some(_) => {}
+    }
+    (stops, warnings)
+}
+
+/// Whether no stop is anywhere near an area.
+fn far(area: &Area, stops: &[Stop]) -> bool {
+    let (low, high) = (area.region().low(), area.region().high());
+    let beside = |axis: usize, at: f64| at < low[axis] - FAR_M || at > high[axis] + FAR_M;
+    stops.iter().all(|stop| beside(0, stop.place[0]) || beside(1, stop.place[1]))
+}

@@ -1,0 +1,54 @@
+//! What came of a recording.
+
+pub mod accuracy;
+pub mod comparison;
+pub mod report;
+pub mod tables;
+mod warning;
+
+use self::comparison::Comparison;
+use self::report::Report;
+use super::Gnss;
+use super::recording::Recording;
+use super::settings::{Choice, FilterKind, Mode, Setup};
+use super::track::Track;
+use super::track::followed::Followed;
+use crate::Error;
+use crate::system::{Account, System};
+
+/// What came of one filter, or of all.
+pub(super) fn account(
+    recording: &Recording,
+    setup: &Setup,
+    track: &Track,
+) -> Result<Account, Error> {
+    // What of the recording serves is the same for all filters.
+    let warnings = warning::of_recording(recording, setup, track.main());
+    let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
+        let warnings = [first, &warning::outages(followed)].concat();
+        Report::new(recording, setup, *filter, followed, warnings)
+    };
+    if setup.filter == Choice::All {
+        let comparison = Comparison {
+            system: Gnss::NAME,
+            mode: Mode::of(setup.motion),
+            epochs: track.main().epochs,
+            filters: track.filters.iter().filter_map(|filter| of(filter, &[])).collect(),
+            warnings: [warnings, warning::outages_of_all(&track.filters)].concat(),
+        };
+        let mut account = Account::new(&comparison, comparison.warnings.clone())?;
+        account.text = Some(comparison.to_string());
+        for report in &comparison.filters {
+            account.fact(report.title(), report.in_a_line());
+        }
+        return Ok(account);
+    }
+    // A filter without a position makes no track.
+    let mut reports = track.filters.iter().filter_map(|filter| of(filter, &warnings));
+    let Some(report) = reports.next() else { return Ok(Account::default()) };
+    let mut account = Account::new(&report, report.warnings.clone())?;
+    for (name, value) in report.facts() {
+        account.fact(name, value);
+    }
+    Ok(account)
+}

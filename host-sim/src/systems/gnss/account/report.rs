@@ -1,0 +1,253 @@
+//! What a replay reports of one filter.
+
+use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
+use kestirim_ppp_filter::Health;
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::accuracy::Accuracy;
+use crate::system::System;
+use crate::systems::gnss::Gnss;
+use crate::systems::gnss::recording::Recording;
+use crate::systems::gnss::settings::{FilterKind, Mode, Setup};
+use crate::systems::gnss::track::followed::{Both, Followed, Slips};
+use crate::systems::gnss::track::outage::Unused;
+
+/// So many satellites are named as those with the most rejected observations.
+const WORST: usize = 5;
+
+/// What the command prints of one filter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Always `gnss`.
+    pub system: &'static str,
+    /// Which filter.
+    pub filter: FilterKind,
+    /// Whether as the paper publishes it.
+    #[serde(rename = "printed")]
+    pub published: bool,
+    /// Whether the receiver was allowed to move.
+    pub mode: Mode,
+    /// All epochs from the first on.
+    pub epochs: usize,
+    /// Those with a solution.
+    pub solved: usize,
+    /// The last position of the marker, ECEF, m.
+    pub position_ecef_m: [f64; 3],
+    /// Its standard deviations to the east, north and up, m.
+    pub sd_enu_m: [f64; 3],
+    /// Of the last solution.
+    pub health: &'static str,
+    /// Since when every solution has been a converged one, min since the first epoch.
+    pub converged_since_min: Option<f64>,
+    /// Zenith delay of the troposphere at the end, m.
+    pub zenith_delay_m: f64,
+    /// Codes and phases that the filter was given.
+    pub observations: usize,
+    /// Those that were left out because they contradict the others.
+    pub rejected: usize,
+    /// Those that were given less weight.
+    pub deweighted: usize,
+    /// Ambiguities begun anew, but those of satellites that come or come back.
+    pub slips: usize,
+    /// The rejected codes and phases.
+    pub rejected_by_kind: Both,
+    /// The codes and phases of less weight.
+    pub deweighted_by_kind: Both,
+    /// The slips by what showed them.
+    pub slips_by_kind: Slips,
+    /// The satellites of which most was rejected.
+    pub most_rejected: Vec<Rejections>,
+    /// Observed satellites that did not serve, one an epoch.
+    pub unused: Unused,
+    /// What a reader should know.
+    pub warnings: Vec<String>,
+    /// How far from the truth, if it is known.
+    pub accuracy: Option<Accuracy>,
+}
+
+/// What was rejected of a satellite.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Rejections {
+    /// Its name.
+    pub satellite: String,
+    /// In how many epochs it was used.
+    pub epochs: usize,
+    /// The rejected codes and phases.
+    #[serde(flatten)]
+    pub rejected: Both,
+}
+
+impl Report {
+    /// What a filter found; none if that is no position at all.
+    pub(super) fn new(
+        recording: &Recording,
+        setup: &Setup,
+        filter: FilterKind,
+        followed: &Followed,
+        warnings: Vec<String>,
+    ) -> Option<Self> {
+        let (last, fix) = (followed.last?, followed.fixes.last()?);
+        let [begin, _] = recording.span();
+        let dry = if setup.corrections.has(Correction::Troposphere) {
+            zenith_hydrostatic(&Geodetic::from_ecef(&fix.position))
+        } else {
+            0.0
+        };
+        let truth = setup.truth(recording);
+        Some(Self {
+            system: Gnss::NAME,
+            filter,
+            published: setup.published && filter.is_published(),
+            mode: Mode::of(setup.motion),
+            epochs: followed.epochs,
+            solved: followed.fixes.len(),
+            position_ecef_m: fix.position.into(),
+            sd_enu_m: last.sd_enu,
+            health: health(last.health),
+            converged_since_min: followed.converged_since.map(|t| (t - begin) / 60.0),
+            zenith_delay_m: dry + last.wet_delay,
+            observations: followed.observations,
+            rejected: followed.rejected.sum(),
+            deweighted: followed.deweighted.sum(),
+            slips: followed.slips.sum(),
+            rejected_by_kind: followed.rejected,
+            deweighted_by_kind: followed.deweighted,
+            slips_by_kind: followed.slips,
+            most_rejected: most_rejected(followed),
+            unused: followed.unused,
+            warnings,
+            accuracy: truth.and_then(|truth| Accuracy::of(&followed.fixes, begin, &truth)),
+        })
+    }
+}
+
+/// As in reports.
+const fn health(health: Health) -> &'static str {
+    match health {
+        Health::Converging => "converging",
+        Health::Converged => "converged",
+        Health::Unchecked => "unchecked",
+    }
+}
+
+fn most_rejected(followed: &Followed) -> Vec<Rejections> {
+    let mut rejections: Vec<_> = followed
+        .satellites
+        .iter()
+        .filter(|(_, tally)| tally.rejected.sum() > 0)
+        .map(|(prn, tally)| Rejections {
+            satellite: format!("G{prn:02}"),
+            epochs: tally.epochs,
+            rejected: tally.rejected,
+        })
+        .collect();
+    rejections.sort_by_key(|it| std::cmp::Reverse(it.rejected.sum()));
+    rejections.truncate(WORST);
+    rejections
+}
+
+impl Report {
+    /// The filter's name, and whether it is as published.
+    pub(super) fn title(&self) -> String {
+        let published = if self.published { " (published)" } else { "" };
+        format!("{}{published}", self.filter.name())
+    }
+
+    /// What matters most.
+    pub(super) fn in_a_line(&self) -> String {
+        let rejected = format!("{} rejected, {} slips", self.rejected, self.slips);
+        match &self.accuracy {
+            Some(Accuracy { final_3d_m, rms_3d_m, .. }) => {
+                let rms =
+                    rms_3d_m.map_or(String::new(), |rms| format!(", RMS {}", millimetres(rms)));
+                format!("final error {}{rms}, {rejected}", millimetres(*final_3d_m))
+            }
+            None => format!("standard deviation {}, {rejected}", enu(self.sd_enu_m)),
+        }
+    }
+
+    /// What it says, each with a name.
+    pub fn facts(&self) -> Vec<(&'static str, String)> {
+        let mut facts = Vec::new();
+        let mut fact = |name, value| facts.push((name, value));
+        let mode = format!("{:?}", self.mode).to_lowercase();
+        fact("filter", format!("{}, {mode}", self.title()));
+        fact("epochs", format!("{}, {} with a solution", self.epochs, self.solved));
+        let [x, y, z] = self.position_ecef_m;
+        fact("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
+        let place = Geodetic::from_ecef(&Vector3::from(self.position_ecef_m));
+        let [latitude, longitude] = [place.latitude, place.longitude].map(f64::to_degrees);
+        fact(
+            "latitude, longitude, height",
+            format!("{latitude:.9}°, {longitude:.9}°, {:.4} m", place.height),
+        );
+        fact("standard deviation", enu(self.sd_enu_m));
+        let since = match self.converged_since_min {
+            Some(minutes) => format!(", since {minutes:.1} min"),
+            None => String::new(),
+        };
+        fact("health", format!("{}{since}", self.health));
+        fact("zenith delay", format!("{:.1} mm", 1e3 * self.zenith_delay_m));
+        fact("observations", self.observations.to_string());
+        let both = |both: Both| format!("{} codes, {} phases", both.code, both.phase);
+        fact("rejected", both(self.rejected_by_kind));
+        if !self.most_rejected.is_empty() {
+            let names = self
+                .most_rejected
+                .iter()
+                .map(|it| format!("{} {}", it.satellite, it.rejected.sum()));
+            fact("  most of", names.collect::<Vec<_>>().join(", "));
+        }
+        fact("down-weighted", both(self.deweighted_by_kind));
+        fact("slips", slips(self.slips_by_kind));
+        fact("not used", unused(&self.unused));
+        if let Some(accuracy) = &self.accuracy {
+            let Accuracy { final_3d_m, final_enu_m, .. } = *accuracy;
+            fact("final error", format!("{} ({})", millimetres(final_3d_m), enu(final_enu_m)));
+            if let (Some(all), Some(each)) = (accuracy.rms_3d_m, accuracy.rms_enu_m) {
+                fact("RMS after 1 h", format!("{} ({})", millimetres(all), enu(each)));
+            }
+            let never = || "never below 10 cm for 15 min".to_owned();
+            let minutes = |minutes: f64| format!("{minutes:.1} min");
+            fact("convergence", accuracy.convergence_min.map_or_else(never, minutes));
+        }
+        facts
+    }
+}
+
+/// A length as in tables.
+pub fn millimetres(metres: f64) -> String {
+    if metres.abs() < 10.0 { format!("{:.1} mm", 1e3 * metres) } else { format!("{metres:.3} m") }
+}
+
+fn enu([east, north, up]: [f64; 3]) -> String {
+    let [east, north, up] = [east, north, up].map(millimetres);
+    format!("E {east}, N {north}, U {up}")
+}
+
+fn slips(slips: Slips) -> String {
+    let kinds = [
+        (slips.loss_of_lock, "loss of lock"),
+        (slips.geometry_free, "geometry-free"),
+        (slips.melbourne_wuebbena, "Melbourne–Wübbena"),
+        (slips.contradicted, "contradicted"),
+    ];
+    listed(&kinds)
+}
+
+fn unused(unused: &Unused) -> String {
+    let kinds = [
+        (unused.incomplete, "incomplete"),
+        (unused.no_orbit, "without an orbit"),
+        (unused.no_clock, "without a clock"),
+        (unused.below_mask, "below the mask"),
+    ];
+    listed(&kinds)
+}
+
+fn listed(kinds: &[(usize, &str)]) -> String {
+    let some = kinds.iter().filter(|(count, _)| *count > 0);
+    let some: Vec<_> = some.map(|(count, kind)| format!("{count} {kind}")).collect();
+    if some.is_empty() { "none".to_owned() } else { some.join(", ") }
+}

@@ -1,0 +1,75 @@
+//! Tables that a replay writes.
+
+use kestirim_gnss_ppp::Slip;
+use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_robust_kalman::{Decision, Reason};
+
+use super::accuracy::Fix;
+use crate::system::Table;
+
+const RESIDUAL_COLUMNS: [&str; 13] = [
+    "t",
+    "prn",
+    "elevation_deg",
+    "azimuth_deg",
+    "code_residual_m",
+    "code_standardised",
+    "code_weight",
+    "code_reason",
+    "phase_residual_m",
+    "phase_standardised",
+    "phase_weight",
+    "phase_reason",
+    "slip",
+];
+
+/// `t,x,y,z`: a row for each position.
+pub(in crate::systems::gnss) fn track(fixes: &[Fix]) -> Table {
+    let row = |Fix { t, position }: &Fix| {
+        let [x, y, z] = <[f64; 3]>::from(*position).map(|metres| format!("{metres:.6}"));
+        vec![format!("{t:.6}"), x, y, z]
+    };
+    Table { rows: fixes.iter().map(row).collect(), ..Table::new(&["t", "x", "y", "z"]) }
+}
+
+/// What became of each observation: a row for each satellite in each epoch.
+pub(in crate::systems::gnss) fn residuals(residuals: &[(f64, SatelliteReport)]) -> Table {
+    let row = |(t, report): &(f64, SatelliteReport)| {
+        let mut row = vec![format!("{t:.6}"), report.satellite.to_string()];
+        let direction = report.direction;
+        let angles = [direction.elevation, direction.azimuth];
+        row.extend(angles.map(|angle| format!("{:.3}", angle.to_degrees())));
+        for decision in [&report.code, &report.phase] {
+            let Decision { residual, standardised, weight, .. } = decision;
+            row.extend([format!("{residual:.5}"), format!("{standardised:.3}")]);
+            row.extend([format!("{weight:.3}"), reason(decision.reason).to_owned()]);
+        }
+        row.push(report.slipped.map_or("", slip).to_owned());
+        row
+    };
+    Table { rows: residuals.iter().map(row).collect(), ..Table::new(&RESIDUAL_COLUMNS) }
+}
+
+/// What `reason` columns hold.
+fn reason(reason: Reason) -> &'static str {
+    match reason {
+        Reason::Agrees => "agrees",
+        Reason::NoRedundancy => "no-redundancy",
+        Reason::TooFew => "too-few",
+        Reason::DownWeighted => "down-weighted",
+        Reason::Rejected => "rejected",
+        _ => "other",
+    }
+}
+
+/// What the `slip` column holds.
+const fn slip(slipped: Slipped) -> &'static str {
+    match slipped {
+        Slipped::New => "new",
+        Slipped::Seen(Slip::Gap) => "gap",
+        Slipped::Seen(Slip::LossOfLock) => "loss-of-lock",
+        Slipped::Seen(Slip::GeometryFree) => "geometry-free",
+        Slipped::Seen(Slip::MelbourneWuebbena) => "melbourne-wuebbena",
+        Slipped::Contradicted => "contradicted",
+    }
+}

@@ -1,0 +1,129 @@
+//! Precise products as the filter wants them: a satellite's orbit, clock and antenna at an instant.
+
+use kestirim_gnss_files::{self as files, Antenna, Antennas, Clocks, Observed, Orbits};
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
+use kestirim_ppp_filter::SatelliteObservation;
+
+use super::model::{clock_sample, orbit_sample, patterns};
+
+/// Clocks are bridged over the interval of the coarsest products, s.
+const LONGEST_CLOCK_GAP: f64 = 900.0;
+const SATELLITES: u8 = 32;
+
+/// Why a satellite that was observed does not serve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unusable {
+    /// A code or a phase is missing.
+    Incomplete,
+    /// There is no orbit at the time.
+    NoOrbit,
+    /// There is no clock at the time.
+    NoClock,
+}
+
+/// One satellite's products.
+#[derive(Debug, Default)]
+pub struct Satellite {
+    /// Its orbit, in the order of time.
+    pub orbit: Vec<OrbitSample>,
+    /// Its clock, in the order of time.
+    pub clock: Vec<ClockSample>,
+    /// Its antenna, where known.
+    pub antenna: Option<Antenna>,
+}
+
+/// The products of a day.
+#[derive(Debug)]
+pub struct Products {
+    reference: GpsTime,
+    satellites: Vec<Satellite>,
+}
+
+impl Products {
+    /// Products for observations that begin at `start`: clocks from `clocks` if there are any, from
+    /// the orbit files otherwise.
+    pub fn new(
+        start: files::GpsTime,
+        orbits: &Orbits,
+        clocks: Option<&Clocks>,
+        antennas: &Antennas,
+    ) -> Self {
+        let reference = GpsTime::new(start.day(), 0.0);
+        let satellites = (0..=SATELLITES).map(|prn| {
+            // A sample of a manoeuvre or of a jumping clock belongs to neither side.
+            let samples = orbits.satellite(prn);
+            let steady = samples.iter().filter(|sample| !sample.manoeuvre);
+            let orbit = steady.map(|sample| orbit_sample(reference, sample));
+            let clock = match clocks {
+                Some(clocks) => clocks
+                    .satellite(prn)
+                    .iter()
+                    .map(|sample| clock_sample(reference, sample.time, sample.bias))
+                    .collect(),
+                None => samples
+                    .iter()
+                    .filter(|sample| !sample.clock_event)
+                    .filter_map(|sample| Some(clock_sample(reference, sample.time, sample.clock?)))
+                    .collect(),
+            };
+            let antenna = antennas.satellite(prn, start).cloned();
+            Satellite { orbit: orbit.collect(), clock, antenna }
+        });
+        Self { reference, satellites: satellites.collect() }
+    }
+
+    /// Products of which all samples count from `reference`: the satellites in the order of their numbers, from 1.
+    pub fn of_satellites(
+        reference: GpsTime,
+        satellites: impl IntoIterator<Item = Satellite>,
+    ) -> Self {
+        let satellites = std::iter::once(Satellite::default()).chain(satellites).collect();
+        Self { reference, satellites }
+    }
+
+    /// An observed satellite with its state when it sent what was received at `time`.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn observation(
+        &self,
+        time: GpsTime,
+        observed: &Observed,
+    ) -> Result<SatelliteObservation<'_>, Unusable> {
+        let ([Some(first), Some(second)], [Some(l1), Some(l2)]) = (observed.code, observed.phase)
+        else {
+            return Err(Unusable::Incomplete);
+        };
+        let satellite = self.satellites.get(usize::from(observed.prn)).ok_or(Unusable::NoOrbit)?;
+        let clock = Clock {
+            reference: self.reference,
+            samples: &satellite.clock,
+            longest_gap: LONGEST_CLOCK_GAP,
+        };
+        // By the satellite's own clock; it is off by less than a millisecond, in which it loses nothing.
+        let sent = time.plus(-first / SPEED_OF_LIGHT);
+        let orbit = Orbit { reference: self.reference, samples: &satellite.orbit };
+        // A satellite that the products do not know at all has no orbit, in the first place.
+        let missing =
+            || if orbit.at(sent).is_none() { Unusable::NoOrbit } else { Unusable::NoClock };
+        // Products that begin with the first epoch do not know when its signals were sent, 70 ms before: a clock
+        // runs away by less than a millimetre.
+        let clock = clock.at(sent).or_else(|| clock.at(time)).ok_or_else(missing)?;
+        let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
+        Ok(SatelliteObservation {
+            satellite: observed.prn,
+            code: [first, second],
+            phase: [l1, l2],
+            lock_lost: observed.loss_of_lock.contains(&true),
+            state: SatelliteState {
+                position: orbit.position,
+                velocity: orbit.velocity,
+                clock: clock.bias,
+                clock_interval: clock.interval,
+                clock_distance: clock.distance,
+            },
+            antenna: satellite.antenna.as_ref().and_then(patterns),
+        })
+    }
+}

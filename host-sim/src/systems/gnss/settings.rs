@@ -1,0 +1,235 @@
+//! How observations become positions: what can be set, and what it means.
+
+mod filter;
+mod firmware;
+mod part;
+
+use kestirim_gnss_ppp::Corrections;
+use kestirim_ppp_filter::{Config, Motion, states};
+use kestirim_robust_kalman::{Igg3, Weight};
+use nalgebra::Vector3;
+
+pub use self::filter::{Choice, FilterKind, Mode};
+use self::part::Part;
+use super::recording::Recording;
+use super::recording::truth::place;
+use crate::system::{Idle, ScalarKind, Setting, Settings};
+
+/// Number types the filter is built for: ranges of 26 000 km to a millimetre need the digits.
+pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];
+
+/// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
+pub const STATES: usize = states(20);
+
+/// Variance per second of each coordinate of a receiver that may move at will, m²/s: in the 30 s between
+/// epochs it gets 55 m away, so that only what is observed in an epoch tells where it is.
+pub const PROCESS_NOISE: f64 = 100.0;
+
+/// The highest mask, degrees: above it there are hardly ever four satellites.
+const HIGHEST_MASK: f64 = 60.0;
+
+/// What can be set.
+pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
+    let [first, last] = recording.map_or([0.0, 1e9], Recording::span);
+    let step = ((last - first) / 200.0).max(1.0);
+    vec![
+        Setting::one_of("mode", "Whether the receiver moves", &Mode::default()),
+        Setting::decades(
+            "process-noise",
+            "Variance added to each coordinate of a receiver that may move; 1e-4 holds a slow one together \
+             [default: 100, each epoch stands alone]",
+            "m²/s",
+            [1e-12, 1e6],
+            PROCESS_NOISE,
+        )
+        .undecided(),
+        Setting::one_of(
+            "filter",
+            "What is done about observations that do not fit",
+            &Choice::default(),
+        ),
+        Setting::switch("published", "Take the paper's robust filters as published: worse", false)
+            .alias("printed"),
+        Setting::number(
+            "k0",
+            "Standardised residual up to which IGG III gives full weight [default: the filter's own]",
+            "",
+            [1.0, 6.0, 0.1],
+            3.5,
+        )
+        .undecided(),
+        Setting::number(
+            "k1",
+            "Standardised residual beyond which IGG III gives no weight [default: the filter's own]",
+            "",
+            [6.0, 16.0, 0.1],
+            8.0,
+        )
+        .undecided(),
+        Setting::number(
+            "mask",
+            "Lowest elevation of a satellite [default: 8]",
+            "°",
+            [0.0, HIGHEST_MASK, 1.0],
+            8.0,
+        )
+        .undecided(),
+        Setting::any_of::<Part>(
+            "without",
+            "Part of the model that is left out, to see what it is worth; may be given again",
+        ),
+        Setting::text(
+            "truth",
+            "Where the marker really is, ECEF, m; serves accuracy alone",
+            "X,Y,Z",
+            |text| place(text).map(|_| ()),
+        ),
+        Setting::number(
+            "until",
+            "Last epoch, in seconds since the midnight before the first one, as all times here",
+            "s",
+            [first, last, step],
+            last,
+        )
+        .undecided()
+        .playable(),
+        Setting::some_of("scalar", "Number type of the filter", &SCALARS, &ScalarKind::F64),
+    ]
+}
+
+/// Why a setting has no effect as the others are.
+pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
+    let any = |is: fn(FilterKind) -> bool| {
+        settings.chosen::<Choice>("filter").filters().iter().any(|filter| is(*filter))
+    };
+    match name {
+        "process-noise" if settings.chosen::<Mode>("mode") == Mode::Static => {
+            Some(Idle::foreign("is for --mode kinematic"))
+        }
+        "published" if !any(FilterKind::is_published) => {
+            Some(Idle::foreign("is for --filter rkf, skf, ikf, adaptive or all"))
+        }
+        "k0" | "k1" if !any(FilterKind::has_thresholds) => {
+            Some(Idle::foreign("is for --filter rkf, ikf, adaptive, default or all"))
+        }
+        "scalar" => {
+            Some(Idle::implied("is always f64: 26 000 km to a millimetre need all its digits"))
+        }
+        _ => None,
+    }
+}
+
+/// Everything that can be chosen about how observations become positions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// One filter, or all.
+    pub filter: Choice,
+    /// Whether the receiver moves, and how.
+    pub motion: Motion,
+    /// Lowest elevation of a satellite, rad; none: the filter's own choice.
+    pub mask: Option<f64>,
+    /// Whether the paper's filters are taken as published.
+    pub published: bool,
+    /// Thresholds k0 and k1 of filters with IGG III weights; none: the filter's own.
+    pub thresholds: [Option<f64>; 2],
+    /// What is corrected.
+    pub corrections: Corrections,
+    /// The last epoch, s since the midnight before the first one; none: all are taken.
+    pub until: Option<f64>,
+    /// Where the marker really is, ECEF, m; none: what the recording knows.
+    pub truth: Option<Vector3<f64>>,
+}
+
+impl Setup {
+    /// The defaults with one filter.
+    pub fn new(filter: FilterKind, motion: Motion) -> Self {
+        Self {
+            filter: Choice::One(filter),
+            motion,
+            mask: None,
+            published: false,
+            thresholds: [None; 2],
+            corrections: Corrections::ALL,
+            until: None,
+            truth: None,
+        }
+    }
+
+    /// As set.
+    pub fn of(settings: &Settings) -> Self {
+        let motion = match settings.chosen("mode") {
+            Mode::Static => Motion::Static,
+            Mode::Kinematic => {
+                let process_noise = settings.number("process-noise").unwrap_or(PROCESS_NOISE);
+                Motion::Kinematic { process_noise }
+            }
+        };
+        let left_out = settings.all_of::<Part>("without").into_iter();
+        Self {
+            filter: settings.chosen("filter"),
+            motion,
+            mask: settings.number("mask").map(f64::to_radians),
+            published: settings.is_on("published"),
+            thresholds: ["k0", "k1"].map(|name| settings.number(name)),
+            corrections: left_out.fold(Corrections::ALL, |all, part| all.without(part.into())),
+            until: settings.number("until"),
+            truth: settings.text("truth").and_then(|text| place(&text).ok()),
+        }
+    }
+
+    /// The settings of a filter.
+    pub fn config(&self, filter: FilterKind) -> Config {
+        let config = Config::new(self.motion);
+        let mut estimator = filter.estimator(self.motion, self.published);
+        if let Weight::Igg3(Igg3 { k0, k1, .. }) = &mut estimator.robust.weight {
+            for (own, given) in [k0, k1].into_iter().zip(self.thresholds) {
+                *own = given.unwrap_or(*own);
+            }
+        }
+        let elevation_mask = self.mask.unwrap_or(config.elevation_mask);
+        Config { elevation_mask, estimator, ..config }
+    }
+
+    /// Where the marker really is: as set, or else as the recording knows, ECEF, m.
+    pub fn truth(&self, recording: &Recording) -> Option<Vector3<f64>> {
+        self.truth.or(recording.truth)
+    }
+
+    /// The filter of which most is told: the chosen one, or the last of all.
+    pub fn main(&self) -> FilterKind {
+        match self.filter {
+            Choice::One(filter) => filter,
+            Choice::All => FilterKind::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::ValueEnum;
+    use kestirim_gnss_ppp::Correction;
+
+    use super::*;
+
+    #[test]
+    fn numbers_are_where_they_can_be() {
+        for setting in table(None) {
+            for text in ["", "-1", "nan", "inf", "x", "1e300"] {
+                assert!(setting.read(text).is_err(), "{} {text}", setting.name);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_can_be_left_out() -> Result<(), crate::Error> {
+        let mut settings = Settings::new(table(None));
+        settings.set("without", "solid-tide")?;
+        settings.set("without", "solid-tide")?;
+        let Setup { corrections, .. } = Setup::of(&settings);
+        for correction in Correction::ALL {
+            assert_eq!(corrections.has(correction), correction != Correction::SolidTide);
+        }
+        assert_eq!(Part::value_variants().len(), Correction::ALL.len());
+        Ok(())
+    }
+}

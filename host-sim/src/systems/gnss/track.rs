@@ -1,0 +1,88 @@
+//! Feeds filters with a recording: one, or all for comparison.
+
+pub mod followed;
+pub mod outage;
+
+use std::fmt::Write;
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use self::followed::{Followed, follow};
+use super::recording::Recording;
+use super::recording::model::Epoch;
+use super::settings::{FilterKind, Setup};
+use crate::system::Detail;
+use crate::{Error, output};
+
+/// What filters made of a recording; at least one of them found a position.
+#[derive(Debug, Clone)]
+pub struct Track {
+    /// Each filter that was asked for, in the order of tables.
+    pub filters: Vec<(FilterKind, Followed)>,
+    /// Which of them is shown closely.
+    main: usize,
+}
+
+impl Track {
+    /// Runs one filter or all; what became of each observation is kept of [`Setup::main`], if every detail is
+    /// wanted.
+    ///
+    /// # Errors
+    /// [`Error::File`] if no epoch has a solution, [`Error::Usage`] if there is no epoch.
+    pub fn of(recording: &Recording, setup: &Setup, detail: Detail) -> Result<Self, Error> {
+        let epochs = recording.epochs(setup.until);
+        if epochs.is_empty() {
+            let [first, _] = recording.span();
+            let sentence = format!("--until is before the first epoch, which is at {first} s");
+            return Err(Error::Usage(sentence));
+        }
+        let (chosen, main) = (setup.filter.filters(), setup.main());
+        let progress = output::late_progress((epochs.len() * chosen.len()) as u64, "epochs");
+        let receiver = recording.receiver(setup.corrections);
+        let one = |&filter: &FilterKind| {
+            let with_residuals = detail == Detail::Every && filter == main;
+            let config = setup.config(filter);
+            let next = || progress.inc();
+            (filter, follow(recording, epochs, &receiver, config, with_residuals, next))
+        };
+        let filters: Vec<_> = chosen.par_iter().map(one).collect();
+        if filters.iter().all(|(_, followed)| followed.fixes.is_empty()) {
+            return Err(unsolved(recording, epochs, &filters));
+        }
+        let main = chosen.iter().position(|filter| *filter == main).unwrap_or_default();
+        Ok(Self { filters, main })
+    }
+
+    /// The filter that is shown closely.
+    pub fn main(&self) -> &Followed {
+        &self.filters[self.main].1
+    }
+
+    /// The place about which positions are shown, ECEF, m: the truth, or else the last position.
+    pub fn about(&self, truth: Option<&Vector3<f64>>) -> Vector3<f64> {
+        let filters = self.filters.iter().map(|(_, followed)| followed);
+        let last = std::iter::once(self.main()).chain(filters).find_map(|it| it.fixes.last());
+        truth.copied().or(last.map(|fix| fix.position)).unwrap_or_default()
+    }
+}
+
+/// The complaint that there is no position at all.
+fn unsolved(recording: &Recording, epochs: &[Epoch], filters: &[(FilterKind, Followed)]) -> Error {
+    let mut problem = format!("none of its {} epochs has a solution", epochs.len());
+    if let Some(outage) = filters.last().and_then(|(_, followed)| followed.outages.first()) {
+        // Writing to a text does not fail.
+        let _ = write!(problem, ": {outage}");
+    }
+    let [from, to] = recording.orbits_span;
+    let ends = [epochs.first(), epochs.last()];
+    let [begin, last] = ends.map(|epoch| epoch.map_or(0.0, |epoch| recording.seconds(epoch)));
+    if last < from || begin > to {
+        let _ = write!(
+            problem,
+            "; the orbits are of another time, from {from} s to {to} s where the observations are from {begin} s \
+             to {last} s"
+        );
+    }
+    Error::File { path: recording.path.clone(), problem }
+}

@@ -1,0 +1,125 @@
+//! What came of a recording.
+
+pub mod accuracy;
+
+use serde::Serialize;
+
+use self::accuracy::Accuracy;
+use super::Robot;
+use super::recording::{Heights, Recording};
+use super::settings::Dimensions;
+use super::track::Trace;
+use crate::Error;
+use crate::system::{Account, Settings, System, Table};
+
+/// What a replay prints.
+#[derive(Debug, Clone, Serialize)]
+struct Report {
+    system: &'static str,
+    updates: usize,
+    rejected: usize,
+    lost_s: f64,
+    warnings: Vec<String>,
+    accuracy: Option<Accuracy>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<PointReport>>,
+}
+
+/// Where the tag was found at a marked point, m.
+#[derive(Debug, Clone, Serialize)]
+struct PointReport {
+    point: String,
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+/// What came of a recording.
+pub(super) fn account(
+    recording: &Recording,
+    settings: &Settings,
+    traces: &[Trace],
+) -> Result<Account, Error> {
+    let points = points(recording, traces);
+    let report = Report {
+        system: Robot::NAME,
+        updates: traces.iter().map(Trace::taken).sum(),
+        rejected: traces.iter().map(Trace::rejected).sum(),
+        lost_s: traces.iter().map(Trace::lost_s).sum(),
+        warnings: warnings(recording, settings, traces, points.as_deref()),
+        accuracy: recording.accuracy(traces),
+        points,
+    };
+    let mut account = Account::new(&report, report.warnings.clone())?;
+    account.about.clone_from(&recording.path);
+    account.fact("ranges taken in", report.updates.to_string());
+    account.fact("ranges left out", report.rejected.to_string());
+    account.fact("without a position", format!("{:.1} s", report.lost_s));
+    if let Some(points) = &report.points {
+        account.fact("points found", points.len().to_string());
+    }
+    for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
+        account.fact(name, value);
+    }
+    Ok(account)
+}
+
+/// The points at which there is a position; none of a moving tag.
+fn points(recording: &Recording, traces: &[Trace]) -> Option<Vec<PointReport>> {
+    let found = recording.parts.iter().zip(traces).filter_map(|(part, trace)| {
+        let [x, y, z] = trace.last()?;
+        Some(PointReport { point: part.name.clone(), x, y, z })
+    });
+    recording.is_static().then(|| found.collect())
+}
+
+fn warnings(
+    recording: &Recording,
+    settings: &Settings,
+    traces: &[Trace],
+    points: Option<&[PointReport]>,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let in_the_plane = settings.chosen::<Dimensions>("dim") == Dimensions::Two;
+    if in_the_plane && recording.heights == Heights::Unknown && !settings.is_given("height") {
+        warnings.push(assumed_height(recording.anchors.mean_height()));
+    }
+    warnings.extend(recording.warnings.iter().cloned());
+    match points.map(|points| recording.parts.len() - points.len()) {
+        Some(0) => {}
+        Some(missing) => {
+            warnings.push(format!("points without ranges enough for a position: {missing}"));
+        }
+        None if traces.iter().all(|trace| trace.known().next().is_none()) => {
+            warnings.push("no position was found".to_owned());
+        }
+        None => {}
+    }
+    warnings
+}
+
+/// What is said when a height (m) was assumed.
+pub(super) fn assumed_height(metres: f64) -> String {
+    format!("the tag's height is taken to be that of the anchors, {metres:.2} m (--height)")
+}
+
+/// Time and position of every epoch, or the position at every point.
+pub(super) fn table(recording: &Recording, traces: &[Trace]) -> Table {
+    let row = |label: String, position: [f64; 3]| {
+        let [x, y, z] = position.map(|metres| format!("{metres:.6}"));
+        vec![label, x, y, z]
+    };
+    if let Some(points) = points(recording, traces) {
+        let rows = points.into_iter().map(|at| row(at.point, [at.x, at.y, at.z]));
+        return Table { rows: rows.collect(), ..Table::new(&["point", "x", "y", "z"]) };
+    }
+    let known = traces.iter().flat_map(Trace::known);
+    let rows = known.map(|(time_us, position)| row(seconds(time_us), position));
+    Table { rows: rows.collect(), ..Table::new(&["t", "x", "y", "z"]) }
+}
+
+fn seconds(time_us: i64) -> String {
+    let sign = if time_us < 0 { "-" } else { "" };
+    let size = time_us.unsigned_abs();
+    format!("{sign}{}.{:06}", size / 1_000_000, size % 1_000_000)
+}

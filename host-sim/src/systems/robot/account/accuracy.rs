@@ -1,0 +1,67 @@
+//! How far positions are from the truth, in the plane.
+
+use serde::Serialize;
+
+use crate::metrics::{distance, mean, median, percentile, rms};
+use crate::systems::robot::recording::points::Course;
+use crate::systems::robot::track::Epoch;
+
+/// Horizontal errors.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// How many positions were compared.
+    pub positions: usize,
+    /// At how many times, or points, there is a truth but no position.
+    pub missed: usize,
+    /// Root mean square, m.
+    pub rmse_m: f64,
+    /// Mean, m.
+    pub mean_m: f64,
+    /// Median, m.
+    pub median_m: f64,
+    /// Below which 95 % are, m.
+    pub p95_m: f64,
+    /// Largest, m.
+    pub max_m: f64,
+}
+
+impl Accuracy {
+    /// Compares pairs of positions, ours and true; none if there is nothing to compare.
+    pub fn of(pairs: &[(Option<[f64; 3]>, [f64; 2])]) -> Option<Self> {
+        let found = pairs.iter().filter_map(|(ours, truth)| Some((ours.as_ref()?, truth)));
+        let errors: Vec<f64> = found.map(|(&[x, y, _], &truth)| distance([x, y], truth)).collect();
+        if errors.is_empty() {
+            return None;
+        }
+        Some(Self {
+            positions: errors.len(),
+            missed: pairs.len() - errors.len(),
+            rmse_m: rms(&errors),
+            mean_m: mean(&errors),
+            median_m: median(&errors),
+            p95_m: percentile(&errors, 95.0),
+            max_m: percentile(&errors, 100.0),
+        })
+    }
+
+    /// Names and values for people.
+    pub fn in_words(&self) -> [(&'static str, String); 5] {
+        let centimetres = |metres: f64| format!("{:.1} cm", 100.0 * metres);
+        [
+            ("positions compared", self.positions.to_string()),
+            ("RMSE", centimetres(self.rmse_m)),
+            ("mean error", centimetres(self.mean_m)),
+            ("95 % below", centimetres(self.p95_m)),
+            ("largest error", centimetres(self.max_m)),
+        ]
+    }
+
+    /// Compares a track with a truth known over time, at every epoch within it.
+    pub fn of_track(epochs: &[Epoch], truth: &Course<2>) -> Option<Self> {
+        let pairs: Vec<_> = epochs
+            .iter()
+            .filter_map(|epoch| Some((epoch.position, truth.within(epoch.time_us)?)))
+            .collect();
+        Self::of(&pairs)
+    }
+}

@@ -1,0 +1,79 @@
+//! A recording and its track as streams, for other programs.
+
+use crate::stream::Stream;
+use crate::systems::robot::recording::Recording;
+use crate::systems::robot::recording::event::Event;
+use crate::systems::robot::track::Trace;
+
+/// What was measured, what the tracker makes of it, and the truth as far as it is known. Points that were
+/// recorded one by one begin at the same time, so each has topics of its own.
+pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
+    let seconds = |time_us: i64| time_us as f64 * 1e-6;
+    let mut streams = Vec::new();
+    for (part, trace) in recording.parts.iter().zip(traces) {
+        let topic = |name: &str| match part.name.as_str() {
+            "" => format!("/robot/{name}"),
+            point => format!("/robot/{point}/{name}"),
+        };
+        let ranges = trace.ranges.iter().map(|(range, reception)| {
+            let taken = f64::from(u8::from(reception.taken));
+            let nis = reception.nis.unwrap_or(f64::NAN);
+            (seconds(range.time_us), vec![range.anchor as f64, range.metres, taken, nis])
+        });
+        let names = ["anchor_index", "range_m", "taken", "nis"];
+        streams.push(Stream::new(topic("ranges"), &names, ranges.collect()));
+        let estimate = trace.epochs.iter().map(|epoch| {
+            let [x, y, z] = epoch.position.unwrap_or([f64::NAN; 3]);
+            (seconds(epoch.time_us), vec![x, y, z, epoch.sigma_m().unwrap_or(f64::NAN)])
+        });
+        let names = ["x_m", "y_m", "z_m", "sigma_m"];
+        streams.push(Stream::new(topic("estimate"), &names, estimate.collect()));
+        if let Some(truth) = &part.truth {
+            let times = trace.epochs.iter().map(|epoch| epoch.time_us);
+            let known =
+                times.filter_map(|time_us| Some((seconds(time_us), truth.at(time_us)?.to_vec())));
+            streams.push(Stream::new(topic("truth"), &["x_m", "y_m"], known.collect()));
+        }
+    }
+    let events = || recording.parts.iter().flat_map(|part| &part.events);
+    let inertial = events().filter_map(|event| match event {
+        Event::Inertial(sample) => Some((seconds(sample.time_us), sample.acceleration.to_vec())),
+        _ => None,
+    });
+    let wheels = events().filter_map(|event| match event {
+        Event::Wheels(sample) => {
+            Some((seconds(sample.time_us), vec![sample.speed, sample.turn_rate]))
+        }
+        _ => None,
+    });
+    let beside = [
+        Stream::new("/robot/imu", &["ax_m_s2", "ay_m_s2", "az_m_s2"], inertial.collect()),
+        Stream::new("/robot/wheels", &["speed_m_s", "turn_rate_rad_s"], wheels.collect()),
+    ];
+    streams.extend(beside.into_iter().filter(|stream| !stream.rows.is_empty()));
+    streams
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::ScalarKind;
+    use crate::systems::robot::recording::Driven;
+    use crate::systems::robot::settings::Setup;
+    use crate::systems::robot::track::{follow, track};
+
+    #[test]
+    fn rows_fit_their_columns_and_every_point_has_its_topics() {
+        let setup = Setup::of_the_office(ScalarKind::F32);
+        for (driven, expected) in [(Driven::Line, 3), (Driven::Points, 45)] {
+            let recording = Recording::synthetic(driven, 1);
+            let traces = track(&recording, &setup, follow::build).unwrap();
+            let streams = streams(&recording, &traces);
+            assert_eq!(streams.len(), expected);
+            for stream in &streams {
+                assert!(!stream.rows.is_empty(), "{}", stream.topic);
+                assert!(stream.rows.iter().all(|(_, row)| row.len() == stream.columns.len()));
+            }
+        }
+    }
+}

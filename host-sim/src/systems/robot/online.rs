@@ -1,0 +1,100 @@
+//! A tag, followed as firmware follows it.
+
+use kestirim_telemetry::{Imu, Message, Range};
+
+use super::account::assumed_height;
+use super::recording::anchors::{self, Anchors};
+use super::recording::calibration;
+use super::recording::event::{self, Event};
+use super::recording::motion::Inertial;
+use super::settings::{Dimensions, Setup};
+use super::simulate::scenario::office_anchors;
+use super::track::follow::{self, Follow};
+use crate::Error;
+use crate::figure::{Colour, Series};
+use crate::system::{Files, Online, Outcome, Plan, Settings};
+
+/// What is known beforehand.
+#[derive(Debug)]
+pub(super) struct Tag {
+    anchors: Anchors,
+    setup: Setup,
+    assumptions: Vec<String>,
+}
+
+impl Tag {
+    /// Reads what the files say.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the files.
+    pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
+        let mut assumptions = Vec::new();
+        let anchors = if let Some(path) = files.one("anchors") {
+            anchors::read(path)?
+        } else {
+            let office = "the anchors are taken to be those of the paper's office (--anchors)";
+            assumptions.push(office.to_owned());
+            office_anchors()
+        };
+        let calibration = files.one("calibration").map(|path| calibration::of(path, &anchors));
+        let (biases, warnings) = calibration.transpose()?.unzip();
+        let setup = Setup::of(settings, &anchors, biases.as_deref());
+        if setup.dimensions == Dimensions::Two && !settings.is_given("height") {
+            assumptions.push(assumed_height(setup.height_m));
+        }
+        assumptions.extend(warnings.unwrap_or_default());
+        Ok(Self { anchors, setup, assumptions })
+    }
+}
+
+impl Plan for Tag {
+    fn build(&self) -> Result<Box<dyn Online>, Error> {
+        Ok(Box::new(Followed { tracker: follow::build(&self.setup)?, begun_us: None }))
+    }
+
+    fn map(&self) -> Vec<Series> {
+        let places = self.anchors.positions.iter().map(|[x, y, _]| [*x, *y]);
+        let anchors = Series::points("anchors", places);
+        vec![anchors.labelled(self.anchors.names.clone()).coloured(Colour::Truth)]
+    }
+
+    fn assumptions(&self) -> Vec<String> {
+        self.assumptions.clone()
+    }
+}
+
+/// A tracker. Anchors are numbered from 0, in the order of their file.
+#[derive(Debug)]
+struct Followed {
+    tracker: Box<dyn Follow>,
+    begun_us: Option<u64>,
+}
+
+impl Online for Followed {
+    fn take(&mut self, message: &Message) -> Outcome {
+        let (time_us, event) = match *message {
+            Message::Range(Range { time_us, anchor, range }) => {
+                let (anchor, metres) = (anchor.into(), range.into());
+                (time_us, Event::Range(event::Range { time_us: time_us as i64, anchor, metres }))
+            }
+            Message::Imu(Imu { time_us, specific_force, .. }) => {
+                let acceleration = specific_force.map(f64::from);
+                let time = time_us as i64;
+                (time_us, Event::Inertial(Inertial { time_us: time, acceleration, push: None }))
+            }
+            _ => return Outcome::NotMine,
+        };
+        let begun_us = *self.begun_us.get_or_insert(time_us);
+        let Some(since_us) = time_us.checked_sub(begun_us) else { return Outcome::Refused };
+        let reception = self.tracker.take(since_us, &event);
+        if let Event::Range(event::Range { time_us, .. }) = event {
+            self.tracker.take(since_us, &Event::EpochEnd { time_us });
+            return Outcome::taken(reception.taken);
+        }
+        Outcome::Taken
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        self.tracker.position()
+    }
+}

@@ -1,0 +1,6 @@
+//! The paper: what it prints, its experiment, and its part of the report.
+
+pub mod chapter;
+pub mod experiment;
+pub mod limit;
+pub mod published;

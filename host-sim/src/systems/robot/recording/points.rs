@@ -1,0 +1,130 @@
+//! Marked points of a static recording, true tracks of a moving one, and heights of either.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::Error;
+use crate::table;
+use crate::text::printable;
+
+/// Where the tag was put down: each coordinate if the file has it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Point {
+    /// Its name.
+    pub name: String,
+    /// x and y, m: for accuracy and calibration alone.
+    pub plane: Option<[f64; 2]>,
+    /// z, m.
+    pub height: Option<f64>,
+}
+
+/// Reads points in their order: CSV with a column `point` and any of `x,y` and `z` (m).
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_points(path: &Path) -> Result<Vec<Point>, Error> {
+    let mut points: Vec<Point> = Vec::new();
+    table::read(
+        path,
+        "points",
+        |header| {
+            let [name] = header.require(["point"])?;
+            Ok((name, header.find("x").zip(header.find("y")), header.find("z")))
+        },
+        |&(name, plane, height), row| {
+            let name = row.text(name).to_owned();
+            if points.iter().any(|point| point.name == name) {
+                let found = printable(&name);
+                return Err(row.line.error(format!("expected another point, found {found}")));
+            }
+            let plane = plane
+                .map(|(x, y)| Ok::<_, Error>([row.coordinate("x", x)?, row.coordinate("y", y)?]))
+                .transpose()?;
+            let height = height.map(|z| row.coordinate("z", z)).transpose()?;
+            points.push(Point { name, plane, height });
+            Ok(())
+        },
+    )?;
+    Ok(points)
+}
+
+/// Something known over time, interpolated linearly.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Course<const K: usize> {
+    rows: Vec<(i64, [f64; K])>,
+}
+
+impl<const K: usize> Course<K> {
+    /// What is known at these times, µs, which do not decrease.
+    pub fn new(rows: Vec<(i64, [f64; K])>) -> Self {
+        Self { rows }
+    }
+
+    /// Times, µs, and what is known then.
+    pub fn rows(&self) -> &[(i64, [f64; K])] {
+        &self.rows
+    }
+
+    /// What is known at a time; nothing before the first row and after the last.
+    pub fn within(&self, time_us: i64) -> Option<[f64; K]> {
+        let after = self.rows.partition_point(|(row_us, _)| *row_us < time_us);
+        let (next_us, next) = *self.rows.get(after)?;
+        let Some(&(last_us, last)) = after.checked_sub(1).and_then(|i| self.rows.get(i)) else {
+            return (next_us == time_us).then_some(next);
+        };
+        let share = (time_us - last_us) as f64 / (next_us - last_us).max(1) as f64;
+        Some(std::array::from_fn(|k| last[k] + share * (next[k] - last[k])))
+    }
+
+    /// What is known at a time; beyond the ends, what is known there.
+    pub fn held(&self, time_us: i64) -> Option<[f64; K]> {
+        let (first, last) = (self.rows.first()?, self.rows.last()?);
+        self.within(time_us.clamp(first.0, last.0))
+    }
+}
+
+/// Reads what is known over time: CSV with a column `t` (s) and the named ones (m).
+///
+/// # Errors
+/// The file, the line, and what was expected there; times may not go backwards.
+pub fn read_course<const K: usize>(path: &Path, names: [&str; K]) -> Result<Course<K>, Error> {
+    let mut rows: Vec<(i64, [f64; K])> = Vec::new();
+    table::read(
+        path,
+        "a track",
+        |header| Ok((header.require(["t"])?, header.require(names)?)),
+        |&([t], columns), row| {
+            let time_us = row.time_us(t)?;
+            if rows.last().is_some_and(|(last_us, _)| time_us < *last_us) {
+                return Err(row.line.error(
+                    "expected a time not before that of the line above, found an earlier one",
+                ));
+            }
+            let mut values = [0.0; K];
+            for ((value, name), column) in values.iter_mut().zip(names).zip(columns) {
+                *value = row.coordinate(name, column)?;
+            }
+            rows.push((time_us, values));
+            Ok(())
+        },
+    )?;
+    Ok(Course::new(rows))
+}
+
+/// Reads the height of the tag at each point: CSV with columns `point,z` (m).
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_heights(path: &Path) -> Result<BTreeMap<String, f64>, Error> {
+    let mut heights = BTreeMap::new();
+    table::read(
+        path,
+        "heights of points",
+        |header| header.require(["point", "z"]),
+        |&[name, z], row| {
+            heights.insert(row.text(name).to_owned(), row.coordinate("z", z)?);
+            Ok(())
+        },
+    )?;
+    Ok(heights)
+}

@@ -1,0 +1,122 @@
+//! Recorded ranges, of a tag that moves or of one put down at marked points.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::anchors::Anchors;
+use crate::Error;
+use crate::table::{self, Row};
+use crate::text::printable;
+
+/// Time between the epochs of a static recording, µs.
+const EPOCH_US: i64 = 100_000;
+/// Beyond any count of epochs.
+const LAST_EPOCH: f64 = 1e9;
+
+/// One line of a log: a range, or that there was none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RangeRow {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// The anchor's place in the list.
+    pub anchor: usize,
+    /// The range, m, as logged, which may be no number; none if the field is empty.
+    pub range: Option<f64>,
+}
+
+/// The ranges of a log.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RangeLog {
+    /// In the order of the log.
+    pub rows: Vec<RangeRow>,
+    /// How many lines name an anchor that is not in the list; they are left out.
+    pub unlisted: usize,
+}
+
+/// Later lines may go back behind a time by this, µs; one that they go back behind farther was wrong.
+const LARGEST_STEP_BACK_US: i64 = 10_000_000;
+
+/// Drops samples whose time is far ahead of those that follow, and says how many there were: a single
+/// wrong time would make everything after it too late.
+pub fn drop_far_ahead<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
+    let (before, mut earliest_us) = (samples.len(), i64::MAX);
+    let mut kept = Vec::with_capacity(before);
+    while let Some(sample) = samples.pop() {
+        let time_us = time_us(&sample);
+        if time_us.saturating_sub(LARGEST_STEP_BACK_US) <= earliest_us {
+            earliest_us = earliest_us.min(time_us);
+            kept.push(sample);
+        }
+    }
+    kept.reverse();
+    *samples = kept;
+    before - samples.len()
+}
+
+/// Reads the log of a moving tag: CSV with columns `t,anchor,range` (s, m).
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_moving(path: &Path, anchors: &Anchors) -> Result<RangeLog, Error> {
+    let mut log = RangeLog::default();
+    table::read(
+        path,
+        "ranges",
+        |header| header.require(["t", "anchor", "range"]),
+        |&[t, anchor, range], row| {
+            let time_us = row.time_us(t)?;
+            let range = optional_range(row, range)?;
+            match anchors.find(row.text(anchor)) {
+                Some(anchor) => log.rows.push(RangeRow { time_us, anchor, range }),
+                None => log.unlisted += 1,
+            }
+            Ok(())
+        },
+    )?;
+    Ok(log)
+}
+
+/// Reads the log of a tag put down at points: CSV with columns `point,k,anchor,range`, where k counts
+/// epochs of 0.1 s. The logs are sorted by point.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_static(path: &Path, anchors: &Anchors) -> Result<BTreeMap<String, RangeLog>, Error> {
+    let mut logs = BTreeMap::<String, RangeLog>::new();
+    table::read(
+        path,
+        "ranges",
+        |header| header.require(["point", "k", "anchor", "range"]),
+        |&[point, k, anchor, range], row| {
+            let epoch = row.number("k", k)?;
+            if epoch.fract() != 0.0 || !(0.0..=LAST_EPOCH).contains(&epoch) {
+                let found = printable(row.text(k));
+                return Err(row.line.error(format!("expected a count of epochs, found {found}")));
+            }
+            let range = optional_range(row, range)?;
+            let log = logs.entry(row.text(point).to_owned()).or_default();
+            match anchors.find(row.text(anchor)) {
+                Some(anchor) => {
+                    let time_us = epoch as i64 * EPOCH_US;
+                    log.rows.push(RangeRow { time_us, anchor, range });
+                }
+                None => log.unlisted += 1,
+            }
+            Ok(())
+        },
+    )?;
+    Ok(logs)
+}
+
+/// A range, or none from an empty field. Radios log the wildest values, NaN and infinities among them: what
+/// is a number at all is read, and refused by the tracker.
+fn optional_range(row: &Row<'_>, column: usize) -> Result<Option<f64>, Error> {
+    let field = row.text(column);
+    if field.is_empty() {
+        return Ok(None);
+    }
+    field.parse().map(Some).map_err(|_| {
+        let found = printable(field);
+        row.line.error(format!("expected a range or nothing in column range, found {found}"))
+    })
+}

@@ -1,0 +1,3 @@
+//! What the simulation draws.
+
+pub mod scenario;

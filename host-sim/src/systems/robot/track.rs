@@ -1,0 +1,103 @@
+//! Feeds a recording to a tracker, and keeps what became of every range.
+
+mod each_epoch;
+pub mod follow;
+pub mod published;
+mod recursive;
+
+use self::follow::{Follow, Reception};
+use super::recording::Recording;
+use super::recording::event::{Event, Range};
+use super::settings::Setup;
+use crate::Error;
+
+/// What a tracker made of one part of a recording.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trace {
+    /// One entry for each time at which there are ranges, in order.
+    pub epochs: Vec<Epoch>,
+    /// Every range that was one, and what became of it.
+    pub ranges: Vec<(Range, Reception)>,
+}
+
+/// Where the tag was found at one epoch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Epoch {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// Where, m; none while the tracker does not know.
+    pub position: Option<[f64; 3]>,
+    /// Variance of x, covariance and variance of y, m², from a tracker that knows them.
+    pub spread: Option<[f64; 3]>,
+}
+
+impl Epoch {
+    /// Standard deviation of the position in the plane, root of its variances' sum, m.
+    pub fn sigma_m(&self) -> Option<f64> {
+        self.spread.map(|[xx, _, yy]| (xx + yy).max(0.0).sqrt())
+    }
+}
+
+impl Trace {
+    /// How many ranges were taken in.
+    pub fn taken(&self) -> usize {
+        self.ranges.iter().filter(|(_, reception)| reception.taken).count()
+    }
+
+    /// How many ranges were left out or refused.
+    pub fn rejected(&self) -> usize {
+        self.ranges.len() - self.taken()
+    }
+
+    /// Times, µs, and where the tag was then, m, wherever it was found.
+    pub fn known(&self) -> impl Iterator<Item = (i64, [f64; 3])> {
+        self.epochs.iter().filter_map(|epoch| Some((epoch.time_us, epoch.position?)))
+    }
+
+    /// Where it was at the last epoch, if that is known.
+    pub fn last(&self) -> Option<[f64; 3]> {
+        self.epochs.last().and_then(|epoch| epoch.position)
+    }
+
+    /// How long the tag was not known after the first range, s.
+    pub fn lost_s(&self) -> f64 {
+        let lost = self.epochs.windows(2).filter(|pair| pair[0].position.is_none());
+        lost.map(|pair| (pair[1].time_us - pair[0].time_us) as f64 * 1e-6).fold(0.0, |a, b| a + b)
+    }
+}
+
+/// Feeds a tracker.
+pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
+    let start_us = events.iter().map(Event::time_us).min().unwrap_or_default();
+    let mut trace = Trace::default();
+    for event in events {
+        let time_us = event.time_us();
+        let reception = tracker.take(time_us.saturating_sub(start_us).max(0) as u64, event);
+        match event {
+            Event::Range(range) => trace.ranges.push((*range, reception)),
+            Event::EpochEnd { .. } => {
+                let (position, spread) = (tracker.position(), tracker.spread());
+                trace.epochs.push(Epoch { time_us, position, spread });
+            }
+            _ => {}
+        }
+    }
+    trace
+}
+
+/// Tracks every part of a recording by itself, with a tracker that is built for it.
+///
+/// # Errors
+/// Those of `build`.
+pub fn track(
+    recording: &Recording,
+    setup: &Setup,
+    build: impl Fn(&Setup) -> Result<Box<dyn Follow>, Error>,
+) -> Result<Vec<Trace>, Error> {
+    let parts = recording.parts.iter().map(|part| {
+        let height_m = part.height_m.unwrap_or(setup.height_m);
+        let mut tracker = build(&Setup { height_m, ..setup.clone() })?;
+        Ok(follow(tracker.as_mut(), &part.events))
+    });
+    parts.collect()
+}

@@ -1,0 +1,60 @@
+//! `kestirim_uwb_tracker::EpochSolver` behind the trackers' face.
+
+use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::Solver;
+use kestirim_uwb_tracker::{EpochMethod, EpochSolver, RangeSample};
+use nalgebra::SVector;
+
+use super::follow::{Follow, Reception, anchors, place, refused};
+use crate::Error;
+use crate::systems::robot::recording::anchors::MOST;
+use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::settings::Setup;
+
+/// The freshest range of each anchor, and the position that they make.
+#[derive(Debug)]
+pub(super) struct EachEpoch<T: Scalar, const D: usize> {
+    solver: EpochSolver<T, MOST>,
+    height_m: f64,
+    position: Option<SVector<T, D>>,
+}
+
+impl<T: Scalar, const D: usize> EachEpoch<T, D> {
+    /// Linear trilateration or nonlinear least squares.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if these anchors will not do.
+    pub(super) fn new(setup: &Setup, method: EpochMethod) -> Result<Self, Error> {
+        let solver = Solver { room: setup.room(), ..Solver::new(T::from_f64(setup.height_m)) };
+        let solver = EpochSolver::new(method, solver, &anchors(setup)).map_err(refused)?;
+        Ok(Self { solver, height_m: setup.height_m, position: None })
+    }
+}
+
+impl<T: Scalar, const D: usize> Follow for EachEpoch<T, D> {
+    fn take(&mut self, time_us: u64, event: &Event) -> Reception {
+        let taken = match *event {
+            Event::Range(Range { anchor, metres, .. }) => {
+                let sample = RangeSample { time_us, anchor, range: T::from_f64(metres) };
+                self.solver.range(&sample).is_ok()
+            }
+            Event::Height { metres, .. } => {
+                let set = self.solver.set_height(T::from_f64(metres)).is_ok();
+                if set {
+                    self.height_m = metres;
+                }
+                set
+            }
+            Event::EpochEnd { .. } => {
+                self.position = self.solver.position(time_us, self.position).ok();
+                true
+            }
+            Event::Inertial(_) | Event::Wheels(_) => true,
+        };
+        Reception::unweighed(taken)
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        place(&self.position?, self.height_m)
+    }
+}

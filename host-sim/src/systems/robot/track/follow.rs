@@ -1,0 +1,160 @@
+//! The trackers behind one face, whatever they compute in.
+
+use std::fmt::Debug;
+
+use kestirim_adaptive_kalman::Learning;
+use kestirim_kalman::Covariance;
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_uwb_tracker::{Anchor, Config, EpochMethod};
+use nalgebra::SVector;
+
+use super::each_epoch::EachEpoch;
+use super::published::{Beginning, Published};
+use super::recursive::Recursive;
+use crate::Error;
+use crate::system::ScalarKind;
+use crate::systems::robot::recording::event::Event;
+use crate::systems::robot::settings::{Dimensions, Setup, TrackerKind};
+
+/// Something that follows a tag.
+pub trait Follow: Debug {
+    /// Takes in what a sensor says, at a time in µs since the recording began. A sensor that the tracker has no
+    /// use for is taken in and changes nothing.
+    fn take(&mut self, time_us: u64, event: &Event) -> Reception;
+
+    /// Where the tag is, m; its height is given back as it was set in two dimensions.
+    fn position(&self) -> Option<[f64; 3]>;
+
+    /// Variance of x, covariance, and variance of y, m², of a tracker that knows them.
+    fn spread(&self) -> Option<[f64; 3]> {
+        None
+    }
+}
+
+/// What became of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reception {
+    /// Whether it was taken in.
+    pub taken: bool,
+    /// The normalised innovation squared of a range, from a tracker that weighs ranges one by one.
+    pub nis: Option<f64>,
+}
+
+impl Reception {
+    /// Of a tracker that weighs nothing.
+    pub const fn unweighed(taken: bool) -> Self {
+        Self { taken, nis: None }
+    }
+}
+
+/// Builds what was chosen.
+///
+/// # Errors
+/// [`Error::Usage`] if these anchors or numbers will not do.
+pub fn build(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    match setup.scalar {
+        ScalarKind::F32 => with_scalar::<f32>(setup),
+        ScalarKind::F64 => with_scalar::<f64>(setup),
+        ScalarKind::Fixed => with_scalar::<Q12_20>(setup),
+    }
+}
+
+fn with_scalar<T: Scalar>(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    match setup.dimensions {
+        Dimensions::Two => in_dimensions::<T, 2, 4, 5>(setup),
+        Dimensions::Three => in_dimensions::<T, 3, 6, 7>(setup),
+    }
+}
+
+impl TrackerKind {
+    /// Forgetting factor, least and greatest variance (m²) of [`Self::Aekf`].
+    pub(in crate::systems::robot) const AEKF_LEARNING: [f64; 3] = [0.99, 0.0025, 9.0];
+}
+
+fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usize>(
+    setup: &Setup,
+) -> Result<Box<dyn Follow>, Error> {
+    let (height, tuning) = (T::from_f64(setup.height_m), &setup.tuning);
+    let plain = tuning.of_any(Config::plain(height));
+    Ok(match setup.tracker {
+        TrackerKind::Lsq => Box::new(EachEpoch::<T, D>::new(setup, EpochMethod::Trilateration)?),
+        TrackerKind::Nls => Box::new(EachEpoch::<T, D>::new(setup, EpochMethod::LeastSquares)?),
+        TrackerKind::Ekf => Box::new(Recursive::<T, D, N>::new(setup, plain)?),
+        TrackerKind::Aekf => {
+            let [forgetting, least, most] = TrackerKind::AEKF_LEARNING.map(T::from_f64);
+            let learning = Learning::new(forgetting, least, most).ok();
+            Box::new(Recursive::<T, D, N>::new(setup, Config { learning, ..plain })?)
+        }
+        TrackerKind::AekfPublished => Published::<T, D, N>::boxed(setup, Beginning::HONEST)?,
+        TrackerKind::Default if setup.biases.is_some() => {
+            let config = tuning.of_the_robust(Config::calibrated(height));
+            Box::new(Recursive::<T, D, N>::new(setup, config)?)
+        }
+        TrackerKind::Default => {
+            let config = tuning.of_the_robust(Config::uncalibrated(height));
+            Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, config)?)
+        }
+    })
+}
+
+/// The default tracker in the plane and double precision, with its constants changed: to see what they do.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_changed(
+    setup: &Setup,
+    change: impl FnOnce(&mut Config<f64>),
+) -> Result<Box<dyn Follow>, Error> {
+    if setup.biases.is_some() {
+        let mut config = Config::calibrated(setup.height_m);
+        change(&mut config);
+        return Ok(Box::new(Recursive::<f64, 2, 4>::new(setup, config)?));
+    }
+    let mut config = Config::uncalibrated(setup.height_m);
+    change(&mut config);
+    Ok(Box::new(Recursive::<f64, 2, 5>::new(setup, config)?))
+}
+
+/// The paper's filter in the plane, begun as one likes.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_published(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
+    match setup.scalar {
+        ScalarKind::F32 => Published::<f32, 2, 4>::boxed(setup, beginning),
+        ScalarKind::F64 => Published::<f64, 2, 4>::boxed(setup, beginning),
+        ScalarKind::Fixed => Published::<Q12_20, 2, 4>::boxed(setup, beginning),
+    }
+}
+
+/// The anchors in another number type.
+pub(super) fn anchors<T: Scalar>(setup: &Setup) -> Vec<Anchor<T>> {
+    let places = setup.anchors.iter().enumerate();
+    let anchor = |(index, place): (usize, &[f64; 3])| Anchor {
+        position: SVector::from(place.map(T::from_f64)),
+        bias: T::from_f64(setup.bias(index)),
+    };
+    places.map(anchor).collect()
+}
+
+/// A tracker that cannot be made.
+pub(super) fn refused(error: kestirim_uwb_tracker::Error) -> Error {
+    Error::Usage(format!("these anchors cannot be used: {error}"))
+}
+
+/// A position in two or three dimensions, m.
+pub(super) fn place<T: Scalar, const D: usize>(
+    position: &SVector<T, D>,
+    height_m: f64,
+) -> Option<[f64; 3]> {
+    let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
+    Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(height_m)])
+}
+
+/// Variance of x, covariance and variance of y: of the first two states of any filter.
+pub(super) fn of_the_plane<T: Scalar, const N: usize>(
+    covariance: &Covariance<T, N>,
+) -> Option<[f64; 3]> {
+    let of = |i, j| covariance.get(i, j).map(T::to_f64);
+    Some([of(0, 0)?, of(0, 1)?, of(1, 1)?])
+}

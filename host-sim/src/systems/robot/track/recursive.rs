@@ -1,0 +1,84 @@
+//! `kestirim_uwb_tracker::Tracker` behind the trackers' face.
+
+use kestirim_scalar::Scalar;
+use kestirim_uwb_tracker::{Config, InertialSample, OdometrySample, Outcome, RangeSample, Tracker};
+use nalgebra::SVector;
+
+use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused};
+use crate::Error;
+use crate::systems::robot::recording::anchors::MOST;
+use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::recording::motion::{Inertial, Wheels};
+use crate::systems::robot::settings::{Setup, TrackerKind};
+
+/// Takes in every measurement by itself.
+#[derive(Debug)]
+pub(super) struct Recursive<T: Scalar, const D: usize, const N: usize> {
+    tracker: Tracker<T, D, N, MOST>,
+    height_m: f64,
+    /// Whether the prediction is driven by the IMU, as the paper's is.
+    pushed: bool,
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
+    /// A tracker for the anchors of a setup.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if they will not do.
+    pub(super) fn new(setup: &Setup, config: Config<T>) -> Result<Self, Error> {
+        let config = Config { room: setup.room(), ..config };
+        let tracker = Tracker::new(config, &anchors(setup)).map_err(refused)?;
+        let pushed = matches!(setup.tracker, TrackerKind::Ekf | TrackerKind::Aekf);
+        Ok(Self { tracker, height_m: setup.height_m, pushed })
+    }
+
+    fn range(&mut self, time_us: u64, range: &Range) -> Reception {
+        let (anchor, range) = (range.anchor, T::from_f64(range.metres));
+        match self.tracker.range(&RangeSample { time_us, anchor, range }) {
+            Ok(report) => Reception {
+                taken: report.outcome != Outcome::Rejected,
+                nis: report.innovation.map(|innovation| innovation.nis.to_f64()),
+            },
+            Err(_) => Reception::unweighed(false),
+        }
+    }
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
+    fn take(&mut self, time_us: u64, event: &Event) -> Reception {
+        let number = T::from_f64;
+        let taken = match *event {
+            Event::Range(range) => return self.range(time_us, &range),
+            Event::Inertial(Inertial { acceleration, push, .. }) => {
+                let push = push.filter(|_| self.pushed);
+                let sample = InertialSample {
+                    time_us,
+                    acceleration: SVector::from(acceleration.map(number)),
+                    push: push.map(|push| std::array::from_fn(|axis| number(push[axis]))),
+                };
+                self.tracker.inertial(&sample).is_ok()
+            }
+            Event::Wheels(Wheels { speed, turn_rate, .. }) => {
+                let (speed, turn_rate) = (number(speed), number(turn_rate));
+                self.tracker.odometry(&OdometrySample { time_us, speed, turn_rate }).is_ok()
+            }
+            Event::Height { metres, .. } => {
+                let set = self.tracker.set_height(number(metres)).is_ok();
+                if set {
+                    self.height_m = metres;
+                }
+                set
+            }
+            Event::EpochEnd { .. } => true,
+        };
+        Reception::unweighed(taken)
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        place(&self.tracker.position()?, self.height_m)
+    }
+
+    fn spread(&self) -> Option<[f64; 3]> {
+        self.tracker.estimate().and_then(|estimate| of_the_plane(&estimate.covariance))
+    }
+}

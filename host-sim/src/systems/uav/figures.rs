@@ -1,0 +1,149 @@
+//! What a flight looks like: both estimators beside each other, and what their poles and Q/R cost.
+
+mod poles;
+pub mod streams;
+mod synthetic;
+
+use nalgebra::SVector;
+
+use super::account::accuracy::Accuracy;
+use super::account::states::{BANDS, shown};
+use super::recording::Recording;
+use super::settings::{EstimatorKind, Options, Simulation};
+use super::simulate::plant::{STATE_NAMES, STATE_SLUGS, STATE_UNITS, STATES};
+use super::track::Track;
+use super::track::estimators::Estimate;
+use crate::Error;
+use crate::figure::{Colour, Figure, Mark, Series};
+use crate::system::{Answer, Settings};
+
+/// An estimator's name and colour.
+const KALMAN: (&str, Colour) = ("Kalman", Colour::Ours);
+/// The other's.
+const LUENBERGER: (&str, Colour) = ("Luenberger", Colour::Published);
+
+/// What is known of a state, or estimated: times and values.
+type Line = (Vec<f64>, Vec<f64>);
+
+/// The page's figures, and facts of the other estimator, which is at its defaults.
+pub(super) fn draw(
+    recording: &Recording,
+    settings: &Settings,
+    ours: &Track,
+    answer: &mut Answer,
+) -> Result<(), Error> {
+    let (estimator, other, name) = match settings.chosen("estimator") {
+        EstimatorKind::Kalman => {
+            (EstimatorKind::Kalman, EstimatorKind::Luenberger, "Luenberger observer")
+        }
+        EstimatorKind::Luenberger => {
+            (EstimatorKind::Luenberger, EstimatorKind::Kalman, "Kalman filter")
+        }
+    };
+    let track = Track::by(recording, settings, other);
+    if let Err(problem) = &track {
+        answer.warnings.push(format!("no {name}: {problem}"));
+    }
+    let track = track.ok();
+    let theirs = track.as_ref();
+    let accuracy = theirs.and_then(Accuracy::of).and_then(|accuracy| {
+        let [Some(a), Some(b), Some(c), Some(d)] = accuracy.rmse else { return None };
+        Some([a, b, c, d])
+    });
+    if let Some(rmse) = accuracy {
+        let units = STATE_UNITS.join(", ");
+        let name = format!("{name}, RMSE of {} ({units})", STATES.join(", "));
+        answer.fact(name, shown(rmse));
+    }
+    let (kalman, luenberger) = match estimator {
+        EstimatorKind::Kalman => (Some(ours), theirs),
+        EstimatorKind::Luenberger => (theirs, Some(ours)),
+    };
+    answer.figures.extend((0..4).map(|state| drawn(state, ours, [luenberger, kalman])));
+    answer.figures.push(error(ours, [luenberger, kalman]));
+    let options = Options::of(settings);
+    match recording {
+        Recording::Logged(_) => {
+            answer.figures.push(poles::of_log(&ours.flight, &options, luenberger.is_some())?);
+        }
+        Recording::Synthetic(inputs) => {
+            synthetic::draw(&Simulation::of(settings, *inputs), &options, answer);
+        }
+    }
+    Ok(())
+}
+
+/// Since the log's first line.
+fn seconds(track: &Track, t_us: i64) -> f64 {
+    let begin = track.flight.log.samples.first().map_or(0, |sample| sample.t_us);
+    (t_us - begin) as f64 / 1e6
+}
+
+fn line((x, y): Line, (name, colour): (&str, Colour)) -> Series {
+    Series::line(name, x, y).coloured(colour)
+}
+
+/// A state as it was measured, as it was, and as the observer and the filter estimate it.
+fn drawn(state: usize, ours: &Track, estimators: [Option<&Track>; 2]) -> Figure {
+    let flight = &ours.flight;
+    // An output that is a state by itself; what a file's C mixes has no axis here.
+    let column = flight.log.outputs.iter().position(|&output| {
+        let row = flight.model.outputs[output].1;
+        row[state] == 1.0 && row.iter().filter(|part| **part != 0.0).count() == 1
+    });
+    let measured = column.map_or_else(Line::default, |column| {
+        let rows = flight.measured();
+        rows.filter_map(|(t_us, row)| Some((seconds(ours, t_us), row[column]?))).unzip()
+    });
+    let truth = flight.truth.iter().flatten();
+    let truth = truth.filter_map(|(t_us, known)| Some((seconds(ours, *t_us), known[state]?)));
+    let label = format!("{}, {}", STATES[state], STATE_UNITS[state]);
+    let estimated = |track: Option<&Track>| -> Line {
+        let Some(track) = track else { return Line::default() };
+        let value = |estimate: &Estimate| -> SVector<f64, 4> { track.flight.absolute(estimate) };
+        let estimates = track.followed.estimates.iter();
+        estimates.map(|it| (seconds(track, it.t_us), value(it)[state])).unzip()
+    };
+    let [luenberger, kalman] = estimators.map(estimated);
+    let (x, y) = measured;
+    Figure::new(STATE_SLUGS[state], STATE_NAMES[state])
+        .axes("t, s", label)
+        .caption(
+            "An estimate is of its time before that time's measurement was seen, or after it in a log.",
+        )
+        .with(Series::new("measured", Mark::Dots, x, y).coloured(Colour::Other(6)))
+        .with(line(truth.unzip(), ("truth", Colour::Truth)))
+        .with(line(luenberger, LUENBERGER))
+        .with(line(kalman, KALMAN))
+}
+
+/// Errors of both, of each time the worst state's in its band.
+fn error(ours: &Track, estimators: [Option<&Track>; 2]) -> Figure {
+    let end = ours.flight.log.samples.last().map_or(0.0, |sample| seconds(ours, sample.t_us));
+    let band = Series::path("caught", [[0.0, 1.0], [end, 1.0]]);
+    let of = |track: Option<&Track>| -> Line {
+        let Some(track) = track else { return Line::default() };
+        let errors = track.flight.errors(&track.followed.estimates);
+        errors.iter().map(|(t_us, errors)| (seconds(track, *t_us), in_bands(*errors))).unzip()
+    };
+    let [luenberger, kalman] = estimators.map(of);
+    Figure::new("error", "Error")
+        .axes("t, s", "largest |error| / band of the four states")
+        .logarithmic()
+        .caption(format!(
+            "Bands: {} of {}. Nothing is shown where the truth is not known.",
+            BANDS.map(|band| band.to_string()).join(", "),
+            STATES.join(", ")
+        ))
+        .with(band.marked(Mark::Dashes).coloured(Colour::Limit))
+        .with(line(luenberger, LUENBERGER))
+        .with(line(kalman, KALMAN))
+}
+
+/// The worst of some errors in bands.
+fn in_bands(errors: [Option<f64>; 4]) -> f64 {
+    let all = errors.into_iter().zip(BANDS);
+    let worst = all.filter_map(|(error, band)| error.map(|error| error.abs() / band));
+    // Zero has no place on a logarithmic axis.
+    worst.fold(1e-9, f64::max)
+}

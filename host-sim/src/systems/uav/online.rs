@@ -1,0 +1,229 @@
+//! A flight while it comes: what is sent, and the estimator that is set.
+
+use std::fmt::Debug;
+
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_telemetry::{Flight, Message};
+use kestirim_uav_estimator::{self as uav, FlightObserver};
+use nalgebra::{SMatrix, SVector};
+
+use super::recording::log::{LARGEST, Sample};
+use super::recording::model::Model;
+use super::settings::{EstimatorKind, Options};
+use super::track::design::discrete;
+use super::track::estimators::{Assumed, Filter, KEPT, filter, rows, sized};
+use crate::Error;
+use crate::system::{Files, Online, Outcome, Plan, ScalarKind, Settings};
+
+/// What a [`Flight`] measures, by the names of a model's outputs.
+const MEASURED: [&str; 3] = ["q", "V", "theta"];
+/// An interval this much shorter than the usual one is the usual one: before, something was lost.
+const SHORTER: f64 = 0.75;
+
+/// The model, what is taken from what is sent, and the estimator.
+#[derive(Debug, Clone)]
+pub(super) struct Flying {
+    model: Model,
+    /// Of the model.
+    outputs: Vec<usize>,
+    /// Where each stands in a [`Flight`].
+    places: Vec<usize>,
+    origin: ([f64; 4], [f64; 2]),
+    options: Options,
+}
+
+impl Flying {
+    /// Of a model that is named or in a file.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] without a model, and whatever is wrong with it.
+    pub(super) fn new(settings: &Settings, files: &Files) -> Result<Self, Error> {
+        let file = files.one("model");
+        if file.is_none() && !settings.is_given("model") {
+            let problem = "--system uav needs a --model: P1, P2, P3 or a file";
+            return Err(Error::Usage(problem.to_owned()));
+        }
+        let model = file.map(Model::read).transpose()?;
+        let model = model.unwrap_or_else(|| Model::of(settings.chosen("model")));
+        let place = |(place, name): (usize, &&str)| {
+            let output = model.outputs.iter().position(|(known, _)| known == name)?;
+            Some((output, place))
+        };
+        let (outputs, places): (Vec<_>, Vec<_>) =
+            MEASURED.iter().enumerate().filter_map(place).unzip();
+        if outputs.is_empty() {
+            let problem = "expected an output q, V or theta, which are what is sent".to_owned();
+            let path = file.unwrap_or_else(|| "model".as_ref()).to_path_buf();
+            return Err(Error::File { path, problem });
+        }
+        let origin = model.origin(settings.is_on("absolute"))?;
+        let flying = Self { model, outputs, places, origin, options: Options::of(settings) };
+        flying.build()?;
+        Ok(flying)
+    }
+
+    /// A flight in deviations; none if a number cannot have been measured.
+    fn sample(&self, flight: &Flight) -> Option<Sample> {
+        let (state, input) = &self.origin;
+        let measured = self.outputs.iter().zip(&self.places).map(|(&output, &place)| {
+            Some(f64::from(flight.outputs[place]) - self.model.output(output, state))
+        });
+        let sample = Sample {
+            t_us: i64::try_from(flight.time_us).ok()?,
+            input: [0, 1].map(|which| f64::from(flight.inputs[which]) - input[which]),
+            measured: measured.collect(),
+        };
+        let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
+        numbers.copied().all(|number| number.abs() < LARGEST).then_some(sample)
+    }
+
+    fn estimator<T: Scalar + 'static>(&self) -> Result<Box<dyn Estimator>, uav::Error> {
+        Ok(match (self.options.estimator, self.outputs.len()) {
+            (EstimatorKind::Kalman, _) => {
+                let assumed = Assumed::of(&self.model, &self.outputs, &self.options);
+                // What the interval is, the second sample tells.
+                filter::<T>(&self.model, &self.outputs, &assumed, 0.0)?
+            }
+            (EstimatorKind::Luenberger, 1) => Box::new(Observer::<T, 1>::new(self)),
+            (EstimatorKind::Luenberger, 2) => Box::new(Observer::<T, 2>::new(self)),
+            (EstimatorKind::Luenberger, _) => Box::new(Observer::<T, 3>::new(self)),
+        })
+    }
+}
+
+impl Plan for Flying {
+    fn build(&self) -> Result<Box<dyn Online>, Error> {
+        let estimator = match self.options.scalar {
+            ScalarKind::F32 => self.estimator::<f32>(),
+            ScalarKind::F64 => self.estimator::<f64>(),
+            ScalarKind::Fixed => self.estimator::<Q16_16>(),
+        };
+        let estimator = estimator.map_err(|error| Error::Usage(error.to_string()))?;
+        Ok(Box::new(Aeroplane {
+            plan: self.clone(),
+            estimator,
+            last_us: None,
+            usual_s: f64::INFINITY,
+        }))
+    }
+}
+
+/// An estimator, as in a replay.
+trait Estimator: Debug {
+    /// Says how long an interval usually is, s.
+    fn set_usual(&mut self, usual: f64);
+
+    /// Takes in a sample.
+    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error>;
+
+    /// x̂ after the last sample.
+    fn estimate(&self) -> SVector<f64, 4>;
+}
+
+impl<T: Scalar> Estimator for Filter<T> {
+    fn set_usual(&mut self, usual: f64) {
+        Self::set_usual(self, usual);
+    }
+
+    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
+        Self::take(self, &sized(sample)).map(drop)
+    }
+
+    fn estimate(&self) -> SVector<f64, 4> {
+        self.filter().estimate()
+    }
+}
+
+/// An observer whose gain waits for the usual interval.
+#[derive(Debug)]
+struct Observer<T: Scalar, const P: usize> {
+    plan: Flying,
+    c: SMatrix<f64, P, 4>,
+    usual: f64,
+    observer: Option<Box<FlightObserver<T, P, KEPT>>>,
+    before: Option<uav::Sample<P>>,
+}
+
+impl<T: Scalar, const P: usize> Observer<T, P> {
+    fn new(plan: &Flying) -> Self {
+        let c = rows(&plan.model, &plan.outputs);
+        Self { plan: plan.clone(), c, usual: 0.0, observer: None, before: None }
+    }
+
+    /// One for the usual interval, that begins at the sample before.
+    fn begin(&self) -> Result<Box<FlightObserver<T, P, KEPT>>, uav::Error> {
+        let poles = discrete(self.plan.options.poles, self.usual);
+        let dynamics = &self.plan.model.dynamics;
+        let mut observer = Box::new(FlightObserver::new(dynamics, &self.c, &poles, self.usual)?);
+        if let Some(before) = &self.before {
+            observer.take(before)?;
+        }
+        Ok(observer)
+    }
+}
+
+impl<T: Scalar, const P: usize> Estimator for Observer<T, P> {
+    fn set_usual(&mut self, usual: f64) {
+        (self.usual, self.observer) = (usual, None);
+    }
+
+    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
+        let sample = sized(sample);
+        if self.before.is_some() {
+            let mut observer = match self.observer.take() {
+                Some(observer) => observer,
+                None => self.begin()?,
+            };
+            let taken = observer.take(&sample);
+            self.observer = Some(observer);
+            taken?;
+        }
+        self.before = Some(sample);
+        Ok(())
+    }
+
+    fn estimate(&self) -> SVector<f64, 4> {
+        self.observer.as_ref().map_or_else(SVector::zeros, |observer| observer.estimate())
+    }
+}
+
+/// The estimator on its way.
+#[derive(Debug)]
+struct Aeroplane {
+    plan: Flying,
+    estimator: Box<dyn Estimator>,
+    last_us: Option<i64>,
+    usual_s: f64,
+}
+
+impl Aeroplane {
+    fn follow(&mut self, flight: &Flight) -> Option<()> {
+        let sample = self.plan.sample(flight)?;
+        if let Some(last_us) = self.last_us {
+            let interval_us = sample.t_us.checked_sub(last_us).filter(|interval| *interval > 0)?;
+            let interval_s = interval_us as f64 * 1e-6;
+            if interval_s < SHORTER * self.usual_s {
+                self.usual_s = interval_s;
+                self.estimator.set_usual(interval_s);
+            }
+        }
+        self.estimator.take(&sample).ok()?;
+        self.last_us = Some(sample.t_us);
+        Some(())
+    }
+}
+
+impl Online for Aeroplane {
+    fn take(&mut self, message: &Message) -> Outcome {
+        match message {
+            Message::Flight(flight) => Outcome::taken(self.follow(flight).is_some()),
+            _ => Outcome::NotMine,
+        }
+    }
+
+    fn state(&self) -> Option<[f64; 4]> {
+        self.last_us?;
+        let state: [f64; 4] = self.estimator.estimate().into();
+        Some(std::array::from_fn(|i| state[i] + self.plan.origin.0[i]))
+    }
+}

@@ -1,0 +1,239 @@
+//! Root mean square errors under noise, beside what the Lyapunov equation predicts.
+
+use kestirim_observer_design::Discrete;
+use kestirim_scalar::{Q16_16, Scalar};
+use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::random::stream;
+use crate::system::ScalarKind;
+use crate::systems::uav::simulate::plant::{Outputs, Plant, with_outputs};
+use crate::systems::uav::simulate::scenario::{
+    INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START, fly,
+};
+use crate::systems::uav::track::design::{FAST, Family, Kind, MIDDLE, SLOW, settled};
+
+/// Samples after which an estimator that starts at the truth has settled: the slowest error of the experiment, that
+/// of the Navion's airspeed, has by then been forgotten to a hundredth.
+const SETTLING: usize = 2000;
+
+/// Estimators that fly together, on the same noise.
+#[derive(Debug, Clone)]
+pub struct Cell {
+    /// The aircraft.
+    pub plant: Plant,
+    /// What is measured.
+    pub outputs: Outputs,
+    /// The noise.
+    pub noise: Noise,
+    /// What the pilot does.
+    pub inputs: Inputs,
+    /// Which part of the flight counts.
+    pub window: Window,
+    /// The estimators.
+    pub kinds: Vec<Kind>,
+}
+
+/// Which part of a flight counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Window {
+    /// All of it, from a start that is off.
+    Whole,
+    /// The last ten of thirty seconds, from the true start.
+    Settled,
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The aircraft.
+    pub plant: Plant,
+    /// What is measured.
+    pub outputs: Outputs,
+    /// The noise.
+    pub noise: Noise,
+    /// What the pilot does.
+    pub inputs: Inputs,
+    /// Which part of the flight counts.
+    pub window: Window,
+    /// Which estimator.
+    pub estimator: String,
+    /// Of which family.
+    pub family: Family,
+    /// RMSE of α (rad), q (rad/s), V (m/s), θ (rad).
+    pub rmse: [f64; 4],
+    /// The same as predicted: from the Lyapunov equation when settled, else from its recursion.
+    pub predicted: [f64; 4],
+    /// Steps that the scalar could not take.
+    pub refused: u32,
+}
+
+impl Row {
+    /// By which fraction the state that differs most differs from its prediction.
+    pub fn off(&self) -> f64 {
+        let ratios = self.rmse.iter().zip(&self.predicted).map(|(ours, ideal)| ours / ideal - 1.0);
+        ratios.fold(0.0, |worst, ratio| if ratio.abs() > f64::abs(worst) { ratio } else { worst })
+    }
+}
+
+/// All cells of the experiment.
+pub fn cells() -> Vec<Cell> {
+    let observers = [SLOW, MIDDLE, FAST].map(Kind::Luenberger);
+    let with = |first: &[Kind]| first.iter().copied().chain(observers).collect::<Vec<_>>();
+    let sensors = Noise::SENSORS;
+    let both = [Kind::Matched(sensors), Kind::TimeVarying(sensors)];
+    let mut cells = Vec::new();
+    for outputs in Outputs::ALL {
+        for (window, kinds) in [(Window::Settled, &both[..1]), (Window::Whole, &both)] {
+            let (plant, noise, kinds) = (Plant::P2, sensors, with(kinds));
+            cells.push(Cell { plant, outputs, noise, inputs: Inputs::Constant, window, kinds });
+        }
+    }
+    // As the thesis has it: noise of one size, and what the filter takes it for; ten seconds from another start.
+    for (window, inputs) in [
+        (Window::Settled, Inputs::Constant),
+        (Window::Whole, Inputs::Constant),
+        (Window::Whole, Inputs::Sine),
+    ] {
+        let (plant, outputs, noise) = (Plant::P2, Outputs::Full, Noise::EQUAL);
+        let kinds = with(&[1e-2, 1.0, 1e2].map(Kind::Ratio));
+        cells.push(Cell { plant, outputs, noise, inputs, window, kinds });
+    }
+    for plant in [Plant::P1, Plant::P3] {
+        let (outputs, noise, kinds) = (Outputs::RateAirspeedPitch, sensors, with(&both[..1]));
+        let (inputs, window) = (Inputs::Constant, Window::Settled);
+        cells.push(Cell { plant, outputs, noise, inputs, window, kinds });
+    }
+    cells
+}
+
+impl Cell {
+    /// Flies `trials` times.
+    pub fn rows(&self, scalar: ScalarKind, seed: u64, trials: u32) -> Vec<Row> {
+        let flights = match scalar {
+            ScalarKind::F32 => with_outputs!(self.outputs, flights::<f32, _>, self, seed, trials),
+            ScalarKind::F64 => with_outputs!(self.outputs, flights::<f64, _>, self, seed, trials),
+            ScalarKind::Fixed => {
+                with_outputs!(self.outputs, flights::<Q16_16, _>, self, seed, trials)
+            }
+        };
+        let count = f64::from(trials) * SAMPLES as f64;
+        let row = |(place, kind): (usize, &Kind)| {
+            let mut squares = SVector::<f64, 4>::zeros();
+            let mut refused = 0;
+            for flight in &flights {
+                squares += flight[place].squares;
+                refused += flight[place].refused;
+            }
+            Row {
+                plant: self.plant,
+                outputs: self.outputs,
+                noise: self.noise,
+                inputs: self.inputs,
+                window: self.window,
+                estimator: kind.name(),
+                family: kind.family(),
+                rmse: squares.map(|sum| (sum / count).sqrt()).into(),
+                predicted: self.predicted(kind),
+                refused,
+            }
+        };
+        self.kinds.iter().enumerate().map(row).collect()
+    }
+
+    /// RMSE of α, q, V, θ as predicted: from the Lyapunov equation when settled, else from its recursion.
+    pub fn predicted(&self, kind: &Kind) -> [f64; 4] {
+        with_outputs!(self.outputs, predicted, self, kind)
+    }
+
+    fn start(&self) -> SVector<f64, 4> {
+        SVector::from(if self.window == Window::Whole { NEAR } else { START })
+    }
+
+    /// Samples before those that count.
+    fn settling(&self) -> usize {
+        if self.window == Window::Whole { 0 } else { SETTLING }
+    }
+}
+
+/// What a flight of one estimator adds.
+#[derive(Debug, Clone, Copy, Default)]
+struct Outcome {
+    squares: SVector<f64, 4>,
+    refused: u32,
+}
+
+/// Collected in order before they are added: the same sums at any number of threads.
+fn flights<T: Scalar<Accumulator: Sync> + Sync, const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    cell: &Cell,
+    seed: u64,
+    trials: u32,
+) -> Vec<Vec<Outcome>> {
+    let plant = cell.plant.discrete(INTERVAL_S);
+    let (truth, start) = (SVector::from(START), cell.start());
+    let new = |kind: &Kind| {
+        kind.estimator::<T, P>(&plant, c, &start, &(truth - start))
+            .expect("an estimator of the table")
+    };
+    let estimators: Vec<_> = cell.kinds.iter().map(new).collect();
+    let fly = |index| {
+        let mut flying: Vec<_> = estimators.iter().map(|it| (*it, Outcome::default())).collect();
+        let samples = fly(plant, truth, cell.inputs, cell.noise, stream(seed, index));
+        for (number, sample) in samples.take(cell.settling() + SAMPLES).enumerate() {
+            let measured = sample.measured(c);
+            for (estimator, outcome) in &mut flying {
+                if number >= cell.settling() {
+                    let error = sample.x - estimator.estimate();
+                    outcome.squares += error.component_mul(&error);
+                }
+                outcome.refused += u32::from(estimator.step(&sample.u, &measured).is_err());
+            }
+        }
+        flying.into_iter().map(|(_, outcome)| outcome).collect()
+    };
+    (0..u64::from(trials)).into_par_iter().map(fly).collect()
+}
+
+fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -> [f64; 4] {
+    let plant = cell.plant.discrete(INTERVAL_S);
+    if cell.window == Window::Whole {
+        let (q, r) = (cell.noise.process(&plant), cell.noise.measurement(c));
+        return over_a_flight(c, &plant, kind, &q, &r, &(SVector::from(START) - cell.start()));
+    }
+    settled(c, &plant, kind, &cell.noise).expect("a stable estimator of the table")
+}
+
+/// Mean and covariance of the error, sample by sample, averaged: from an initial error that is no surprise to
+/// nobody but the estimator.
+fn over_a_flight<const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    plant: &Discrete<4, 2>,
+    kind: &Kind,
+    q: &SMatrix<f64, 4, 4>,
+    r: &SMatrix<f64, P, P>,
+    off: &SVector<f64, 4>,
+) -> [f64; 4] {
+    let settled = kind.gain(plant, c).expect("an estimator of the table");
+    let mut believed = SMatrix::from_diagonal(&off.component_mul(off));
+    let (mut mean, mut covariance) = (*off, SMatrix::<f64, 4, 4>::zeros());
+    let mut squares = SVector::<f64, 4>::zeros();
+    for _ in 0..SAMPLES {
+        squares += mean.component_mul(&mean) + covariance.diagonal();
+        let gain = if let Kind::TimeVarying(_) = kind {
+            let innovation = c * believed * c.transpose() + r;
+            let inverse = innovation.try_inverse().expect("noise in every output");
+            let gain = plant.a * believed * c.transpose() * inverse;
+            believed = (plant.a - gain * c) * believed * plant.a.transpose() + q;
+            gain
+        } else {
+            settled
+        };
+        let error = plant.a - gain * c;
+        mean = error * mean;
+        covariance = error * covariance * error.transpose() + q + gain * r * gain.transpose();
+    }
+    squares.map(|sum| (sum / SAMPLES as f64).sqrt()).into()
+}

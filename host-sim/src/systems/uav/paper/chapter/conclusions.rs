@@ -1,0 +1,136 @@
+//! What the thesis concludes, and what it did not ask.
+
+use super::made;
+use crate::Error;
+use crate::figure::{Colour, Figure, Series};
+use crate::report::{Comparison, Item};
+use crate::system::ScalarKind;
+use crate::systems::uav::account::states::{caught, shown};
+use crate::systems::uav::paper::accuracy::{Cell, Window};
+use crate::systems::uav::paper::catching::{Chase, THESIS_LUENBERGER};
+use crate::systems::uav::paper::report::{Report, alike, four};
+use crate::systems::uav::simulate::plant::{Outputs, Plant, STATES};
+use crate::systems::uav::simulate::scenario::{Inputs, Noise};
+use crate::systems::uav::track::design::{Kind, MIDDLE, faster};
+
+/// Claims, accuracies, limits.
+pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {
+    let flights = made(report, format!("{} flights a row", report.trials));
+    let once = made(report, "1 flight a row, without noise");
+    Ok(vec![
+        flights.item(claims(report)),
+        flights.item(accuracy(report)),
+        once.item(slowest(report)),
+        once.item(independence(report)),
+        once.item(against_time()?),
+    ])
+}
+
+fn claims(report: &Report) -> Comparison {
+    let empty = Comparison::new(
+        "uav-claims",
+        "Chapter 7: what the thesis concludes (ours: α, q, V, θ by the Kalman filter; limit: by the best observer)",
+    );
+    report.claims.iter().fold(empty, |table, claim| {
+        let quantity = format!("{}: {}", claim.claim, claim.setting);
+        let verdict = if claim.holds { "true" } else { "false" };
+        let ours = format!("{verdict}: {}", shown(claim.kalman));
+        table.row(quantity, "true", ours, shown(claim.luenberger))
+    })
+}
+
+fn accuracy(report: &Report) -> Comparison {
+    let empty = Comparison::new(
+        "uav-accuracy",
+        format!(
+            "RMSE of α, q, V, θ over {} flights (limit: Lyapunov's equation, or its recursion over the flight)",
+            report.trials
+        ),
+    );
+    report
+        .accuracy
+        .iter()
+        .fold(empty, |table, row| {
+            let window = if row.window == Window::Whole { "10 s" } else { "settled" };
+            let (noise, inputs) = (row.noise.name, row.inputs.name());
+            let (plant, outputs) = (row.plant.name(), row.outputs.name());
+            let quantity = format!(
+                "{plant}, {outputs}, noise {noise}, {inputs} inputs, {window}: {}",
+                row.estimator
+            );
+            table.row(quantity, "", four(row.rmse), four(row.predicted))
+        })
+        .note("The thesis prints no error: the published column is empty.")
+}
+
+fn slowest(report: &Report) -> Comparison {
+    let empty = Comparison::new(
+        "uav-slowest-poles",
+        "How fast a steady-state filter of P2 can get: its two slowest poles, 1/s",
+    );
+    report
+        .slowest_poles
+        .iter()
+        .fold(empty, |table, row| {
+            let poles = row.poles.map(|pole| format!("{pole:.3}")).join(" ");
+            table.row(format!("Q/R = {:e}", row.ratio), "", poles, "")
+        })
+        .note("They go to the plant's zeros and no further, however little the filter trusts its model.")
+}
+
+fn independence(report: &Report) -> Comparison {
+    let empty = Comparison::new(
+        "uav-independence",
+        "Sine inputs: by how much the errors of α, q, V, θ differ from those with constant inputs",
+    );
+    report
+        .independence
+        .iter()
+        .fold(empty, |table, row| {
+            table.row(row.estimator.clone(), "", four(row.difference), "0 exactly")
+        })
+        .note(format!(
+            "e⁺ = (A − L C) e has no u in it, so sine inputs are no experiment: {}.",
+            alike(&report.catching)
+        ))
+}
+
+/// What speed costs: the middle poles made faster and slower, beside the steady-state filter.
+fn against_time() -> Result<Figure, Error> {
+    let (plant, outputs, noise) = (Plant::P2, Outputs::Full, Noise::SENSORS);
+    let (inputs, window) = (Inputs::Constant, Window::Settled);
+    let settled = Cell { plant, outputs, noise, inputs, window, kinds: Vec::new() };
+    let times = |kind: Kind| {
+        let errors = Chase { kind, ..THESIS_LUENBERGER }.errors(ScalarKind::F64);
+        errors
+            .map(|errors| caught(&errors))
+            .map_err(|problem| Error::Usage(format!("uav: there is no {}: {problem}", kind.name())))
+    };
+    let kalman = Kind::Matched(noise);
+    let (best, kalman_times) = (settled.predicted(&kalman), times(kalman)?);
+    let mut lines: [Vec<[f64; 2]>; 4] = Default::default();
+    for quarters in -12..=11 {
+        let factor = 2_f64.powf(f64::from(quarters) / 4.0);
+        let kind = Kind::Luenberger(faster(MIDDLE, factor));
+        let (rmse, times) = (settled.predicted(&kind), times(kind)?);
+        for (state, line) in lines.iter_mut().enumerate() {
+            line.extend(times[state].map(|time| [time, rmse[state] / best[state]]));
+        }
+    }
+    let observers = STATES.into_iter().zip(lines).enumerate().map(|(state, (name, line))| {
+        Series::path(format!("{name}, observers"), line).coloured(Colour::Other(state))
+    });
+    let filters = STATES.into_iter().zip(kalman_times).enumerate().map(|(state, (name, time))| {
+        let points = time.map(|time| [time, 1.0]);
+        Series::points(format!("{name}, Kalman"), points).coloured(Colour::Other(state))
+    });
+    let mut figure = Figure::new("uav-noise-against-time", "What a fast observer costs on P2")
+        .axes("time to catch without noise, s", "settled RMSE under noise / the Kalman filter's")
+        .caption("An observer is as quick as one likes, and as noisy; the steady filter is one point of each line's plane.")
+        .logarithmic()
+        .showing(Some([0.08, 10.0]), Some([0.8, 12.0]))
+        .with_all(observers)
+        .with_all(filters);
+    figure.x.logarithmic = true;
+    Ok(figure)
+}

@@ -1,0 +1,68 @@
+//! The UAV's part of the report: the thesis' chapters 3, 5 and 6 in their order, then what it does not ask.
+
+mod conclusions;
+mod flights;
+mod plants;
+mod streams;
+mod summary;
+
+use crate::Error;
+use crate::figure::Figure;
+use crate::report::{Chapter, Made};
+use crate::systems::uav::paper::report::Report;
+use crate::systems::uav::simulate::plant::{STATE_NAMES, STATE_SLUGS, STATE_UNITS, STATES};
+
+/// The whole chapter.
+///
+/// # Errors
+/// If an estimator of its drawings does not exist in the scalar of the report.
+pub fn chapter(report: &Report) -> Result<Chapter, Error> {
+    let mut items = plants::items(report);
+    items.extend(flights::items(report)?);
+    items.extend(conclusions::items(report)?);
+    Ok(Chapter {
+        system: "uav",
+        title: "UAV: longitudinal motion by Luenberger observer and Kalman filter",
+        paper: "Longitudinal states of a fixed-wing UAV by Luenberger observer and Kalman filter, MSc \
+                thesis in Turkish, 2020",
+        about: "The thesis prints figures and words, but neither its aircraft nor its gains nor a number \
+                of its errors. So there are three aircraft, of which P2 is fitted to its prose; and every \
+                conclusion is measured, on the truth of simulated flights."
+            .to_owned(),
+        summary: summary::summary(report),
+        items,
+        streams: streams::streams(report)?,
+    })
+}
+
+/// How the tables of the command came about; of so many of something.
+fn made(report: &Report, trials: impl Into<String>) -> Made {
+    let Report { seed, trials: flights, .. } = report;
+    let scalar = format!("{:?}", report.scalar).to_lowercase();
+    Made {
+        command: format!(
+            "cargo run --release -p host-sim -- run uav --seed {seed} --trials {flights} --scalar {scalar}"
+        ),
+        seed: *seed,
+        trials: trials.into(),
+    }
+}
+
+/// A figure a state over time, numbered, with what is drawn of it.
+fn by_state(
+    id: &str,
+    title: &str,
+    caption: &str,
+    draw: impl Fn(usize, Figure) -> Figure,
+) -> [Figure; 4] {
+    std::array::from_fn(|state| {
+        let name = format!("{id}-{}", STATE_SLUGS[state]);
+        let title = format!("{title}: {}", STATE_NAMES[state]);
+        let label = format!("{}, {}", STATES[state], STATE_UNITS[state]);
+        let empty = Figure::new(name, title).axes("t, s", label).caption(caption);
+        draw(state, empty)
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,179 @@
+//! What the thesis concludes, measured.
+
+use kestirim_observer_design::eigenvalues;
+use kestirim_uav_longitudinal::full_state;
+use serde::Serialize;
+
+use super::accuracy::{self, Window};
+use super::catching::{self, Chase};
+use crate::system::ScalarKind;
+use crate::systems::uav::simulate::plant::{Outputs, Plant};
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise};
+use crate::systems::uav::track::design::{FAST, Family, Kind, SLOW};
+
+/// A claim in one setting.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Claim {
+    /// What is claimed.
+    pub claim: &'static str,
+    /// Where.
+    pub setting: &'static str,
+    /// Of α, q, V, θ with the Kalman filter: RMSE (rad, rad/s, m/s, rad) or times to catch (s).
+    pub kalman: [f64; 4],
+    /// The same with the best Luenberger observer of the table, state by state.
+    pub luenberger: [f64; 4],
+    /// Whether it is true of every state.
+    pub holds: bool,
+}
+
+/// With noise.
+const NOISY: &str = "with noise, Kalman better on every state";
+/// Without.
+const QUIET: &str = "without noise, Luenberger faster on every state";
+
+/// All claims, from the rows of the tables.
+pub fn claims(caught: &[catching::Row], accuracy: &[accuracy::Row]) -> Vec<Claim> {
+    let thesis = Kind::Ratio(1e-2).name();
+    let noisy = [
+        (
+            Family::Kalman,
+            None,
+            Noise::SENSORS,
+            Window::Settled,
+            "settled, the filter for the noise there is",
+        ),
+        (
+            Family::Kalman,
+            None,
+            Noise::SENSORS,
+            Window::Whole,
+            "10 s from a wrong start, steady-state gain",
+        ),
+        (
+            Family::TimeVarying,
+            None,
+            Noise::SENSORS,
+            Window::Whole,
+            "10 s from a wrong start, time-varying gain",
+        ),
+        (
+            Family::Kalman,
+            Some(thesis.as_str()),
+            Noise::EQUAL,
+            Window::Settled,
+            "settled, the gain that explains the thesis' figures",
+        ),
+    ];
+    let noisy = noisy.into_iter().filter_map(|(family, name, noise, window, setting)| {
+        let of = |family, name| best_rmse(accuracy, family, name, noise, window);
+        let (kalman, luenberger) = (of(family, name)?, of(Family::Luenberger, None)?);
+        let holds = kalman.iter().zip(&luenberger).all(|(k, l)| k <= l);
+        Some(Claim { claim: NOISY, setting, kalman, luenberger, holds })
+    });
+    let quiet = [
+        ("the gain that explains the thesis' figures", Family::Kalman, Some(thesis.as_str())),
+        ("the best steady-state gain of each state", Family::Kalman, None),
+        ("time-varying gain", Family::TimeVarying, None),
+    ];
+    let quiet = quiet.into_iter().filter_map(|(setting, family, name)| {
+        let kalman = best_time(caught, family, name)?;
+        let luenberger = best_time(caught, Family::Luenberger, None)?;
+        let holds = kalman.iter().zip(&luenberger).all(|(k, l)| l < k);
+        Some(Claim { claim: QUIET, setting, kalman, luenberger, holds })
+    });
+    noisy.chain(quiet).collect()
+}
+
+/// Of the thesis' aircraft and outputs, with constant inputs.
+fn best_rmse(
+    rows: &[accuracy::Row],
+    family: Family,
+    name: Option<&str>,
+    noise: Noise,
+    window: Window,
+) -> Option<[f64; 4]> {
+    let rows = rows.iter().filter(|row| {
+        (row.plant, row.outputs) == (Plant::P2, Outputs::Full)
+            && (row.noise, row.inputs) == (noise, Inputs::Constant)
+            && row.family == family
+            && name.is_none_or(|name| row.estimator == name)
+            && row.window == window
+    });
+    rows.map(|row| row.rmse).reduce(least)
+}
+
+/// Of the thesis' aircraft, outputs, inputs and the near start; what is never caught counts as infinity.
+fn best_time(rows: &[catching::Row], family: Family, name: Option<&str>) -> Option<[f64; 4]> {
+    let rows = rows.iter().filter(|row| {
+        (row.plant, row.outputs, row.inputs) == (Plant::P2, Outputs::Full, Inputs::Constant)
+            && row.start == NEAR
+            && row.family == family
+            && name.is_none_or(|name| row.estimator == name)
+    });
+    let times = rows.filter_map(|row| row.ours_s);
+    times.map(|times| times.map(|time| time.unwrap_or(f64::INFINITY))).reduce(least)
+}
+
+fn least(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    std::array::from_fn(|state| a[state].min(b[state]))
+}
+
+/// A steady-state filter's slowest poles, 1/s: with its process noise on the inputs they go to the plant's zeros,
+/// and no further, however little it trusts its model.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SlowestPoles {
+    /// Variance of the inputs' noise beside that of the outputs'.
+    pub ratio: f64,
+    /// Slowest first.
+    pub poles: [f64; 2],
+}
+
+/// Of the thesis' aircraft.
+pub fn slowest_poles() -> Vec<SlowestPoles> {
+    let plant = Plant::P2.discrete(INTERVAL_S);
+    let row = |ratio: f64| {
+        let gain = Kind::Ratio(ratio).gain(&plant, &full_state()).expect("a gain of the table");
+        let poles = eigenvalues(&(plant.a - gain)).expect("finite numbers");
+        let mut rates = poles.map(|pole| pole.re.hypot(pole.im).ln() / INTERVAL_S);
+        rates.sort_by(|a, b| b.total_cmp(a));
+        SlowestPoles { ratio, poles: [rates[0], rates[1]] }
+    };
+    [1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e8].into_iter().map(row).collect()
+}
+
+/// e⁺ = (A − L·C)·e: what the pilot does is not in it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Independence {
+    /// Which estimator.
+    pub estimator: String,
+    /// Largest error of α, q, V, θ in ten seconds of constant inputs.
+    pub largest_error: [f64; 4],
+    /// Largest difference between the errors under sine and constant inputs, at any sample.
+    pub difference: [f64; 4],
+}
+
+/// Of the thesis' aircraft.
+pub fn independence(scalar: ScalarKind) -> Vec<Independence> {
+    let kinds = [
+        Kind::Ratio(1e-2),
+        Kind::TimeVarying(Noise::SENSORS),
+        Kind::Luenberger(SLOW),
+        Kind::Luenberger(FAST),
+    ];
+    let row = |kind: Kind| {
+        let (plant, outputs, start) = (Plant::P2, Outputs::Full, NEAR);
+        let errors = |inputs| Chase { plant, outputs, kind, start, inputs }.errors(scalar).ok();
+        let (constant, sine) = (errors(Inputs::Constant)?, errors(Inputs::Sine)?);
+        let largest = |of: &dyn Fn(usize, usize) -> f64| {
+            std::array::from_fn(|state| {
+                (0..constant.len()).map(|sample| of(sample, state).abs()).fold(0.0, f64::max)
+            })
+        };
+        Some(Independence {
+            estimator: kind.name(),
+            largest_error: largest(&|sample, state| constant[sample][state]),
+            difference: largest(&|sample, state| sine[sample][state] - constant[sample][state]),
+        })
+    };
+    kinds.into_iter().filter_map(row).collect()
+}

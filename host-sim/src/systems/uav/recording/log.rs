@@ -1,0 +1,164 @@
+//! Recorded flights, and what is known of their truth.
+
+use std::path::Path;
+
+use crate::systems::uav::recording::model::STATE_COLUMNS;
+use crate::text::Header;
+use crate::{Error, table};
+
+/// Intervals that differ by less than this share from the usual one are jitter.
+const JITTER: f64 = 0.1;
+/// Share of intervals that must be the usual one.
+const REGULAR: f64 = 0.75;
+/// From this many usual intervals on, samples are missing.
+const GAP: f64 = 1.5;
+/// No sensor of an aircraft measures more, in any unit.
+pub(in crate::systems::uav) const LARGEST: f64 = 1e6;
+
+/// A line of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// µs.
+    pub t_us: i64,
+    /// δe, δt.
+    pub input: [f64; 2],
+    /// What was measured, in the order of the log's outputs; an empty field is nothing.
+    pub measured: Vec<Option<f64>>,
+}
+
+/// A log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    /// Which of the model's outputs the log has.
+    pub outputs: Vec<usize>,
+    /// In the order of their times.
+    pub samples: Vec<Sample>,
+    /// The usual time between samples, s.
+    pub interval_s: f64,
+    /// How many times samples are missing.
+    pub gaps: usize,
+}
+
+/// Reads columns `t`, `delta_e`, `delta_t` and those of the model's outputs that there are.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read(path: &Path, names: &[&str]) -> Result<Log, Error> {
+    let mut samples: Vec<Sample> = Vec::new();
+    let mut outputs = Vec::new();
+    table::read(
+        path,
+        "a recorded flight",
+        |header| {
+            let inputs = header.require(["t", "delta_e", "delta_t"])?;
+            let columns = measured_columns(header, names)?;
+            if columns.is_empty() {
+                return Err(header.error(format!(
+                    "expected at least one column of {}, found none",
+                    names.join(", ")
+                )));
+            }
+            outputs = columns.iter().map(|(output, _)| *output).collect();
+            Ok((inputs, columns))
+        },
+        |([t, elevator, throttle], columns), row| {
+            let number = |name: &str, column: usize| {
+                let value = row.number(name, column)?;
+                if value.abs() > LARGEST {
+                    return Err(row.line.error(format!("expected {name} below a million")));
+                }
+                Ok(value)
+            };
+            let t_us = row.time_us(*t)?;
+            if samples.last().is_some_and(|last| last.t_us >= t_us) {
+                return Err(row.line.error("expected a later time than on the line before"));
+            }
+            let input = [number("delta_e", *elevator)?, number("delta_t", *throttle)?];
+            let measured = columns.iter().map(|&(output, column)| {
+                let empty = row.text(column).is_empty();
+                if empty { Ok(None) } else { number(names[output], column).map(Some) }
+            });
+            samples.push(Sample { t_us, input, measured: measured.collect::<Result<_, _>>()? });
+            Ok(())
+        },
+    )?;
+    if samples.iter().flat_map(|sample| &sample.measured).all(Option::is_none) {
+        let problem = "expected measurements, found none in any line".to_owned();
+        return Err(Error::File { path: path.to_path_buf(), problem });
+    }
+    let (interval_s, gaps) = regular(path, &samples)?;
+    Ok(Log { outputs, samples, interval_s, gaps })
+}
+
+fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, usize)>, Error> {
+    let mut columns = Vec::new();
+    for (output, name) in names.iter().enumerate() {
+        if header.find(name).is_some() {
+            let [column] = header.require([name])?;
+            columns.push((output, column));
+        }
+    }
+    Ok(columns)
+}
+
+/// The usual interval, s, and how many are much longer.
+fn regular(path: &Path, samples: &[Sample]) -> Result<(f64, usize), Error> {
+    let mut steps: Vec<f64> =
+        samples.windows(2).map(|pair| (pair[1].t_us - pair[0].t_us) as f64 / 1e6).collect();
+    steps.sort_by(f64::total_cmp);
+    let wrong = |problem| Error::File { path: path.to_path_buf(), problem };
+    let Some(&usual) = steps.get(steps.len() / 2) else {
+        return Err(wrong("expected at least two samples".to_owned()));
+    };
+    let near = steps.iter().filter(|step| (*step / usual - 1.0).abs() <= JITTER).count();
+    if (near as f64) < REGULAR * steps.len() as f64 {
+        return Err(wrong(format!(
+            "expected samples at a regular interval, found {near} of {} near {usual} s",
+            steps.len()
+        )));
+    }
+    Ok((usual, steps.iter().filter(|step| **step > GAP * usual).count()))
+}
+
+/// True states: a time in µs, and those that the file has of α, q, V, θ.
+pub type Truth = Vec<(i64, [Option<f64>; 4])>;
+
+/// Reads columns `t` and some of `alpha`, `q`, `V`, `theta`.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_truth(path: &Path) -> Result<Truth, Error> {
+    let mut truth = Truth::new();
+    table::read(
+        path,
+        "true states",
+        |header| {
+            let [t] = header.require(["t"])?;
+            let columns = measured_columns(header, &STATE_COLUMNS)?;
+            if columns.is_empty() {
+                return Err(header.error("expected a column alpha, q, V or theta, found none"));
+            }
+            Ok((t, columns))
+        },
+        |(t, columns), row| {
+            let mut states = [None; 4];
+            for &(state, column) in columns {
+                if !row.text(column).is_empty() {
+                    let value = row.number(STATE_COLUMNS[state], column)?;
+                    if value.abs() > LARGEST {
+                        let name = STATE_COLUMNS[state];
+                        return Err(row.line.error(format!("expected {name} below a million")));
+                    }
+                    states[state] = Some(value);
+                }
+            }
+            let t_us = row.time_us(*t)?;
+            if truth.last().is_some_and(|(last, _)| *last >= t_us) {
+                return Err(row.line.error("expected a later time than on the line before"));
+            }
+            truth.push((t_us, states));
+            Ok(())
+        },
+    )?;
+    Ok(truth)
+}

@@ -1,0 +1,155 @@
+//! The same settings in firmware: the estimator of `kestirim-uav-estimator`, with its model as numbers.
+
+use kestirim_observer_design::Complex;
+use kestirim_uav_estimator::Dynamics;
+use kestirim_uav_longitudinal::StateSpace;
+use nalgebra::SMatrix;
+
+use super::{EstimatorKind, GainKind, Options, Simulation};
+use crate::system::{Literal, ScalarKind, Settings};
+use crate::systems::uav::recording::Recording;
+use crate::systems::uav::recording::model::Model;
+use crate::systems::uav::simulate::plant::with_outputs;
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Noise, START};
+use crate::systems::uav::track::design::discrete;
+use crate::systems::uav::track::estimators::{Assumed, rows};
+
+/// Outputs and interval of a flight that nobody recorded: q, V and θ.
+const USUAL: ([usize; 3], f64) = ([1, 2, 3], 0.01);
+
+/// Rust that makes the estimator. What it makes is a `Result`, for firmware to look at.
+pub(in crate::systems::uav) fn firmware(
+    recording: Option<&Recording>,
+    settings: &Settings,
+) -> String {
+    let options = Options::of(settings);
+    let known = || Model::of(settings.chosen("model"));
+    match recording {
+        None => logged(&known(), &USUAL.0, USUAL.1, &options),
+        Some(Recording::Logged(it)) => {
+            let model = it.model.clone().unwrap_or_else(known);
+            logged(&model, &it.log.outputs, it.log.interval_s, &options)
+        }
+        Some(Recording::Synthetic(inputs)) => {
+            let simulation = Simulation::of(settings, *inputs);
+            with_outputs!(simulation.flight.outputs, simulated, &simulation, &options)
+        }
+    }
+}
+
+fn scalar(kind: ScalarKind) -> &'static str {
+    match kind {
+        ScalarKind::Fixed => "kestirim_scalar::Q16_16",
+        kind => Literal::number_type(kind),
+    }
+}
+
+/// A filter or observer of samples with gaps.
+fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) -> String {
+    let count = outputs.len();
+    let (dynamics, import) = match &model.dynamics {
+        Dynamics::Continuous(StateSpace { a, b }) => (
+            format!("Dynamics::Continuous(StateSpace {})", plant(a, b)),
+            "kestirim_uav_longitudinal::StateSpace",
+        ),
+        Dynamics::Discrete { step, interval } => (
+            format!(
+                "Dynamics::Discrete {{\n    step: Discrete {},\n    interval: {interval:?},\n}}",
+                plant(&step.a, &step.b)
+            ),
+            "kestirim_observer_design::Discrete",
+        ),
+    };
+    let c = match count {
+        1 => columns(&rows::<1>(model, outputs)),
+        2 => columns(&rows::<2>(model, outputs)),
+        3 => columns(&rows::<3>(model, outputs)),
+        _ => columns(&rows::<4>(model, outputs)),
+    };
+    // The matrices are designed in f64, whatever the estimator computes in.
+    let literal =
+        Literal::new("kestirim_uav_estimator::Dynamics", ScalarKind::F64, "Dynamics", &dynamics)
+            .import(import);
+    let scalar = scalar(options.scalar);
+    match options.estimator {
+        EstimatorKind::Kalman => {
+            let Assumed { inputs, outputs } = Assumed::of(model, outputs, options);
+            literal.import("kestirim_uav_estimator::{FlightFilter, Noise}").then(format!(
+                "let noise = Noise {{ inputs: {inputs:?}.into(), outputs: {outputs:?}.into() }};\n\
+                 let filter = FlightFilter::<{scalar}, {count}>::new(&config, &{c}, &noise, {interval:?});"
+            ))
+        }
+        EstimatorKind::Luenberger => {
+            let poles = discrete(options.poles, interval);
+            let poles = poles.map(|Complex { re, im }| format!("Complex {{ re: {re:?}, im: {im:?} }}"));
+            literal
+                .import("kestirim_observer_design::Complex")
+                .import("kestirim_uav_estimator::FlightObserver")
+                .then(format!(
+                    "let poles = [\n    {},\n];\n\
+                     let observer = FlightObserver::<{scalar}, {count}>::new(&config, &{c}, &poles, {interval:?});",
+                    poles.join(",\n    ")
+                ))
+        }
+    }
+    .to_string()
+}
+
+/// An estimator of samples at one rate.
+fn simulated<const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    simulation: &Simulation,
+    options: &Options,
+) -> String {
+    let kind = simulation.kind(options);
+    let discrete = simulation.flight.plant.discrete(INTERVAL_S);
+    let (plant, rows) = (plant(&discrete.a, &discrete.b), columns(c));
+    let literal = Literal::new(
+        "kestirim_observer_design::Discrete",
+        ScalarKind::F64,
+        "Discrete<4, 2>",
+        &format!("Discrete {plant}"),
+    )
+    .import("kestirim_uav_estimator::Estimator");
+    let scalar = scalar(options.scalar);
+    let start = simulation.flight.start;
+    let varying =
+        (options.estimator, simulation.gain) == (EstimatorKind::Kalman, GainKind::Varying);
+    if varying {
+        let believed = options.weighted(simulation.assumed.inputs);
+        let noise = Noise { inputs: believed, ..simulation.assumed };
+        let sigmas: Vec<f64> = simulation.assumed.outputs[4 - P..].to_vec();
+        let doubts: [f64; 4] = std::array::from_fn(|i| START[i] - start[i]);
+        let noise = columns(&noise.process(&discrete));
+        return literal
+            .import("kestirim_uav_estimator::Step")
+            .then(format!(
+                "let step = Step {{ transition: config, noise: {noise} }};\n\
+                 let estimator = Estimator::<{scalar}, {P}>::time_varying(\n    \
+                 &step,\n    &{rows},\n    &{sigmas:?}.into(),\n    &{start:?}.into(),\n    &{doubts:?}.into(),\n);"
+            ))
+            .to_string();
+    }
+    match kind.gain(&discrete, c) {
+        Err(problem) => format!("// There is no such estimator: {problem}"),
+        Ok(gain) => literal
+            .then(format!(
+                "let estimator = Estimator::<{scalar}, {P}>::constant_gain(\n    \
+                 &config,\n    &{rows},\n    &{},\n    &{start:?}.into(),\n);",
+                columns(&gain)
+            ))
+            .to_string(),
+    }
+}
+
+/// The fields A and B.
+fn plant(a: &SMatrix<f64, 4, 4>, b: &SMatrix<f64, 4, 2>) -> String {
+    format!("{{\n    a: {},\n    b: {},\n}}", columns(a), columns(b))
+}
+
+/// A matrix as the array of its columns.
+fn columns<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> String {
+    let columns = matrix.column_iter();
+    let columns = columns.map(|column| format!("{:?}", column.iter().collect::<Vec<_>>()));
+    format!("[{}].into()", columns.collect::<Vec<_>>().join(", "))
+}

@@ -1,0 +1,142 @@
+//! A logged flight in deviations from its model's steady one.
+
+use nalgebra::SVector;
+
+use super::estimators::{self, Assumed, Estimate, Followed};
+use crate::Error;
+use crate::systems::uav::recording::log::{Log, Truth};
+use crate::systems::uav::recording::model::Model;
+use crate::systems::uav::settings::{EstimatorKind, Options};
+
+/// A flight in deviations from its model's steady one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deviations {
+    /// The aircraft.
+    pub model: Model,
+    /// The log, in deviations.
+    pub log: Log,
+    /// What was really flown, as in its file.
+    pub truth: Option<Truth>,
+    /// State and input that were taken from the log.
+    origin: ([f64; 4], [f64; 2]),
+    /// What a reader should know of the log.
+    pub(super) doubts: Vec<String>,
+}
+
+impl Deviations {
+    /// From what was read; with `absolute` values the model's trim is taken from them.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if values are `absolute` and the model has no trim.
+    pub fn new(
+        model: Model,
+        mut log: Log,
+        truth: Option<Truth>,
+        absolute: bool,
+    ) -> Result<Self, Error> {
+        let origin = model.origin(absolute)?;
+        let mut doubts = Vec::new();
+        if let (false, Some(trim)) = (absolute, model.trim) {
+            doubts.extend(looks_absolute(&log, &model, trim.0[2]));
+        }
+        subtract(&mut log, &model, origin);
+        if log.gaps > 0 {
+            doubts.push(format!(
+                "{} gaps are longer than one and a half intervals of {} s",
+                log.gaps, log.interval_s
+            ));
+        }
+        Ok(Self { model, log, truth, origin, doubts })
+    }
+
+    /// From a simulated flight, which is in deviations.
+    pub(super) fn simulated(model: Model, log: Log, truth: Truth) -> Self {
+        let (truth, origin, doubts) = (Some(truth), ([0.0; 4], [0.0; 2]), Vec::new());
+        Self { model, log, truth, origin, doubts }
+    }
+
+    /// What a reader should know.
+    pub fn warnings(&self) -> Vec<String> {
+        self.doubts.clone()
+    }
+
+    /// Of the outputs that the log has.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.log.outputs.iter().map(|&output| self.model.outputs[output].0.as_str())
+    }
+
+    /// By an estimator.
+    ///
+    /// # Errors
+    /// In words: why it cannot.
+    pub fn follow(&self, options: &Options) -> Result<Followed, String> {
+        match options.estimator {
+            EstimatorKind::Kalman => {
+                let assumed = Assumed::of(&self.model, &self.log.outputs, options);
+                estimators::kalman(&self.model, &self.log, &assumed, options.scalar)
+            }
+            EstimatorKind::Luenberger => {
+                estimators::observer(&self.model, &self.log, options.poles, options.scalar)
+            }
+        }
+    }
+
+    /// An estimate as the log has its values.
+    pub fn absolute(&self, estimate: &Estimate) -> SVector<f64, 4> {
+        estimate.state + SVector::from(self.origin.0)
+    }
+
+    /// Inputs of the log as they were before the trim was taken.
+    pub fn inputs(&self) -> impl Iterator<Item = (i64, [f64; 2])> {
+        let steady = self.origin.1;
+        let absolute = move |input: [f64; 2]| std::array::from_fn(|i| input[i] + steady[i]);
+        self.log.samples.iter().map(move |sample| (sample.t_us, absolute(sample.input)))
+    }
+
+    /// Rows of the log as they were before the trim was taken: of each output, or nothing.
+    pub fn measured(&self) -> impl Iterator<Item = (i64, Vec<Option<f64>>)> {
+        let steady: Vec<f64> = self.log.outputs.iter().map(|&o| self.steady(o)).collect();
+        self.log.samples.iter().map(move |sample| {
+            let values = sample.measured.iter().zip(&steady);
+            (sample.t_us, values.map(|(value, steady)| value.map(|v| v + steady)).collect())
+        })
+    }
+
+    fn steady(&self, output: usize) -> f64 {
+        self.model.output(output, &self.origin.0)
+    }
+
+    /// Errors at times that log and truth share: estimated less true, of the states that are known.
+    pub fn errors(&self, estimates: &[Estimate]) -> Vec<(i64, [Option<f64>; 4])> {
+        let Some(truth) = &self.truth else { return Vec::new() };
+        let error = |estimate: &Estimate| {
+            let place = truth.binary_search_by_key(&estimate.t_us, |(t, _)| *t).ok()?;
+            let (state, known) = (self.absolute(estimate), truth[place].1);
+            let each = |column: usize| known[column].map(|known| state[column] - known);
+            Some((estimate.t_us, std::array::from_fn(each)))
+        };
+        estimates.iter().filter_map(error).collect()
+    }
+}
+
+/// Whether airspeeds are nearer to the steady one than to nothing.
+fn looks_absolute(log: &Log, model: &Model, airspeed: f64) -> Option<String> {
+    let column = log.outputs.iter().position(|&output| model.outputs[output].0 == "V")?;
+    let mut values: Vec<f64> =
+        log.samples.iter().filter_map(|sample| sample.measured[column]).collect();
+    values.sort_by(f64::total_cmp);
+    let middle = *values.get(values.len() / 2)?;
+    (middle > 0.5 * airspeed).then(|| {
+        format!("V is {middle} m/s where deviations from {airspeed} m/s are expected (--absolute)")
+    })
+}
+
+fn subtract(log: &mut Log, model: &Model, (state, input): ([f64; 4], [f64; 2])) {
+    let shown: Vec<f64> = log.outputs.iter().map(|&output| model.output(output, &state)).collect();
+    for sample in &mut log.samples {
+        sample.input = std::array::from_fn(|i| sample.input[i] - input[i]);
+        for (measured, steady) in sample.measured.iter_mut().zip(&shown) {
+            *measured = measured.map(|measured| measured - steady);
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! A setting is said once: the command line, the page and a live stream have the same ones, each does something or
+//! says why not, and what is set can be typed again and put into firmware.
+
+use std::ffi::OsString;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use clap::Arg;
+use host_sim::commands;
+use host_sim::system::{
+    Answer, AnySystem, Kind, Number, Opened, Setting, SettingValue, Settings, Source,
+};
+use host_sim::systems::ALL;
+
+/// Texts of the forms that settings have.
+const TEXTS: [&str; 6] = [
+    "anchors",
+    "-2,-2.5,-3,-3.5",
+    "0.01,0.02",
+    "0.01,0.02,0.3,0.04",
+    "0.5,0.5,4,5",
+    "3582104,532590,5232755",
+];
+
+/// The arguments of a subcommand, as a system's name completes it.
+fn arguments(words: &[&str]) -> Vec<Arg> {
+    let typed: Vec<_> = ["host-sim"].iter().chain(words).map(OsString::from).collect();
+    let mut command = commands::command(&typed);
+    for word in words.iter().filter(|word| !word.starts_with('-')) {
+        if let Some(found) = command.find_subcommand(word) {
+            command = found.clone();
+        }
+    }
+    command.get_arguments().cloned().collect()
+}
+
+/// A synthetic recording of a system.
+fn open(system: &dyn AnySystem, name: &str) -> Box<dyn Opened> {
+    let settings = Settings::new(system.settings());
+    system.open(Source::Synthetic(name.to_owned()), &settings).expect("it needs no file")
+}
+
+fn with(opened: &dyn Opened, given: &[(&'static str, SettingValue)]) -> Settings {
+    let mut settings = Settings::new(opened.settings());
+    settings.give(given.to_vec());
+    settings
+}
+
+/// Values that a setting does not have at first.
+fn others(setting: &Setting) -> Vec<SettingValue> {
+    let text = |text: &str| SettingValue::Text(text.to_owned());
+    match &setting.kind {
+        Kind::Switch { default } => vec![SettingValue::Switch(!default)],
+        Kind::Choice { of, default } => {
+            let names = of.iter().map(|named| named.name.as_str());
+            names.filter(|name| name != default).map(text).collect()
+        }
+        Kind::Set { of } => {
+            of.iter().map(|named| SettingValue::Set(vec![named.name.clone()])).collect()
+        }
+        Kind::Number(Number { min, max, step, logarithmic, initially, .. }) => {
+            let (up, down) = if *logarithmic {
+                ((initially * 4.0).min(*max), (initially / 4.0).max(*min))
+            } else {
+                let far = (8.0 * step).max((max - min) / 4.0 / step * step);
+                ((initially + far).min(*max), (initially - far).max(*min))
+            };
+            let whole = |value: f64| if *step >= 1.0 { value.round() } else { value };
+            let values = [whole(up), whole(down)].into_iter().filter(|value| value != initially);
+            values.map(SettingValue::Number).collect()
+        }
+        Kind::Text { .. } => {
+            let texts = TEXTS.iter().map(|known| text(known));
+            texts.filter(|value| setting.takes(value)).take(1).collect()
+        }
+    }
+}
+
+/// Everything that a person sees but the command and the firmware.
+fn seen(answer: &Answer) -> (Vec<(String, String)>, Vec<String>, String) {
+    (answer.facts.clone(), answer.warnings.clone(), format!("{:?}", answer.figures))
+}
+
+fn is_idle(answer: &Answer, name: &str) -> bool {
+    answer.disabled.iter().any(|(idle, reason)| *idle == name && !reason.is_empty())
+}
+
+/// Answers of a recording with each single choice or switch, the first with none.
+fn contexts(opened: &dyn Opened) -> Vec<Vec<(&'static str, SettingValue)>> {
+    let settings = opened.settings();
+    let choices = settings
+        .iter()
+        .filter(|setting| matches!(setting.kind, Kind::Choice { .. } | Kind::Switch { .. }));
+    let single = choices
+        .flat_map(|setting| others(setting).into_iter().map(|value| vec![(setting.name, value)]));
+    std::iter::once(Vec::new()).chain(single).collect()
+}
+
+#[test]
+fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
+    for system in ALL {
+        let replay = arguments(&["replay", system.name()]);
+        let live = arguments(&["live", "--system", system.name()]);
+        let find = |all: &[Arg], setting: &Setting| {
+            let option = setting.option();
+            let is = |arg: &&Arg| arg.get_long() == Some(option.as_str());
+            all.iter().find(is).cloned()
+        };
+        for setting in system.settings() {
+            let name = format!("{} --{}", system.name(), setting.name);
+            let on_line = find(&replay, &setting).unwrap_or_else(|| panic!("{name}: no command"));
+            let help = on_line.get_help().map(ToString::to_string).unwrap_or_default();
+            let control = setting.control();
+            let label = control["label"].as_str().unwrap_or_default();
+            assert!(help.contains(label) && !label.is_empty(), "{name}: {help:?}, {label:?}");
+            if let Kind::Choice { of, .. } | Kind::Set { of } = &setting.kind {
+                let names: Vec<_> = of.iter().map(|named| named.name.clone()).collect();
+                let options = control["options"].as_array().expect("options");
+                let shown: Vec<_> =
+                    options.iter().map(|it| it[0].as_str().unwrap().to_owned()).collect();
+                assert_eq!(names, shown, "{name}");
+                for value in &names {
+                    assert!(setting.read(value).is_ok(), "{name} {value}");
+                }
+            }
+            if let Kind::Number(number) = &setting.kind {
+                assert_eq!(control["unit"], number.unit, "{name}");
+                for bound in [number.min, number.max] {
+                    assert!(setting.takes(&SettingValue::Number(bound)), "{name} {bound}");
+                    assert!(setting.read(&bound.to_string()).is_ok(), "{name} {bound}");
+                }
+            }
+            match find(&live, &setting) {
+                Some(arg) if setting.in_live => {
+                    assert_eq!(arg.get_help(), on_line.get_help(), "{name}");
+                    assert_eq!(arg.get_value_names(), on_line.get_value_names(), "{name}");
+                }
+                None if !setting.in_live || system.panels().is_empty() => {}
+                // `live` itself has an option of that name.
+                Some(arg) => assert_ne!(arg.get_help(), on_line.get_help(), "{name}"),
+                None => panic!("{name}: missing in live"),
+            }
+        }
+    }
+}
+
+#[test]
+fn every_setting_changes_the_page_or_says_why_not() {
+    for system in ALL {
+        let mut waiting: Vec<_> = system.settings().iter().map(|setting| setting.name).collect();
+        for (recording, _) in system.synthetic() {
+            let opened = open(system, recording);
+            for context in contexts(&*opened) {
+                let Ok(before) = opened.answer(&with(&*opened, &context)) else { continue };
+                for setting in opened.settings() {
+                    let unfound = waiting.contains(&setting.name);
+                    if !unfound || context.iter().any(|(name, _)| *name == setting.name) {
+                        continue;
+                    }
+                    if is_idle(&before, setting.name) {
+                        continue;
+                    }
+                    let changes = |value: SettingValue| {
+                        let given = [&context[..], &[(setting.name, value)]].concat();
+                        let after = opened.answer(&with(&*opened, &given));
+                        after.is_ok_and(|after| seen(&after) != seen(&before))
+                    };
+                    let changed = others(&setting).into_iter().any(changes);
+                    assert!(
+                        changed,
+                        "{} {recording} {context:?}: {} changes nothing and does not say so",
+                        system.name(),
+                        setting.name
+                    );
+                    waiting.retain(|name| *name != setting.name);
+                }
+                if waiting.is_empty() {
+                    break;
+                }
+            }
+        }
+        // What is for files alone says so at every synthetic recording.
+        for name in waiting {
+            for (recording, _) in system.synthetic() {
+                let opened = open(system, recording);
+                let answer = opened.answer(&with(&*opened, &[])).expect("an answer");
+                let is_there = opened.settings().iter().any(|setting| setting.name == name);
+                let says = !is_there || is_idle(&answer, name);
+                assert!(says, "{} {recording}: {name} was never tried", system.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_command_gives_the_same_result_again() {
+    for system in ALL {
+        for (recording, _) in system.synthetic() {
+            let opened = open(system, recording);
+            for setting in std::iter::once(None).chain(opened.settings().into_iter().map(Some)) {
+                let given =
+                    setting.and_then(|setting| Some((setting.name, others(&setting).pop()?)));
+                let settings = with(&*opened, &given.clone().into_iter().collect::<Vec<_>>());
+                let Ok(answer) = opened.answer(&settings) else { continue };
+                if given.as_ref().is_some_and(|(name, _)| is_idle(&answer, name)) {
+                    continue;
+                }
+                let words = words(&answer.command);
+                let typed: Vec<OsString> = words.iter().map(OsString::from).collect();
+                let matches = commands::command(&typed)
+                    .try_get_matches_from(&words)
+                    .unwrap_or_else(|error| panic!("{}: {error}", answer.command));
+                let account = commands::replayed(&matches)
+                    .unwrap_or_else(|error| panic!("{}: {error}", answer.command));
+                let shown = &answer.facts[..account.facts.len().min(answer.facts.len())];
+                assert_eq!(account.facts, shown, "{}", answer.command);
+            }
+        }
+    }
+}
+
+/// A command as a shell takes it apart.
+fn words(command: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut quoted = false;
+    for letter in command.chars() {
+        match letter {
+            '\'' => quoted = !quoted,
+            ' ' if !quoted => words.push(String::new()),
+            letter => words.last_mut().expect("there is one").push(letter),
+        }
+    }
+    words
+}
+
+#[test]
+fn the_firmware_literal_compiles() {
+    let mut source = "#![allow(unused)]\n".to_owned();
+    let mut count = 0;
+    for system in ALL {
+        for (recording, _) in system.synthetic() {
+            let opened = open(system, recording);
+            let each = opened.settings().into_iter().flat_map(|setting| {
+                others(&setting).into_iter().map(move |value| vec![(setting.name, value)])
+            });
+            let mut literals: Vec<_> = std::iter::once(Vec::new())
+                .chain(each)
+                .filter_map(|given| Some(opened.answer(&with(&*opened, &given)).ok()?.firmware))
+                .collect();
+            literals.sort();
+            literals.dedup();
+            for literal in literals {
+                writeln!(source, "fn literal_{count}() {{\n{literal}\n}}").expect("a string");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 2 * ALL.len(), "{count} literals");
+    check(&source);
+}
+
+/// Builds a crate of that source, with every crate of this workspace to depend on.
+fn check(source: &str) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the root");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware-literals");
+    fs::create_dir_all(folder.join("src")).expect("a folder");
+    let mut manifest = "[package]\nname = \"firmware-literals\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
+                        nalgebra = { version = \"*\", default-features = false }\n"
+        .to_owned();
+    for entry in fs::read_dir(root.join("crates")).expect("crates") {
+        let path = entry.expect("an entry").path();
+        let name =
+            path.file_name().and_then(|name| name.to_str()).expect("a plain name").to_owned();
+        if fs::read_to_string(path.join("src/lib.rs")).is_ok_and(|text| text.contains("#![no_std]"))
+        {
+            writeln!(manifest, "kestirim-{name} = {{ path = {path:?} }}").expect("a string");
+        }
+    }
+    fs::write(folder.join("Cargo.toml"), manifest).expect("a manifest");
+    fs::write(folder.join("src/lib.rs"), source).expect("a source");
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))
+        .expect("the versions of this workspace");
+    let output = Command::new(env!("CARGO"))
+        .args(["check", "--quiet", "--offline"])
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
