@@ -11,8 +11,8 @@ pub struct AdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     /// The mean after the last prediction, from which eq. 19 measures Δx.
     predicted: Gaussian<T, N>,
     process_noise: ProcessNoise<T, N>,
-    measurement_noise: [MeasurementNoise<T>; M],
-    measurement_learning: [Learning<T>; M],
+    /// The noise of each measurement, beside how it is learnt: both are looked up at once.
+    measurements: [(MeasurementNoise<T>, Learning<T>); M],
 }
 
 impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
@@ -24,17 +24,11 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         variances: [T; M],
         measurement_learning: [Learning<T>; M],
     ) -> Self {
-        let mut measurement_noise = variances.map(MeasurementNoise::new);
-        for (noise, learning) in measurement_noise.iter_mut().zip(&measurement_learning) {
-            *noise = MeasurementNoise::new(learning.limited(noise.variance()));
-        }
-        Self {
-            estimate,
-            predicted: estimate,
-            process_noise,
-            measurement_noise,
-            measurement_learning,
-        }
+        let measurements = core::array::from_fn(|index| {
+            let learning = measurement_learning[index];
+            (MeasurementNoise::new(learning.limited(variances[index])), learning)
+        });
+        Self { estimate, predicted: estimate, process_noise, measurements }
     }
 
     /// The estimate.
@@ -51,8 +45,8 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
 
     /// The noise of each measurement as learnt so far.
     #[inline]
-    pub fn measurement_noise(&self) -> &[MeasurementNoise<T>; M] {
-        &self.measurement_noise
+    pub fn measurement_noise(&self) -> [MeasurementNoise<T>; M] {
+        self.measurements.map(|(noise, _)| noise)
     }
 
     /// Begins an epoch: adapts Q to what the last one changed, then moves on by `process`, which
@@ -81,8 +75,8 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         row: &SparseRow<T, K>,
         innovation: T,
     ) -> Result<Innovation<T>, Error> {
-        let noise = self.measurement_noise.get_mut(index).ok_or(Error::NoSuchMeasurement)?;
-        let learning = self.measurement_learning.get(index).ok_or(Error::NoSuchMeasurement)?;
+        let measurement = self.measurements.get_mut(index);
+        let (noise, learning) = measurement.ok_or(Error::NoSuchMeasurement)?;
         let weighed = self.estimate.weigh(row, innovation, noise.variance())?;
         let report = self.estimate.correct(&weighed)?;
         noise.learn(learning, &weighed);
@@ -101,7 +95,7 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         row: &SparseRow<T, K>,
         innovation: T,
     ) -> Result<Innovation<T>, Error> {
-        let noise = self.measurement_noise.get(index).ok_or(Error::NoSuchMeasurement)?;
+        let (noise, _) = self.measurements.get(index).ok_or(Error::NoSuchMeasurement)?;
         Ok(self.estimate.update(row, innovation, noise.variance())?)
     }
 }

@@ -21,8 +21,9 @@ pub trait Resample {
 #[derive(Debug)]
 pub struct IntegerWeights<'a> {
     weights: &'a mut [u32],
-    total: u64,
     draws: u32,
+    /// Before a law is chosen: once for all of them.
+    shares: Shares,
 }
 
 impl<'a> IntegerWeights<'a> {
@@ -40,13 +41,13 @@ impl<'a> IntegerWeights<'a> {
         if draws > 1 << 20 || total.leading_zeros() + draws.leading_zeros() < 33 {
             return Err(Error::TooMany);
         }
-        Ok(Self { weights, total, draws })
+        Ok(Self { weights, draws, shares: Shares::new(total, draws) })
     }
 
     /// The weights themselves, their sum, and the number of draws.
     #[inline(always)]
     pub fn into_parts(self) -> (&'a mut [u32], u64, u32) {
-        (self.weights, self.total, self.draws)
+        (self.weights, self.shares.total, self.draws)
     }
 }
 
@@ -109,12 +110,11 @@ impl Resample for Multinomial {
 impl Resample for Residual {
     #[inline(always)]
     fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
-        let (weights, total, draws) = weights.into_parts();
-        let shares = Shares::new(total, draws);
+        let IntegerWeights { weights, draws, shares } = weights;
         let whole: u64 = weights.iter().map(|&weight| shares.of(weight.into()).0).sum();
         let rest = draws.saturating_sub(whole as u32);
         // What is left over sums up to just so many shares.
-        let mass = u64::from(rest) * total;
+        let mass = u64::from(rest) * shares.total;
         independently(weights, rest, mass, |weight| shares.of(weight.into()), rng);
     }
 }
@@ -122,11 +122,11 @@ impl Resample for Residual {
 impl Resample for Stratified {
     #[inline(always)]
     fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
-        let (weights, total, draws) = weights.into_parts();
+        let IntegerWeights { weights, shares, .. } = weights;
         let (mut last, mut offset) = (u64::MAX, 0);
-        one_in_each(weights, &Shares::new(total, draws), |stratum| {
+        one_in_each(weights, &shares, |stratum| {
             // Drawn anyway: a branch would be guessed wrongly every other time.
-            let fresh = scaled(total, rng.next_u32());
+            let fresh = scaled(shares.total, rng.next_u32());
             offset = if stratum == last { offset } else { fresh };
             last = stratum;
             offset
@@ -137,9 +137,9 @@ impl Resample for Stratified {
 impl Resample for Systematic {
     #[inline(always)]
     fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R) {
-        let (weights, total, draws) = weights.into_parts();
-        let offset = scaled(total, rng.next_u32());
-        one_in_each(weights, &Shares::new(total, draws), |_| offset);
+        let IntegerWeights { weights, shares, .. } = weights;
+        let offset = scaled(shares.total, rng.next_u32());
+        one_in_each(weights, &shares, |_| offset);
     }
 }
 
@@ -207,6 +207,7 @@ fn scaled(value: u64, fraction: u32) -> u64 {
 }
 
 /// Division of cumulated weights by one share, total/draws: a multiplication, since the divisor stays.
+#[derive(Debug)]
 struct Shares {
     total: u64,
     draws: u64,

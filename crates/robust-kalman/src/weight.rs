@@ -176,8 +176,11 @@ impl<T: Scalar> WeightFunction<T> for Weight<T> {
     fn factor(&self, statistic: T, thresholds: (T, T)) -> T {
         match self {
             Self::Huber(huber) => huber.factor(statistic, thresholds),
-            Self::Igg3(igg3) => igg3.factor(statistic, thresholds),
-            Self::TTest(test) => test.factor(statistic, thresholds),
+            // As both do themselves; in one arm, the code is there once.
+            Self::Igg3(Igg3 { descent, .. }) | Self::TTest(TTest { descent, .. }) => {
+                let (inner, outer) = thresholds;
+                descent.factor(statistic, inner, outer)
+            }
         }
     }
 
