@@ -1,10 +1,10 @@
 //! The flights of `host-sim run uav` beside those of `../shared/data/uav/cases.json`.
 
 use host_sim::random::stream;
-use host_sim::systems::uav::track::design::{Kind, MIDDLE};
-use host_sim::systems::uav::simulate::plant::Plant;
 use host_sim::systems::uav::paper::responses::responses;
+use host_sim::systems::uav::simulate::plant::Plant;
 use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START, fly};
+use host_sim::systems::uav::track::design::{Kind, MIDDLE};
 use kestirim_observer_design::riccati;
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_longitudinal::{airspeed_and_pitch, full_state, rate_airspeed_and_pitch};
