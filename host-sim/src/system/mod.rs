@@ -378,9 +378,9 @@ impl Idle {
 
 /// Refuses the first given setting that belongs to something else.
 fn refuse(settings: &Settings, idle: impl Fn(&str) -> Option<Idle>) -> Result<(), Error> {
-    for name in settings.given() {
-        if let Some(Idle::Foreign(reason)) = idle(name) {
-            return Err(Error::Usage(format!("--{name} {reason}")));
+    for setting in settings.table().iter().filter(|setting| settings.is_given(setting.name)) {
+        if let Some(Idle::Foreign(reason)) = idle(setting.name) {
+            return Err(Error::Usage(format!("--{} {reason}", setting.option())));
         }
     }
     Ok(())

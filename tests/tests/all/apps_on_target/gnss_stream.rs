@@ -32,7 +32,7 @@ const PIECE: usize = 200;
 pub(crate) struct Observed {
     /// Of the week, by the receiver's clock.
     second: f64,
-    pub(crate) sightings: Vec<SatelliteObservation<'static>>,
+    pub(crate) observations: Vec<SatelliteObservation<'static>>,
 }
 
 impl Observed {
@@ -47,12 +47,12 @@ pub(crate) fn observe() -> Vec<Observed> {
     let epoch = |(index, epoch): (usize, kestirim_tests::ppp::Epoch)| {
         let ahead = (CLOCK[0] + CLOCK[1] * index as f64) / SPEED_OF_LIGHT;
         let second = WEEK.2 + INTERVAL * index as f64 + ahead;
-        let mut sightings = epoch.sightings.to_vec();
-        for sighting in sightings.iter_mut().filter(|sighting| sighting.satellite == SLIPPED) {
+        let mut observations = epoch.observations.to_vec();
+        for sighting in observations.iter_mut().filter(|sighting| sighting.satellite == SLIPPED) {
             sighting.lock_lost = index == SLIP;
             sighting.phase[1] += if index < SLIP { 0.0 } else { CYCLES };
         }
-        Observed { second, sightings }
+        Observed { second, observations }
     };
     Epochs::at(station()).enumerate().map(epoch).collect()
 }
@@ -77,8 +77,8 @@ fn message(epoch: &Observed) -> Vec<u8> {
         measurement([0, ONE_CARRIER, 0], 23e6, 121e6, 64_500),
     ];
     let unknown =
-        SatelliteObservation { satellite: UNKNOWN, lock_lost: false, ..epoch.sightings[0] };
-    for sighting in epoch.sightings.iter().chain([&unknown]) {
+        SatelliteObservation { satellite: UNKNOWN, lock_lost: false, ..epoch.observations[0] };
+    for sighting in epoch.observations.iter().chain([&unknown]) {
         let lock = if sighting.lock_lost { 5_000 } else { 64_500 };
         for (carrier, (signal, lock)) in [(0, 64_500), (3, lock)].into_iter().enumerate() {
             let (code, phase) = (sighting.code[carrier], sighting.phase[carrier]);
