@@ -76,7 +76,9 @@ impl Station {
             ("antex", &[self.antennas]),
             ("blq", self.ocean_loading.as_slice()),
         ] {
-            names.iter().for_each(|name| files.add(field, folder.join(name)));
+            for name in names {
+                files.add(field, folder.join(name));
+            }
         }
         Recording::read(&files).expect("files that can be read")
     }

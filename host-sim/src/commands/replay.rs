@@ -83,9 +83,6 @@ pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Ac
         Some(_) if files.paths().next().is_some() => {
             return Err(Error::Usage("--synthetic needs no file".to_owned()));
         }
-        Some(_) if files.paths().next().is_some() => {
-            return Err(Error::Usage("--synthetic needs no files".to_owned()));
-        }
         Some(name) => Source::Synthetic(name.clone()),
         None => Source::Files(files),
     };

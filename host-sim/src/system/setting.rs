@@ -336,7 +336,7 @@ impl Setting {
     pub fn default(&self) -> Option<Value> {
         match &self.kind {
             Kind::Number(number) => number.default.map(Value::Number),
-            Kind::Choice { default, .. } => Some(Value::Text((*default).to_owned())),
+            Kind::Choice { default, .. } => Some(Value::Text(default.clone())),
             Kind::Set { .. } => Some(Value::Set(Vec::new())),
             Kind::Switch { default } => Some(Value::Switch(*default)),
             Kind::Text { .. } => None,

@@ -139,7 +139,9 @@ fn a_replay_of_a_synthetic_user_is_of_the_step_that_is_shown() {
     let opened = open("staying");
     let replay = |given: &[(&str, &str)]| {
         let mut settings = Settings::new(settings::table(None));
-        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        for (name, text) in given {
+            settings.set(name, text).unwrap();
+        }
         opened.replay(&settings, &Wanted::default())
     };
     let (all, third) = (replay(&[]).unwrap().report, replay(&[("step", "3")]).unwrap().report);
@@ -191,7 +193,9 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
 fn settings_are_refused_only_where_no_recording_has_them() {
     let refused = |given: &[(&str, &str)]| {
         let mut settings = Settings::new(settings::table(None));
-        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        for (name, text) in given {
+            settings.set(name, text).unwrap();
+        }
         Drone.refuse_idle(&settings).is_err()
     };
     assert!(!refused(&[("environment", "open"), ("height", "300"), ("noise", "1")]));
@@ -223,7 +227,9 @@ fn firmware_says_which_filter_and_what_differs() {
         (None, &[], "BeaconSearch::<f32, 101, 8>"),
     ] {
         let mut settings = Settings::new(settings::table(recording));
-        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        for (name, text) in given {
+            settings.set(name, text).unwrap();
+        }
         let firmware = settings::firmware(recording, &settings);
         println!("{{\n{firmware}\n}}");
         assert!(firmware.contains(expected), "{firmware}");

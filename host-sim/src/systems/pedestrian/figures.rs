@@ -20,6 +20,9 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Of the axes, wherever a colour means nothing else.
 const COLOURS: [Colour; 3] = [Colour::Other(0), Colour::Other(1), Colour::Other(2)];
 
+/// What makes a trace.
+type Tracker = fn(&[Sample], &Options) -> Result<Trace, RunError>;
+
 /// The page's figures, and facts of what they compare with: the published method, and no updates at all.
 pub(super) fn draw(
     recording: &Recording,
@@ -29,7 +32,6 @@ pub(super) fn draw(
 ) -> Result<(), Error> {
     let published = options.published_beside();
     let samples = &recording.log.samples;
-    type Tracker = fn(&[Sample], &Options) -> Result<Trace, RunError>;
     let traced = |tracker: Tracker, options: &Options| {
         tracker(samples, options).map_err(|error| refused(recording, &error))
     };

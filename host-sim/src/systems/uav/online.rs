@@ -140,14 +140,14 @@ struct Observer<T: Scalar, const P: usize> {
     plan: Flying,
     c: SMatrix<f64, P, 4>,
     usual: f64,
-    observer: Option<Box<FlightObserver<T, P, KEPT>>>,
+    running: Option<Box<FlightObserver<T, P, KEPT>>>,
     before: Option<uav::Sample<P>>,
 }
 
 impl<T: Scalar, const P: usize> Observer<T, P> {
     fn new(plan: &Flying) -> Self {
         let c = rows(&plan.model, &plan.outputs);
-        Self { plan: plan.clone(), c, usual: 0.0, observer: None, before: None }
+        Self { plan: plan.clone(), c, usual: 0.0, running: None, before: None }
     }
 
     /// One for the usual interval, that begins at the sample before.
@@ -164,18 +164,18 @@ impl<T: Scalar, const P: usize> Observer<T, P> {
 
 impl<T: Scalar, const P: usize> Estimator for Observer<T, P> {
     fn set_usual(&mut self, usual: f64) {
-        (self.usual, self.observer) = (usual, None);
+        (self.usual, self.running) = (usual, None);
     }
 
     fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
         let sample = sized(sample);
         if self.before.is_some() {
-            let mut observer = match self.observer.take() {
+            let mut observer = match self.running.take() {
                 Some(observer) => observer,
                 None => self.begin()?,
             };
             let taken = observer.take(&sample);
-            self.observer = Some(observer);
+            self.running = Some(observer);
             taken?;
         }
         self.before = Some(sample);
@@ -183,7 +183,7 @@ impl<T: Scalar, const P: usize> Estimator for Observer<T, P> {
     }
 
     fn estimate(&self) -> SVector<f64, 4> {
-        self.observer.as_ref().map_or_else(SVector::zeros, |observer| observer.estimate())
+        self.running.as_ref().map_or_else(SVector::zeros, |observer| observer.estimate())
     }
 }
 

@@ -15,7 +15,7 @@ use crate::system::Files;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recording {
     /// From files.
-    Logged(Logged),
+    Logged(Box<Logged>),
     /// Simulated as the settings say, with these inputs.
     Synthetic(Inputs),
 }
@@ -47,7 +47,7 @@ impl Recording {
         );
         let log = log::read(&path, &names)?;
         let truth = files.one("truth").map(log::read_truth).transpose()?;
-        Ok(Self::Logged(Logged { path, model, log, truth }))
+        Ok(Self::Logged(Box::new(Logged { path, model, log, truth })))
     }
 
     /// A synthetic flight by name.

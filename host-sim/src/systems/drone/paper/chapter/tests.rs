@@ -7,7 +7,9 @@ use crate::systems::drone::settings::cell;
 
 fn run(given: &[(&str, &str)]) -> Chapter {
     let mut cell = Settings::new(cell::table());
-    given.iter().for_each(|(name, text)| cell.set(name, text).unwrap());
+    for (name, text) in given {
+        cell.set(name, text).unwrap();
+    }
     let options = RunOptions { trials: Some(2), ..RunOptions::default() };
     chapter(&experiment::run(&options, &cell).unwrap()).unwrap()
 }
