@@ -275,7 +275,8 @@ fn check(source: &str) {
             path.file_name().and_then(|name| name.to_str()).expect("a plain name").to_owned();
         if fs::read_to_string(path.join("src/lib.rs")).is_ok_and(|text| text.contains("#![no_std]"))
         {
-            writeln!(manifest, "kestirim-{name} = {{ path = {path:?} }}").expect("a string");
+            writeln!(manifest, "kestirim-{name} = {{ path = \"{}\" }}", path.display())
+                .expect("a string");
         }
     }
     fs::write(folder.join("Cargo.toml"), manifest).expect("a manifest");

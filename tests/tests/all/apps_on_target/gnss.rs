@@ -42,8 +42,8 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 products.observation(epoch.time(), &observed).expect("there are products");
             SatelliteObservation { antenna: site::satellite_antenna(), ..sighting }
         };
-        let sightings: Vec<_> = epoch.sightings.iter().map(sighting).collect();
-        Ok(filter.process(epoch.time(), &site::receiver(), &sightings)?)
+        let observations: Vec<_> = epoch.observations.iter().map(sighting).collect();
+        Ok(filter.process(epoch.time(), &site::receiver(), &observations)?)
     };
     epochs.iter().map(solve).collect()
 }
