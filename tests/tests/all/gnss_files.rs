@@ -83,9 +83,9 @@ fn clocks_are_read_whole() {
 #[test]
 fn antennas_and_ocean_loading_are_found() {
     let Some(folder) = folder_of("gnss") else { return };
-    let station = Observations::read(&folder.join("igs2008148/tlse_gps.rnx.gz"));
+    let station = Observations::read(folder.join("igs2008148/tlse_gps.rnx.gz"));
     let station = station.expect("a recording can be read");
-    let antennas = Antennas::read(&folder.join("igs2008148/igs05_trim.atx.gz"), &station.antenna);
+    let antennas = Antennas::read(folder.join("igs2008148/igs05_trim.atx.gz"), &station.antenna);
     let antennas = antennas.expect("a recording can be read");
     assert_eq!(antennas.warnings, []);
     let [Some(l1), Some(l2)] = &antennas.receiver.as_ref().expect("its antenna").frequencies else {
@@ -99,7 +99,7 @@ fn antennas_and_ocean_loading_are_found() {
     }
     let place = station.approximate_position;
     let loading =
-        StationLoading::read(&folder.join("igs2008148/subset.blq"), &station.marker, place);
+        StationLoading::read(folder.join("igs2008148/subset.blq"), &station.marker, place);
     let loading = loading.expect("a recording can be read");
     assert_eq!(loading.warnings, []);
     assert_eq!(loading.loading.map(|loading| loading.amplitude[0][0]), Some(0.011_48));
