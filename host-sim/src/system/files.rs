@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
+use super::setting::Setting;
 use super::settings::Settings;
 use crate::Error;
 use crate::text::printable_path;
@@ -54,7 +55,7 @@ impl FileField {
     }
 
     /// The option of the command line.
-    pub fn argument(&self, settings: &[super::Setting]) -> Arg {
+    pub fn argument(&self, settings: &[Setting]) -> Arg {
         let arg = Arg::new(self.name).long(self.name).help(self.help);
         let alternative = settings.iter().find(|setting| setting.name == self.name);
         let arg = match alternative {

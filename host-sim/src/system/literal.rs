@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::ScalarKind;
+use super::run::ScalarKind;
 
 /// A literal of a crate's `Config`, with what differs from where it begins.
 #[derive(Debug, Clone)]

@@ -3,7 +3,12 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{Account, Answer, Detail, Idle, Setting, Settings, Source, System, Table, refuse};
+use super::account::{Account, Answer, Table};
+use super::face::{Detail, System};
+use super::files::Source;
+use super::idle::{Idle, refuse};
+use super::setting::Setting;
+use super::settings::Settings;
 use crate::{Error, mcap, output, text};
 
 /// What a replay is to write.

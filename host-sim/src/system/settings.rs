@@ -6,7 +6,8 @@ use std::sync::Arc;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, ValueEnum};
 
-use super::setting::{Given, Kind, Setting, Value};
+use super::kind::{Kind, Value};
+use super::setting::{Given, Setting};
 use crate::Error;
 
 /// The table of settings of a system, and what of it was given.

@@ -1,0 +1,159 @@
+//! A system of which the commands know no more than its face.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::face::{Calibration, OutputField, System};
+use super::files::{FileField, Files, Source};
+use super::idle::refuse;
+use super::online::{Panel, Plan};
+use super::opened::{self, Opened};
+use super::run::RunOptions;
+use super::setting::Setting;
+use super::settings::Settings;
+use crate::Error;
+use crate::report::Chapter;
+
+/// What came of an experiment.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    /// What `--json` prints.
+    pub report: Value,
+    /// What the terminal shows.
+    pub text: String,
+    /// The part of the report, if it was asked for.
+    pub chapter: Option<Chapter>,
+}
+
+/// A [`System`] of which the commands know no more than its face.
+pub trait AnySystem: Sync {
+    /// [`System::NAME`].
+    fn name(&self) -> &'static str;
+    /// [`System::TITLE`].
+    fn title(&self) -> &'static str;
+    /// [`System::PAPER`].
+    fn paper(&self) -> &'static str;
+    /// [`System::FILES`].
+    fn files(&self) -> &'static [FileField];
+    /// [`System::SYNTHETIC`].
+    fn synthetic(&self) -> &'static [(&'static str, &'static str)];
+    /// [`System::OUTPUTS`].
+    fn outputs(&self) -> &'static [OutputField];
+    /// [`System::PANELS`].
+    fn panels(&self) -> &'static [Panel];
+    /// [`System::settings`] of any recording.
+    fn settings(&self) -> Vec<Setting>;
+    /// [`System::cell`].
+    fn cell(&self) -> Vec<Setting>;
+    /// [`System::calibration`].
+    fn calibration(&self) -> Option<Box<dyn Calibration>>;
+
+    /// Reads a recording, or makes a synthetic one.
+    ///
+    /// # Errors
+    /// As [`System::read`] and [`System::synthetic`].
+    fn open(&self, source: Source, settings: &Settings) -> Result<Box<dyn Opened>, Error>;
+
+    /// Refuses settings that would change nothing.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the reason.
+    fn refuse_idle(&self, settings: &Settings) -> Result<(), Error>;
+
+    /// [`System::experiment`], and the chapter if it is asked for.
+    ///
+    /// # Errors
+    /// As there.
+    fn experiment(
+        &self,
+        run: &RunOptions,
+        cell: &Settings,
+        with_chapter: bool,
+    ) -> Result<Experiment, Error>;
+
+    /// [`System::online`].
+    ///
+    /// # Errors
+    /// As there.
+    fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error>;
+
+    /// [`System::firmware`] of any recording.
+    fn firmware(&self, settings: &Settings) -> String;
+}
+
+impl<S: System> AnySystem for S {
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn title(&self) -> &'static str {
+        S::TITLE
+    }
+
+    fn paper(&self) -> &'static str {
+        S::PAPER
+    }
+
+    fn files(&self) -> &'static [FileField] {
+        S::FILES
+    }
+
+    fn synthetic(&self) -> &'static [(&'static str, &'static str)] {
+        S::SYNTHETIC
+    }
+
+    fn outputs(&self) -> &'static [OutputField] {
+        S::OUTPUTS
+    }
+
+    fn panels(&self) -> &'static [Panel] {
+        S::PANELS
+    }
+
+    fn settings(&self) -> Vec<Setting> {
+        S::settings(None)
+    }
+
+    fn cell(&self) -> Vec<Setting> {
+        S::cell()
+    }
+
+    fn calibration(&self) -> Option<Box<dyn Calibration>> {
+        S::calibration()
+    }
+
+    fn open(&self, source: Source, settings: &Settings) -> Result<Box<dyn Opened>, Error> {
+        let recording = match &source {
+            Source::Files(files) => S::read(files, settings)?,
+            Source::Synthetic(name) => S::synthetic(name)?,
+        };
+        Ok(opened::open::<S>(recording, source))
+    }
+
+    fn refuse_idle(&self, settings: &Settings) -> Result<(), Error> {
+        refuse(settings, |name| S::idle(None, settings, name))
+    }
+
+    fn experiment(
+        &self,
+        run: &RunOptions,
+        cell: &Settings,
+        with_chapter: bool,
+    ) -> Result<Experiment, Error> {
+        refuse(cell, |name| S::cell_idle(cell, name))?;
+        let experiment = S::experiment(run, cell)?;
+        let report =
+            serde_json::to_value(&experiment).map_err(|error| Error::Stdout(error.into()))?;
+        let chapter = with_chapter.then(|| S::chapter(&experiment)).transpose()?;
+        Ok(Experiment { report, text: experiment.to_string(), chapter })
+    }
+
+    fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        S::online(settings, files)
+    }
+
+    fn firmware(&self, settings: &Settings) -> String {
+        S::firmware(None, settings)
+    }
+}
