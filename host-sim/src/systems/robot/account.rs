@@ -47,7 +47,7 @@ pub(super) fn account(
         rejected: traces.iter().map(Trace::rejected).sum(),
         lost_s: traces.iter().map(Trace::lost_s).sum(),
         warnings: warnings(recording, settings, traces, points.as_deref()),
-        accuracy: recording.accuracy(traces),
+        accuracy: Accuracy::of_recording(recording, traces),
         points,
     };
     let mut account = Account::new(&report, report.warnings.clone())?;

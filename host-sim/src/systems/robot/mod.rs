@@ -110,7 +110,7 @@ impl System for Robot {
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Vec<Trace>, Error> {
-        track::track(recording, &recording.setup(settings), follow::build)
+        track::track(recording, &Setup::of_recording(recording, settings), follow::build)
     }
 
     fn account(
@@ -127,7 +127,7 @@ impl System for Robot {
         traces: &Vec<Trace>,
         answer: &mut Answer,
     ) -> Result<(), Error> {
-        figures::draw(recording, &recording.setup(settings), traces, answer)
+        figures::draw(recording, &Setup::of_recording(recording, settings), traces, answer)
     }
 
     fn table(_: &str, recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Table {
@@ -141,7 +141,7 @@ impl System for Robot {
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
         let office = || Setup::of(settings, &office_anchors(), None);
         recording
-            .map_or_else(office, |recording| recording.setup(settings))
+            .map_or_else(office, |recording| Setup::of_recording(recording, settings))
             .firmware(recording.is_some())
     }
 

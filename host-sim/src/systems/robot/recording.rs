@@ -13,13 +13,10 @@ use self::anchors::Anchors;
 use self::event::{Event, Sensors};
 use self::points::Course;
 use self::ranges::RangeLog;
-use super::account::accuracy::Accuracy;
-use super::settings::Setup;
 use super::simulate::scenario::{self, EPOCH_US, EPOCHS, Office, office_anchors};
-use super::track::Trace;
 use crate::Error;
 use crate::random::stream;
-use crate::system::{Files, Settings};
+use crate::system::Files;
 
 /// What was recorded.
 #[derive(Debug, Clone, Default)]
@@ -217,24 +214,6 @@ impl Recording {
     /// Whether the tag was put down at points.
     pub fn is_static(&self) -> bool {
         !matches!(self.parts.as_slice(), [part] if part.name.is_empty())
-    }
-
-    /// How it is tracked.
-    pub(super) fn setup(&self, settings: &Settings) -> Setup {
-        Setup::of(settings, &self.anchors, self.biases.as_deref())
-    }
-
-    /// How far what came out is from the truth: at every epoch of a moving tag, at the last of each point.
-    pub fn accuracy(&self, traces: &[Trace]) -> Option<Accuracy> {
-        let mut pairs = Vec::new();
-        for (part, trace) in self.parts.iter().zip(traces) {
-            match &part.truth {
-                Some(Truth::Course(course)) => return Accuracy::of_track(&trace.epochs, course),
-                Some(Truth::Point(point)) => pairs.push((trace.last(), *point)),
-                None => {}
-            }
-        }
-        Accuracy::of(&pairs)
     }
 
     fn warn_of_unlisted(&mut self, unlisted: usize) {

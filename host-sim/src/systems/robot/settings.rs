@@ -214,6 +214,11 @@ impl Setup {
         Self { scalar, ..Self::new(&ANCHORS, 0.0) }
     }
 
+    /// As set, for what was recorded.
+    pub(super) fn of_recording(recording: &Recording, settings: &Settings) -> Self {
+        Self::of(settings, &recording.anchors, recording.biases.as_deref())
+    }
+
     /// As set, for anchors and what they measure too long by (m), if that is known.
     pub fn of(settings: &Settings, anchors: &Anchors, biases: Option<&[f64]>) -> Self {
         let room = settings.text("room").and_then(|text| match text.as_str() {

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::metrics::{distance, mean, median, percentile, rms};
 use crate::systems::robot::recording::points::Course;
-use crate::systems::robot::track::Epoch;
+use crate::systems::robot::recording::{Recording, Truth};
+use crate::systems::robot::track::{Epoch, Trace};
 
 /// Horizontal errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -26,6 +27,20 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
+    /// How far what came out is from the truth: at every epoch of a moving tag, at the last of each point; none if
+    /// nobody knows it.
+    pub fn of_recording(recording: &Recording, traces: &[Trace]) -> Option<Self> {
+        let mut pairs = Vec::new();
+        for (part, trace) in recording.parts.iter().zip(traces) {
+            match &part.truth {
+                Some(Truth::Course(course)) => return Self::of_track(&trace.epochs, course),
+                Some(Truth::Point(point)) => pairs.push((trace.last(), *point)),
+                None => {}
+            }
+        }
+        Self::of(&pairs)
+    }
+
     /// Compares pairs of positions, ours and true; none if there is nothing to compare.
     pub fn of(pairs: &[(Option<[f64; 3]>, [f64; 2])]) -> Option<Self> {
         let found = pairs.iter().filter_map(|(ours, truth)| Some((ours.as_ref()?, truth)));

@@ -2,6 +2,7 @@
 
 use super::day::Day;
 use crate::report::Comparison;
+use crate::systems::robot::account::accuracy::Accuracy;
 use crate::systems::robot::paper::experiment::{Report, Row};
 use crate::systems::robot::paper::published::PositionErrors;
 use crate::systems::robot::track::Trace;
@@ -92,7 +93,7 @@ pub(super) fn line(report: &Report) -> Comparison {
 /// The round among people.
 pub(super) fn round(day: &Day) -> Comparison {
     let rmse = |traces: &[Trace]| {
-        let accuracy = day.recording.accuracy(traces);
+        let accuracy = Accuracy::of_recording(&day.recording, traces);
         accuracy.map_or_else(String::new, |accuracy| format!("{:.1} cm", 100.0 * accuracy.rmse_m))
     };
     let [ekf, aekf] = &day.honest;
