@@ -1,8 +1,10 @@
 use crate::carried::Carried;
 use crate::dense::less_identity;
 use crate::full_order::{FullOrder, FullOrderGains};
+use crate::increment::Increment;
 use crate::increment::IntegerIncrement;
 use crate::integers::{and_magnitudes, exponents, larger};
+use crate::rows::Rows;
 use crate::{Error, Plant};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -62,7 +64,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
     #[inline]
     pub fn new(gains: &CurrentGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
-        Ok(Self { core: FullOrder::new(&gains.core, start)? })
+        Ok(Self {
+            core: FullOrder {
+                estimate: Carried::new(start)?,
+                step: Increment::new(&gains.core.step)?,
+                unseen: Rows::new(&gains.core.unseen)?,
+            },
+        })
     }
 
     /// Starts again at this state.

@@ -11,8 +11,8 @@ use nalgebra::SVector;
 /// The coefficients of a [`FullOrder`] on their way to a scalar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FullOrderGains<const N: usize, const M: usize, const P: usize> {
-    step: IntegerIncrement<N, M, P>,
-    unseen: IntegerRows<P, N>,
+    pub(crate) step: IntegerIncrement<N, M, P>,
+    pub(crate) unseen: IntegerRows<P, N>,
 }
 
 impl<const N: usize, const M: usize, const P: usize> FullOrderGains<N, M, P> {
@@ -23,6 +23,8 @@ impl<const N: usize, const M: usize, const P: usize> FullOrderGains<N, M, P> {
 }
 
 /// An estimate of all N states, what a step adds to it, and what is expected of a measurement.
+///
+/// Each observer puts it together in place: a constructor of its own would cost a copy at opt-level "s".
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -37,22 +39,10 @@ pub(crate) struct FullOrder<T: Scalar, const N: usize, const M: usize, const P: 
     pub(crate) estimate: Carried<T, N>,
     pub(crate) step: Increment<T, N, M, P>,
     /// −C.
-    unseen: Rows<T, P, N>,
+    pub(crate) unseen: Rows<T, P, N>,
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize> FullOrder<T, N, M, P> {
-    #[inline(always)]
-    pub(crate) fn new(
-        gains: &FullOrderGains<N, M, P>,
-        start: &SVector<T, N>,
-    ) -> Result<Self, Error> {
-        Ok(Self {
-            estimate: Carried::new(start)?,
-            step: Increment::new(&gains.step)?,
-            unseen: Rows::new(&gains.unseen)?,
-        })
-    }
-
     #[inline(always)]
     pub(crate) fn reset(&mut self, start: &SVector<T, N>) -> Result<(), Error> {
         self.estimate = Carried::new(start)?;

@@ -1,6 +1,9 @@
+use crate::carried::Carried;
 use crate::dense::{less_identity, less_product};
 use crate::full_order::{FullOrder, FullOrderGains};
+use crate::increment::Increment;
 use crate::increment::IntegerIncrement;
+use crate::rows::Rows;
 use crate::{Error, Plant};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -57,7 +60,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
     #[inline]
     pub fn new(gains: &PredictorGains<N, M, P>, start: &SVector<T, N>) -> Result<Self, Error> {
-        Ok(Self { core: FullOrder::new(&gains.core, start)? })
+        Ok(Self {
+            core: FullOrder {
+                estimate: Carried::new(start)?,
+                step: Increment::new(&gains.core.step)?,
+                unseen: Rows::new(&gains.core.unseen)?,
+            },
+        })
     }
 
     /// Starts again at this state.
