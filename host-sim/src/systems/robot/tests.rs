@@ -37,7 +37,8 @@ fn every_synthetic_recording_opens_with_the_same_figures() {
 #[test]
 fn every_setting_changes_the_plan() {
     let opened = open("crowded-round");
-    let plan = |sent: &Value| figure(&answer(&*opened, sent), "plan").clone();
+    // As text: gaps are NaN, which equals nothing.
+    let plan = |sent: &Value| format!("{:?}", figure(&answer(&*opened, sent), "plan"));
     let initial = plan(&json!({}));
     let mut turned = Vec::new();
     for sent in [
@@ -68,6 +69,7 @@ fn every_setting_changes_the_plan() {
 #[test]
 fn a_setting_that_is_idle_changes_nothing() {
     let opened = open("points");
+    let drawn = |answer: &Answer| format!("{:?}", answer.figures);
     for tracker in ["lsq", "nls", "ekf", "aekf", "aekf-published", "default"] {
         let plain = answer(&*opened, &json!({ "tracker": tracker }));
         for sent in [
@@ -85,7 +87,7 @@ fn a_setting_that_is_idle_changes_nothing() {
             all["tracker"] = json!(tracker);
             let name = sent.as_object().unwrap().keys().next().unwrap();
             let is_idle = plain.disabled.iter().any(|(idle, _)| idle == name);
-            let same = answer(&*opened, &all).figures == plain.figures;
+            let same = drawn(&answer(&*opened, &all)) == drawn(&plain);
             assert_eq!(is_idle, same, "{tracker} {sent}");
         }
     }
