@@ -133,9 +133,15 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
                 }
             }
             match find(&live, &setting) {
+                // A file of the same name, which a stream has not, may stand beside it in a replay.
                 Some(arg) if setting.in_live => {
-                    assert_eq!(arg.get_help(), on_line.get_help(), "{name}");
-                    assert_eq!(arg.get_value_names(), on_line.get_value_names(), "{name}");
+                    let in_live = arg.get_help().map(ToString::to_string).unwrap_or_default();
+                    assert!(help.contains(label) && in_live.contains(label), "{name}: {in_live:?}");
+                    let form = setting.form();
+                    let names = arg.get_value_names().unwrap_or_default();
+                    let takes = matches!(setting.kind, Kind::Number(_) | Kind::Text { .. });
+                    let is_shown = names.iter().any(|known| known.starts_with(form.as_str()));
+                    assert!(!takes || is_shown, "{name}: {names:?}");
                 }
                 None if !setting.in_live || system.panels().is_empty() => {}
                 // `live` itself has an option of that name.
@@ -150,6 +156,8 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
 fn every_setting_changes_the_page_or_says_why_not() {
     for system in ALL {
         let mut waiting: Vec<_> = system.settings().iter().map(|setting| setting.name).collect();
+        // What had no effect although nothing said so, and where: elsewhere it may have one.
+        let mut silent = Vec::new();
         for (recording, _) in system.synthetic() {
             let opened = open(system, recording);
             for context in contexts(&*opened) {
@@ -167,14 +175,11 @@ fn every_setting_changes_the_page_or_says_why_not() {
                         let after = opened.answer(&with(&*opened, &given));
                         after.is_ok_and(|after| seen(&after) != seen(&before))
                     };
-                    let changed = others(&setting).into_iter().any(changes);
-                    assert!(
-                        changed,
-                        "{} {recording} {context:?}: {} changes nothing and does not say so",
-                        system.name(),
-                        setting.name
-                    );
-                    waiting.retain(|name| *name != setting.name);
+                    if others(&setting).into_iter().any(changes) {
+                        waiting.retain(|name| *name != setting.name);
+                    } else {
+                        silent.push((setting.name, *recording, format!("{context:?}")));
+                    }
                 }
                 if waiting.is_empty() {
                     break;
@@ -183,6 +188,12 @@ fn every_setting_changes_the_page_or_says_why_not() {
         }
         // What is for files alone says so at every synthetic recording.
         for name in waiting {
+            let never = silent.iter().find(|(silent, ..)| *silent == name);
+            assert!(
+                never.is_none(),
+                "{} changes nothing and does not say so: {never:?}",
+                system.name()
+            );
             for (recording, _) in system.synthetic() {
                 let opened = open(system, recording);
                 let answer = opened.answer(&with(&*opened, &[])).expect("an answer");

@@ -44,6 +44,11 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
             None => Judged { scale: run.reweight(passed, decisions)?, ..Judged::default() },
             Some(adaptive) => run.adapt(adaptive, passed, decisions)?,
         };
+        // A measurement without noise of a state that barely moves it: what fixed point keeps of the gain may take
+        // more than there is.
+        if run.posterior.covariance.variances().iter().any(|&variance| variance < T::ZERO) {
+            return Err(kestirim_kalman::Error::NotPositive.into());
+        }
         for (measurement, decision) in measurements.iter().zip(&mut *decisions) {
             decision.residual = measurement.left(&run.prior, &run.posterior);
         }

@@ -106,7 +106,7 @@ pub(in crate::commands) fn command(arguments: &[OsString]) -> Command {
                 .value_parser(PossibleValuesParser::new(names))
                 .default_value(NONE),
         );
-    let Some(system) = named(arguments) else { return command };
+    let Some(system) = named(arguments) else { return command.after_help(options_of_systems()) };
     let settings = live_settings(system);
     let files = system.files().iter().filter(|field| field.in_live);
     let is_file = |name: &str| system.files().iter().any(|it| it.in_live && it.name == name);
@@ -114,6 +114,23 @@ pub(in crate::commands) fn command(arguments: &[OsString]) -> Command {
         .next_help_heading(format!("Of --system {}", system.name()))
         .args(files.map(|field| field.argument(&settings)))
         .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
+}
+
+/// Which options each system has beside those that all have.
+fn options_of_systems() -> String {
+    let lines = followers().map(|system| {
+        let files =
+            system.files().iter().filter(|field| field.in_live).map(|field| field.name.to_owned());
+        let settings = live_settings(system);
+        let mut options: Vec<_> = files
+            .chain(settings.iter().map(Setting::option))
+            .map(|name| format!("--{name}"))
+            .collect();
+        options.dedup();
+        format!("  --system {}: {}", system.name(), options.join(" "))
+    });
+    let lines: Vec<_> = lines.collect();
+    format!("Options of a system (--system NAME --help tells what they do):\n{}", lines.join("\n"))
 }
 
 /// What the arguments ask for.
