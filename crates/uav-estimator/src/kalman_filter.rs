@@ -104,7 +104,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
 
     /// x̂: α (rad), q (rad/s), V (m/s), θ (rad).
     pub fn estimate(&self) -> SVector<f64, 4> {
-        SVector::from(from_fn::<_, 4, _>(|i| self.state.mean.as_array()[i].to_f64() * UNITS[i]))
+        self.state.mean.map(T::to_f64).component_mul(&SVector::from(UNITS))
     }
 
     /// P, the covariance of the estimate's error, in the states' units.
@@ -116,9 +116,8 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
     /// Standard deviations of the estimate's errors: rad, rad/s, m/s, rad.
     pub fn sigma(&self) -> SVector<f64, 4> {
         let variances = self.state.covariance.variances();
-        SVector::from(from_fn::<_, 4, _>(|i| {
-            libm::sqrt(variances.as_array()[i].to_f64().max(0.0)) * UNITS[i]
-        }))
+        let sigmas = variances.map(|variance| libm::sqrt(variance.to_f64().max(0.0)));
+        sigmas.component_mul(&SVector::from(UNITS))
     }
 
     /// Moves on by a step with these inputs δe (rad) and δt.
