@@ -1,7 +1,7 @@
 //! A robot among ultra-wideband anchors.
 //!
 //! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] draws, and
-//! [`calibrate`] finds what the anchors measure too long.
+//! `calibrate` finds what the anchors measure too long.
 //!
 //! Frame: *room*, right-handed with z up, as the anchors are given.
 
