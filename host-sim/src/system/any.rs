@@ -32,8 +32,6 @@ pub trait AnySystem: Sync {
     fn name(&self) -> &'static str;
     /// [`System::TITLE`].
     fn title(&self) -> &'static str;
-    /// [`System::PAPER`].
-    fn paper(&self) -> &'static str;
     /// [`System::FILES`].
     fn files(&self) -> &'static [FileField];
     /// [`System::SYNTHETIC`].
@@ -77,9 +75,6 @@ pub trait AnySystem: Sync {
     /// # Errors
     /// As there.
     fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error>;
-
-    /// [`System::firmware`] of any recording.
-    fn firmware(&self, settings: &Settings) -> String;
 }
 
 impl<S: System> AnySystem for S {
@@ -89,10 +84,6 @@ impl<S: System> AnySystem for S {
 
     fn title(&self) -> &'static str {
         S::TITLE
-    }
-
-    fn paper(&self) -> &'static str {
-        S::PAPER
     }
 
     fn files(&self) -> &'static [FileField] {
@@ -151,9 +142,5 @@ impl<S: System> AnySystem for S {
 
     fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
         S::online(settings, files)
-    }
-
-    fn firmware(&self, settings: &Settings) -> String {
-        S::firmware(None, settings)
     }
 }

@@ -107,16 +107,6 @@ impl Settings {
         Ok(())
     }
 
-    /// The same values held against another table; what that one lacks is left out.
-    #[must_use]
-    pub fn of_table(&self, table: impl Into<Arc<[Setting]>>) -> Self {
-        let table = table.into();
-        let known = |name: &&str| table.iter().any(|setting| setting.name == *name);
-        let given = self.given.iter().filter(|(name, _)| known(name));
-        let given = given.map(|(name, value)| (*name, value.clone())).collect();
-        Self { table, given }
-    }
-
     /// Without those that choose what is shown of a track.
     #[must_use]
     pub fn without_views(&self) -> Self {
