@@ -8,7 +8,7 @@ use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 #[allow(unreachable_pub)] // Another package's library.
-#[path = "../../firmware/surface/src/lib.rs"]
+#[path = "../../firmware/surface/src/all.rs"]
 mod surface;
 
 /// How often each crate's functions are called, unless told otherwise.

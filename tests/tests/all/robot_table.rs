@@ -126,7 +126,7 @@ fn constants() {
             }
         }),
         ("no Huber", |config| config.huber = None),
-        ("R remembered over 50 ranges", |config| {
+        ("R learnt over 50 ranges", |config| {
             config.learning = learning(|[_, least, most]| [0.98, least, most], LEAST);
         }),
         ("over 200", |config| {

@@ -55,6 +55,35 @@ fn every_bracket_of_a_readme_leads_somewhere() -> Result<()> {
     Ok(())
 }
 
+/// The book says where what it tells of is computed.
+#[test]
+fn every_file_that_the_book_names_exists() -> Result<()> {
+    let crates = fs::read_dir(root().join("crates"))?.collect::<Result<Vec<_>, _>>()?;
+    let sources = crates.into_iter().map(|entry| entry.path().join("src"));
+    let mut folders: Vec<_> = ["", "crates", "docs/src"].map(|name| root().join(name)).into();
+    folders.extend(sources);
+    for entry in fs::read_dir(root().join("docs/src"))? {
+        let chapter = entry?.path();
+        if chapter.extension().is_none_or(|extension| extension != "md") {
+            continue;
+        }
+        let text = fs::read_to_string(&chapter)?;
+        for named in text.split('`').filter(|named| is_source(named)) {
+            let exists = folders.iter().any(|folder| folder.join(named).exists());
+            ensure!(exists, "{}: there is no {named}", chapter.display());
+        }
+    }
+    Ok(())
+}
+
+/// Whether words in code are the path of a source.
+fn is_source(words: &str) -> bool {
+    let folder_of = words.strip_suffix(".rs").and_then(|path| path.split_once('/'));
+    folder_of.is_some_and(|(folder, path)| {
+        !folder.is_empty() && path.chars().all(|letter| is_in_name(letter) || "/-".contains(letter))
+    })
+}
+
 /// Fails if nothing is where a link leads to that stands in a file of a folder, or in one without files around it.
 fn check(
     folder: Option<&Path>,

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::adaptive_kalman::run);
+#[path = "../adaptive_kalman.rs"]
+mod adaptive_kalman;
+
+use surface::values;
+
+surface::image!(adaptive_kalman::run);

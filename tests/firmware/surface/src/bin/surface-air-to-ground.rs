@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::air_to_ground::run);
+#[path = "../air_to_ground.rs"]
+mod air_to_ground;
+
+use surface::values;
+
+surface::image!(air_to_ground::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::attitude::run);
+#[path = "../attitude.rs"]
+mod attitude;
+
+use surface::values;
+
+surface::image!(attitude::run);

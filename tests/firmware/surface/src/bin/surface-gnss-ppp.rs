@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::gnss_ppp::run);
+#[path = "../gnss_ppp.rs"]
+mod gnss_ppp;
+
+use surface::values;
+
+surface::image!(gnss_ppp::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::kalman::run);
+#[path = "../kalman.rs"]
+mod kalman;
+
+use surface::values;
+
+surface::image!(kalman::run);

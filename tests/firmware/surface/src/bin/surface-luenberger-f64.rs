@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::luenberger_f64::run);
+#[path = "../luenberger_f64.rs"]
+mod luenberger_f64;
+
+use surface::values;
+
+surface::image!(luenberger_f64::run);

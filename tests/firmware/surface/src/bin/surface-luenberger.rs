@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::luenberger::run);
+#[path = "../luenberger.rs"]
+mod luenberger;
+
+use surface::values;
+
+surface::image!(luenberger::run);

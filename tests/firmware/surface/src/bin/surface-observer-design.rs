@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::observer_design::run);
+#[path = "../observer_design.rs"]
+mod observer_design;
+
+use surface::values;
+
+surface::image!(observer_design::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::particle_filter::run);
+#[path = "../particle_filter.rs"]
+mod particle_filter;
+
+use surface::values;
+
+surface::image!(particle_filter::run);

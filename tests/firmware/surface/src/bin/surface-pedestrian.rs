@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::pedestrian::run);
+#[path = "../pedestrian.rs"]
+mod pedestrian;
+
+use surface::values;
+
+surface::image!(pedestrian::run);

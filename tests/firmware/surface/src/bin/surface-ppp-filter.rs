@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::ppp_filter::run);
+#[path = "../ppp_filter.rs"]
+mod ppp_filter;
+
+use surface::values;
+
+surface::image!(ppp_filter::run);

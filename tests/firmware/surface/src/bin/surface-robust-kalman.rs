@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::robust_kalman::run);
+#[path = "../robust_kalman.rs"]
+mod robust_kalman;
+
+use surface::values;
+
+surface::image!(robust_kalman::run);

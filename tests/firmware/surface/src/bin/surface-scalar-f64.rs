@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::scalar_f64::run);
+#[path = "../scalar_f64.rs"]
+mod scalar_f64;
+
+use surface::values;
+
+surface::image!(scalar_f64::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::scalar::run);
+#[path = "../scalar.rs"]
+mod scalar;
+
+use surface::values;
+
+surface::image!(scalar::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::telemetry::run);
+#[path = "../telemetry.rs"]
+mod telemetry;
+
+use surface::values;
+
+surface::image!(telemetry::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::uav_estimator::run);
+#[path = "../uav_estimator.rs"]
+mod uav_estimator;
+
+use surface::values;
+
+surface::image!(uav_estimator::run);

@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::uav_longitudinal::run);
+#[path = "../uav_longitudinal.rs"]
+mod uav_longitudinal;
+
+use surface::values;
+
+surface::image!(uav_longitudinal::run);

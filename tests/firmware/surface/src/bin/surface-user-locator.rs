@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::user_locator::run);
+#[path = "../user_locator.rs"]
+mod user_locator;
+
+use surface::values;
+
+surface::image!(user_locator::run);

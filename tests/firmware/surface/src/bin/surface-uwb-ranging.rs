@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::uwb_ranging::run);
+#[path = "../uwb_ranging.rs"]
+mod uwb_ranging;
+
+use surface::values;
+
+surface::image!(uwb_ranging::run);

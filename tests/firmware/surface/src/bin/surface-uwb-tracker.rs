@@ -3,4 +3,9 @@
 #![no_std]
 #![no_main]
 
-surface::image!(surface::uwb_tracker::run);
+#[path = "../uwb_tracker.rs"]
+mod uwb_tracker;
+
+use surface::values;
+
+surface::image!(uwb_tracker::run);
