@@ -147,8 +147,16 @@ fn record(bytes: &[u8]) -> Option<(u8, ClockSample)> {
         *field = integer(fields.next()?)?;
     }
     let time = GpsTime::from_calendar(calendar, decimal(fields.next()?)?)?;
-    let bias = decimal(fields.nth(1)?)?;
-    Some((prn, ClockSample { time, bias }))
+    let bias = fields.nth(1).filter(|field| is_whole(field))?;
+    Some((prn, ClockSample { time, bias: decimal(bias)? }))
+}
+
+/// Whether a number in the format E19.12 is there to the end of its exponent: a line that was cut off holds the
+/// beginning of a number, which is another one.
+fn is_whole(field: &[u8]) -> bool {
+    let exponent = field.iter().position(|byte| matches!(byte, b'E' | b'e' | b'D' | b'd'));
+    let exponent = exponent.map_or(&[][..], |start| &field[start..]);
+    exponent.iter().filter(|byte| byte.is_ascii_digit()).count() >= 2
 }
 
 #[cfg(test)]
@@ -210,6 +218,16 @@ mod tests {
             complaint(&file),
             "file: expected satellite clocks (RINEX), found observations (RINEX)"
         );
+    }
+
+    #[test]
+    fn a_number_cut_off_is_refused() {
+        let whole = "0.100000000000E-04";
+        for kept in 1..whole.len() {
+            let file = clocks().replace(whole, &whole[..kept]);
+            let found = complaint(&file);
+            assert!(found.contains("line 5: expected a satellite's clock"), "{kept}: {found}");
+        }
     }
 
     #[test]

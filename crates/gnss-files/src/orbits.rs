@@ -225,6 +225,16 @@ mod tests {
     }
 
     #[test]
+    fn lines_cut_within_a_number_are_refused() {
+        for column in [24, 40, 50, 59] {
+            let cut = |line: &str| line[..line.len().min(column)].to_owned() + "\n";
+            let found = complaint(&orbits().lines().map(cut).collect::<String>());
+            let expected = format!("found the line's end in column {column}: cut off?");
+            assert!(found.contains(&expected), "{column}: {found}");
+        }
+    }
+
+    #[test]
     fn a_file_cut_off_is_told() -> Result<(), Error> {
         let file = orbits();
         let cut = Orbits::parse(&[text(&file[..file.len() - 60])])?;

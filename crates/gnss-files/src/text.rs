@@ -153,26 +153,32 @@ impl<'a> Line<'a> {
     /// The finite number between two columns, none if they are blank.
     ///
     /// # Errors
-    /// [`Error::Line`] if it is anything else.
+    /// [`Error::Line`] if it is anything else, or if the line ends within it.
     pub(crate) fn optional_number(
         &self,
         what: &str,
         from: usize,
         to: usize,
     ) -> Result<Option<f64>, Error> {
-        let field = self.columns(from, to);
-        if field.is_empty() {
+        if self.columns(from, to).is_empty() {
             return Ok(None);
         }
-        decimal(field).map(Some).ok_or_else(|| self.expected_instead_of(what, field))
+        self.finite(what, from, to).map(Some)
     }
 
-    /// The finite number between two columns.
+    /// The finite number between two columns, which ends in the last one, as Fortran writes it: of one that a file cut
+    /// off holds the beginning, nobody knows what is missing.
     ///
     /// # Errors
-    /// [`Error::Line`] if there is anything else.
+    /// [`Error::Line`] if there is anything else, or if the line ends within the number.
     pub(crate) fn finite(&self, what: &str, from: usize, to: usize) -> Result<f64, Error> {
         let field = self.columns(from, to);
+        if !field.is_empty() && self.bytes.len() < to {
+            let end = self.bytes.len();
+            return Err(self.error(format!(
+                "expected {what} up to column {to}, found the line's end in column {end}: cut off?"
+            )));
+        }
         decimal(field).ok_or_else(|| self.expected_instead_of(what, field))
     }
 
