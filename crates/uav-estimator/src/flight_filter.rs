@@ -1,12 +1,18 @@
-use kestirim_kalman::Innovation;
+use core::array::from_fn;
+
+use kestirim_kalman::{Gate, Innovation, Verdict};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
+use crate::innovation_gate::PATIENCE;
 use crate::transitions::{Transitions, interval_us};
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
 /// Standard deviations of a state of which nothing is known: rad, rad/s, m/s, rad.
 const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
+
+/// NIS beyond which an output is left out: 5 σ.
+const GATE: f64 = 25.0;
 
 /// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
 ///
@@ -14,12 +20,18 @@ const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
 /// The estimate has seen the newest sample. It begins at zero deviation with standard deviations of 0.2 rad,
 /// 0.5 rad/s, 20 m/s and 0.5 rad, so that the first samples decide.
 ///
+/// An output that is more than 5 σ from what was expected of it is left out. After five in a row it is the
+/// estimate that must be wrong: then its covariance is widened, and the output is taken in.
+///
 /// The steps of up to L intervals are kept, the last one for each remainder of an interval's microseconds by L: 336
 /// bytes each in `f64`. With regular samples one is enough; other intervals are computed anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     filter: KalmanFilter<T, P>,
+    gates: [Gate<T>; P],
+    /// How many times each output was left out.
+    rejected: [u32; P],
     transitions: Transitions<Transition<T>, L>,
     /// Time (µs) and input of the sample before.
     before: Option<(i64, SVector<f64, 2>)>,
@@ -40,7 +52,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         let filter =
             KalmanFilter::new(c, &noise.outputs, &SVector::zeros(), &SVector::from(UNKNOWN))?;
         let transitions = Transitions::new(*dynamics, usual, noise.inputs);
-        Ok(Self { filter, transitions, before: None })
+        let gates = from_fn(|_| Gate::new(T::from_f64(GATE), PATIENCE));
+        Ok(Self { filter, gates, rejected: [0; P], transitions, before: None })
     }
 
     /// Says how long an interval usually is, s.
@@ -51,6 +64,11 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
     /// The filter, with the estimate and its uncertainty at the time of the last sample.
     pub const fn filter(&self) -> &KalmanFilter<T, P> {
         &self.filter
+    }
+
+    /// How many times each output was left out, because it contradicted the estimate.
+    pub const fn rejected(&self) -> &[u32; P] {
+        &self.rejected
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it.
@@ -70,12 +88,18 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
             next.predict(&transition, input)?;
             moved = Some((interval_us, transition));
         }
-        let innovations = next.correct(&sample.measured)?;
+        let mut gates = self.gates;
+        let judged = next.correct_gated(&sample.measured, &mut gates)?;
         self.filter = next;
+        self.gates = gates;
+        for (rejected, judged) in self.rejected.iter_mut().zip(&judged) {
+            let is_rejected = judged.is_some_and(|(verdict, _)| verdict == Verdict::Reject);
+            *rejected = rejected.saturating_add(u32::from(is_rejected));
+        }
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, transition)) = &moved {
             self.transitions.keep(*interval_us, transition);
         }
-        Ok(innovations)
+        Ok(judged.map(|judged| judged.map(|(_, innovation)| innovation)))
     }
 }

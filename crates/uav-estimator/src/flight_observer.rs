@@ -3,6 +3,7 @@ use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
+use crate::innovation_gate::InnovationGate;
 use crate::transitions::{Transitions, interval_us};
 use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 
@@ -14,12 +15,17 @@ use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 /// measures by themselves, and zero for the others. Its error when it has settled is told by
 /// [`error_covariance`](kestirim_observer_design::error_covariance).
 ///
+/// An output whose innovation is eight times as large as usual is left out, but not more than five in a row.
+///
 /// Steps of L other intervals than the usual one are kept: see [`FlightFilter`](crate::FlightFilter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
     observer: CurrentObserver<T, 4, 2, P>,
     c: SMatrix<f64, P, 4>,
+    gates: [InnovationGate; P],
+    /// How many times each output was left out.
+    rejected: [u32; P],
     usual_us: i64,
     transitions: Transitions<Discrete<4, 2>, L>,
     /// Time (µs) and input of the sample before.
@@ -44,12 +50,18 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         let gain = current_gain(&plant, &observer_gain(&plant, c, poles)?)?;
         let gains = CurrentGains::new(&Plant { a: plant.a, b: plant.b, c: *c }, &gain);
         let observer = CurrentObserver::new(&gains, &SVector::zeros())?;
-        Ok(Self { observer, c: *c, usual_us, transitions, before: None })
+        let gates = [InnovationGate::default(); P];
+        Ok(Self { observer, c: *c, gates, rejected: [0; P], usual_us, transitions, before: None })
     }
 
     /// x̂: α (rad), q (rad/s), V (m/s), θ (rad) at the time of the last sample.
     pub fn estimate(&self) -> SVector<f64, 4> {
         self.observer.estimate().map(T::to_f64)
+    }
+
+    /// How many times each output was left out, because it contradicted the estimate.
+    pub const fn rejected(&self) -> &[u32; P] {
+        &self.rejected
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it, in its unit.
@@ -77,31 +89,21 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         } else {
             next.reset(&finite(&self.measured_states(&sample.measured))?)?;
         }
-        let innovation = next.correct(&self.completed(&next, &sample.measured))?;
+        let expected = (self.c * next.estimate().map(T::to_f64)).into();
+        let mut gates = self.gates;
+        let (innovations, admitted) = judged(&mut gates, &sample.measured, &expected);
+        next.correct(&SVector::from(admitted).map(T::from_f64))?;
         self.observer = next;
+        self.gates = gates;
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, step)) = &bridged {
             self.transitions.keep(*interval_us, step);
         }
-        let mut innovations = [None; P];
         for output in 0..P {
-            innovations[output] =
-                sample.measured[output].map(|_| innovation.as_array()[output].to_f64());
+            let is_rejected = sample.measured[output].is_some_and(|it| it != admitted[output]);
+            self.rejected[output] = self.rejected[output].saturating_add(u32::from(is_rejected));
         }
         Ok(innovations)
-    }
-
-    /// Outputs as measured, and as expected where they are missing.
-    fn completed(
-        &self,
-        observer: &CurrentObserver<T, 4, 2, P>,
-        measured: &[Option<f64>; P],
-    ) -> SVector<T, P> {
-        let mut all = self.c * observer.estimate().map(T::to_f64);
-        for (value, measured) in all.as_array_mut().iter_mut().zip(measured) {
-            *value = measured.unwrap_or(*value);
-        }
-        all.map(T::from_f64)
     }
 
     /// States that outputs measure by themselves, and zero for the others.
@@ -119,6 +121,25 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         }
         states
     }
+}
+
+/// The innovation of each output that was measured, and all outputs as an observer is to take them in: what is missing
+/// or contradicts the estimate is taken for what was expected.
+fn judged<const P: usize>(
+    gates: &mut [InnovationGate; P],
+    measured: &[Option<f64>; P],
+    expected: &[f64; P],
+) -> ([Option<f64>; P], [f64; P]) {
+    let (mut innovations, mut admitted) = ([None; P], *expected);
+    for (output, gate) in gates.iter_mut().enumerate() {
+        let Some(measured) = measured[output] else { continue };
+        let innovation = measured - expected[output];
+        innovations[output] = Some(innovation);
+        if gate.admits(innovation) {
+            admitted[output] = measured;
+        }
+    }
+    (innovations, admitted)
 }
 
 /// A state in this scalar, if it is one.

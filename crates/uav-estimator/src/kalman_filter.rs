@@ -1,6 +1,8 @@
 use core::array::from_fn;
 
-use kestirim_kalman::{Covariance, Gaussian, Innovation, LinearObservation, SparseRow};
+use kestirim_kalman::{
+    Covariance, Gate, Gaussian, Innovation, LinearObservation, SparseRow, Verdict, Weighed,
+};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -157,6 +159,38 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         &mut self,
         measured: &[Option<f64>; P],
     ) -> Result<[Option<Innovation<f64>>; P], Error> {
+        self.correct_with(measured, |next, weighed, _| Ok(next.correct(weighed)?))
+    }
+
+    /// The same with a gate an output, and what each gate decided.
+    ///
+    /// # Errors
+    /// As [`KalmanFilter::correct`]; filter and gates are as they were.
+    pub fn correct_gated(
+        &mut self,
+        measured: &[Option<f64>; P],
+        gates: &mut [Gate<T>; P],
+    ) -> Result<[Option<(Verdict, Innovation<f64>)>; P], Error> {
+        let mut judging = *gates;
+        let mut verdicts = [Verdict::Admit; P];
+        let innovations = self.correct_with(measured, |next, weighed, output| {
+            let (verdict, innovation) = judging[output].correct(next, weighed)?;
+            verdicts[output] = verdict;
+            Ok(innovation)
+        })?;
+        *gates = judging;
+        Ok(from_fn(|output| Some((verdicts[output], innovations[output]?))))
+    }
+
+    fn correct_with(
+        &mut self,
+        measured: &[Option<f64>; P],
+        mut correct: impl FnMut(
+            &mut Gaussian<T, 4>,
+            &Weighed<T, 4>,
+            usize,
+        ) -> Result<Innovation<T>, Error>,
+    ) -> Result<[Option<Innovation<f64>>; P], Error> {
         let mut next = self.state;
         let mut innovations = [None; P];
         for output in 0..P {
@@ -168,7 +202,9 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
             let parts = &self.rows.as_columns()[output];
             let row = SparseRow::<T, 4>::new(from_fn(|state| (state, parts[state])));
             let observation = LinearObservation { row, measured: T::from_f64(measured / unit) };
-            let innovation = next.observe(&observation, self.variances.as_array()[output])?;
+            let variance = self.variances.as_array()[output];
+            let weighed = next.weigh_observation(&observation, variance)?;
+            let innovation = correct(&mut next, &weighed, output)?;
             innovations[output] = Some(Innovation {
                 innovation: innovation.innovation.to_f64() * unit,
                 variance: innovation.variance.to_f64() * (unit * unit),

@@ -202,3 +202,65 @@ proptest! {
         prop_assert_eq!(kept.filter(), anew.filter());
     }
 }
+
+/// After 3 s, one sample in thirty has an output that is off by forty times its noise: a tenth of a radian, twenty metres a second.
+fn spiked(samples: &[Sample<3>]) -> Vec<Sample<3>> {
+    let mut samples = samples.to_vec();
+    for (index, sample) in samples.iter_mut().enumerate().skip(300) {
+        let (output, sign) = (index % 3, if index % 2 == 0 { 1.0 } else { -1.0 });
+        if index.wrapping_mul(0x9E37_79B9) % 100 < 3 {
+            let spike = 40.0 * sign * noise().outputs[output];
+            sample.measured[output] = sample.measured[output].map(|value| value + spike);
+        }
+    }
+    samples
+}
+
+#[test]
+fn spikes_cost_little() {
+    let (samples, _) = flight(&(0..3000).collect::<Vec<_>>());
+    let c = rate_airspeed_and_pitch();
+    let poles = [-3.0, -3.5, -4.0, -4.5].map(|pole: f64| Complex::from((pole * USUAL_S).exp()));
+    let filter = || FlightFilter::<f64, 3>::new(&dynamics(), &c, &noise(), USUAL_S).unwrap();
+    let observer = || FlightObserver::<f64, 3>::new(&dynamics(), &c, &poles, USUAL_S).unwrap();
+    let (mut clean, mut hurt) = ((filter(), observer()), (filter(), observer()));
+    let scale = Vector4::new(0.01, 0.01, 0.5, 0.01);
+    let (mut worst_filter, mut worst_observer) = (0.0_f64, 0.0_f64);
+    for (sample, spiked) in samples.iter().zip(spiked(&samples)) {
+        clean.0.take(sample).unwrap();
+        clean.1.take(sample).unwrap();
+        hurt.0.take(&spiked).unwrap();
+        hurt.1.take(&spiked).unwrap();
+        let apart = |a: Vector4<f64>, b: Vector4<f64>| (a - b).component_div(&scale).amax();
+        let filters = apart(clean.0.filter().estimate(), hurt.0.filter().estimate());
+        worst_filter = worst_filter.max(filters);
+        worst_observer = worst_observer.max(apart(clean.1.estimate(), hurt.1.estimate()));
+    }
+    let spikes: u32 = hurt.0.rejected().iter().sum();
+    println!("{spikes} spikes: filter {worst_filter}, observer {worst_observer}");
+    assert!(spikes > 50, "{spikes}");
+    assert_eq!(clean.0.rejected(), &[0; 3]);
+    assert_eq!(clean.1.rejected(), &[0; 3]);
+    assert_eq!(hurt.1.rejected(), hurt.0.rejected());
+    assert!(worst_filter < 0.5 && worst_observer < 0.5, "{worst_filter} {worst_observer}");
+}
+
+/// A gate that would never open again would lose an aircraft that does what the model does not know.
+#[test]
+fn what_has_changed_is_followed() {
+    let (mut samples, _) = flight(&(0..2000).collect::<Vec<_>>());
+    for sample in &mut samples[1000..] {
+        sample.measured[1] = sample.measured[1].map(|airspeed| airspeed + 30.0);
+    }
+    let c = rate_airspeed_and_pitch();
+    let poles = [-3.0, -3.5, -4.0, -4.5].map(|pole: f64| Complex::from((pole * USUAL_S).exp()));
+    let mut filter = FlightFilter::<f64, 3>::new(&dynamics(), &c, &noise(), USUAL_S).unwrap();
+    let mut observer = FlightObserver::<f64, 3>::new(&dynamics(), &c, &poles, USUAL_S).unwrap();
+    for sample in &samples {
+        filter.take(sample).unwrap();
+        observer.take(sample).unwrap();
+    }
+    let expected = samples.last().unwrap().measured[1].unwrap();
+    let found = [filter.filter().estimate()[2], observer.estimate()[2]];
+    assert!(found.iter().all(|found| (found - expected).abs() < 10.0), "{found:?} {expected}");
+}

@@ -50,7 +50,27 @@ struct Residual {
     measured: usize,
     /// Root mean square of measured less expected.
     rms: f64,
+    /// How many times it contradicted the estimate and was left out.
+    rejected: u32,
 }
+
+impl Residual {
+    /// What a reader should know.
+    fn warning(&self) -> Option<String> {
+        let share = f64::from(self.rejected) / self.measured.max(1) as f64;
+        (share > REJECTED).then(|| {
+            format!(
+                "{:.0} % of the measurements of {} contradict the estimate and were left out: a wrong model or unit, or \
+                 a broken sensor",
+                100.0 * share,
+                self.output
+            )
+        })
+    }
+}
+
+/// Share of an output's measurements beyond which it is told that they were left out.
+const REJECTED: f64 = 0.1;
 
 /// What came of a flight by this estimator.
 pub(super) fn account(
@@ -67,9 +87,13 @@ pub(super) fn account(
     let last = followed.estimates.last();
     let last = last.map(|estimate| flight.absolute(estimate)).unwrap_or_default();
     let missing = flight.log.samples.iter().flat_map(|sample| &sample.measured);
-    let innovations = flight.names().zip(&followed.innovations).map(|(output, innovations)| {
-        Residual { output: output.to_owned(), measured: innovations.len(), rms: rms(innovations) }
+    let residuals = followed.innovations.iter().zip(followed.rejected.iter().chain(&[0; 4]));
+    let innovations = flight.names().zip(residuals).map(|(output, (innovations, &rejected))| {
+        let (output, measured) = (output.to_owned(), innovations.len());
+        Residual { output, measured, rms: rms(innovations), rejected }
     });
+    let innovations: Vec<_> = innovations.collect();
+    warnings.extend(innovations.iter().filter_map(Residual::warning));
     let report = Report {
         system: Uav::NAME,
         estimator,
@@ -77,7 +101,7 @@ pub(super) fn account(
         interval_s: flight.log.interval_s,
         gaps: flight.log.gaps,
         missing: missing.filter(|measured| measured.is_none()).count(),
-        innovations: innovations.collect(),
+        innovations,
         estimate: last.into(),
         warnings,
         accuracy,
@@ -98,8 +122,10 @@ impl Report {
         for (name, value) in STATE_COLUMNS.iter().zip(self.estimate) {
             account.fact(format!("last {name}"), format!("{value:.4}"));
         }
-        for Residual { output, rms, .. } in &self.innovations {
-            account.fact(format!("innovations of {output}"), format!("{rms:.2e}"));
+        for Residual { output, rms, rejected, .. } in &self.innovations {
+            let left_out =
+                if *rejected > 0 { format!(", {rejected} left out") } else { String::new() };
+            account.fact(format!("innovations of {output}"), format!("{rms:.2e}{left_out}"));
         }
         let Some(accuracy) = &self.accuracy else { return };
         let errors = accuracy.rmse.iter().zip(accuracy.late_rmse);

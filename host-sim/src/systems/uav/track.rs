@@ -88,6 +88,7 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
     let followed = Followed {
         estimates: timed().map(|(t_us, it)| Estimate { t_us, state: it.estimate }).collect(),
         innovations: innovations.collect(),
+        rejected: vec![0; outputs.len()],
     };
     let truth = timed().map(|(t_us, it)| (t_us, <[f64; 4]>::from(it.sample.x).map(Some)));
     let samples = timed().map(sample).collect();

@@ -1,5 +1,6 @@
 //! Everything of `kestirim-uav-estimator`.
 
+use kestirim_kalman::Gate;
 use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
@@ -61,6 +62,9 @@ fn filters<T: Scalar, const P: usize>() {
         let transition = any(Transition::new(&step()));
         try_on(&mut filter, |filter| KalmanFilter::predict(filter, &transition, &matrix()));
         try_on(&mut filter, |filter| KalmanFilter::correct(filter, &measured()));
+        try_on(&mut filter, |filter| {
+            KalmanFilter::correct_gated(filter, &measured(), &mut [Gate::new(number(), 1); P])
+        });
     }
     keep(KalmanFilter::estimate(&filter));
     keep(KalmanFilter::covariance(&filter));
@@ -92,6 +96,7 @@ fn flight_filters<T: Scalar, const P: usize>() {
     FlightFilter::set_usual(any(&mut filter), number());
     try_on(&mut filter, |filter| FlightFilter::take(filter, &sample(&mut time_us)));
     keep(FlightFilter::filter(&filter));
+    keep(FlightFilter::rejected(&filter));
 }
 
 fn flight_observers<T: Scalar, const P: usize>() {
@@ -102,6 +107,7 @@ fn flight_observers<T: Scalar, const P: usize>() {
         try_on(&mut observer, |observer| FlightObserver::take(observer, &sample(&mut time_us)));
     }
     keep(FlightObserver::estimate(&observer));
+    keep(FlightObserver::rejected(&observer));
 }
 
 fn all_of<T: Scalar>() {

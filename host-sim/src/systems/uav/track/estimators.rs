@@ -33,11 +33,14 @@ pub struct Followed {
     pub estimates: Vec<Estimate>,
     /// Of each of the log's outputs.
     pub innovations: Vec<Vec<f64>>,
+    /// How many times each of them contradicted the estimate and was left out.
+    pub rejected: Vec<u32>,
 }
 
 impl Followed {
     fn new(log: &Log) -> Self {
-        Self { estimates: Vec::new(), innovations: vec![Vec::new(); log.outputs.len()] }
+        let innovations = vec![Vec::new(); log.outputs.len()];
+        Self { innovations, rejected: vec![0; log.outputs.len()], ..Self::default() }
     }
 
     fn add(
@@ -121,6 +124,7 @@ fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<F
         let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
         followed.add(sample.t_us, filter.filter().estimate(), innovations);
     }
+    followed.rejected = filter.rejected()[..log.outputs.len()].to_vec();
     Ok(followed)
 }
 
@@ -165,6 +169,7 @@ fn observer_of<T: Scalar, const P: usize>(
         let innovations = observer.take(&sized(sample))?;
         followed.add(sample.t_us, observer.estimate(), innovations);
     }
+    followed.rejected = observer.rejected()[..log.outputs.len()].to_vec();
     Ok(followed)
 }
 
