@@ -4,6 +4,7 @@
 mod channel;
 mod collected;
 mod config;
+mod consistency;
 mod error;
 mod estimator;
 mod filter;

@@ -42,7 +42,9 @@ impl<const N: usize> Running<N> {
             covariance_enu: rotation * covariance * rotation.transpose(),
             clock: state(CLOCK),
             wet_delay: state(WET),
-            health: if heard < 5 {
+            health: if self.consistency.is_contradicted() {
+                Health::Contradicted
+            } else if heard < 5 {
                 Health::Unchecked
             } else if spread < CONVERGED {
                 Health::Converged

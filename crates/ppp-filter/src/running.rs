@@ -2,6 +2,7 @@
 
 use crate::channel::Channel;
 use crate::collected::collected;
+use crate::consistency::Consistency;
 use crate::line::{Line, Row};
 use crate::phase_monitor::{PhaseMonitor, is_judged};
 use crate::start::CodePosition;
@@ -44,6 +45,7 @@ pub(crate) struct Running<const N: usize> {
     pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
+    pub(crate) consistency: Consistency,
 }
 
 impl<const N: usize> Running<N> {
@@ -64,7 +66,8 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        Self { estimate, time, interval: None, channels: [None; N] }
+        let consistency = Consistency::default();
+        Self { estimate, time, interval: None, channels: [None; N], consistency }
     }
 
     /// Predicts to the time of an epoch.
@@ -105,6 +108,7 @@ impl<const N: usize> Running<N> {
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.monitor(&lines, &decisions, config);
+        self.consistency.update(decisions.as_flattened().iter());
         Ok(self.solution(&site, &lines, &decisions, config))
     }
 

@@ -128,6 +128,7 @@ const fn health(health: Health) -> &'static str {
         Health::Converging => "converging",
         Health::Converged => "converged",
         Health::Unchecked => "unchecked",
+        Health::Contradicted => "contradicted",
     }
 }
 

@@ -43,9 +43,20 @@ fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
     ))
 }
 
-/// A sentence for each kind of epochs without a solution.
+/// A sentence for each kind of epochs without a solution, and one about those that contradict themselves.
 pub(super) fn outages(followed: &Followed) -> Vec<String> {
-    followed.outages.warnings().collect()
+    followed.outages.warnings().chain(contradictions(followed)).collect()
+}
+
+/// A sentence about epochs of which the observations contradict the solution.
+fn contradictions(followed: &Followed) -> Option<String> {
+    let first = followed.contradicted.first()?;
+    let (count, of) = (followed.contradicted.len(), followed.fixes.len());
+    let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
+    Some(format!(
+        "in {count} of {of} epochs, the first at {first} s, the observations contradict the solution ({share:.0} % rejected in \
+         all): positions and standard deviations there are wrong; check times, products, codes and antennas"
+    ))
 }
 
 /// The same of all filters, with the names of the filters unless that is true of all.

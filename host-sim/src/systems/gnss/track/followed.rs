@@ -105,6 +105,8 @@ pub struct Followed {
     pub deviations: Vec<[f64; 3]>,
     /// The last of them.
     pub last: Option<Last>,
+    /// When the observations contradicted the solution, s.
+    pub contradicted: Vec<f64>,
     /// Since when all positions have been converged ones, s.
     pub converged_since: Option<f64>,
     /// Observations that the filter was given.
@@ -217,6 +219,9 @@ impl Followed {
         let sd_enu = solution.deviations_enu();
         self.deviations.push(sd_enu);
         self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
+        if solution.health == Health::Contradicted {
+            self.contradicted.push(t);
+        }
         if solution.health == Health::Converged {
             self.converged_since.get_or_insert(t);
         } else {
