@@ -8,7 +8,7 @@ use crate::uniform::Uniform;
 /// A resampling scheme: the number of offspring of each particle. The expected number should be in proportion to its
 /// weight.
 ///
-/// [`Resampler`] chooses among the four of this crate at run time; each is a type of its own, too, and any other
+/// [`Resampler`] chooses among those of this crate at run time; each is a type of its own, too, and any other
 /// scheme can be given to [`Particles::resample`](crate::Particles::resample).
 pub trait Resample {
     /// Replaces each weight by its number of offspring. They should sum up to the number of draws: particles for

@@ -29,6 +29,23 @@ macro_rules! messages {
     };
 }
 
+impl Message {
+    /// When a measurement was made (µs, the sender's clock); none of what a sender says of its estimate or of itself.
+    pub const fn measured_us(&self) -> Option<u64> {
+        match self {
+            Self::Imu(Imu { time_us, .. })
+            | Self::Range(Range { time_us, .. })
+            | Self::PathLoss(PathLoss { time_us, .. })
+            | Self::Flight(Flight { time_us, .. }) => Some(*time_us),
+            Self::Position(_)
+            | Self::GlobalPosition(_)
+            | Self::State(_)
+            | Self::Footprint(_)
+            | Self::Health(_) => None,
+        }
+    }
+}
+
 // The order is part of the format: a new kind goes to the end.
 messages! {
     /// A sample of an inertial sensor, in its own axes.

@@ -10,7 +10,7 @@ pub enum Error {
     NotFinite,
     /// No radio measures this range: below −1 m or above 200 m.
     ImplausibleRange,
-    /// No robot accelerates or drives like this: beyond 500 m/s², 100 m/s or 100 rad/s.
+    /// No robot accelerates or drives like this: beyond what its sensors can say (500 m/s², 100 m/s, 100 rad/s).
     ImplausibleMotion,
     /// No anchor has this number.
     NoSuchAnchor,

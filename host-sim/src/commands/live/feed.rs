@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kestirim_telemetry::{Flight, Imu, Message, PathLoss, Range};
+use kestirim_telemetry::Message;
 
 use super::clock::{Clock, Verdict};
 use super::state::State;
@@ -26,7 +26,7 @@ impl Feed {
 
     /// Takes in a message. What cannot be true is counted and no more.
     pub(super) fn take(&mut self, message: &Message, state: &mut State) -> Result<(), Error> {
-        let Some(time_us) = measured(message) else {
+        let Some(time_us) = message.measured_us() else {
             state.tell(message);
             return Ok(());
         };
@@ -69,24 +69,13 @@ impl Feed {
     }
 }
 
-/// When a measurement was made, if it is one.
-fn measured(message: &Message) -> Option<u64> {
-    match message {
-        Message::Imu(Imu { time_us, .. })
-        | Message::Range(Range { time_us, .. })
-        | Message::PathLoss(PathLoss { time_us, .. })
-        | Message::Flight(Flight { time_us, .. }) => Some(*time_us),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::options::Following;
     use super::*;
     use crate::system::{AnySystem, Files, Panel, Settings};
     use crate::systems::ALL;
-    use kestirim_telemetry::{Footprint, GlobalPosition, Position};
+    use kestirim_telemetry::{Flight, Footprint, GlobalPosition, Imu, PathLoss, Position, Range};
 
     /// Whose estimators are built without files.
     fn systems() -> impl Iterator<Item = Following> {

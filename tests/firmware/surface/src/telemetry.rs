@@ -51,6 +51,7 @@ fn frames() {
         for _ in 0..rounds() {
             let mut buffer = [whole(); CAPACITY];
             keep(encode(&message(), whole(), any(&mut buffer)).is_ok());
+            keep(Message::measured_us(&message()));
             keep(Receiver::push(receiver, whole()));
             let mut frames = any(Receiver::frames(receiver, slice(&buffer)));
             keep(<Frames<'_> as Iterator>::next(&mut frames));

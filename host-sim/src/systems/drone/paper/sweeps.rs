@@ -89,7 +89,7 @@ impl StaticSweeps {
             ("Fig. 3.3 (maximum)", RESAMPLERS_MAXIMUM, true),
         ];
         for (table, published, maximum) in figures {
-            for (kind, published) in ResamplerKind::ALL.into_iter().zip(published) {
+            for (kind, published) in ResamplerKind::OF_THE_THESIS.into_iter().zip(published) {
                 for (stops, published) in MEASUREMENTS.into_iter().zip(published) {
                     let cell = format!("{} T={stops}", name(&kind));
                     let filter = PublishedFilter { particles: 500, resampler: kind.into() };

@@ -87,7 +87,7 @@ pub enum ResamplerKind {
 
 impl ResamplerKind {
     /// All, in the order of the thesis' figures.
-    pub const ALL: [Self; 4] =
+    pub const OF_THE_THESIS: [Self; 4] =
         [Self::Multinomial, Self::Residual, Self::Stratified, Self::Systematic];
 }
 

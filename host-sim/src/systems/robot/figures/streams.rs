@@ -2,7 +2,6 @@
 
 use crate::stream::Stream;
 use crate::systems::robot::recording::Recording;
-use crate::systems::robot::recording::event::Event;
 use crate::systems::robot::track::Trace;
 
 /// What was measured, what the tracker makes of it, and the truth as far as it is known. Points that were
@@ -35,22 +34,16 @@ pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
             streams.push(Stream::new(topic("truth"), &["x_m", "y_m"], known.collect()));
         }
     }
-    let events = || recording.parts.iter().flat_map(|part| &part.events);
-    let inertial = events().filter_map(|event| match event {
-        Event::Inertial(sample) => Some((seconds(sample.time_us), sample.acceleration.to_vec())),
-        _ => None,
-    });
-    let wheels = events().filter_map(|event| match event {
-        Event::Wheels(sample) => {
-            Some((seconds(sample.time_us), vec![sample.speed, sample.turn_rate]))
+    let mut sensors: Vec<Stream> = Vec::new();
+    for event in recording.parts.iter().flat_map(|part| &part.events) {
+        let Some((topic, columns, row)) = event.streamed() else { continue };
+        let row = (seconds(event.time_us()), row);
+        match sensors.iter_mut().find(|stream| stream.topic == topic) {
+            Some(stream) => stream.rows.push(row),
+            None => sensors.push(Stream::new(topic, columns, vec![row])),
         }
-        _ => None,
-    });
-    let beside = [
-        Stream::new("/robot/imu", &["ax_m_s2", "ay_m_s2", "az_m_s2"], inertial.collect()),
-        Stream::new("/robot/wheels", &["speed_m_s", "turn_rate_rad_s"], wheels.collect()),
-    ];
-    streams.extend(beside.into_iter().filter(|stream| !stream.rows.is_empty()));
+    }
+    streams.extend(sensors);
     streams
 }
 

@@ -51,6 +51,24 @@ impl Event {
             | Self::EpochEnd { time_us } => *time_us,
         }
     }
+
+    /// What a sensor said that is written as a stream: its topic, its columns, their values.
+    pub fn streamed(&self) -> Option<(&'static str, &'static [&'static str], Vec<f64>)> {
+        match self {
+            Self::Inertial(sample) => Some((
+                "/robot/imu",
+                &["ax_m_s2", "ay_m_s2", "az_m_s2"],
+                sample.acceleration.to_vec(),
+            )),
+            Self::Wheels(sample) => Some((
+                "/robot/wheels",
+                &["speed_m_s", "turn_rate_rad_s"],
+                vec![sample.speed, sample.turn_rate],
+            )),
+            // With the ranges stands what became of each.
+            Self::Range(_) | Self::Height { .. } | Self::EpochEnd { .. } => None,
+        }
+    }
 }
 
 /// The samples of each sensor, in the order of its log.
@@ -98,16 +116,25 @@ impl Sensors {
 
     /// Samples of IMU and wheels.
     fn motion(&self) -> Vec<Event> {
-        let mut inertial = self.inertial.iter().copied().peekable();
-        let mut events = Vec::with_capacity(self.inertial.len() + self.wheels.len());
-        for &wheels in &self.wheels {
-            let before = from_fn(|| inertial.next_if(|sample| sample.time_us <= wheels.time_us));
-            events.extend(before.map(Event::Inertial));
-            events.push(Event::Wheels(wheels));
-        }
-        events.extend(inertial.map(Event::Inertial));
-        events
+        let inertial = self.inertial.iter().copied().map(Event::Inertial);
+        merged(inertial, self.wheels.iter().copied().map(Event::Wheels))
     }
+}
+
+/// Both in the order of their times, the first before the second.
+fn merged(
+    first: impl IntoIterator<Item = Event>,
+    second: impl Iterator<Item = Event>,
+) -> Vec<Event> {
+    let mut first = first.into_iter().peekable();
+    let mut events = Vec::with_capacity(first.size_hint().0 + second.size_hint().0);
+    for event in second {
+        let time_us = event.time_us();
+        events.extend(from_fn(|| first.next_if(|before| before.time_us() <= time_us)));
+        events.push(event);
+    }
+    events.extend(first);
+    events
 }
 
 #[cfg(test)]
