@@ -1,0 +1,286 @@
+//! How a table is written: what stands between the columns, and how its numbers look.
+
+use std::borrow::Cow;
+
+use crate::moment;
+use crate::text::Text;
+
+/// How many lines are looked at to tell the dialect.
+const SAMPLE: usize = 400;
+
+/// What stands between the columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Separator {
+    /// `,`
+    Comma,
+    /// `;`
+    Semicolon,
+    /// A tabulator.
+    Tab,
+    /// Blanks and tabulators, any number of them.
+    Blanks,
+}
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dialect {
+    /// What stands between the columns.
+    pub separator: Separator,
+    /// Whether `0,5` is a half; otherwise `0.5` is.
+    pub decimal_comma: bool,
+}
+
+impl std::fmt::Display for Dialect {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let separator = match self.separator {
+            Separator::Comma => "commas",
+            Separator::Semicolon => "semicolons",
+            Separator::Tab => "tabulators",
+            Separator::Blanks => "blanks",
+        };
+        let decimal = if self.decimal_comma { ", decimal commas" } else { "" };
+        write!(f, "{separator}{decimal}")
+    }
+}
+
+impl Dialect {
+    /// In the order in which they are preferred where two read as much.
+    const ALL: [Self; 8] = [
+        Self::new(Separator::Comma, false),
+        Self::new(Separator::Semicolon, false),
+        Self::new(Separator::Tab, false),
+        Self::new(Separator::Blanks, false),
+        Self::new(Separator::Comma, true),
+        Self::new(Separator::Semicolon, true),
+        Self::new(Separator::Tab, true),
+        Self::new(Separator::Blanks, true),
+    ];
+
+    /// The dialect of a separator.
+    pub const fn new(separator: Separator, decimal_comma: bool) -> Self {
+        Self { separator, decimal_comma }
+    }
+
+    /// The dialect in which most numbers of the first lines can be read, and the number of columns; none if there are no
+    /// rows of numbers.
+    pub fn find(text: &Text<'_>) -> Option<(Self, usize)> {
+        let lines: Vec<_> = text.lines().take(SAMPLE).map(|line| line.bytes).collect();
+        let mut best = None;
+        for dialect in Self::ALL {
+            let (numbers, width) = dialect.numbers(&lines);
+            if numbers > best.map_or(0, |(numbers, _, _)| numbers) {
+                best = Some((numbers, dialect, width));
+            }
+        }
+        best.map(|(_, dialect, width)| (dialect, width))
+    }
+
+    /// How many numbers the rows of the most frequent width hold, and that width.
+    fn numbers(self, lines: &[&[u8]]) -> (usize, usize) {
+        // Width, rows and numbers.
+        let mut widths: Vec<[usize; 3]> = Vec::new();
+        for line in lines.iter().filter(|line| !self.is_comment(line)) {
+            let (width, numbers) = self.row(line);
+            if width < 2 || numbers * 2 < width {
+                continue;
+            }
+            match widths.iter_mut().find(|known| known[0] == width) {
+                Some([_, rows, sum]) => (*rows, *sum) = (*rows + 1, *sum + numbers),
+                None => widths.push([width, 1, numbers]),
+            }
+        }
+        let most = widths.into_iter().max_by_key(|&[width, rows, _]| (rows, width));
+        most.map_or((0, 0), |[width, _, numbers]| (numbers, width))
+    }
+
+    /// How many fields a line has, and how many of them are numbers or times.
+    pub(crate) fn row(self, line: &[u8]) -> (usize, usize) {
+        let fields = self.fields(line);
+        let is_value = |field: &&Cow<'_, [u8]>| {
+            self.number(field).is_some() || moment::read(field).is_some()
+        };
+        // A separator may end each line.
+        let ends = fields.len() > 2 && fields.last().is_some_and(|field| field.is_empty());
+        (fields.len() - usize::from(ends), fields.iter().filter(is_value).count())
+    }
+
+    /// Whether a line is a comment: it begins with `#`, `%`, `//` or `;`.
+    pub fn is_comment(self, line: &[u8]) -> bool {
+        match line {
+            [b'#' | b'%', ..] | [b'/', b'/', ..] => true,
+            [b';', ..] => self.separator != Separator::Semicolon,
+            _ => false,
+        }
+    }
+
+    fn separates(self, byte: u8) -> bool {
+        match self.separator {
+            Separator::Comma => byte == b',',
+            Separator::Semicolon => byte == b';',
+            Separator::Tab => byte == b'\t',
+            Separator::Blanks => byte == b' ' || byte == b'\t',
+        }
+    }
+
+    /// The fields of a line, without surrounding blanks and quotation marks.
+    pub fn fields<'a>(self, line: &'a [u8]) -> Vec<Cow<'a, [u8]>> {
+        let mut fields = Vec::new();
+        let mut rest = line.trim_ascii();
+        loop {
+            let (field, length) = self.field(rest);
+            fields.push(field);
+            let Some(after) = rest.get(length + 1..) else { return fields };
+            rest = match self.separator {
+                Separator::Blanks => after.trim_ascii_start(),
+                _ => after,
+            };
+            if rest.is_empty() && self.separator == Separator::Blanks {
+                return fields;
+            }
+        }
+    }
+
+    /// The first field, and where its separator stands.
+    fn field<'a>(self, rest: &'a [u8]) -> (Cow<'a, [u8]>, usize) {
+        let blanks = rest.iter().take_while(|&&b| b == b' ').count();
+        if self.separator != Separator::Blanks || blanks == 0 {
+            if let Some((field, length)) = rest.get(blanks..).and_then(quoted_field) {
+                let end = blanks + length;
+                let after = rest[end..].iter().position(|&byte| self.separates(byte));
+                return (field, after.map_or(rest.len(), |after| end + after));
+            }
+        }
+        let end = rest.iter().position(|&byte| self.separates(byte)).unwrap_or(rest.len());
+        (Cow::Borrowed(rest[..end].trim_ascii()), end)
+    }
+
+    /// What a field holds, if it is a number; it may be infinite or not a number.
+    pub fn number(self, field: &[u8]) -> Option<f64> {
+        const LONGEST: usize = 64;
+        if !self.decimal_comma || !field.contains(&b',') {
+            // A point beside decimal commas groups thousands, or is one of two ways in one table.
+            let plain = !self.decimal_comma || !field.contains(&b'.');
+            return fast_float2::parse(field).ok().filter(|_| plain);
+        }
+        let mut copy = [0; LONGEST];
+        let copy = copy.get_mut(..field.len())?;
+        copy.copy_from_slice(field);
+        let at = field.iter().position(|&byte| byte == b',')?;
+        let between_digits = at > 0 && field.get(at + 1).is_some_and(u8::is_ascii_digit);
+        copy[at] = b'.';
+        fast_float2::parse(copy).ok().filter(|_| between_digits && !field.contains(&b'.'))
+    }
+
+    /// Reads the first number of `rest` as [`Self::number`] would, if it is written without quotation marks and ends with a
+    /// separator or the line: what follows the separator, none at the line's end.
+    pub(crate) fn next_number<'a>(self, rest: &'a [u8]) -> Option<(f64, Option<&'a [u8]>)> {
+        let rest = rest.trim_ascii_start();
+        let (number, length) = if self.decimal_comma {
+            let end = rest.iter().position(|&byte| self.separates(byte)).unwrap_or(rest.len());
+            (self.number(rest[..end].trim_ascii())?, end)
+        } else {
+            fast_float2::parse_partial::<f64, _>(rest).ok()?
+        };
+        let mut after = &rest[length..];
+        if self.separator == Separator::Blanks {
+            let next = after.trim_ascii_start();
+            return match (next.is_empty(), next.len() < after.len()) {
+                (true, _) => Some((number, None)),
+                (false, true) => Some((number, Some(next))),
+                (false, false) => None,
+            };
+        }
+        while let [b' ', more @ ..] = after {
+            after = more;
+        }
+        match after {
+            [] => Some((number, None)),
+            [byte, next @ ..] if self.separates(*byte) => Some((number, Some(next))),
+            _ => None,
+        }
+    }
+}
+
+/// What stands between quotation marks at the beginning, `""` meaning `"`, and the length with the marks.
+fn quoted_field(text: &[u8]) -> Option<(Cow<'_, [u8]>, usize)> {
+    let inside = text.strip_prefix(b"\"")?;
+    let mut field = Vec::new();
+    let mut at = 0;
+    loop {
+        let length = inside[at..].iter().position(|&byte| byte == b'"')?;
+        field.extend_from_slice(&inside[at..at + length]);
+        at += length + 1;
+        if inside.get(at) != Some(&b'"') {
+            return Some((Cow::Owned(field.trim_ascii().to_vec()), at + 1));
+        }
+        field.push(b'"');
+        at += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn find(text: &str) -> Option<(Dialect, usize)> {
+        Dialect::find(&Text::new(text.as_bytes()).unwrap())
+    }
+
+    #[test]
+    fn the_dialect_is_found() {
+        for (text, separator, decimal_comma, width) in [
+            ("a,b,c\n1,2.5,3\n", Separator::Comma, false, 3),
+            ("a, b\n1, 2\n", Separator::Comma, false, 2),
+            ("a;b\n1;2.5\n", Separator::Semicolon, false, 2),
+            ("a;b\n0,5;2\n", Separator::Semicolon, true, 2),
+            ("a\tb\n0,5\t2\n", Separator::Tab, true, 2),
+            ("a\tb c\td\n1\t2\t-3e-5\n", Separator::Tab, false, 3),
+            ("1  2\t3\n", Separator::Blanks, false, 3),
+            ("0,5 2,5 3\n", Separator::Blanks, true, 3),
+            ("\"a\",\"b\"\n\"0,5\",\"2,5\"\n", Separator::Comma, true, 2),
+            ("t,a\n2024-01-01 10:00:00.5,1\n", Separator::Comma, false, 2),
+            ("1,2,\n3,4,\n", Separator::Comma, false, 2),
+        ] {
+            let expected = Some((Dialect::new(separator, decimal_comma), width));
+            assert_eq!(find(text), expected, "{text}");
+        }
+        assert_eq!(find("once upon a time\n"), None);
+    }
+
+    #[test]
+    fn fields_are_trimmed_and_unquoted() {
+        let comma = Dialect::new(Separator::Comma, false);
+        let fields = comma.fields(br#" a , "b, ""c""" ,,"x"#);
+        let fields: Vec<_> = fields.iter().map(|field| String::from_utf8_lossy(field)).collect();
+        assert_eq!(fields, ["a", r#"b, "c""#, "", "\"x"]);
+        assert_eq!(Dialect::new(Separator::Blanks, false).fields(b"1 \t 2  ").len(), 2);
+    }
+
+    #[test]
+    fn numbers_are_whole_fields() {
+        let point = Dialect::new(Separator::Semicolon, false);
+        let comma = Dialect::new(Separator::Semicolon, true);
+        for text in ["1", "-0.5", "+2", "1e-3", ".5", "5."] {
+            let expected = text.parse::<f64>().ok();
+            assert_eq!(point.number(text.as_bytes()), expected, "{text}");
+            let with_comma = text.replace('.', ",");
+            let expected = expected.filter(|_| !".5 5.".contains(text) || !text.contains('.'));
+            assert_eq!(comma.number(with_comma.as_bytes()), expected, "{with_comma}");
+        }
+        for text in ["", "-", "1x", "0x1", "1 2", "1,2,3", "1.234,5", "12:30"] {
+            assert_eq!(point.number(text.as_bytes()), None, "{text}");
+            assert_eq!(comma.number(text.as_bytes()), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_quick_way_reads_the_same() {
+        let comma = Dialect::new(Separator::Comma, false);
+        assert_eq!(comma.next_number(b" 1.5 ,2"), Some((1.5, Some(&b"2"[..]))));
+        assert_eq!(comma.next_number(b"2"), Some((2.0, None)));
+        assert_eq!(comma.next_number(b"2 3,4"), None);
+        let blanks = Dialect::new(Separator::Blanks, false);
+        assert_eq!(blanks.next_number(b"1 \t2"), Some((1.0, Some(&b"2"[..]))));
+        assert_eq!(blanks.next_number(b"1,2"), None);
+    }
+}

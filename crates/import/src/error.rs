@@ -1,0 +1,119 @@
+//! What is wrong with a log, in one sentence on one line.
+
+/// Why a log is refused: one sentence that says what was expected and what was found. It names the line; the caller, who
+/// knows the file's name, puts that before it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The log as a whole is not what it should be.
+    #[error("{problem}")]
+    Log {
+        /// What was expected, and what was found.
+        problem: String,
+    },
+    /// A line is not what it should be.
+    #[error("line {line}: {problem}")]
+    Line {
+        /// The line, from 1.
+        line: usize,
+        /// What was expected, and what was found.
+        problem: String,
+    },
+    /// More of the log is damaged than may be skipped.
+    #[error(
+        "expected at most {allowed} damaged lines of {rows}, found {found}; the first is line {first}"
+    )]
+    Damaged {
+        /// How many lines may be skipped.
+        allowed: usize,
+        /// How many lines should be samples.
+        rows: usize,
+        /// How many lines are damaged.
+        found: usize,
+        /// The first of them, and what is wrong with it.
+        first: Complaint,
+    },
+    /// The log does not tell what is needed, or tells two things that cannot both be true.
+    #[error("{problem}; {option} decides")]
+    Undecided {
+        /// What was expected, and what was found.
+        problem: String,
+        /// The option that says what the log does not, such as `--units gyro=deg/s`.
+        option: String,
+    },
+    /// An option is not of the form it should have.
+    #[error("{problem}")]
+    Options {
+        /// What was expected, and what was found.
+        problem: String,
+    },
+}
+
+/// What is wrong with a line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Complaint {
+    /// The line, from 1.
+    pub line: usize,
+    /// What was expected, and what was found.
+    pub problem: String,
+}
+
+impl std::fmt::Display for Complaint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.line, self.problem)
+    }
+}
+
+impl From<Complaint> for Error {
+    fn from(Complaint { line, problem }: Complaint) -> Self {
+        Self::Line { line, problem }
+    }
+}
+
+impl Error {
+    pub(crate) fn log(problem: impl Into<String>) -> Self {
+        Self::Log { problem: problem.into() }
+    }
+
+    pub(crate) fn line(line: usize, problem: impl Into<String>) -> Self {
+        Self::Line { line, problem: problem.into() }
+    }
+
+    pub(crate) fn undecided(problem: impl Into<String>, option: impl Into<String>) -> Self {
+        Self::Undecided { problem: problem.into(), option: option.into() }
+    }
+
+    pub(crate) fn options(problem: impl Into<String>) -> Self {
+        Self::Options { problem: problem.into() }
+    }
+}
+
+/// A piece of a log in quotation marks, on one line and short.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 24;
+    let text = text.trim();
+    if text.is_empty() {
+        return "nothing".to_owned();
+    }
+    let start: String = text.chars().take(LONGEST).collect();
+    let dots = if text.chars().nth(LONGEST).is_some() { "…" } else { "" };
+    format!("\"{}{dots}\"", start.escape_debug())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_stays_on_one_short_line() {
+        assert_eq!(quoted("a\nb\0"), r#""a\nb\0""#);
+        assert_eq!(quoted(&"x".repeat(1000)).chars().count(), 27);
+        assert_eq!(quoted(" "), "nothing");
+        let first = Complaint { line: 7, problem: "expected 7 fields, found 6".to_owned() };
+        let error = Error::Damaged { allowed: 3, rows: 10, found: 4, first };
+        assert_eq!(
+            error.to_string(),
+            "expected at most 3 damaged lines of 10, found 4; the first is line 7: expected 7 fields, found 6"
+        );
+    }
+}

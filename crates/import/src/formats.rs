@@ -1,0 +1,107 @@
+//! Logs of devices and programs that are known by name: what their columns hold is written down somewhere, so it need not
+//! be found in the data.
+
+mod openlog_artemis;
+mod razor;
+mod xio;
+mod xsens;
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::error::{Error, quoted};
+use crate::table::Table;
+
+/// A device or program that writes logs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Format {
+    /// Text of the 9DoF Razor and its descendants: blanks between ms, 3 × g, 3 × °/s.
+    Razor,
+    /// CSV of x-io's NGIMU and x-IMU3.
+    Xio,
+    /// Export of Xsens MT Manager.
+    Xsens,
+    /// CSV of `SparkFun`'s OpenLog Artemis.
+    OpenLogArtemis,
+}
+
+/// What is known of a format.
+#[derive(Debug)]
+pub(crate) struct Description {
+    pub(crate) format: Format,
+    /// As in the option.
+    pub(crate) name: &'static str,
+    pub(crate) title: &'static str,
+    /// Whether a table is of this format.
+    pub(crate) is_it: fn(&Table) -> bool,
+    /// Names, or numbers without a header, of t, ax, ay, az, gx, gy, gz; the first of several names of time that is there.
+    pub(crate) time: &'static [(&'static str, &'static str)],
+    pub(crate) sensors: [&'static str; 6],
+    pub(crate) acceleration: &'static str,
+    pub(crate) rate: &'static str,
+    /// Whether the data may tell otherwise, as nothing but the shape of the table shows the format.
+    pub(crate) is_a_guess: bool,
+}
+
+const ALL: [&Description; 4] =
+    [&razor::RAZOR, &xio::XIO, &xsens::XSENS, &openlog_artemis::OPENLOG_ARTEMIS];
+
+impl Format {
+    /// The name in the option `--format`.
+    pub fn name(self) -> &'static str {
+        self.description().name
+    }
+
+    /// The format of a table, if it is one of these.
+    pub fn of(table: &Table) -> Option<Self> {
+        ALL.iter().find(|known| (known.is_it)(table)).map(|known| known.format)
+    }
+
+    pub(crate) fn description(self) -> &'static Description {
+        match self {
+            Self::Razor => &razor::RAZOR,
+            Self::Xio => &xio::XIO,
+            Self::Xsens => &xsens::XSENS,
+            Self::OpenLogArtemis => &openlog_artemis::OPENLOG_ARTEMIS,
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.description().title)
+    }
+}
+
+impl FromStr for Format {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let known = ALL.iter().find(|known| known.name == text.trim().to_lowercase());
+        known.map(|known| known.format).ok_or_else(|| {
+            let names: Vec<_> = ALL.iter().map(|known| known.name).collect();
+            Error::options(format!("expected one of {}, found {}", names.join(", "), quoted(text)))
+        })
+    }
+}
+
+/// Whether a table has a header with these names.
+fn has(table: &Table, names: &[&str]) -> bool {
+    table.header.is_some()
+        && names.iter().all(|name| table.columns.iter().any(|column| column.name == *name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lead_to_formats_and_back() {
+        for known in ALL {
+            assert_eq!(known.format.name().parse(), Ok(known.format));
+        }
+        let error = "x".parse::<Format>().unwrap_err().to_string();
+        assert!(error.starts_with("expected one of razor, x-io"), "{error}");
+    }
+}

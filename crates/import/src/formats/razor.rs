@@ -1,0 +1,24 @@
+//! Text of the 9DoF Razor and its descendants, as the walks of Aydın and Erken's paper were logged: blanks between time in
+//! ms, three accelerations in g and three rates in °/s; columns beyond the seventh are ignored. Without a header that names
+//! as many columns nothing but the shape shows it, so data that disagree have their way.
+
+use super::{Description, Format};
+use crate::dialect::Separator;
+use crate::table::Table;
+
+pub(super) const RAZOR: Description = Description {
+    format: Format::Razor,
+    name: "razor",
+    title: "Razor text",
+    is_it,
+    time: &[("1", "ms")],
+    sensors: ["2", "3", "4", "5", "6", "7"],
+    acceleration: "g",
+    rate: "deg/s",
+    is_a_guess: true,
+};
+
+fn is_it(table: &Table) -> bool {
+    let blanks = matches!(table.dialect.separator, Separator::Blanks | Separator::Tab);
+    blanks && table.header.is_none() && table.columns.len() >= 7
+}

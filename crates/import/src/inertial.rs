@@ -1,0 +1,272 @@
+//! Logs of an inertial sensor: time, three axes of an accelerometer, three of a gyroscope.
+//!
+//! # What the data tell
+//!
+//! - **The accelerometer's unit**: at rest it shows 1 g.
+//! - **The gyroscope's unit, and that of time where its spacing leaves a choice**: between two moments of rest the turn
+//!   that it measured must carry the direction of gravity along, and the turned specific force must be gravity's reaction
+//!   in the mean. Of all units the one must fit far better than the others. There is no threshold of plausible rates.
+//! - **Swapped or mirrored axes** of the gyroscope against the accelerometer: the same test over all 48 ways.
+//!
+//! # What the data cannot tell
+//!
+//! **The sign of the accelerometer.** Some sensors show −1 g upwards at rest. Let `R` be the turn from the body to a frame
+//! with z up, `f` the specific force and `g` gravity, so that the acceleration is `a = R f − g z`. A log whose
+//! accelerometer has the other sign holds `f' = −f` with the same rates. Whoever aligns it takes the opposite direction for
+//! up: `R' = H R`, where `H` is half a turn about a horizontal axis, `H z = −z`. The rates carry `R'` along as they carry
+//! `R`. Then
+//!
+//! ```text
+//! a' = R' f' − g z = −H R f − g z = −H (a + g z) − g z = −H a + g z − g z = −H a
+//! ```
+//!
+//! and `−H` is a reflection in a vertical plane: for `H = diag(1, −1, −1)` it is `diag(−1, 1, 1)`. So all positions are
+//! mirrored, heights and lengths are the same, nothing in the log contradicts, and a foot rises in each stride either way.
+//! A sensor may also be mounted upside down, so a negative z proves nothing. Specific force, +1 g upwards at rest, is taken
+//! unless a format or an option (`acc=-g`) says otherwise.
+//!
+//! **A turn of all axes together**, how the sensor is mounted, is no error: it changes nothing.
+
+mod columns;
+mod conclusion;
+mod motion;
+mod order;
+mod raw;
+mod rest;
+mod units;
+
+pub use conclusion::{Conclusion, Source};
+
+use columns::{Axis, Columns};
+use conclusion::conclusions;
+use order::Rows;
+use raw::Raw;
+use units::Units;
+
+use crate::damage::{Damage, Fault};
+use crate::error::{Error, quoted};
+use crate::layout::Kind;
+use crate::options::{Options, ROLES};
+use crate::table::Table;
+use crate::text::{Text, letters};
+use crate::unit::STANDARD_GRAVITY;
+
+/// Beyond what any accelerometer gives, m/s²: 1000 g.
+const LARGEST_SPECIFIC_FORCE: f64 = 1000.0 * STANDARD_GRAVITY;
+/// Beyond what any gyroscope gives, rad/s: 10⁵ °/s.
+const LARGEST_ANGULAR_RATE: f64 = 1e5 * std::f64::consts::PI / 180.0;
+/// Beyond any clock, s: three centuries, within which a double resolves microseconds.
+const LATEST_TIME: f64 = 1e10;
+
+/// What a sensor says at one moment, in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Time of the log's own clock, µs.
+    pub time_us: u64,
+    /// Specific force, m/s²: +1 g upwards at rest.
+    pub specific_force: [f64; 3],
+    /// Angular rate, rad/s, right-handed.
+    pub angular_rate: [f64; 3],
+}
+
+/// A log of an inertial sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inertial {
+    /// At least one sample; times never decrease.
+    pub samples: Vec<Sample>,
+    /// The line of each sample.
+    pub rows: Vec<usize>,
+    /// What was taken from the log's times, s: 0 unless they begin below zero or beyond 10¹⁰ s.
+    pub start: f64,
+    /// The other columns of numbers, by name: a value for each sample, not a number where there is none.
+    pub other: Vec<(String, Vec<f64>)>,
+    /// What was concluded, and from what.
+    pub conclusions: Vec<Conclusion>,
+    /// What was skipped.
+    pub damage: Damage,
+}
+
+impl Inertial {
+    /// The values of another column, if there is one of this name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let found = self.other.iter().find(|(known, _)| known == name);
+        found.map(|(_, values)| values.as_slice())
+    }
+}
+
+/// Reads a log.
+///
+/// # Errors
+/// What was expected and what was found, and which option decides where the log does not tell.
+pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
+    let text = Text::new(bytes)?;
+    let mut table = Table::read(&text)?;
+    let mut damage = std::mem::take(&mut table.damage);
+    let total = table.lines.len() + damage.count();
+    damage.accept(total, options.strict)?;
+    refuse_other_header(&table)?;
+    let columns = Columns::find(&table, options)?;
+    let mut rows = rows(&text, &table, &columns, &mut damage);
+    damage.accept(total, options.strict)?;
+    rows.put_in_order(&periods(&table, &columns), &mut damage)?;
+    let doubles = if options.strict { 0 } else { rows.without_doubles(&mut damage) };
+    damage.accept(total, options.strict)?;
+    let units = units::decide(&rows.raw, &columns.claims, columns.axes_are_said)?;
+    let (samples, start) = samples(&mut rows, &columns, &units, &mut damage);
+    damage.accept(total, options.strict)?;
+    let conclusions = all_conclusions(&table, &columns, &units, doubles, start);
+    let other = other(table, &columns, &rows.places);
+    Ok(Inertial { samples, rows: rows.lines, start, other, conclusions, damage })
+}
+
+/// A line above the rows that names most of the columns, but not as many as there are, leaves open which is which.
+fn refuse_other_header(table: &Table) -> Result<(), Error> {
+    let Some((line, words)) = &table.other_header else { return Ok(()) };
+    let named = words.iter().filter(|word| crate::names::meaning(word).is_some()).count();
+    if named + 1 < ROLES.len() {
+        return Ok(());
+    }
+    let (names, fields) = (words.len(), table.columns.len());
+    Err(Error::line(*line, format!("expected as many names as fields below, found {names} and {fields}")))
+}
+
+/// The rows that hold a number in every column that is needed.
+fn rows(text: &Text<'_>, table: &Table, columns: &Columns, damage: &mut Damage) -> Rows {
+    let count = table.lines.len();
+    let mut rows = Rows {
+        raw: Vec::with_capacity(count),
+        lines: Vec::with_capacity(count),
+        places: Vec::with_capacity(count),
+    };
+    let values = |axis: Axis| (&table.columns[axis.column].values, if axis.is_negative { -1.0 } else { 1.0 });
+    let sensors = columns.sensors.map(values);
+    let times = columns.time.map(|time| &table.columns[time].values);
+    for (i, &line) in table.lines.iter().enumerate() {
+        let value = |axis: usize| sensors[axis].1 * sensors[axis].0.get(i).copied().unwrap_or(f64::NAN);
+        let raw = Raw {
+            time: times.map_or(i as f64, |times| times[i]),
+            force: [value(0), value(1), value(2)],
+            rate: [value(3), value(4), value(5)],
+        };
+        let is_finite = raw.time.is_finite()
+            && raw.force.iter().all(|x| x.is_finite())
+            && raw.rate.iter().all(|x| x.is_finite());
+        if is_finite {
+            rows.raw.push(raw);
+            rows.lines.push(line);
+            rows.places.push(i);
+        } else {
+            damage.add(Fault::Foreign, line, || complaint(text, table, columns, i));
+        }
+    }
+    rows
+}
+
+/// What is wrong with a row that has no number in a column that is needed.
+fn complaint(text: &Text<'_>, table: &Table, columns: &Columns, row: usize) -> String {
+    let needed = columns.time.into_iter().chain(columns.sensors.map(|axis| axis.column));
+    let wrong = needed.into_iter().find(|&column| {
+        table.columns[column].values.get(row).is_none_or(|value| !value.is_finite())
+    });
+    let column = wrong.unwrap_or_default();
+    let fields = table.dialect.fields(text.line(table.lines[row]));
+    let found = fields.get(column).map(|field| letters(field)).unwrap_or_default();
+    format!("expected a finite number in column {}, found {}", table.columns[column].name, quoted(&found))
+}
+
+/// What the clock may count to, in its own unit: a day, or 32 bits.
+fn periods(table: &Table, columns: &Columns) -> Vec<f64> {
+    const DAY: f64 = 86_400.0;
+    const BITS: f64 = 4_294_967_296.0;
+    match columns.time.map(|time| table.columns[time].kind) {
+        Some(Kind::TimeOfDay) => vec![DAY * 1e6],
+        Some(Kind::Number) => vec![DAY, DAY * 1e3, DAY * 1e6, BITS],
+        _ => Vec::new(),
+    }
+}
+
+/// The samples in SI units, without what no sensor can have said; and what was taken from their times, s.
+fn samples(rows: &mut Rows, columns: &Columns, units: &Units, damage: &mut Damage) -> (Vec<Sample>, f64) {
+    let [force, rate, time] = &units.units;
+    let first = rows.raw.first().map_or(0.0, |raw| raw.time);
+    let last = rows.raw.last().map_or(0.0, |raw| raw.time);
+    let is_clock = columns.time.is_some() && first >= 0.0 && last * time.scale <= LATEST_TIME;
+    let start = if is_clock { 0.0 } else { first };
+    let microseconds = |time_in_unit: f64| ((time_in_unit - start) * (time.scale * 1e6)).round() as u64;
+    let mut samples = Vec::with_capacity(rows.raw.len());
+    let mut is_left = Vec::new();
+    for (i, raw) in rows.raw.iter().enumerate() {
+        let specific_force = raw.force.map(|x| x * force.scale);
+        let angular_rate = raw.rate.map(|x| x * rate.scale);
+        let beyond = beyond(&specific_force, &angular_rate);
+        if let Some(problem) = beyond {
+            damage.add(Fault::OutOfRange, rows.lines[i], || problem);
+            is_left.push(i);
+        } else {
+            samples.push(Sample { time_us: microseconds(raw.time), specific_force, angular_rate });
+        }
+    }
+    rows.remove(&is_left);
+    (samples, start * time.scale)
+}
+
+/// What no sensor can have said.
+fn beyond(specific_force: &[f64; 3], angular_rate: &[f64; 3]) -> Option<String> {
+    let values = [
+        (&ROLES[1..4], specific_force, LARGEST_SPECIFIC_FORCE, "m/s² (1000 g)"),
+        (&ROLES[4..7], angular_rate, LARGEST_ANGULAR_RATE, "rad/s (100000 °/s)"),
+    ];
+    values.into_iter().find_map(|(names, values, largest, unit)| {
+        let axis = (0..3).find(|&axis| values[axis].abs() > largest)?;
+        let (name, value) = (names[axis], values[axis]);
+        Some(format!("expected at most {largest:.0} {unit} in column {name}, found {value:e}"))
+    })
+}
+
+fn all_conclusions(
+    table: &Table,
+    columns: &Columns,
+    units: &Units,
+    doubles: usize,
+    start: f64,
+) -> Vec<Conclusion> {
+    let Units { units: [force, rate, time], sources } = units;
+    let mut parts = vec![
+        (format!("time in {time}"), sources[2]),
+        (format!("acceleration in {force}"), sources[0]),
+        (format!("angular rate in {rate}"), sources[1]),
+    ];
+    let name = |axis: &Axis| {
+        let sign = if axis.is_negative { "−" } else { "" };
+        format!("{sign}{}", table.columns[axis.column].name)
+    };
+    let names = columns.time.map(|time| table.columns[time].name.clone()).into_iter().chain(columns.sensors.iter().map(name));
+    let names: Vec<_> = names.collect();
+    if names != ROLES {
+        parts.push((format!("columns {}", names.join(", ")), columns.source));
+    }
+    if table.dialect != crate::Dialect::new(crate::Separator::Comma, false) {
+        parts.push((table.dialect.to_string(), Source::Data));
+    }
+    if doubles > 0 {
+        parts.push((format!("{doubles} samples twice"), Source::Data));
+    }
+    if start != 0.0 {
+        parts.push((format!("times counted from {start} s"), Source::Data));
+    }
+    conclusions(parts)
+}
+
+/// The numbers that are neither time nor the sensor's.
+fn other(table: Table, columns: &Columns, places: &[usize]) -> Vec<(String, Vec<f64>)> {
+    let used = |at: usize| columns.time == Some(at) || columns.sensors.iter().any(|axis| axis.column == at);
+    let all = table.columns.into_iter().enumerate();
+    let others = all.filter(|(at, column)| !used(*at) && column.kind != Kind::Words);
+    others
+        .map(|(_, column)| {
+            let whole = places.len() == column.values.len();
+            let values = if whole { column.values } else { places.iter().map(|&i| column.values[i]).collect() };
+            (column.name, values)
+        })
+        .collect()
+}

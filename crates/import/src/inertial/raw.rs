@@ -1,0 +1,9 @@
+//! A sample in the log's own units.
+
+/// A sample in the log's own units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Raw {
+    pub(crate) time: f64,
+    pub(crate) force: [f64; 3],
+    pub(crate) rate: [f64; 3],
+}

@@ -1,0 +1,148 @@
+//! Where a table begins: its header, a line of units, its first row.
+
+use std::borrow::Cow;
+
+use crate::dialect::{Dialect, Separator};
+use crate::error::Error;
+use crate::moment::{self, Moment};
+use crate::text::{Text, letters};
+use crate::unit;
+
+/// How many rows are looked at to tell what a column holds.
+const SAMPLE: usize = 200;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// Numbers.
+    Number,
+    /// Dates with times: microseconds since 1970.
+    Date,
+    /// Times of day: microseconds since midnight.
+    TimeOfDay,
+    /// Anything else; it is not kept.
+    Words,
+}
+
+/// The beginning of a table.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    pub(crate) dialect: Dialect,
+    /// The line of the header.
+    pub(crate) header: Option<usize>,
+    /// The line of the first row.
+    pub(crate) first_row: usize,
+    pub(crate) names: Vec<String>,
+    pub(crate) units: Vec<Option<String>>,
+    pub(crate) kinds: Vec<Kind>,
+    /// What stands right above the rows, if it is not a header of as many columns.
+    pub(crate) other_header: Option<(usize, Vec<String>)>,
+}
+
+impl Layout {
+    pub(crate) fn find(text: &Text<'_>) -> Result<Self, Error> {
+        let nothing = || Error::log("expected a table of numbers, found none");
+        let (dialect, width) = Dialect::find(text).ok_or_else(nothing)?;
+        let is_row = |bytes: &[u8]| {
+            let (fields, numbers) = dialect.row(bytes);
+            !dialect.is_comment(bytes) && fields == width && numbers * 2 >= width
+        };
+        let first = text.lines().find(|line| is_row(line.bytes)).ok_or_else(nothing)?;
+        let above: Vec<_> =
+            text.lines().take_while(|line| line.number < first.number).collect();
+        let names = |bytes: &[u8]| header_names(dialect, width, bytes, width / 2 + 1);
+        let mut layout = Self {
+            dialect,
+            header: None,
+            first_row: first.number,
+            names: (1..=width).map(|number| number.to_string()).collect(),
+            units: vec![None; width],
+            kinds: kinds(text, dialect, width, first.number),
+            other_header: None,
+        };
+        // A line of units stands under names, a header may be the last comment.
+        let mut lines = above.iter().rev().map(|line| (line.number, line.bytes));
+        let mut nearest = lines.next();
+        if let (Some(units), Some((number, bytes))) =
+            (nearest.and_then(|(_, bytes)| units_line(header_names(dialect, width, bytes, 2)?)), lines.next())
+            && names(bytes).is_some()
+        {
+            layout.units = units;
+            nearest = Some((number, bytes));
+        }
+        if let Some((number, bytes)) = nearest {
+            match names(bytes) {
+                Some(names) => (layout.header, layout.names) = (Some(number), names),
+                None => layout.other_header = Some((number, any_names(bytes))),
+            }
+        }
+        Ok(layout)
+    }
+}
+
+/// The names of a header of so many columns, if a line is one: no field is a number, and at least so many are not empty.
+fn header_names(dialect: Dialect, width: usize, bytes: &[u8], least: usize) -> Option<Vec<String>> {
+    let mut bytes = bytes;
+    while let [b'#' | b'%' | b'/' | b' ', rest @ ..] | [b';', rest @ ..] = bytes {
+        bytes = rest;
+    }
+    // Names may hold blanks, and be separated otherwise than the numbers.
+    let separators = [dialect.separator, Separator::Tab, Separator::Comma, Separator::Semicolon];
+    separators.into_iter().find_map(|separator| {
+        let fields = Dialect::new(separator, false).fields(bytes);
+        let fields = match fields.split_last() {
+            Some((last, fields)) if fields.len() == width && last.is_empty() => fields,
+            _ => &fields,
+        };
+        let named = fields.iter().filter(|field| !field.is_empty()).count();
+        let is_number = |field: &Cow<'_, [u8]>| fast_float2::parse::<f64, _>(field).is_ok();
+        let is_header =
+            fields.len() == width && named >= least && !fields.iter().any(is_number);
+        is_header.then(|| fields.iter().map(|field| letters(field)).collect())
+    })
+}
+
+/// The words of a line, however they are separated.
+fn any_names(bytes: &[u8]) -> Vec<String> {
+    let text = letters(bytes);
+    let words = text.split([',', ';', '\t', ' ']).map(|word| word.trim().to_owned());
+    words.filter(|word| !word.is_empty()).collect()
+}
+
+/// The units of a line that names nothing else.
+fn units_line(fields: Vec<String>) -> Option<Vec<Option<String>>> {
+    let fields: Vec<_> = fields
+        .into_iter()
+        .map(|field| field.trim_matches(['[', ']', '(', ')']).to_owned())
+        .collect();
+    let known = fields.iter().filter(|field| unit::is_known(field)).count();
+    let named = fields.iter().filter(|field| !field.is_empty() && *field != "-").count();
+    (named > 1 && known * 2 > named).then(|| {
+        fields.into_iter().map(|field| Some(field).filter(|field| !field.is_empty())).collect()
+    })
+}
+
+/// What most rows hold in each column.
+fn kinds(text: &Text<'_>, dialect: Dialect, width: usize, first_row: usize) -> Vec<Kind> {
+    let mut counts = vec![[0_usize; 4]; width];
+    let rows = text.lines().skip_while(|line| line.number < first_row);
+    for line in rows.filter(|line| !dialect.is_comment(line.bytes)).take(SAMPLE) {
+        for (count, field) in counts.iter_mut().zip(dialect.fields(line.bytes)) {
+            let kind = match moment::read(&field) {
+                _ if field.is_empty() => continue,
+                _ if dialect.number(&field).is_some() => 0,
+                Some(Moment::Date(_)) => 1,
+                Some(Moment::OfDay(_)) => 2,
+                None => 3,
+            };
+            count[kind] += 1;
+        }
+    }
+    let kind = |count: [usize; 4]| {
+        let most = count.iter().max().copied().unwrap_or(0);
+        let place = count.iter().position(|&count| count == most).unwrap_or(0);
+        [Kind::Number, Kind::Date, Kind::TimeOfDay, Kind::Words][place]
+    };
+    counts.into_iter().map(kind).collect()
+}

@@ -1,0 +1,168 @@
+//! What the user says about a log, which overrules all that is found.
+
+use std::str::FromStr;
+
+use crate::error::{Error, quoted};
+use crate::formats::Format;
+use crate::unit::{Quantity, Unit};
+
+/// What the user says about a log.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// Which columns are time, accelerometer and gyroscope.
+    pub columns: Columns,
+    /// Which units they have.
+    pub units: Units,
+    /// Which program or device wrote the log.
+    pub format: Option<Format>,
+    /// Whether the first damaged line refuses the log, instead of being skipped.
+    pub strict: bool,
+}
+
+/// The names of what a log must hold.
+pub(crate) const ROLES: [&str; 7] = ["t", "ax", "ay", "az", "gx", "gy", "gz"];
+
+/// Which columns are time, accelerometer and gyroscope: `t=timestamp,ax=AccX,gy=-GyrZ`. A minus sign turns an axis round.
+/// Without a header columns are named by their number, from 1.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Columns {
+    /// In the order t, ax, ay, az, gx, gy, gz.
+    pub(crate) picks: [Option<Pick>; 7],
+}
+
+/// A column, as it is or turned round.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Pick {
+    pub(crate) name: String,
+    pub(crate) is_negative: bool,
+}
+
+impl FromStr for Columns {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut columns = Self::default();
+        for (role, name) in pairs(text, "t=timestamp,ax=AccX")? {
+            let Some(place) = ROLES.iter().position(|&known| known == role) else {
+                let roles = ROLES.join(", ");
+                return Err(Error::options(format!("expected one of {roles}, found {}", quoted(role))));
+            };
+            let (name, is_negative) =
+                name.strip_prefix('-').map_or((name, false), |name| (name, true));
+            columns.picks[place] = Some(Pick { name: name.to_owned(), is_negative });
+        }
+        Ok(columns)
+    }
+}
+
+/// The units of a log: `acc=g,gyro=deg/s,t=ms`. A factor may stand before a unit (`gyro=0.07deg/s`), a minus sign before
+/// that of an accelerometer that shows −1 g upwards at rest (`acc=-g`); counts are told by how many make a g or a °/s
+/// (`acc=16384lsb,gyro=131lsb`), and samples that only have a number by their rate (`t=100Hz`).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Units {
+    /// Of the accelerometer.
+    pub acceleration: Option<Unit>,
+    /// Of the gyroscope.
+    pub rate: Option<Unit>,
+    /// Of time.
+    pub time: Option<TimeUnit>,
+}
+
+/// How time is told.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TimeUnit {
+    /// By a clock of this unit.
+    Clock(Unit),
+    /// By counting samples of this rate, Hz.
+    Rate(f64),
+}
+
+impl FromStr for Units {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let mut units = Self::default();
+        for (quantity, unit) in pairs(text, "acc=g,gyro=deg/s,t=ms")? {
+            let wrong = |expected: &str| {
+                Error::options(format!("expected {expected}, found {}", quoted(unit)))
+            };
+            match quantity {
+                "acc" | "a" | "acceleration" => {
+                    let read = Unit::read_scaled(Quantity::Acceleration, unit);
+                    let read = read.ok_or_else(|| wrong("a unit such as m/s2, g, mg or 16384lsb"))?;
+                    units.acceleration = Some(read);
+                }
+                "gyro" | "gyr" | "g" | "rate" => {
+                    let read = Unit::read_scaled(Quantity::Rate, unit);
+                    let read = read.ok_or_else(|| wrong("a unit such as rad/s, deg/s or 131lsb"))?;
+                    units.rate = Some(read);
+                }
+                "t" | "time" => units.time = Some(time_unit(unit).ok_or_else(|| {
+                    wrong("a unit such as s, ms, us or ns, or a rate such as 100Hz")
+                })?),
+                _ => {
+                    let found = quoted(quantity);
+                    return Err(Error::options(format!("expected acc, gyro or t, found {found}")));
+                }
+            }
+        }
+        Ok(units)
+    }
+}
+
+fn time_unit(text: &str) -> Option<TimeUnit> {
+    let lower = text.to_lowercase();
+    if let Some(rate) = lower.strip_suffix("hz") {
+        let rate: f64 = rate.trim().parse().ok()?;
+        return (rate.is_normal() && rate > 0.0).then_some(TimeUnit::Rate(rate));
+    }
+    let unit = Unit::read_scaled(Quantity::Time, text)?;
+    (unit.scale > 0.0).then_some(TimeUnit::Clock(unit))
+}
+
+/// The pairs of `a=b,c=d`.
+fn pairs<'a>(text: &'a str, example: &str) -> Result<Vec<(&'a str, &'a str)>, Error> {
+    let wrong = |part: &str| {
+        Error::options(format!("expected pairs such as {example}, found {}", quoted(part)))
+    };
+    let pair = |part: &'a str| {
+        let (name, value) = part.split_once('=').ok_or_else(|| wrong(part))?;
+        let (name, value) = (name.trim(), value.trim());
+        if name.is_empty() || value.is_empty() { Err(wrong(part)) } else { Ok((name, value)) }
+    };
+    text.split(',').map(pair).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_read() {
+        let columns: Columns = "t=timestamp, gy=-Gyr Z".parse().unwrap();
+        assert_eq!(columns.picks[0].as_ref().unwrap().name, "timestamp");
+        let pick = columns.picks[5].as_ref().unwrap();
+        assert_eq!((pick.name.as_str(), pick.is_negative), ("Gyr Z", true));
+        for (text, expected) in [
+            ("x=y", "expected one of t, ax, ay, az, gx, gy, gz, found \"x\""),
+            ("t", "expected pairs such as t=timestamp,ax=AccX, found \"t\""),
+            ("t=", "found \"t=\""),
+            ("", "found nothing"),
+        ] {
+            let error = text.parse::<Columns>().unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn units_are_read() {
+        let units: Units = "acc=-g,gyro=131lsb,t=100Hz".parse().unwrap();
+        assert_eq!(units.acceleration.unwrap().name, "−g");
+        assert_eq!(units.rate.unwrap().name, "counts of 1/131 °/s");
+        assert_eq!(units.time, Some(TimeUnit::Rate(100.0)));
+        assert!("t=ms".parse::<Units>().is_ok());
+        for text in ["acc=ms", "t=-s", "t=0Hz", "gyro=g", "mag=uT", "t=infHz"] {
+            assert!(text.parse::<Units>().is_err(), "{text}");
+        }
+    }
+}

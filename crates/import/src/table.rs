@@ -1,0 +1,209 @@
+//! A table of numbers, whatever separates them.
+
+use std::borrow::Cow;
+
+use crate::damage::{Damage, Fault};
+use crate::dialect::Dialect;
+use crate::error::Error;
+use crate::layout::{Kind, Layout};
+use crate::moment;
+use crate::text::{Line, Text};
+
+/// A column of a [`Table`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// As in the header, with a unit if it stands there; without a header its number, from 1.
+    pub name: String,
+    /// As in a line of units under the header.
+    pub unit: Option<String>,
+    /// What it holds.
+    pub kind: Kind,
+    /// A value for each row, not a number where there is none; nothing if it holds words.
+    pub values: Vec<f64>,
+}
+
+/// A table of numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// How it is written.
+    pub dialect: Dialect,
+    /// The line of the header, if there is one.
+    pub header: Option<usize>,
+    /// The words right above the first row that are no header, as there are more or fewer of them than columns; and
+    /// their line.
+    pub other_header: Option<(usize, Vec<String>)>,
+    /// The columns, in the order of the log.
+    pub columns: Vec<Column>,
+    /// The line of each row.
+    pub lines: Vec<usize>,
+    /// How many lines above the rows are neither header nor comment.
+    pub above: usize,
+    /// How many lines are comments.
+    pub comments: usize,
+    /// The lines that are not rows of as many fields as there are columns.
+    pub damage: Damage,
+}
+
+impl Table {
+    /// Reads a table: comments are skipped, damaged lines are skipped and counted.
+    ///
+    /// # Errors
+    /// [`Error::Log`] if there is no table of numbers.
+    pub fn read(text: &Text<'_>) -> Result<Self, Error> {
+        let layout = Layout::find(text)?;
+        let dialect = layout.dialect;
+        let width = layout.names.len();
+        // Each row takes two bytes a column, at least.
+        let rows = (text.breaks() + 1).min(text.len() / (2 * width) + 1);
+        let columns = layout.names.into_iter().zip(layout.units).zip(layout.kinds);
+        let columns: Vec<_> = columns
+            .map(|((name, unit), kind)| {
+                let rows = if kind == Kind::Words { 0 } else { rows };
+                Column { name, unit, kind, values: Vec::with_capacity(rows) }
+            })
+            .collect();
+        let mut table = Self {
+            dialect,
+            header: layout.header,
+            other_header: layout.other_header,
+            columns,
+            lines: Vec::with_capacity(rows),
+            above: 0,
+            comments: 0,
+            damage: Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() },
+        };
+        table.read_rows(text, layout.first_row);
+        Ok(table)
+    }
+
+    fn read_rows(&mut self, text: &Text<'_>, first_row: usize) {
+        let width = self.columns.len();
+        let mut row = vec![f64::NAN; width];
+        let mut torn: Option<(Line<'_>, usize)> = None;
+        for line in text.lines() {
+            if Some(line.number) == self.header {
+                continue;
+            }
+            if self.dialect.is_comment(line.bytes) {
+                self.comments += 1;
+                continue;
+            }
+            if line.number < first_row {
+                self.above += 1;
+                continue;
+            }
+            if let Some((torn, found)) = torn.take() {
+                self.leave_out(Fault::Torn, torn, found);
+            }
+            match self.read_row(line.bytes, &mut row) {
+                Ok(()) => {
+                    for (column, &value) in self.columns.iter_mut().zip(&row) {
+                        if column.kind != Kind::Words {
+                            column.values.push(value);
+                        }
+                    }
+                    self.lines.push(line.number);
+                }
+                Err(found) => torn = Some((line, found)),
+            }
+        }
+        // What is torn at the very end was cut off.
+        if let Some((torn, found)) = torn {
+            let fault = if found < width { Fault::Cut } else { Fault::Torn };
+            self.leave_out(fault, torn, found);
+        }
+    }
+
+    fn leave_out(&mut self, fault: Fault, line: Line<'_>, found: usize) {
+        let (expected, header) = (self.columns.len(), self.header.is_some());
+        let like = if header { "as in the header" } else { "as in the first row" };
+        self.damage.add(fault, line.number, || {
+            format!("expected {expected} fields {like}, found {found}")
+        });
+    }
+
+    /// Reads a line's fields into a row.
+    ///
+    /// # Errors
+    /// The number of fields, if it is not that of the columns.
+    fn read_row(&self, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
+        let mut rest = Some(line);
+        for (column, value) in self.columns.iter().zip(row.iter_mut()) {
+            let next = match (column.kind, rest) {
+                (Kind::Number, Some(rest)) => self.dialect.next_number(rest),
+                _ => None,
+            };
+            let Some((number, after)) = next else { return self.read_fields(line, row) };
+            (*value, rest) = (number, after);
+        }
+        // A separator may end the line.
+        match rest {
+            None | Some([]) => Ok(()),
+            Some(_) => self.read_fields(line, row),
+        }
+    }
+
+    /// As [`Self::read_row`], for fields that are not all plain numbers.
+    fn read_fields(&self, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
+        let fields = self.dialect.fields(line);
+        let width = self.columns.len();
+        let ends = fields.len() == width + 1 && fields.last().is_some_and(|last| last.is_empty());
+        if fields.len() != width && !ends {
+            return Err(fields.len());
+        }
+        for ((column, value), field) in self.columns.iter().zip(row).zip(&fields) {
+            *value = self.value(column.kind, field).unwrap_or(f64::NAN);
+        }
+        Ok(())
+    }
+
+    fn value(&self, kind: Kind, field: &Cow<'_, [u8]>) -> Option<f64> {
+        match kind {
+            Kind::Number => self.dialect.number(field),
+            Kind::Date | Kind::TimeOfDay => moment::read(field).map(moment::Moment::microseconds),
+            Kind::Words => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Table {
+        Table::read(&Text::new(text.as_bytes()).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn columns_have_names_units_and_values() {
+        let table = read(
+            "Device: x\n# made by hand\nt;x;note;at\ns;m;;\n0,5;2;#;10:00:00\n\n1;;a b;10:00:01\n",
+        );
+        assert_eq!((table.header, table.above, table.comments), (Some(3), 2, 1));
+        let names: Vec<_> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        assert_eq!(names, ["t", "x", "note", "at"]);
+        assert_eq!(table.columns[1].unit.as_deref(), Some("m"));
+        assert_eq!(table.columns[0].values, [0.5, 1.0]);
+        assert!(table.columns[1].values[1].is_nan());
+        assert_eq!(table.columns[2].values, []);
+        assert_eq!(table.columns[3].values, [36e9, 36_001e6]);
+        assert_eq!(table.lines, [5, 7]);
+    }
+
+    #[test]
+    fn lines_of_another_width_are_counted() {
+        let table = read("a,b,c\n1,2,3\n4,5\n6,7,8,9\n1,2,3\n1,2,3,\n1,2");
+        assert_eq!(table.lines, [2, 5, 6]);
+        let losses: Vec<_> =
+            table.damage.losses.iter().map(|loss| (loss.fault, loss.lines.clone())).collect();
+        assert_eq!(losses, [(Fault::Torn, vec![3, 4]), (Fault::Cut, vec![7])]);
+        assert!(table.damage.end_may_be_cut);
+    }
+
+    #[test]
+    fn a_header_may_be_a_comment_or_missing() {
+        assert_eq!(read("# t, x\n1 2\n3 4\n").columns[1].name, "x");
+        assert_eq!(read("1 2\n3 4\n").columns[1].name, "2");
+        assert_eq!(read("a b c\n1 2\n").other_header.unwrap().1, ["a", "b", "c"]);
+    }
+}

@@ -1,0 +1,8 @@
+//! The importer against recordings, variants of them, and damage.
+
+mod mutations;
+mod plain;
+mod recordings;
+mod speed;
+mod variants;
+mod walk;
