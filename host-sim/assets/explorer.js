@@ -212,6 +212,9 @@
     element("files").replaceChildren(...source.files.flatMap((file) => [
       make("label", { htmlFor: `file-${file.name}`, textContent: `${file.label}${file.required ? "" : " (optional)"}` }),
       make("input", { type: "file", id: `file-${file.name}`, name: file.name, required: file.required, multiple: file.several }),
+    ]), ...(source.files.some((file) => file.imported) ? source.reading : []).flatMap(([name, help]) => [
+      make("label", { htmlFor: `reading-${name}`, textContent: help }),
+      make("input", { type: "text", id: `reading-${name}`, name }),
     ]));
     location.hash = source.system;
     choose();
@@ -241,7 +244,7 @@
   element("open").addEventListener("submit", async (event) => {
     event.preventDefault();
     const files = new FormData(element("open"));
-    for (const [name, file] of [...files]) if (!file.size && !file.name) files.delete(name);
+    for (const [name, file] of [...files]) if (file instanceof File && !file.size && !file.name) files.delete(name);
     open(`api/open/${system().system}`, files);
   });
 

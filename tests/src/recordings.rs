@@ -61,7 +61,8 @@ impl Group {
     ) -> Self {
         let mut group = Self { path_errors: Vec::new(), rmse_m: Vec::new() };
         for (log_file, truth_file) in walks {
-            let mut log = log::read(&log_file).expect("a recording can be read");
+            let mut log =
+                log::read(&log_file, &log::Options::default()).expect("a recording can be read");
             let footprints = truth::read(&truth_file, &log).expect("a truth can be read");
             if let Some(rate_hz) = rate_hz {
                 log = resample::average_down(&log, rate_hz).expect("a lower rate");

@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::arguments::chosen;
-use crate::system::{Account, AnySystem, Files, Setting, Settings, Source, Wanted};
+use crate::system::{Account, AnySystem, Files, Reading, Setting, Settings, Source, Wanted};
 use crate::systems::ALL;
 use crate::{Error, output};
 
@@ -35,11 +35,14 @@ fn of(system: &dyn AnySystem) -> Command {
             // Text that is a value of a setting is no file.
             !settings.iter().any(|setting| setting.name == *name)
         }));
+    let imports = system.files().iter().any(|field| field.imported);
+    let reading = Reading::arguments().filter(|_| imports);
     let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
     Command::new(system.name())
         .about(system.title())
         .args(files)
         .arg(synthetic)
+        .args(reading.map(|arg| arg.conflicts_with("synthetic")))
         .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
         .next_help_heading("Output")
         .args(outputs)
@@ -70,7 +73,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 /// Reads, tracks, compares and writes.
 pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Account, Error> {
     let mut settings = Settings::matched(system.settings(), matches);
-    let files = Files::matched(system.files(), matches, &mut settings);
+    let files = Files::matched(system.files(), matches, &mut settings)?;
     let outputs = system.outputs().iter();
     let tables = outputs
         .filter_map(|output| Some((output.name, matches.get_one::<PathBuf>(output.name)?.clone())));

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
+use super::reading::Reading;
 use super::setting::Setting;
 use super::settings::Settings;
 use crate::Error;
@@ -27,17 +28,19 @@ pub struct FileField {
     /// Whether it is read for a stream that is followed while it comes.
     #[serde(skip)]
     pub in_live: bool,
+    /// Whether it may be the log of a device that nobody here knows: its columns and units are found, or said.
+    pub imported: bool,
 }
 
 impl FileField {
     /// A file without which there is no recording.
     pub const fn required(name: &'static str, help: &'static str) -> Self {
-        Self { name, help, required: true, several: false, in_live: false }
+        Self { name, help, required: true, several: false, in_live: false, imported: false }
     }
 
     /// A file that may be missing.
     pub const fn optional(name: &'static str, help: &'static str) -> Self {
-        Self { name, help, required: false, several: false, in_live: false }
+        Self { name, help, required: false, several: false, in_live: false, imported: false }
     }
 
     /// Perhaps more than one.
@@ -51,6 +54,13 @@ impl FileField {
     #[must_use]
     pub const fn live(mut self) -> Self {
         self.in_live = true;
+        self
+    }
+
+    /// Of any device.
+    #[must_use]
+    pub const fn imported(mut self) -> Self {
+        self.imported = true;
         self
     }
 
@@ -70,14 +80,25 @@ impl FileField {
     }
 }
 
-/// Where the files of a recording lie, by the names of their fields.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Files(BTreeMap<String, Vec<PathBuf>>);
+/// Where the files of a recording lie, by the names of their fields, and how they are to be read.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Files {
+    paths: BTreeMap<String, Vec<PathBuf>>,
+    /// What the user says about an imported log.
+    pub reading: Reading,
+}
 
 impl Files {
     /// What the command line names. A text that is a value of the setting of the same name is given to that.
-    pub fn matched(fields: &[FileField], matches: &ArgMatches, settings: &mut Settings) -> Self {
-        let mut files = Self::default();
+    ///
+    /// # Errors
+    /// As [`Reading::matched`].
+    pub fn matched(
+        fields: &[FileField],
+        matches: &ArgMatches,
+        settings: &mut Settings,
+    ) -> Result<Self, Error> {
+        let mut files = Self { reading: Reading::matched(matches)?, ..Self::default() };
         for field in fields {
             if let Ok(Some(paths)) = matches.try_get_many::<PathBuf>(field.name) {
                 paths.for_each(|path| files.add(field.name, path));
@@ -89,12 +110,12 @@ impl Files {
                 }
             }
         }
-        files
+        Ok(files)
     }
 
     /// Adds a file.
     pub fn add(&mut self, field: impl Into<String>, path: impl Into<PathBuf>) {
-        self.0.entry(field.into()).or_default().push(path.into());
+        self.paths.entry(field.into()).or_default().push(path.into());
     }
 
     /// The file of a field, if there is one.
@@ -104,12 +125,12 @@ impl Files {
 
     /// All files of a field.
     pub fn all(&self, field: &str) -> &[PathBuf] {
-        self.0.get(field).map_or(&[], Vec::as_slice)
+        self.paths.get(field).map_or(&[], Vec::as_slice)
     }
 
     /// All files.
     pub fn paths(&self) -> impl Iterator<Item = &PathBuf> + Clone {
-        self.0.values().flatten()
+        self.paths.values().flatten()
     }
 
     /// The file of a field that must be there.
@@ -136,7 +157,7 @@ impl Files {
 }
 
 /// Where a recording comes from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Source {
     /// Files.
     Files(Files),
@@ -149,11 +170,11 @@ impl Source {
     pub fn arguments(&self) -> Vec<String> {
         match self {
             Self::Synthetic(name) => vec!["--synthetic".to_owned(), name.clone()],
-            Self::Files(Files(files)) => {
-                let each = files.iter().flat_map(|(field, paths)| {
+            Self::Files(Files { paths, reading }) => {
+                let each = paths.iter().flat_map(|(field, paths)| {
                     paths.iter().map(move |path| [format!("--{field}"), printable_path(path)])
                 });
-                each.flatten().collect()
+                each.flatten().chain(reading.words()).collect()
             }
         }
     }

@@ -63,8 +63,11 @@ fn loops_of_a_bare_chip_close() {
     let mut logs = 0;
     for entry in folder.join("mpu6050").read_dir().expect("the folder mpu6050") {
         let file = entry.expect("an entry").path();
-        let Walk { path_length_m, closure_m, .. } =
-            walk(&log::read(&file).expect("a log").samples, &Options::default()).expect("a walk");
+        let Walk { path_length_m, closure_m, .. } = walk(
+            &log::read(&file, &log::Options::default()).expect("a log").samples,
+            &Options::default(),
+        )
+        .expect("a walk");
         println!("{}: path {path_length_m:.2} m, closure {closure_m:.3} m", file.display());
         assert!((path_length_m / 21.1 - 1.0).abs() <= 0.05, "{path_length_m} m of 21.1 m");
         assert!(closure_m <= 0.2, "{closure_m} m from the start");

@@ -139,7 +139,7 @@ pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
     let system = matches.get_one::<String>("system").and_then(|name| find(name));
     let Some(system) = system else { return Ok((stream, Following::NONE)) };
     let mut settings = Settings::matched(live_settings(system), matches);
-    let files = Files::matched(system.files(), matches, &mut settings);
+    let files = Files::matched(system.files(), matches, &mut settings)?;
     system.refuse_idle(&settings)?;
     Ok((stream, Following::of(system, &settings, &files)?))
 }

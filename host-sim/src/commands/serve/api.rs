@@ -17,7 +17,7 @@ use super::Shared;
 use super::sessions::Recording;
 use crate::Error;
 use crate::figure::{View, plotly};
-use crate::system::{Answer, AnySystem, Files, Opened, Setting, Settings, Source};
+use crate::system::{Answer, AnySystem, Files, Opened, Reading, Setting, Settings, Source};
 
 /// As many as a figure of the page has columns of pixels, about.
 const MOST_POINTS: usize = 700;
@@ -54,6 +54,7 @@ pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
             "system": system.name(),
             "title": system.title(),
             "files": system.files(),
+            "reading": Reading::forms(),
             "bundled": system.synthetic(),
         })
     };
@@ -87,6 +88,11 @@ pub(super) async fn open_files(
     let mut files = Files::default();
     while let Some(part) = upload.next_field().await.map_err(Refusal::of)? {
         let field = part.name().unwrap_or_default().to_owned();
+        if Reading::texts().any(|name| name == field) {
+            let text = part.text().await.map_err(Refusal::of)?;
+            files.reading.say(&field, text.trim())?;
+            continue;
+        }
         if !system.files().iter().any(|known| known.name == field) {
             return Err(Refusal::of(format!("{name} has no file {field:?}")));
         }

@@ -22,6 +22,7 @@ struct Report {
     path_length_m: f64,
     closure_m: f64,
     strides: Vec<StrideReport>,
+    import: Vec<String>,
     warnings: Vec<String>,
     accuracy: Option<Accuracy>,
 }
@@ -50,11 +51,15 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         path_length_m: walk.path_length_m,
         closure_m: walk.closure_m,
         strides: strides.collect(),
+        import: log.import.clone(),
         warnings: log.warnings.iter().chain(&walk.warnings).cloned().collect(),
         accuracy,
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.about = Some(recording.path.clone());
+    for conclusion in &report.import {
+        account.fact("log", conclusion);
+    }
     account.fact("samples", format!("{} in {:.1} s", report.samples, report.duration_s));
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));

@@ -16,6 +16,8 @@ pub mod track;
 
 use std::sync::Arc;
 
+pub use kestirim_import::inertial::Sample;
+
 use self::figures::streams;
 use self::paper::experiment;
 use self::recording::{Recording, Walked};
@@ -33,17 +35,6 @@ use crate::system::{
 #[derive(Debug, Clone, Copy)]
 pub struct Pedestrian;
 
-/// What the sensor says at one moment, in the body frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// Time of the log's own clock, µs.
-    pub time_us: u64,
-    /// Specific force, m/s²: +1 g upwards at rest.
-    pub specific_force: [f64; 3],
-    /// Angular rate, rad/s, right-handed.
-    pub angular_rate: [f64; 3],
-}
-
 impl System for Pedestrian {
     const NAME: &'static str = "pedestrian";
     const TITLE: &'static str = "where a foot walked, from a foot-mounted IMU";
@@ -51,9 +42,10 @@ impl System for Pedestrian {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "log",
-            "Recorded walk: CSV t,ax,ay,az,gx,gy,gz (s, m/s², rad/s; gt_x,gt_y,gt_z in m = truth), or Razor text \
-             separated by blanks (ms, 3 × g, 3 × °/s)",
-        ),
+            "Recorded walk: text of any device with time, acceleration and angular rate, whose units and columns are \
+             found; gt_x,gt_y,gt_z in m = truth",
+        )
+        .imported(),
         FileField::optional(
             "truth",
             "Measured footprints: CSV t,x,y (s, m); replaces a truth that the log carries",
@@ -83,7 +75,7 @@ impl System for Pedestrian {
     }
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
-        Recording::read(files.required("log")?, files.one("truth"))
+        Recording::read(files.required("log")?, files.one("truth"), files.reading.options())
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {

@@ -7,6 +7,8 @@ pub mod truth;
 
 use std::path::{Path, PathBuf};
 
+use kestirim_import::{Format, Options};
+
 use self::log::Log;
 use self::position::TrackPoint;
 use self::truth::Footprint;
@@ -14,7 +16,6 @@ use super::simulate::scenario::Scenario;
 use super::simulate::sensor;
 use crate::Error;
 use crate::random::stream;
-use crate::text::TextFile;
 
 /// A walk as it was recorded.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,8 +42,8 @@ impl Recording {
     ///
     /// # Errors
     /// As [`log::read`] and [`truth::read`].
-    pub fn read(path: &Path, footprints: Option<&Path>) -> Result<Self, Error> {
-        let log = log::read(path)?;
+    pub fn read(path: &Path, footprints: Option<&Path>, options: &Options) -> Result<Self, Error> {
+        let log = log::read(path, options)?;
         let footprints = footprints.map(|path| truth::read(path, &log)).transpose()?;
         Ok(Self { path: path.to_path_buf(), log, footprints: footprints.unwrap_or_default() })
     }
@@ -60,7 +61,8 @@ impl Recording {
         let log = match walked {
             Walked::Route => {
                 let text = sensor::razor_text(&measured).into_bytes();
-                log::parse(&TextFile::from_bytes(&path, text)?)?
+                let options = Options { format: Some(Format::Razor), ..Options::default() };
+                log::parse(&path, &text, &options)?
             }
             Walked::Rounds(_) => Log { samples: measured, ..Log::default() },
         };

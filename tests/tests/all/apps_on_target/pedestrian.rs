@@ -4,7 +4,6 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use host_sim::systems::pedestrian::recording::log;
-use host_sim::text::TextFile;
 use kestirim_pedestrian::{Config, EkfTracker, ImuSample};
 use kestirim_scalar::{Components, Q12_20, Scalar};
 use kestirim_telemetry::{Footprint, Health, Imu, Message, Position};
@@ -68,7 +67,7 @@ fn check_samples(sent: &[Imu], walk: &[Sample]) {
 
 /// The log on the card is what `host-sim replay pedestrian` reads, and says what was sent.
 fn check_log<T: Scalar>(text: Vec<u8>, sent: &[Imu], path: f32) -> Result<()> {
-    let log = log::parse(&TextFile::from_bytes(Path::new("WALK.TXT"), text)?)?;
+    let log = log::parse(Path::new("WALK.TXT"), &text, &log::Options::default())?;
     assert_eq!(log.warnings, Vec::<String>::new());
     assert_eq!(log.samples.len(), sent.len());
     for (logged, sent) in log.samples.iter().zip(sent) {

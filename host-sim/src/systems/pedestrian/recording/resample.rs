@@ -34,7 +34,8 @@ pub fn average_down(log: &Log, rate_hz: f64) -> Result<Log, Error> {
     let blocks = log.samples.chunk_by(|a, b| block(a) == block(b));
     let samples: Vec<_> = blocks.map(average).collect();
     let truth = log.truth.as_ref().map(|truth| at_times_of(&samples, truth));
-    Ok(Log { samples, truth, warnings: log.warnings.clone() })
+    let (import, warnings) = (log.import.clone(), log.warnings.clone());
+    Ok(Log { samples, truth, import, warnings })
 }
 
 /// The rate of a log, Hz; none of fewer than two samples.
