@@ -147,7 +147,10 @@ mod tests {
         assert!(damage(4).accept(10, false).is_err());
         assert!(damage(10).accept(1000, false).is_ok());
         let error = damage(11).accept(1000, false).unwrap_err().to_string();
-        assert!(error.starts_with("expected at most 10 damaged lines of 1000, found 11"), "{error}");
+        assert!(
+            error.starts_with("expected at most 10 damaged lines of 1000, found 11"),
+            "{error}"
+        );
         let error = damage(1).accept(1000, true).unwrap_err().to_string();
         assert_eq!(error, "line 2: expected 7 fields, found 6");
     }

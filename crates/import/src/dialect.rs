@@ -96,9 +96,8 @@ impl Dialect {
     /// How many fields a line has, and how many of them are numbers or times.
     pub(crate) fn row(self, line: &[u8]) -> (usize, usize) {
         let fields = self.fields(line);
-        let is_value = |field: &&Cow<'_, [u8]>| {
-            self.number(field).is_some() || moment::read(field).is_some()
-        };
+        let is_value =
+            |field: &&Cow<'_, [u8]>| self.number(field).is_some() || moment::read(field).is_some();
         // A separator may end each line.
         let ends = fields.len() > 2 && fields.last().is_some_and(|field| field.is_empty());
         (fields.len() - usize::from(ends), fields.iter().filter(is_value).count())

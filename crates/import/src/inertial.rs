@@ -127,7 +127,10 @@ fn refuse_other_header(table: &Table) -> Result<(), Error> {
         return Ok(());
     }
     let (names, fields) = (words.len(), table.columns.len());
-    Err(Error::line(*line, format!("expected as many names as fields below, found {names} and {fields}")))
+    Err(Error::line(
+        *line,
+        format!("expected as many names as fields below, found {names} and {fields}"),
+    ))
 }
 
 /// The rows that hold a number in every column that is needed.
@@ -138,13 +141,16 @@ fn rows(text: &Text<'_>, table: &Table, columns: &Columns, damage: &mut Damage) 
         lines: Vec::with_capacity(count),
         places: Vec::with_capacity(count),
     };
-    let values = |axis: Axis| (&table.columns[axis.column].values, if axis.is_negative { -1.0 } else { 1.0 });
+    let values = |axis: Axis| {
+        (&table.columns[axis.column].values, if axis.is_negative { -1.0 } else { 1.0 })
+    };
     let sensors = columns.sensors.map(values);
     let times = columns.time.map(|time| &table.columns[time].values);
     for (i, &line) in table.lines.iter().enumerate() {
-        let value = |axis: usize| sensors[axis].1 * sensors[axis].0.get(i).copied().unwrap_or(f64::NAN);
+        let value =
+            |axis: usize| sensors[axis].1 * sensors[axis].0.get(i).copied().unwrap_or(f64::NAN);
         let raw = Raw {
-            time: times.map_or(i as f64, |times| times[i]),
+            time: times.map_or(i as f64, |times| times.get(i).copied().unwrap_or(f64::NAN)),
             force: [value(0), value(1), value(2)],
             rate: [value(3), value(4), value(5)],
         };
@@ -171,7 +177,11 @@ fn complaint(text: &Text<'_>, table: &Table, columns: &Columns, row: usize) -> S
     let column = wrong.unwrap_or_default();
     let fields = table.dialect.fields(text.line(table.lines[row]));
     let found = fields.get(column).map(|field| letters(field)).unwrap_or_default();
-    format!("expected a finite number in column {}, found {}", table.columns[column].name, quoted(&found))
+    format!(
+        "expected a finite number in column {}, found {}",
+        table.columns[column].name,
+        quoted(&found)
+    )
 }
 
 /// What the clock may count to, in its own unit: a day, or 32 bits.
@@ -186,13 +196,19 @@ fn periods(table: &Table, columns: &Columns) -> Vec<f64> {
 }
 
 /// The samples in SI units, without what no sensor can have said; and what was taken from their times, s.
-fn samples(rows: &mut Rows, columns: &Columns, units: &Units, damage: &mut Damage) -> (Vec<Sample>, f64) {
+fn samples(
+    rows: &mut Rows,
+    columns: &Columns,
+    units: &Units,
+    damage: &mut Damage,
+) -> (Vec<Sample>, f64) {
     let [force, rate, time] = &units.units;
     let first = rows.raw.first().map_or(0.0, |raw| raw.time);
     let last = rows.raw.last().map_or(0.0, |raw| raw.time);
     let is_clock = columns.time.is_some() && first >= 0.0 && last * time.scale <= LATEST_TIME;
     let start = if is_clock { 0.0 } else { first };
-    let microseconds = |time_in_unit: f64| ((time_in_unit - start) * (time.scale * 1e6)).round() as u64;
+    let microseconds =
+        |time_in_unit: f64| ((time_in_unit - start) * (time.scale * 1e6)).round() as u64;
     let mut samples = Vec::with_capacity(rows.raw.len());
     let mut is_left = Vec::new();
     for (i, raw) in rows.raw.iter().enumerate() {
@@ -240,7 +256,11 @@ fn all_conclusions(
         let sign = if axis.is_negative { "−" } else { "" };
         format!("{sign}{}", table.columns[axis.column].name)
     };
-    let names = columns.time.map(|time| table.columns[time].name.clone()).into_iter().chain(columns.sensors.iter().map(name));
+    let names = columns
+        .time
+        .map(|time| table.columns[time].name.clone())
+        .into_iter()
+        .chain(columns.sensors.iter().map(name));
     let names: Vec<_> = names.collect();
     if names != ROLES {
         parts.push((format!("columns {}", names.join(", ")), columns.source));
@@ -259,13 +279,19 @@ fn all_conclusions(
 
 /// The numbers that are neither time nor the sensor's.
 fn other(table: Table, columns: &Columns, places: &[usize]) -> Vec<(String, Vec<f64>)> {
-    let used = |at: usize| columns.time == Some(at) || columns.sensors.iter().any(|axis| axis.column == at);
+    let used = |at: usize| {
+        columns.time == Some(at) || columns.sensors.iter().any(|axis| axis.column == at)
+    };
     let all = table.columns.into_iter().enumerate();
     let others = all.filter(|(at, column)| !used(*at) && column.kind != Kind::Words);
     others
         .map(|(_, column)| {
             let whole = places.len() == column.values.len();
-            let values = if whole { column.values } else { places.iter().map(|&i| column.values[i]).collect() };
+            let values = if whole {
+                column.values
+            } else {
+                places.iter().map(|&i| column.values[i]).collect()
+            };
             (column.name, values)
         })
         .collect()

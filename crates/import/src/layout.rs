@@ -49,8 +49,7 @@ impl Layout {
             !dialect.is_comment(bytes) && fields == width && numbers * 2 >= width
         };
         let first = text.lines().find(|line| is_row(line.bytes)).ok_or_else(nothing)?;
-        let above: Vec<_> =
-            text.lines().take_while(|line| line.number < first.number).collect();
+        let above: Vec<_> = text.lines().take_while(|line| line.number < first.number).collect();
         let names = |bytes: &[u8]| header_names(dialect, width, bytes, width / 2 + 1);
         let mut layout = Self {
             dialect,
@@ -64,9 +63,10 @@ impl Layout {
         // A line of units stands under names, a header may be the last comment.
         let mut lines = above.iter().rev().map(|line| (line.number, line.bytes));
         let mut nearest = lines.next();
-        if let (Some(units), Some((number, bytes))) =
-            (nearest.and_then(|(_, bytes)| units_line(header_names(dialect, width, bytes, 2)?)), lines.next())
-            && names(bytes).is_some()
+        if let (Some(units), Some((number, bytes))) = (
+            nearest.and_then(|(_, bytes)| units_line(header_names(dialect, width, bytes, 2)?)),
+            lines.next(),
+        ) && names(bytes).is_some()
         {
             layout.units = units;
             nearest = Some((number, bytes));
@@ -97,8 +97,7 @@ fn header_names(dialect: Dialect, width: usize, bytes: &[u8], least: usize) -> O
         };
         let named = fields.iter().filter(|field| !field.is_empty()).count();
         let is_number = |field: &Cow<'_, [u8]>| fast_float2::parse::<f64, _>(field).is_ok();
-        let is_header =
-            fields.len() == width && named >= least && !fields.iter().any(is_number);
+        let is_header = fields.len() == width && named >= least && !fields.iter().any(is_number);
         is_header.then(|| fields.iter().map(|field| letters(field)).collect())
     })
 }

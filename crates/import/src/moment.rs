@@ -52,7 +52,8 @@ fn zone(clock: &str) -> Option<(&str, f64)> {
     let sign = if zone.starts_with('-') { -1.0 } else { 1.0 };
     let digits: String = zone.chars().filter(char::is_ascii_digit).collect();
     let hours: f64 = digits.get(..2)?.parse().ok()?;
-    let minutes: f64 = digits.get(2..).filter(|rest| !rest.is_empty()).unwrap_or("0").parse().ok()?;
+    let minutes: f64 =
+        digits.get(2..).filter(|rest| !rest.is_empty()).unwrap_or("0").parse().ok()?;
     Some((clock.trim(), sign * (hours * 3600.0 + minutes * 60.0)))
 }
 
@@ -90,7 +91,9 @@ mod tests {
         ] {
             assert_eq!(read(text.as_bytes()), Some(expected), "{text}");
         }
-        for text in ["", "10:00", "25:00:00", "2024-13-01T00:00:00Z", "a:b:c", "1:2:3:4", "12:0x:00"] {
+        for text in
+            ["", "10:00", "25:00:00", "2024-13-01T00:00:00Z", "a:b:c", "1:2:3:4", "12:0x:00"]
+        {
             assert_eq!(read(text.as_bytes()), None, "{text}");
         }
     }

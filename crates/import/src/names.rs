@@ -14,9 +14,29 @@
 use crate::unit::{Quantity, Unit};
 
 const TIMES: [&str; 23] = [
-    "t", "time", "timestamp", "timestamps", "ts", "times", "elapsed", "elapsedtime", "timeelapsed",
-    "sampletime", "sensortime", "systemtime", "logtime", "clock", "datetime", "utc", "utctime",
-    "rtctime", "zaman", "zeit", "temps", "tiempo", "unixtime",
+    "t",
+    "time",
+    "timestamp",
+    "timestamps",
+    "ts",
+    "times",
+    "elapsed",
+    "elapsedtime",
+    "timeelapsed",
+    "sampletime",
+    "sensortime",
+    "systemtime",
+    "logtime",
+    "clock",
+    "datetime",
+    "utc",
+    "utctime",
+    "rtctime",
+    "zaman",
+    "zeit",
+    "temps",
+    "tiempo",
+    "unixtime",
 ];
 /// Names of time that are its unit.
 const TIMES_IN: [(&str, &str); 13] = [
@@ -35,12 +55,30 @@ const TIMES_IN: [(&str, &str); 13] = [
     ("nsec", "ns"),
 ];
 const ACCELEROMETERS: [&str; 10] = [
-    "a", "ac", "acc", "accel", "accelerometer", "acceleration", "f", "specificforce",
-    "linearacceleration", "totalacceleration",
+    "a",
+    "ac",
+    "acc",
+    "accel",
+    "accelerometer",
+    "acceleration",
+    "f",
+    "specificforce",
+    "linearacceleration",
+    "totalacceleration",
 ];
 const GYROSCOPES: [&str; 12] = [
-    "g", "gy", "gyr", "gyro", "gyroscope", "w", "omega", "angularrate", "angularvelocity", "angvel",
-    "rotationrate", "turnrate",
+    "g",
+    "gy",
+    "gyr",
+    "gyro",
+    "gyroscope",
+    "w",
+    "omega",
+    "angularrate",
+    "angularvelocity",
+    "angvel",
+    "rotationrate",
+    "turnrate",
 ];
 /// Words that say nothing about what a column holds.
 const FILLERS: [&str; 7] = ["imu", "raw", "cal", "calibrated", "sensor", "axis", "data"];
@@ -62,7 +100,16 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     if base == "T" {
         return None;
     }
-    let words: Vec<_> = words(base).into_iter().filter(|w| !FILLERS.contains(&w.as_str())).collect();
+    // `gyr_x_°/s`: a unit of more than letters.
+    if let Some((base, unit)) = base.rsplit_once(['_', ' ']).filter(|_| bracket.is_none())
+        && let Some(mut meaning) = plain_meaning(&words(base).concat())
+        && let Some(unit) = Unit::read(meaning.quantity, unit)
+    {
+        meaning.unit = Some(unit);
+        return Some(meaning);
+    }
+    let words: Vec<_> =
+        words(base).into_iter().filter(|w| !FILLERS.contains(&w.as_str())).collect();
     // A unit behind the name is the shortest possible.
     (1..=words.len()).rev().find_map(|end| {
         let mut meaning = plain_meaning(&words[..end].concat())?;
@@ -161,6 +208,7 @@ mod tests {
             ("gyro_x(deg/s)", Quantity::Rate, 0, Some("°/s")),
             ("GyrX[dps]", Quantity::Rate, 0, Some("°/s")),
             ("gy_dps", Quantity::Rate, 1, Some("°/s")),
+            ("gyr_x_°/s", Quantity::Rate, 0, Some("°/s")),
             ("gyy", Quantity::Rate, 1, None),
             ("wz_rad_s", Quantity::Rate, 2, Some("rad/s")),
             ("Gyroscope Y-axis (°/s)", Quantity::Rate, 1, Some("°/s")),
@@ -170,7 +218,9 @@ mod tests {
             assert_eq!((meaning.quantity, meaning.axis), (quantity, axis), "{name}");
             assert_eq!(found.as_deref(), unit, "{name}");
         }
-        for name in ["T", "", "gt_x", "mx", "x", "note", "FreeAcc_X", "height", "axle", "index", "ax1"] {
+        for name in
+            ["T", "", "gt_x", "mx", "x", "note", "FreeAcc_X", "height", "axle", "index", "ax1"]
+        {
             assert_eq!(meaning(name), None, "{name}");
         }
     }

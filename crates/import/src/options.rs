@@ -45,7 +45,10 @@ impl FromStr for Columns {
         for (role, name) in pairs(text, "t=timestamp,ax=AccX")? {
             let Some(place) = ROLES.iter().position(|&known| known == role) else {
                 let roles = ROLES.join(", ");
-                return Err(Error::options(format!("expected one of {roles}, found {}", quoted(role))));
+                return Err(Error::options(format!(
+                    "expected one of {roles}, found {}",
+                    quoted(role)
+                )));
             };
             let (name, is_negative) =
                 name.strip_prefix('-').map_or((name, false), |name| (name, true));
@@ -89,17 +92,21 @@ impl FromStr for Units {
             match quantity {
                 "acc" | "a" | "acceleration" => {
                     let read = Unit::read_scaled(Quantity::Acceleration, unit);
-                    let read = read.ok_or_else(|| wrong("a unit such as m/s2, g, mg or 16384lsb"))?;
+                    let read =
+                        read.ok_or_else(|| wrong("a unit such as m/s2, g, mg or 16384lsb"))?;
                     units.acceleration = Some(read);
                 }
                 "gyro" | "gyr" | "g" | "rate" => {
                     let read = Unit::read_scaled(Quantity::Rate, unit);
-                    let read = read.ok_or_else(|| wrong("a unit such as rad/s, deg/s or 131lsb"))?;
+                    let read =
+                        read.ok_or_else(|| wrong("a unit such as rad/s, deg/s or 131lsb"))?;
                     units.rate = Some(read);
                 }
-                "t" | "time" => units.time = Some(time_unit(unit).ok_or_else(|| {
-                    wrong("a unit such as s, ms, us or ns, or a rate such as 100Hz")
-                })?),
+                "t" | "time" => {
+                    units.time = Some(time_unit(unit).ok_or_else(|| {
+                        wrong("a unit such as s, ms, us or ns, or a rate such as 100Hz")
+                    })?)
+                }
                 _ => {
                     let found = quoted(quantity);
                     return Err(Error::options(format!("expected acc, gyro or t, found {found}")));

@@ -56,8 +56,20 @@ const RATE: [Known; 4] = [
     ),
     (
         &[
-            "deg/s", "dps", "degs", "deg/sec", "degsec", "degps", "degs-1", "deg.s-1", "degpersec",
-            "degree/s", "degrees/s", "degrees/sec", "degrees/second", "degpersecond",
+            "deg/s",
+            "dps",
+            "degs",
+            "deg/sec",
+            "degsec",
+            "degps",
+            "degs-1",
+            "deg.s-1",
+            "degpersec",
+            "degree/s",
+            "degrees/s",
+            "degrees/sec",
+            "degrees/second",
+            "degpersecond",
         ],
         PI / 180.0,
         "°/s",
@@ -81,7 +93,8 @@ impl Unit {
     /// Reads a unit as it stands in a header: `m/s^2`, `deg/s`, `ms`.
     pub fn read(quantity: Quantity, text: &str) -> Option<Self> {
         let text = simplified(text);
-        let (_, scale, name) = table(quantity).iter().find(|unit| unit.0.contains(&text.as_str()))?;
+        let (_, scale, name) =
+            table(quantity).iter().find(|unit| unit.0.contains(&text.as_str()))?;
         Some(Self::new(*scale, *name))
     }
 
@@ -150,8 +163,8 @@ fn simplified(text: &str) -> String {
 /// Whether a word is a unit of any sensor that a log may hold.
 pub(crate) fn is_known(text: &str) -> bool {
     const OTHERS: [&str; 20] = [
-        "m", "ut", "nt", "mgauss", "gauss", "ga", "degc", "c", "k", "pa", "hpa", "kpa", "v", "mv", "deg",
-        "rad", "%", "hz", "lsb", "m/s",
+        "m", "ut", "nt", "mgauss", "gauss", "ga", "degc", "c", "k", "pa", "hpa", "kpa", "v", "mv",
+        "deg", "rad", "%", "hz", "lsb", "m/s",
     ];
     let all = [Quantity::Acceleration, Quantity::Rate, Quantity::Time];
     all.into_iter().any(|quantity| Unit::read(quantity, text).is_some())
@@ -175,7 +188,11 @@ mod tests {
             (Quantity::Rate, "rad s^-1", "rad/s"),
             (Quantity::Time, "μs", "µs"),
         ] {
-            assert_eq!(Unit::read(quantity, text).map(|unit| unit.name), Some(name.into()), "{text}");
+            assert_eq!(
+                Unit::read(quantity, text).map(|unit| unit.name),
+                Some(name.into()),
+                "{text}"
+            );
         }
         assert_eq!(Unit::read(Quantity::Time, "g"), None);
     }

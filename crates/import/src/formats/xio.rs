@@ -6,8 +6,12 @@ use super::{Description, Format, has};
 use crate::table::Table;
 
 const SENSORS: [&str; 6] = [
-    "Accelerometer X (g)", "Accelerometer Y (g)", "Accelerometer Z (g)",
-    "Gyroscope X (deg/s)", "Gyroscope Y (deg/s)", "Gyroscope Z (deg/s)",
+    "Accelerometer X (g)",
+    "Accelerometer Y (g)",
+    "Accelerometer Z (g)",
+    "Gyroscope X (deg/s)",
+    "Gyroscope Y (deg/s)",
+    "Gyroscope Z (deg/s)",
 ];
 
 pub(super) const XIO: Description = Description {

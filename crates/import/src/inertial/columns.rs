@@ -60,11 +60,15 @@ impl Columns {
         let format = options.format.or_else(|| crate::formats::Format::of(table));
         let description = format.map(crate::formats::Format::description);
         let source = format.map_or(Source::Header, Source::Format);
-        let meanings: Vec<_> =
-            table.columns.iter().map(|column| meaning_of(&column.name, column.unit.as_deref())).collect();
+        let meanings: Vec<_> = table
+            .columns
+            .iter()
+            .map(|column| meaning_of(&column.name, column.unit.as_deref()))
+            .collect();
         let picks = &options.columns;
         let sensors = match description {
             Some(known) => sensors_of_format(table, known, picks)?,
+            None if is_bare(table, options) => sensors_by_place(),
             None => sensors_by_name(table, &meanings, picks)?,
         };
         let counted = matches!(options.units.time, Some(TimeUnit::Rate(_)));
@@ -72,6 +76,7 @@ impl Columns {
             (_, Some(axis)) => Some(axis.column),
             (_, None) if counted => None,
             (Some(known), None) => Some(time_of_format(table, known)?),
+            (None, None) if is_bare(table, options) => Some(0),
             (None, None) => Some(time_by_name(table, &meanings)?),
         };
         let is_plain = format.is_none()
@@ -84,9 +89,26 @@ impl Columns {
             axes_are_said: picks.picks[1..].iter().any(Option::is_some),
             source,
         };
+        if is_bare(table, options) {
+            columns.source = Source::Data;
+        }
         columns.claims = claims(table, options, description, &columns, &meanings, is_plain);
         Ok(columns)
     }
+}
+
+/// Whether a table has no names at all, and nobody says which column is which. Then the usual order is supposed: its units
+/// are left to the data, which show it wrong if it is.
+fn is_bare(table: &Table, options: &Options) -> bool {
+    let is_said = options.columns.picks.iter().any(Option::is_some);
+    table.header.is_none()
+        && table.columns.len() >= ROLES.len()
+        && options.format.is_none()
+        && !is_said
+}
+
+fn sensors_by_place() -> [Axis; 6] {
+    std::array::from_fn(|place| Axis { column: place + 1, is_negative: false })
 }
 
 fn meaning_of(name: &str, unit: Option<&str>) -> Option<Meaning> {
@@ -116,7 +138,9 @@ fn claims(
             }),
         };
         let said = said.map_or(Claim::None, |unit| Claim::Said(unit, Source::Option));
-        let by_format = || description.map_or(Claim::None, |known| claim_of(known, quantity, table, columns.time));
+        let by_format = || {
+            description.map_or(Claim::None, |known| claim_of(known, quantity, table, columns.time))
+        };
         let by_header = || claim_of_header(table, columns, meanings, quantity);
         let usual = || match quantity {
             _ if !is_plain => Claim::None,
@@ -169,7 +193,8 @@ fn claim_of_header(
         Quantity::Acceleration => &columns.sensors[1..3],
         Quantity::Rate => &columns.sensors[4..6],
     };
-    let disagrees = others.iter().any(|axis| of(axis.column).is_some_and(|other| Some(other) != unit));
+    let disagrees =
+        others.iter().any(|axis| of(axis.column).is_some_and(|other| Some(other) != unit));
     unit.filter(|_| !disagrees).map_or(Claim::None, |unit| Claim::Said(unit, Source::Header))
 }
 
@@ -177,19 +202,27 @@ fn claim_of_header(
 fn pick(table: &Table, picks: &Picks, role: usize) -> Result<Option<Axis>, Error> {
     let Some(Pick { name, is_negative }) = &picks.picks[role] else { return Ok(None) };
     let bare = |column: &str| names::split_unit(column).0.to_lowercase();
-    let same = |test: &dyn Fn(&str) -> bool| table.columns.iter().position(|column| test(&column.name));
+    let same =
+        |test: &dyn Fn(&str) -> bool| table.columns.iter().position(|column| test(&column.name));
     let column = same(&|column| column == name)
         .or_else(|| same(&|column| column.to_lowercase() == name.to_lowercase()))
         .or_else(|| same(&|column| bare(column) == name.to_lowercase()))
-        .or_else(|| name.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < table.columns.len()));
+        .or_else(|| {
+            name.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < table.columns.len())
+        });
     let column = column.ok_or_else(|| {
         Error::options(format!(
             "expected a column {} for {}, found {}",
-            quoted(name), ROLES[role], found(table)
+            quoted(name),
+            ROLES[role],
+            found(table)
         ))
     })?;
     if table.columns[column].kind == Kind::Words {
-        return Err(Error::options(format!("expected numbers in column {}, found words", quoted(name))));
+        return Err(Error::options(format!(
+            "expected numbers in column {}, found words",
+            quoted(name)
+        )));
     }
     Ok(Some(Axis { column, is_negative: *is_negative }))
 }
@@ -201,10 +234,18 @@ fn found(table: &Table) -> String {
     let dots = if names.len() > MOST { ", …" } else { "" };
     let list = names[..names.len().min(MOST)].join(", ").replace(char::is_control, "?");
     let list: String = list.chars().take(200).collect();
-    if table.header.is_some() { format!("{list}{dots}") } else { format!("{} columns without a header", names.len()) }
+    if table.header.is_some() {
+        format!("{list}{dots}")
+    } else {
+        format!("{} columns without a header", names.len())
+    }
 }
 
-fn sensors_of_format(table: &Table, known: &Description, picks: &Picks) -> Result<[Axis; 6], Error> {
+fn sensors_of_format(
+    table: &Table,
+    known: &Description,
+    picks: &Picks,
+) -> Result<[Axis; 6], Error> {
     let mut sensors = [Axis { column: 0, is_negative: false }; 6];
     for (i, name) in known.sensors.iter().enumerate() {
         sensors[i] = match pick(table, picks, i + 1)? {
@@ -250,7 +291,9 @@ fn time_by_name(table: &Table, meanings: &[Option<Meaning>]) -> Result<usize, Er
     };
     let best = times.iter().copied().min_by_key(rank);
     if let Some(best) = best {
-        let twin = times.iter().find(|&&other| other != best && table.columns[other].name == table.columns[best].name);
+        let twin = times
+            .iter()
+            .find(|&&other| other != best && table.columns[other].name == table.columns[best].name);
         if twin.is_some() {
             return Err(two(table, &table.columns[best].name));
         }
@@ -283,8 +326,8 @@ fn sensors_by_name(
             sensor_by_name(table, meanings, quantity, picked)?
         };
         for axis in 0..3 {
-            sensors[from + axis] = picked[axis]
-                .unwrap_or(Axis { column: by_name[axis], is_negative: false });
+            sensors[from + axis] =
+                picked[axis].unwrap_or(Axis { column: by_name[axis], is_negative: false });
         }
     }
     Ok(sensors)
@@ -310,10 +353,13 @@ fn sensor_by_name(
         };
         meanings.iter().enumerate().filter(move |(_, meaning)| is_it(meaning)).map(|(at, _)| at)
     };
-    let mut aliases: Vec<_> = meanings.iter().flatten().filter(|m| m.quantity == quantity).map(|m| m.alias).collect();
+    let mut aliases: Vec<_> =
+        meanings.iter().flatten().filter(|m| m.quantity == quantity).map(|m| m.alias).collect();
     aliases.sort_unstable();
     aliases.dedup();
-    let is_whole = |alias: &usize| (0..3).all(|axis| picked[axis].is_some() || of(*alias, axis).next().is_some());
+    let is_whole = |alias: &usize| {
+        (0..3).all(|axis| picked[axis].is_some() || of(*alias, axis).next().is_some())
+    };
     let whole: Vec<_> = aliases.iter().copied().filter(is_whole).collect();
     // The plain names, `ax` and `gx`, are the first alias.
     let alias = match whole[..] {
@@ -324,13 +370,21 @@ fn sensor_by_name(
                 (0..3).find(|&axis| picked[axis].is_none() && of(alias, axis).next().is_none())
             });
             let what = match missing {
-                Some(axis) => format!("a column {role}{} beside the others of {sensor}", &"xyz"[axis..=axis]),
+                Some(axis) => {
+                    format!("a column {role}{} beside the others of {sensor}", &"xyz"[axis..=axis])
+                }
                 None => format!("columns of {sensor} such as {role}x, {role}y, {role}z"),
             };
-            return Err(Error::undecided(format!("expected {what}, found {}", found(table)), option));
+            return Err(Error::undecided(
+                format!("expected {what}, found {}", found(table)),
+                option,
+            ));
         }
         _ => {
-            let problem = format!("expected columns of one sensor that is {sensor}, found those of {}", whole.len());
+            let problem = format!(
+                "expected columns of one sensor that is {sensor}, found those of {}",
+                whole.len()
+            );
             return Err(Error::undecided(problem, option));
         }
     };
@@ -343,7 +397,12 @@ fn sensor_by_name(
             if one == other {
                 return Err(two(table, one));
             }
-            let problem = format!("expected one column {role}{}, found {} and {}", &"xyz"[axis..=axis], quoted(one), quoted(other));
+            let problem = format!(
+                "expected one column {role}{}, found {} and {}",
+                &"xyz"[axis..=axis],
+                quoted(one),
+                quoted(other)
+            );
             return Err(Error::undecided(problem, option));
         }
         columns[axis] = place;

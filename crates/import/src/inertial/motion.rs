@@ -88,9 +88,11 @@ impl Motion {
         }
         let is_short = |stretch: &Stretch| stretch.steps.len() as f64 * step <= SHORT;
         let most = high(stretches.iter().map(|stretch| stretch.turned));
-        let most_of_short =
-            high(stretches.iter().filter(|stretch| is_short(stretch)).map(|stretch| stretch.turned));
-        let is_lively = |stretch: &Stretch| is_short(stretch) && stretch.turned >= LIVELY * most_of_short;
+        let most_of_short = high(
+            stretches.iter().filter(|stretch| is_short(stretch)).map(|stretch| stretch.turned),
+        );
+        let is_lively =
+            |stretch: &Stretch| is_short(stretch) && stretch.turned >= LIVELY * most_of_short;
         let lively = stretches.iter().filter(|stretch| is_lively(stretch)).count();
         if lively >= ENOUGH && most_of_short > LIVELY * most {
             stretches.retain(is_lively);
@@ -98,7 +100,8 @@ impl Motion {
             stretches.retain(|stretch| stretch.turned >= LIVELY * most);
         }
         let every = stretches.len().div_ceil(MOST_STRETCHES).max(1);
-        let samples: usize = stretches.iter().step_by(every).map(|stretch| stretch.steps.len()).sum();
+        let samples: usize =
+            stretches.iter().step_by(every).map(|stretch| stretch.steps.len()).sum();
         let every = every * samples.div_ceil(MOST_SAMPLES).max(1);
         Self { stretches: stretches.into_iter().step_by(every).collect() }
     }
@@ -196,11 +199,8 @@ fn turned_by(turn: [[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     let angle = length_of([x, y, z]);
     let (sine, cosine) = angle.sin_cos();
     // Rodrigues: 1 + s·[v] + c·[v]².
-    let (s, c) = if angle > 1e-6 {
-        (sine / angle, (1.0 - cosine) / (angle * angle))
-    } else {
-        (1.0, 0.5)
-    };
+    let (s, c) =
+        if angle > 1e-6 { (sine / angle, (1.0 - cosine) / (angle * angle)) } else { (1.0, 0.5) };
     let columns = [
         [1.0 - c * (y * y + z * z), s * z + c * x * y, -s * y + c * x * z],
         [-s * z + c * x * y, 1.0 - c * (x * x + z * z), s * x + c * y * z],

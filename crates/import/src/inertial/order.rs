@@ -50,7 +50,11 @@ impl Rows {
     ///
     /// # Errors
     /// [`Error::Line`] where a recording begins anew.
-    pub(crate) fn put_in_order(&mut self, periods: &[f64], damage: &mut Damage) -> Result<(), Error> {
+    pub(crate) fn put_in_order(
+        &mut self,
+        periods: &[f64],
+        damage: &mut Damage,
+    ) -> Result<(), Error> {
         let allowed = Damage::allowed(self.raw.len());
         let (mut kept, mut passed, mut early, mut restart) = (0_usize, 0.0, 0, 0);
         for i in 0..self.raw.len() {
@@ -92,7 +96,8 @@ impl Rows {
         let (last, time) = (self.raw[kept - 1].time, self.raw[i].time + passed);
         let next = self.raw.get(i + 1).map(|next| next.time + passed);
         let before = kept.checked_sub(2).map(|before| self.raw[before].time);
-        next.is_some_and(|next| next >= time && next < last) && before.is_none_or(|before| before <= time)
+        next.is_some_and(|next| next >= time && next < last)
+            && before.is_none_or(|before| before <= time)
     }
 
     fn leave_out(&self, place: usize, damage: &mut Damage) {
@@ -111,7 +116,8 @@ impl Rows {
         let mut kept = 0;
         for i in 0..self.raw.len() {
             if kept > 0 && self.raw[i] == self.raw[kept - 1] {
-                let problem = || "expected another sample, found the one of the line above".to_owned();
+                let problem =
+                    || "expected another sample, found the one of the line above".to_owned();
                 damage.add(Fault::Doubled, self.lines[i], problem);
             } else {
                 self.move_to(kept, i);

@@ -52,8 +52,11 @@ impl Rest {
     /// Looks for rest in samples whose median spacing is `step` seconds; none if there is not any.
     pub(crate) fn find(raw: &[Raw], step: f64) -> Option<Self> {
         let length = (WINDOW / step).round().clamp(SAMPLES.0, SAMPLES.1) as usize;
-        let mut windows: Vec<_> =
-            raw.chunks_exact(length).enumerate().map(|(i, part)| window(i * length, part)).collect();
+        let mut windows: Vec<_> = raw
+            .chunks_exact(length)
+            .enumerate()
+            .map(|(i, part)| window(i * length, part))
+            .collect();
         if windows.len() < FEWEST_WINDOWS {
             return None;
         }

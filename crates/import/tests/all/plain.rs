@@ -72,10 +72,6 @@ fn push(log: &mut Log, values: [f64; 7]) -> Option<()> {
     if t < 0.0 || log.samples.last().is_some_and(|last| time_us < last.time_us) {
         return None;
     }
-    log.samples.push(Sample {
-        time_us,
-        specific_force: [ax, ay, az],
-        angular_rate: [gx, gy, gz],
-    });
+    log.samples.push(Sample { time_us, specific_force: [ax, ay, az], angular_rate: [gx, gy, gz] });
     Some(())
 }

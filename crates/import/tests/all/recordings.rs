@@ -9,7 +9,8 @@ use kestirim_import::inertial;
 use crate::plain;
 
 /// Where the recordings are, beside the working copy or as CI has them.
-const FOLDERS: [&str; 2] = ["../../../shared/data/pedestrian", "../../../../shared/data/pedestrian"];
+const FOLDERS: [&str; 2] =
+    ["../../../shared/data/pedestrian", "../../../../shared/data/pedestrian"];
 
 /// All walks, by name.
 pub(crate) fn walks() -> Vec<(String, Vec<u8>)> {

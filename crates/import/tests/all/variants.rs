@@ -81,16 +81,30 @@ impl Way {
             text += self.line_break;
         }
         let mut left_out = Vec::new();
-        let scales = [self.time, self.acceleration, self.acceleration, self.acceleration, self.rate, self.rate, self.rate];
+        let scales = [
+            self.time,
+            self.acceleration,
+            self.acceleration,
+            self.acceleration,
+            self.rate,
+            self.rate,
+            self.rate,
+        ];
         for (i, row) in rows.iter().enumerate() {
             let fields: Vec<_> = row
                 .iter()
                 .zip(scales)
                 .map(|(value, (scale, _))| {
                     let mut field = format!("{:.9}", value * scale);
-                    if self.acceleration.0 > 200.0 { field = format!("{:.3}", value * scale) }
-                    if self.decimal_comma { field = field.replace('.', ",") }
-                    if self.harm == Harm::Quoted { field = format!("\"{field}\"") }
+                    if self.acceleration.0 > 200.0 {
+                        field = format!("{:.3}", value * scale)
+                    }
+                    if self.decimal_comma {
+                        field = field.replace('.', ",")
+                    }
+                    if self.harm == Harm::Quoted {
+                        field = format!("\"{field}\"")
+                    }
                     field
                 })
                 .collect();
@@ -100,16 +114,38 @@ impl Way {
             }
             let is_hurt = i == rows.len() / 2 || i == rows.len() / 3;
             match self.harm {
-                Harm::Torn if is_hurt => { line.truncate(line.len() / 2); left_out.push(i); }
-                Harm::Doubled if is_hurt => line = format!("{line}{}{line}", self.line_break),
-                Harm::Foreign if is_hurt => line = format!("Guru Meditation: core panic{}{line}", self.line_break),
-                Harm::NotANumber if is_hurt => {
-                    line = line.replacen(&fields[4], "nan", 1); left_out.push(i);
+                Harm::Torn if is_hurt => {
+                    line.truncate(line.len() / 2);
+                    left_out.push(i);
                 }
-                Harm::Back if is_hurt => { line = line.replacen(&fields[0], &fields[0].replace(['4', '5', '6', '7', '8', '9'], "0"), 1);
-                    if line != fields.join(self.separator) { left_out.push(i); } }
-                Harm::Forth if is_hurt => { line = format!("9{line}"); left_out.push(i); }
-                Harm::Cut if i + 1 == rows.len() => { line.truncate(line.len() / 2); left_out.push(i); text += &line; break }
+                Harm::Doubled if is_hurt => line = format!("{line}{}{line}", self.line_break),
+                Harm::Foreign if is_hurt => {
+                    line = format!("Guru Meditation: core panic{}{line}", self.line_break)
+                }
+                Harm::NotANumber if is_hurt => {
+                    line = line.replacen(&fields[4], "nan", 1);
+                    left_out.push(i);
+                }
+                Harm::Back if is_hurt => {
+                    line = line.replacen(
+                        &fields[0],
+                        &fields[0].replace(['4', '5', '6', '7', '8', '9'], "0"),
+                        1,
+                    );
+                    if line != fields.join(self.separator) {
+                        left_out.push(i);
+                    }
+                }
+                Harm::Forth if is_hurt => {
+                    line = format!("9{line}");
+                    left_out.push(i);
+                }
+                Harm::Cut if i + 1 == rows.len() => {
+                    line.truncate(line.len() / 2);
+                    left_out.push(i);
+                    text += &line;
+                    break;
+                }
                 _ => {}
             }
             text += &line;
@@ -117,7 +153,9 @@ impl Way {
         }
         let bytes = match self.harm {
             Harm::Mark => format!("\u{feff}{text}").into_bytes(),
-            Harm::Utf16 => format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect(),
+            Harm::Utf16 => {
+                format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect()
+            }
             _ => text.into_bytes(),
         };
         (bytes, left_out)
@@ -126,21 +164,41 @@ impl Way {
     fn header(&self) -> Vec<String> {
         let plain = ["t", "ax", "ay", "az", "gx", "gy", "gz"];
         let named = ["Timestamp", "AccX", "AccY", "AccZ", "GyrX", "GyrY", "GyrZ"];
-        let units = [self.time.1, self.acceleration.1, self.acceleration.1, self.acceleration.1, self.rate.1, self.rate.1, self.rate.1];
-        let extra = if self.harm == Harm::Extra { format!("{}count{}note", self.separator, self.separator) } else { String::new() };
+        let units = [
+            self.time.1,
+            self.acceleration.1,
+            self.acceleration.1,
+            self.acceleration.1,
+            self.rate.1,
+            self.rate.1,
+            self.rate.1,
+        ];
+        let extra = if self.harm == Harm::Extra {
+            format!("{}count{}note", self.separator, self.separator)
+        } else {
+            String::new()
+        };
         let join = |names: Vec<String>| {
-            let names = names.into_iter().map(|name| if self.harm == Harm::Quoted { format!("\"{name}\"") } else { name });
+            let names = names
+                .into_iter()
+                .map(|name| if self.harm == Harm::Quoted { format!("\"{name}\"") } else { name });
             names.collect::<Vec<_>>().join(self.separator) + &extra
         };
         let owned = |names: [&str; 7]| names.map(str::to_owned).to_vec();
-        let both = |form: fn(&str, &str) -> String| (0..7).map(|i| form(named[i], units[i])).collect::<Vec<_>>();
+        let both = |form: fn(&str, &str) -> String| {
+            (0..7).map(|i| form(named[i], units[i])).collect::<Vec<_>>()
+        };
         match self.header {
             Header::Plain => vec![join(owned(plain))],
             Header::Named => vec![join(owned(named))],
             Header::Brackets => vec![join(both(|name, unit| format!("{name}[{unit}]")))],
-            Header::Behind => vec![join(both(|name, unit| format!("{name}_{}", unit.replace(['/', '^'], ""))))],
+            Header::Behind => {
+                vec![join(both(|name, unit| format!("{name}_{}", unit.replace(['/', '^'], ""))))]
+            }
             Header::Line => vec![join(owned(named)), join(owned(units))],
-            Header::Comment => vec!["# made by hand".to_owned(), format!("# {}", join(owned(named)))],
+            Header::Comment => {
+                vec!["# made by hand".to_owned(), format!("# {}", join(owned(named)))]
+            }
             Header::None => vec![],
         }
     }
@@ -148,7 +206,16 @@ impl Way {
 
 fn ways() -> Vec<Way> {
     let mut ways = Vec::new();
-    let dialects = [(",", false), (";", false), (";", true), ("\t", false), ("\t", true), (" ", false), ("  ", true), (", ", false)];
+    let dialects = [
+        (",", false),
+        (";", false),
+        (";", true),
+        ("\t", false),
+        ("\t", true),
+        (" ", false),
+        ("  ", true),
+        (", ", false),
+    ];
     let units = [
         ((1.0, "m/s^2"), (1.0, "rad/s"), (1.0, "s")),
         ((1.0, "m/s²"), (DEGREE, "°/s"), (1e3, "ms")),
@@ -157,24 +224,56 @@ fn ways() -> Vec<Way> {
         ((1.0 / G, "g"), (DEGREE, "dps"), (1e9, "ns")),
         ((1.0 / G, "g"), (1.0, "rad/s"), (1.0, "s")),
     ];
-    let headers = [Header::Plain, Header::Named, Header::Brackets, Header::Behind, Header::Line, Header::Comment, Header::None];
+    let headers = [
+        Header::Plain,
+        Header::Named,
+        Header::Brackets,
+        Header::Behind,
+        Header::Line,
+        Header::Comment,
+        Header::None,
+    ];
     for (separator, decimal_comma) in dialects {
         for (acceleration, rate, time) in units {
             for header in headers {
-                ways.push(Way { header, separator, decimal_comma, acceleration, rate, time, ..PLAIN });
+                ways.push(Way {
+                    header,
+                    separator,
+                    decimal_comma,
+                    acceleration,
+                    rate,
+                    time,
+                    ..PLAIN
+                });
             }
         }
     }
     let counts = [(16384.0, 131.0), (8192.0, 65.5), (4096.0, 32.8), (2048.0, 16.4)];
     for (acceleration, rate) in counts {
         for header in [Header::Plain, Header::Named] {
-            let way = Way { header, acceleration: (acceleration / G, "LSB"), rate: (rate * DEGREE, "LSB"), time: (1e6, "us"), ..PLAIN };
+            let way = Way {
+                header,
+                acceleration: (acceleration / G, "LSB"),
+                rate: (rate * DEGREE, "LSB"),
+                time: (1e6, "us"),
+                ..PLAIN
+            };
             ways.push(way);
         }
     }
     let harms = [
-        Harm::Cut, Harm::Torn, Harm::Doubled, Harm::Foreign, Harm::NotANumber, Harm::Back, Harm::Forth,
-        Harm::Preamble, Harm::Quoted, Harm::Extra, Harm::Mark, Harm::Utf16,
+        Harm::Cut,
+        Harm::Torn,
+        Harm::Doubled,
+        Harm::Foreign,
+        Harm::NotANumber,
+        Harm::Back,
+        Harm::Forth,
+        Harm::Preamble,
+        Harm::Quoted,
+        Harm::Extra,
+        Harm::Mark,
+        Harm::Utf16,
     ];
     for harm in harms {
         for (header, separator, line_break, decimal_comma) in [
@@ -185,7 +284,12 @@ fn ways() -> Vec<Way> {
         ] {
             let way = Way { header, separator, line_break, decimal_comma, harm, ..PLAIN };
             ways.push(way.clone());
-            ways.push(Way { acceleration: (1.0 / G, "g"), rate: (DEGREE, "deg/s"), time: (1e3, "ms"), ..way });
+            ways.push(Way {
+                acceleration: (1.0 / G, "g"),
+                rate: (DEGREE, "deg/s"),
+                time: (1e3, "ms"),
+                ..way
+            });
         }
     }
     ways
@@ -203,12 +307,18 @@ fn outcome(way: &Way, rows: &[[f64; 7]]) -> Outcome {
     let (bytes, left_out) = way.write(rows);
     match inertial::read(&bytes, &Options::default()) {
         Err(error) => Outcome::Refused(error),
-        Ok(log) => compare(&log, rows, &left_out, way.acceleration.0 > 200.0).map_or(Outcome::Right, Outcome::Wrong),
+        Ok(log) => compare(&log, rows, &left_out, way.acceleration.0 > 200.0)
+            .map_or(Outcome::Right, Outcome::Wrong),
     }
 }
 
 /// What is wrong with a log of these rows.
-fn compare(log: &Inertial, rows: &[[f64; 7]], left_out: &[usize], is_coarse: bool) -> Option<String> {
+fn compare(
+    log: &Inertial,
+    rows: &[[f64; 7]],
+    left_out: &[usize],
+    is_coarse: bool,
+) -> Option<String> {
     let kept: Vec<_> = (0..rows.len()).filter(|i| !left_out.contains(i)).collect();
     if log.samples.len() != kept.len() {
         return Some(format!("{} samples of {}", log.samples.len(), kept.len()));
@@ -218,8 +328,13 @@ fn compare(log: &Inertial, rows: &[[f64; 7]], left_out: &[usize], is_coarse: boo
         let [t, force @ .., _, _, _] = rows[i];
         let rate = &rows[i][4..];
         let Sample { time_us, specific_force, angular_rate } = sample;
-        let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance * (1.0 + b.abs()));
-        if !(near(&[*time_us as f64 * 1e-6], &[t]) && near(specific_force, &force) && near(angular_rate, rate)) {
+        let near = |a: &[f64], b: &[f64]| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance * (1.0 + b.abs()))
+        };
+        if !(near(&[*time_us as f64 * 1e-6], &[t])
+            && near(specific_force, &force)
+            && near(angular_rate, rate))
+        {
             let told: Vec<_> = log.conclusions.iter().map(ToString::to_string).collect();
             return Some(format!("sample {i}: {sample:?} for {:?}: {}", rows[i], told.join("; ")));
         }
@@ -238,7 +353,10 @@ fn count(name: &str, rows: &[[f64; 7]], ways: &[Way]) -> [usize; 2] {
                 counts[1] += 1;
                 let sentence = error.to_string();
                 assert!(!sentence.contains('\n'), "{sentence}");
-                let key = (format!("{:?}", way.header), sentence.split(", found").next().unwrap_or_default().to_owned());
+                let key = (
+                    format!("{:?}", way.header),
+                    sentence.split(", found").next().unwrap_or_default().to_owned(),
+                );
                 *refusals.entry(key).or_insert(0) += 1;
             }
             Outcome::Wrong(what) => panic!("{name}, {way:?}: {what}"),
@@ -255,14 +373,16 @@ fn count(name: &str, rows: &[[f64; 7]], ways: &[Way]) -> [usize; 2] {
 fn a_synthetic_walk_in_every_way() {
     let ways = ways();
     assert!(ways.len() >= 120, "{}", ways.len());
-    count("synthetic", &walk::rows(30), &ways);
+    let [right, _] = count("synthetic", &walk::rows(30), &ways);
+    assert!(right >= 430, "{right} right");
 }
 
 #[test]
 fn recorded_walks_in_every_way() {
     let ways = ways();
     for (name, bytes) in recordings::walks() {
-        let chosen = ["exp31_imu", "exp57_100Hz", "exp36_imu", "2017-11-22-11-22-03", "2017-11-22-11-48-35"];
+        let chosen =
+            ["exp31_imu", "exp57_100Hz", "exp36_imu", "2017-11-22-11-22-03", "2017-11-22-11-48-35"];
         if !chosen.iter().any(|part| name.contains(part)) {
             continue;
         }
@@ -273,6 +393,7 @@ fn recorded_walks_in_every_way() {
             [sample.time_us as f64 * 1e-6, ax, ay, az, gx, gy, gz]
         };
         let rows: Vec<_> = log.samples.iter().map(row).collect();
-        count(&name, &rows, &ways);
+        let some: Vec<_> = ways.iter().step_by(3).cloned().collect();
+        count(&name, &rows, &some);
     }
 }
