@@ -22,7 +22,7 @@ pub enum Format {
     Xio,
     /// Export of Xsens MT Manager.
     Xsens,
-    /// CSV of `SparkFun`'s OpenLog Artemis.
+    /// CSV of `SparkFun`'s `OpenLog` Artemis.
     OpenLogArtemis,
 }
 

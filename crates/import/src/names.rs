@@ -138,15 +138,13 @@ fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut was_lower = false;
     for letter in name.chars() {
-        if !letter.is_alphanumeric() {
+        if !letter.is_alphanumeric() || letter.is_uppercase() && was_lower {
             words.push(String::new());
-        } else {
-            if letter.is_uppercase() && was_lower {
-                words.push(String::new());
-            }
-            if let Some(word) = words.last_mut() {
-                word.extend(letter.to_lowercase());
-            }
+        }
+        if let Some(word) = words.last_mut()
+            && letter.is_alphanumeric()
+        {
+            word.extend(letter.to_lowercase());
         }
         was_lower = letter.is_lowercase();
     }

@@ -227,9 +227,9 @@ type Told = (Unit, Source);
 impl Evidence {
     fn find(raw: &[Raw], usual: f64, times: &Candidates) -> Self {
         // With the first unit that shows rest: it only says how long windows are.
-        let steps =
+        let mut steps =
             times.units.iter().map(|unit| usual * unit.scale).filter(|step| step.is_finite());
-        let found = steps.filter_map(|step| Some((Rest::find(raw, step)?, step))).next();
+        let found = steps.find_map(|step| Some((Rest::find(raw, step)?, step)));
         let motion = found.as_ref().map(|(rest, step)| Motion::find(raw, rest, usual, *step));
         let motion = motion.filter(|motion| motion.count() >= FEWEST_STRETCHES);
         Self { rest: found.map(|(rest, _)| rest), motion }

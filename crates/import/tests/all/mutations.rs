@@ -80,7 +80,7 @@ fn read(log: &[u8], seed: u64) {
                 assert!(columns.into_iter().all(|(_, values)| values.len() == read.rows.len()));
             }
             Err(error) => {
-                assert!(!error.to_string().contains(['\n', '\r']), "seed {seed}: {error}")
+                assert!(!error.to_string().contains(['\n', '\r']), "seed {seed}: {error}");
             }
         }
     }

@@ -97,13 +97,13 @@ impl Way {
                 .map(|(value, (scale, _))| {
                     let mut field = format!("{:.9}", value * scale);
                     if self.acceleration.0 > 200.0 {
-                        field = format!("{:.3}", value * scale)
+                        field = format!("{:.3}", value * scale);
                     }
                     if self.decimal_comma {
-                        field = field.replace('.', ",")
+                        field = field.replace('.', ",");
                     }
                     if self.harm == Harm::Quoted {
-                        field = format!("\"{field}\"")
+                        field = format!("\"{field}\"");
                     }
                     field
                 })
@@ -120,7 +120,7 @@ impl Way {
                 }
                 Harm::Doubled if is_hurt => line = format!("{line}{}{line}", self.line_break),
                 Harm::Foreign if is_hurt => {
-                    line = format!("Guru Meditation: core panic{}{line}", self.line_break)
+                    line = format!("Guru Meditation: core panic{}{line}", self.line_break);
                 }
                 Harm::NotANumber if is_hurt => {
                     line = line.replacen(&fields[4], "nan", 1);
@@ -282,7 +282,7 @@ fn ways() -> Vec<Way> {
             (Header::Named, "\t", "\r", false),
             (Header::Line, ",", "\r\n", false),
         ] {
-            let way = Way { header, separator, line_break, decimal_comma, harm, ..PLAIN };
+            let way = Way { header, separator, decimal_comma, line_break, harm, ..PLAIN };
             ways.push(way.clone());
             ways.push(Way {
                 acceleration: (1.0 / G, "g"),
