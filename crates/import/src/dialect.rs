@@ -7,6 +7,8 @@ use crate::text::Text;
 
 /// How many lines are looked at to tell the dialect.
 const SAMPLE: usize = 400;
+/// No log has more columns; what has is not taken apart.
+const MOST_FIELDS: usize = 1000;
 
 /// What stands between the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +83,7 @@ impl Dialect {
         let mut widths: Vec<[usize; 3]> = Vec::new();
         for line in lines.iter().filter(|line| !self.is_comment(line)) {
             let (width, numbers) = self.row(line);
-            if width < 2 || numbers * 2 < width {
+            if !(2..=MOST_FIELDS).contains(&width) || numbers * 2 < width {
                 continue;
             }
             match widths.iter_mut().find(|known| known[0] == width) {
@@ -121,14 +123,17 @@ impl Dialect {
         }
     }
 
-    /// The fields of a line, without surrounding blanks and quotation marks.
-    pub fn fields<'a>(self, line: &'a [u8]) -> Vec<Cow<'a, [u8]>> {
+    /// The fields of a line, without surrounding blanks and quotation marks; of more than 1000 the first ones.
+    pub fn fields(self, line: &[u8]) -> Vec<Cow<'_, [u8]>> {
         let mut fields = Vec::new();
         let mut rest = line.trim_ascii();
         loop {
             let (field, length) = self.field(rest);
             fields.push(field);
             let Some(after) = rest.get(length + 1..) else { return fields };
+            if fields.len() > MOST_FIELDS {
+                return fields;
+            }
             rest = match self.separator {
                 Separator::Blanks => after.trim_ascii_start(),
                 _ => after,
@@ -140,14 +145,14 @@ impl Dialect {
     }
 
     /// The first field, and where its separator stands.
-    fn field<'a>(self, rest: &'a [u8]) -> (Cow<'a, [u8]>, usize) {
+    fn field(self, rest: &[u8]) -> (Cow<'_, [u8]>, usize) {
         let blanks = rest.iter().take_while(|&&b| b == b' ').count();
-        if self.separator != Separator::Blanks || blanks == 0 {
-            if let Some((field, length)) = rest.get(blanks..).and_then(quoted_field) {
-                let end = blanks + length;
-                let after = rest[end..].iter().position(|&byte| self.separates(byte));
-                return (field, after.map_or(rest.len(), |after| end + after));
-            }
+        if (self.separator != Separator::Blanks || blanks == 0)
+            && let Some((field, length)) = rest.get(blanks..).and_then(quoted_field)
+        {
+            let end = blanks + length;
+            let after = rest[end..].iter().position(|&byte| self.separates(byte));
+            return (field, after.map_or(rest.len(), |after| end + after));
         }
         let end = rest.iter().position(|&byte| self.separates(byte)).unwrap_or(rest.len());
         (Cow::Borrowed(rest[..end].trim_ascii()), end)
@@ -172,7 +177,7 @@ impl Dialect {
 
     /// Reads the first number of `rest` as [`Self::number`] would, if it is written without quotation marks and ends with a
     /// separator or the line: what follows the separator, none at the line's end.
-    pub(crate) fn next_number<'a>(self, rest: &'a [u8]) -> Option<(f64, Option<&'a [u8]>)> {
+    pub(crate) fn next_number(self, rest: &[u8]) -> Option<(f64, Option<&[u8]>)> {
         let rest = rest.trim_ascii_start();
         let (number, length) = if self.decimal_comma {
             let end = rest.iter().position(|&byte| self.separates(byte)).unwrap_or(rest.len());

@@ -22,7 +22,7 @@ pub enum Format {
     Xio,
     /// Export of Xsens MT Manager.
     Xsens,
-    /// CSV of `SparkFun`'s OpenLog Artemis.
+    /// CSV of `SparkFun`'s `OpenLog` Artemis.
     OpenLogArtemis,
 }
 
@@ -51,11 +51,6 @@ impl Format {
     /// The name in the option `--format`.
     pub fn name(self) -> &'static str {
         self.description().name
-    }
-
-    /// The names of all formats, as in the option `--format`.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        ALL.iter().map(|known| known.name)
     }
 
     /// The format of a table, if it is one of these.

@@ -27,8 +27,10 @@
 //!
 //! **A turn of all axes together**, how the sensor is mounted, is no error: it changes nothing.
 
+mod by_name;
 mod columns;
 mod conclusion;
+mod evidence;
 mod motion;
 mod order;
 mod raw;
@@ -150,7 +152,7 @@ fn rows(text: &Text<'_>, table: &Table, columns: &Columns, damage: &mut Damage) 
         let value =
             |axis: usize| sensors[axis].1 * sensors[axis].0.get(i).copied().unwrap_or(f64::NAN);
         let raw = Raw {
-            time: times.map_or(i as f64, |times| times[i]),
+            time: times.map_or(i as f64, |times| times.get(i).copied().unwrap_or(f64::NAN)),
             force: [value(0), value(1), value(2)],
             rate: [value(3), value(4), value(5)],
         };

@@ -84,7 +84,7 @@ impl Layout {
 /// The names of a header of so many columns, if a line is one: no field is a number, and at least so many are not empty.
 fn header_names(dialect: Dialect, width: usize, bytes: &[u8], least: usize) -> Option<Vec<String>> {
     let mut bytes = bytes;
-    while let [b'#' | b'%' | b'/' | b' ', rest @ ..] | [b';', rest @ ..] = bytes {
+    while let [b'#' | b'%' | b'/' | b' ' | b';', rest @ ..] = bytes {
         bytes = rest;
     }
     // Names may hold blanks, and be separated otherwise than the numbers.

@@ -100,6 +100,14 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     if base == "T" {
         return None;
     }
+    // `gyr_x_°/s`: a unit of more than letters.
+    if let Some((base, unit)) = base.rsplit_once(['_', ' ']).filter(|_| bracket.is_none())
+        && let Some(mut meaning) = plain_meaning(&words(base).concat())
+        && let Some(unit) = Unit::read(meaning.quantity, unit)
+    {
+        meaning.unit = Some(unit);
+        return Some(meaning);
+    }
     let words: Vec<_> =
         words(base).into_iter().filter(|w| !FILLERS.contains(&w.as_str())).collect();
     // A unit behind the name is the shortest possible.
@@ -130,15 +138,13 @@ fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut was_lower = false;
     for letter in name.chars() {
-        if !letter.is_alphanumeric() {
+        if !letter.is_alphanumeric() || letter.is_uppercase() && was_lower {
             words.push(String::new());
-        } else {
-            if letter.is_uppercase() && was_lower {
-                words.push(String::new());
-            }
-            if let Some(word) = words.last_mut() {
-                word.extend(letter.to_lowercase());
-            }
+        }
+        if let Some(word) = words.last_mut()
+            && letter.is_alphanumeric()
+        {
+            word.extend(letter.to_lowercase());
         }
         was_lower = letter.is_lowercase();
     }
@@ -200,6 +206,7 @@ mod tests {
             ("gyro_x(deg/s)", Quantity::Rate, 0, Some("°/s")),
             ("GyrX[dps]", Quantity::Rate, 0, Some("°/s")),
             ("gy_dps", Quantity::Rate, 1, Some("°/s")),
+            ("gyr_x_°/s", Quantity::Rate, 0, Some("°/s")),
             ("gyy", Quantity::Rate, 1, None),
             ("wz_rad_s", Quantity::Rate, 2, Some("rad/s")),
             ("Gyroscope Y-axis (°/s)", Quantity::Rate, 1, Some("°/s")),

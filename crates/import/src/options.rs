@@ -103,9 +103,8 @@ impl FromStr for Units {
                     units.rate = Some(read);
                 }
                 "t" | "time" => {
-                    units.time = Some(time_unit(unit).ok_or_else(|| {
-                        wrong("a unit such as s, ms, us or ns, or a rate such as 100Hz")
-                    })?)
+                    let expected = "a unit such as s, ms, us or ns, or a rate such as 100Hz";
+                    units.time = Some(time_unit(unit).ok_or_else(|| wrong(expected))?);
                 }
                 _ => {
                     let found = quoted(quantity);

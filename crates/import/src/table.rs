@@ -1,7 +1,5 @@
 //! A table of numbers, whatever separates them.
 
-use std::borrow::Cow;
-
 use crate::damage::{Damage, Fault};
 use crate::dialect::Dialect;
 use crate::error::Error;
@@ -157,7 +155,7 @@ impl Table {
         Ok(())
     }
 
-    fn value(&self, kind: Kind, field: &Cow<'_, [u8]>) -> Option<f64> {
+    fn value(&self, kind: Kind, field: &[u8]) -> Option<f64> {
         match kind {
             Kind::Number => self.dialect.number(field),
             Kind::Date | Kind::TimeOfDay => moment::read(field).map(moment::Moment::microseconds),

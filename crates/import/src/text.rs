@@ -17,7 +17,7 @@ pub struct Text<'a> {
 
 impl<'a> Text<'a> {
     /// Takes a file's bytes: UTF-8 or another encoding that holds ASCII, or UTF-16 of either byte order. A byte order mark
-    /// is dropped. Lines end with `\n`, `\r\n`, or with `\r` if there is no `\n`.
+    /// is dropped. Lines end with `\n`, `\r\n`, or with `\r` if there is hardly a `\n`.
     ///
     /// # Errors
     /// [`Error::Log`] if there is no text at all.
@@ -35,7 +35,9 @@ impl<'a> Text<'a> {
         if bytes.trim_ascii().is_empty() {
             return Err(Error::log("expected a log, found an empty file"));
         }
-        let line_break = memchr::memchr(b'\n', &bytes).map_or(b'\r', |_| b'\n');
+        let beginning = &bytes[..bytes.len().min(BEGINNING)];
+        let count = |byte: u8| memchr::memchr_iter(byte, beginning).count();
+        let line_break = if count(b'\r') > 2 * count(b'\n') { b'\r' } else { b'\n' };
         Ok(Self { bytes, line_break })
     }
 

@@ -1,5 +1,5 @@
-//! CSV of `SparkFun`'s OpenLog Artemis with its ICM-20948 (`Sensors.ino` and `SENSOR_UNITS.md` of
-//! github.com/sparkfun/OpenLog_Artemis: `aX,aY,aZ` in milli g, `gX,gY,gZ` in °/s), after `rtcDate,rtcTime` or, if so set, `micros`.
+//! CSV of `SparkFun`'s `OpenLog` Artemis with its ICM-20948 (`Sensors.ino` and `SENSOR_UNITS.md` of
+//! `github.com/sparkfun/OpenLog_Artemis`: `aX,aY,aZ` in milli g, `gX,gY,gZ` in °/s), after `rtcDate,rtcTime` or, if so set, `micros`.
 
 use super::{Description, Format, has};
 use crate::table::Table;

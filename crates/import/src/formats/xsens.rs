@@ -1,6 +1,6 @@
 //! Text export of Xsens MT Manager: comments of `//`, then tabulators between `PacketCounter`, `SampleTimeFine`, `Acc_X`, …,
 //! `Gyr_X`, … (MT Manager User Manual, "Exporter"): m/s², rad/s, and `SampleTimeFine` in ticks of 0.1 ms. It holds nothing in
-//! exports of MTw, whose packets are only counted: their rate is asked for.
+//! exports of `MTw`, whose packets are only counted: their rate is asked for.
 
 use super::{Description, Format, has};
 use crate::table::Table;

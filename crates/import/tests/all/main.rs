@@ -1,5 +1,6 @@
 //! The importer against recordings, variants of them, and damage.
 
+mod claims;
 mod mutations;
 mod plain;
 mod recordings;

@@ -1,1 +1,141 @@
-//! x
+//! Damaged and random logs, by seeds: nothing panics or hangs, and what is read is in order and finite.
+
+use kestirim_import::Options;
+use kestirim_import::inertial;
+use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::walk;
+
+/// Logs of several kinds.
+fn logs() -> Vec<Vec<u8>> {
+    let rows = walk::rows(2);
+    let write = |header: &str, separator: &str, comma: bool| {
+        let mut text = header.to_owned();
+        for row in &rows {
+            let fields = row.map(|value| format!("{value:.5}"));
+            let line = fields.join(separator);
+            text += &if comma { line.replace('.', ",") } else { line };
+            text.push('\n');
+        }
+        text.into_bytes()
+    };
+    let dates = rows
+        .iter()
+        .enumerate()
+        .map(|(i, _)| format!("2024-05-01T23:59:59.{:03}Z;\"0,1\";0;9,8;0;0;0\n", i % 1000));
+    let dates = "Time;AccX;AccY;AccZ;GyrX;GyrY;GyrZ\n".to_owned() + &dates.collect::<String>();
+    vec![
+        write("t,ax,ay,az,gx,gy,gz\n", ",", false),
+        write("# made by hand\nTime (s);AccX [g];AccY;AccZ;GyrX [dps];GyrY;GyrZ\n", ";", true),
+        write("", " ", false),
+        dates.into_bytes(),
+    ]
+}
+
+fn pick(random: &mut Xoshiro256PlusPlus, count: usize) -> usize {
+    (random.next_u64() % count.max(1) as u64) as usize
+}
+
+fn mutate(random: &mut Xoshiro256PlusPlus, log: &mut Vec<u8>) {
+    const PIECES: [&[u8]; 12] = [
+        b"\n",
+        b",",
+        b"nan",
+        b"-",
+        b"1e999",
+        b"\0\0\0",
+        b"\xff\xfe",
+        b"\"",
+        b"12:00:00",
+        b";",
+        b"9",
+        b"\r",
+    ];
+    let at = pick(random, log.len());
+    let length = pick(random, 40);
+    match pick(random, 6) {
+        0 => log.truncate(at),
+        1 => drop(log.drain(at..(at + length).min(log.len()))),
+        2 => {
+            let part = log[at..(at + length * 4).min(log.len())].to_vec();
+            let to = pick(random, log.len());
+            log.splice(to..to, part);
+        }
+        3 => drop(log.splice(at..at, PIECES[pick(random, PIECES.len())].to_vec())),
+        4 => log.iter_mut().skip(at).take(1).for_each(|byte| *byte = random.next_u64() as u8),
+        _ => log.iter_mut().skip(at).take(length).for_each(|byte| *byte ^= 1),
+    }
+}
+
+fn read(log: &[u8], seed: u64) {
+    for strict in [false, true] {
+        match inertial::read(log, &Options { strict, ..Options::default() }) {
+            Ok(read) => {
+                assert!(!read.samples.is_empty(), "seed {seed}");
+                assert!(read.samples.is_sorted_by_key(|sample| sample.time_us), "seed {seed}");
+                assert_eq!(read.samples.len(), read.rows.len(), "seed {seed}");
+                assert!(read.rows.is_sorted(), "seed {seed}");
+                let columns = read.other.iter();
+                assert!(columns.into_iter().all(|(_, values)| values.len() == read.rows.len()));
+            }
+            Err(error) => {
+                assert!(!error.to_string().contains(['\n', '\r']), "seed {seed}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn damaged_logs_do_no_harm() {
+    let logs = logs();
+    for seed in 0..1500 {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut log = logs[pick(&mut random, logs.len())].clone();
+        for _ in 0..=pick(&mut random, 6) {
+            mutate(&mut random, &mut log);
+        }
+        read(&log, seed);
+    }
+}
+
+#[test]
+fn bytes_of_any_kind_do_no_harm() {
+    const PIECES: [&str; 22] = [
+        "t,ax,ay,az,gx,gy,gz",
+        ",gt_x",
+        "\n",
+        "\r\n",
+        " ",
+        ",",
+        ";",
+        "\t",
+        "1",
+        "-2.5e3",
+        "nan",
+        "\0",
+        "é",
+        "\"",
+        "1 2 3 4 5 6 7\n",
+        "0,1,2,3,4,5,6\n",
+        "# ",
+        "//",
+        "10:00:00",
+        "2024-01-01 10:00:00",
+        "1e308",
+        "-",
+    ];
+    for seed in 0..4000 {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let count = pick(&mut random, 60);
+        let mut log = Vec::new();
+        for _ in 0..count {
+            if seed % 3 == 0 {
+                log.push(random.next_u64() as u8);
+            } else {
+                log.extend_from_slice(PIECES[pick(&mut random, PIECES.len())].as_bytes());
+            }
+        }
+        read(&log, seed);
+    }
+}
