@@ -99,7 +99,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     );
                     navigator.zero_velocity(&ZeroVelocity {
                         velocity,
-                        unrest: verdict.unrest,
+                        statistic: verdict.statistic,
                         interval,
                         landing: !self.was_stance,
                     });

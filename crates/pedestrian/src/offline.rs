@@ -15,7 +15,7 @@ use kestirim_scalar::Scalar;
 pub struct OfflineTracker<'a, T: Scalar, N> {
     engine: Engine<T, N>,
     samples: &'a [ImuSample<T>],
-    unrest: &'a [T],
+    statistic: &'a [T],
     minimum: RecentMinimum<T>,
     next: usize,
     ahead: usize,
@@ -31,18 +31,18 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
     /// The same to both sides, in bins.
     const LOOK_BINS: usize = 12;
 
-    /// Prepares a walk. `unrest` is working memory for the SHOE statistic, an entry a sample.
+    /// Prepares a walk. `statistic` is working memory for the SHOE statistic, an entry a sample.
     ///
     /// # Errors
-    /// The index of the first sample that no tracker can take, and why. (The entries of `unrest` that are
+    /// The index of the first sample that no tracker can take, and why. (The entries of `statistic` that are
     /// missing count as such a sample: [`Error::NoMemory`].)
     pub fn new(
         config: Config<T>,
         samples: &'a [ImuSample<T>],
-        unrest: &'a mut [T],
+        statistic: &'a mut [T],
     ) -> Result<Self, (usize, Error)> {
-        if unrest.len() < samples.len() {
-            return Err((unrest.len(), Error::NoMemory));
+        if statistic.len() < samples.len() {
+            return Err((statistic.len(), Error::NoMemory));
         }
         let mut engine = Engine::<T, N>::new(config);
         let mut last_us = 0;
@@ -57,9 +57,9 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
             last_us = sample.time_us;
         }
         engine.alignment = engine.alignment.rewound();
-        centred_unrest(&engine, samples, unrest);
+        centred_statistic(&engine, samples, statistic);
         let minimum = RecentMinimum::new(Self::LOOK_BINS);
-        Ok(Self { engine, samples, unrest, minimum, next: 0, ahead: 0 })
+        Ok(Self { engine, samples, statistic, minimum, next: 0, ahead: 0 })
     }
 
     /// Ends the walk: the stride that led to the stance the foot is in, if any.
@@ -79,13 +79,13 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
 
     /// The smallest SHOE statistic around `time_us`, (rad/s)².
     fn minimum_around(&mut self, time_us: u64) -> T {
-        while let (Some(sample), Some(&unrest)) =
-            (self.samples.get(self.ahead), self.unrest.get(self.ahead))
+        while let (Some(sample), Some(&statistic)) =
+            (self.samples.get(self.ahead), self.statistic.get(self.ahead))
         {
             if sample.time_us > time_us.saturating_add(Self::LOOK_US) {
                 break;
             }
-            self.minimum.push(sample.time_us as u32, unrest);
+            self.minimum.push(sample.time_us as u32, statistic);
             self.ahead += 1;
         }
         self.minimum.smallest()
@@ -96,7 +96,7 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
     type Item = Estimate<T>;
 
     fn next(&mut self) -> Option<Estimate<T>> {
-        let (sample, &unrest) = (self.samples.get(self.next)?, self.unrest.get(self.next)?);
+        let (sample, &statistic) = (self.samples.get(self.next)?, self.statistic.get(self.next)?);
         self.next += 1;
         let minimum = self.minimum_around(sample.time_us);
         // Every sample was examined when the walk was prepared.
@@ -105,17 +105,17 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
             return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
         }
         let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
-        let verdict = Verdict { stance: unrest < bound, unrest };
+        let verdict = Verdict { stance: statistic < bound, statistic };
         let motion = self.engine.motion(sample);
         Some(self.engine.advance(sample, examined, &motion, verdict))
     }
 }
 
 /// The statistic T of the window around each sample, instead of the one that ends in it.
-fn centred_unrest<T: Scalar, N: Navigator<T>>(
+fn centred_statistic<T: Scalar, N: Navigator<T>>(
     engine: &Engine<T, N>,
     samples: &[ImuSample<T>],
-    unrest: &mut [T],
+    statistic: &mut [T],
 ) {
     let mut shoe = Shoe::default();
     let mut centred = 0;
@@ -124,13 +124,13 @@ fn centred_unrest<T: Scalar, N: Navigator<T>>(
         last = shoe.update(&engine.motion(sample));
         let middle_us = sample.time_us.saturating_sub(u64::from(Shoe::<T>::WINDOW_US / 2));
         while samples.get(centred).is_some_and(|sample| sample.time_us <= middle_us) {
-            if let Some(entry) = unrest.get_mut(centred) {
+            if let Some(entry) = statistic.get_mut(centred) {
                 *entry = last;
             }
             centred += 1;
         }
     }
-    for entry in unrest.iter_mut().skip(centred) {
+    for entry in statistic.iter_mut().skip(centred) {
         *entry = last;
     }
 }

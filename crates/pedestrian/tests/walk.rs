@@ -28,8 +28,8 @@ fn causal<T: Scalar, N: Navigator<T>>(samples: &[ImuSample<T>]) -> Walked<T> {
 }
 
 fn offline<T: Scalar, N: Navigator<T>>(samples: &[ImuSample<T>]) -> Walked<T> {
-    let mut unrest = vec![T::ZERO; samples.len()];
-    let mut tracker = OfflineTracker::<T, N>::new(config(), samples, &mut unrest).unwrap();
+    let mut statistic = vec![T::ZERO; samples.len()];
+    let mut tracker = OfflineTracker::<T, N>::new(config(), samples, &mut statistic).unwrap();
     let estimates: Vec<_> = tracker.by_ref().collect();
     assert_eq!(estimates.len(), samples.len());
     let strides = estimates.iter().filter_map(|e| e.stride).chain(tracker.finish()).collect();

@@ -39,8 +39,8 @@ impl<T: Scalar> Adaptive<T> {
 impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
     #[inline]
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
-        let unrest = self.shoe.update(motion);
-        let minimum = self.minimum.push(motion.time_us, unrest);
+        let statistic = self.shoe.update(motion);
+        let minimum = self.minimum.push(motion.time_us, statistic);
         let last_us = *self.last_stance_us.get_or_insert(motion.time_us);
         let since = motion.time_us.wrapping_sub(last_us);
         let mut bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
@@ -48,11 +48,11 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
             let waited = (since - Self::PATIENCE_US).min(Self::IMPATIENCE_US);
             bound += bound * T::from_micro(3 * waited as i32);
         }
-        let stance = unrest < bound;
+        let stance = statistic < bound;
         if stance {
             self.last_stance_us = Some(motion.time_us);
         }
-        Verdict { stance, unrest }
+        Verdict { stance, statistic }
     }
 }
 

@@ -32,7 +32,7 @@ pub struct Verdict<T> {
     pub stance: bool,
     /// The SHOE statistic T, (rad/s)²: small for a foot at rest; 0 from a detector without a statistic.
     /// A zero-velocity update weighs the more the smaller it is.
-    pub unrest: T,
+    pub statistic: T,
 }
 
 /// Tells stance from swing, causally.

@@ -66,7 +66,7 @@ impl<T: Scalar> FixedShoe<T> {
 impl<T: Scalar> StanceDetector<T> for FixedShoe<T> {
     #[inline]
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
-        let unrest = self.shoe.update(motion);
-        Verdict { stance: unrest < self.threshold, unrest }
+        let statistic = self.shoe.update(motion);
+        Verdict { stance: statistic < self.threshold, statistic }
     }
 }

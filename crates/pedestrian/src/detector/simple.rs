@@ -27,7 +27,7 @@ impl<T: Scalar> StanceDetector<T> for Magnitude<T> {
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
         let [x, y, z] = *motion.force_g.as_array();
         let deviation = x.hypot(y).hypot(z) - T::ONE;
-        Verdict { stance: deviation.abs() < self.threshold_g, unrest: T::ZERO }
+        Verdict { stance: deviation.abs() < self.threshold_g, statistic: T::ZERO }
     }
 }
 
@@ -59,7 +59,7 @@ impl<T: Scalar> StanceDetector<T> for MovingVariance<T> {
         // The deviation from 1 g: its square loses fewer digits than the magnitude's.
         let deviation = (x.hypot(y).hypot(z) - T::ONE).min(T::from_f64(Self::CEILING));
         let [mean, square] = self.window.push(motion.time_us, [deviation, deviation * deviation]);
-        Verdict { stance: square - mean * mean < self.threshold_g2, unrest: T::ZERO }
+        Verdict { stance: square - mean * mean < self.threshold_g2, statistic: T::ZERO }
     }
 }
 
@@ -90,6 +90,6 @@ impl<T: Scalar> StanceDetector<T> for AngularRateEnergy<T> {
         let rate = motion.angular_rate.as_array();
         let square = T::dot(rate, rate).min(T::from_f64(Self::CEILING));
         let [energy] = self.window.push(motion.time_us, [square]);
-        Verdict { stance: energy < self.threshold, unrest: T::ZERO }
+        Verdict { stance: energy < self.threshold, statistic: T::ZERO }
     }
 }

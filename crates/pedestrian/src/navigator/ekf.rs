@@ -39,7 +39,7 @@ impl<T: Scalar> Ekf<T> {
     /// At another interval the variance changes in proportion, so that a second of stance weighs the same (s).
     const REFERENCE_INTERVAL: f64 = 0.005;
     /// Value of the SHOE statistic T at which the variance doubles, (rad/s)².
-    const UNREST: f64 = 0.3;
+    const DOUBTFUL: f64 = 0.3;
     /// Longest swing in which the uncertainty grows (s): beyond it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
@@ -113,7 +113,7 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         let base = T::from_f64(
             Self::ZERO_VELOCITY * Self::ZERO_VELOCITY * Self::SCALE * Self::REFERENCE_INTERVAL,
         );
-        let trust = T::ONE + zero.unrest * T::from_f64(1.0 / Self::UNREST);
+        let trust = T::ONE + zero.statistic * T::from_f64(1.0 / Self::DOUBTFUL);
         let variance = base * trust / zero.interval.max(T::from_f64(0.001));
         let [x, y, z] = *(zero.velocity - self.strapdown.velocity).as_array();
         // An update is refused only where P has left the range of numbers; the others still hold.

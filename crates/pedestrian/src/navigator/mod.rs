@@ -32,7 +32,7 @@ pub struct ZeroVelocity<T: Scalar> {
     /// The sensor's velocity (m/s, earth): zero, or that of a foot which rolls on the ground.
     pub velocity: SVector<T, 3>,
     /// The SHOE statistic T of the detector's verdict, (rad/s)².
-    pub unrest: T,
+    pub statistic: T,
     /// The step that ends in this sample (s).
     pub interval: T,
     /// The first of its stance: a swing ends.

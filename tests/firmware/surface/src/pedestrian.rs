@@ -56,7 +56,7 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
     for _ in 0..rounds() {
         Navigator::propagate(any(&mut navigator), &step, yes_or_no());
         let (velocity, landing) = (matrix(), yes_or_no());
-        let zero = any(ZeroVelocity { velocity, unrest: number(), interval: number(), landing });
+        let zero = any(ZeroVelocity { velocity, statistic: number(), interval: number(), landing });
         Navigator::zero_velocity(any(&mut navigator), &zero);
     }
     keep(Navigator::position(&navigator));
@@ -91,9 +91,9 @@ fn track<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug>(
 
 fn looks_back<T: Scalar, N: Navigator<T> + Debug>() {
     let samples = any([sample::<T>(); 4]);
-    let mut unrest = any([T::ZERO; 4]);
+    let mut statistic = any([T::ZERO; 4]);
     let samples = slice(&samples);
-    let tracker = OfflineTracker::<T, N>::new(config(), samples, slice_mut(&mut unrest));
+    let tracker = OfflineTracker::<T, N>::new(config(), samples, slice_mut(&mut statistic));
     let Ok(mut tracker) = any(tracker) else { return };
     for _ in 0..rounds() {
         keep(<OfflineTracker<'_, T, N> as Iterator>::next(any(&mut tracker)));
