@@ -21,6 +21,8 @@ pub(crate) struct Engine<T: Scalar, N> {
     /// `None` where the motion is not known: before the first stance, and from a loss to the next one.
     navigator: Option<N>,
     lost: Lost<T>,
+    /// The last position that a foot can have come to (m, earth).
+    place: SVector<T, 3>,
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
@@ -30,10 +32,9 @@ pub(crate) struct Engine<T: Scalar, N> {
     contradictions: u8,
 }
 
-/// What is kept of a motion that is not known: the place, and the heading as far as the gyroscope shows it.
+/// What is kept of a motion that is not known: the heading, as far as the gyroscope shows it.
 #[derive(Clone, Copy, Debug)]
 struct Lost<T: Scalar> {
-    position: SVector<T, 3>,
     orientation: Orientation<T>,
     /// The first sample since (µs); `None` before the first stance, which may be any.
     since_us: Option<u32>,
@@ -85,11 +86,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             freshness: Freshness::new(),
             alignment: Alignment::new(config.sensor),
             navigator: None,
-            lost: Lost {
-                position: SVector::zeros(),
-                orientation: Orientation::identity(),
-                since_us: None,
-            },
+            lost: Lost { orientation: Orientation::identity(), since_us: None },
+            place: SVector::zeros(),
             strides: Strides::new(),
             health: Health::new(),
             was_stance: false,
@@ -164,8 +162,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     #[cold]
     fn lose(&mut self, time_us: u64) {
         if let Some(navigator) = self.navigator.take() {
-            self.lost.position = navigator.position();
-            self.lost.orientation = navigator.orientation();
+            let orientation = navigator.orientation();
+            let known = T::all_finite(&orientation.quaternion());
+            self.lost.orientation = if known { orientation } else { Orientation::identity() };
         }
         self.lost.since_us = Some(time_us as u32);
         self.was_stance = false;
@@ -210,10 +209,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         if let Some(navigator) = &mut self.navigator {
             stance = verdict.stance;
             if let Some(step) = step {
-                let before = navigator.position();
                 navigator.propagate(&step, stance);
                 if !is_a_foots(&navigator.velocity(), T::from_f64(Self::FASTEST)) {
-                    return self.run_away(sample.time_us, before);
+                    return self.run_away(sample.time_us);
                 }
                 if stance {
                     let orientation = navigator.orientation();
@@ -245,9 +243,17 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         interval: step.interval,
                         landing: !self.was_stance,
                     });
+                    if !is_a_foots(&navigator.velocity(), T::from_f64(Self::FASTEST)) {
+                        return self.run_away(sample.time_us);
+                    }
                 }
             }
-            stride = self.strides.update(sample.time_us, navigator.position(), stance);
+            let position = navigator.position();
+            if !T::all_finite(position.as_array()) {
+                return self.leave_range(sample.time_us);
+            }
+            self.place = position;
+            stride = self.strides.update(sample.time_us, position, stance);
             self.was_stance = stance;
             if self.contradictions >= Self::CONTRADICTIONS {
                 self.lose(sample.time_us);
@@ -269,16 +275,23 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             let sensor = self.config.sensor;
             self.navigator = lost
                 .levelled(&sample.specific_force)
-                .map(|orientation| N::start(sensor, lost.position, orientation));
+                .map(|orientation| N::start(sensor, self.place, orientation));
         }
     }
 
-    /// The motion is no foot's: its place is that before.
+    /// The motion is no foot's.
     #[cold]
-    fn run_away(&mut self, time_us: u64, before: SVector<T, 3>) -> Estimate<T> {
+    fn run_away(&mut self, time_us: u64) -> Estimate<T> {
         self.health.contradiction();
         self.lose(time_us);
-        self.lost.position = before;
+        self.estimate(time_us, false, None)
+    }
+
+    /// The place is none that a number can hold.
+    #[cold]
+    fn leave_range(&mut self, time_us: u64) -> Estimate<T> {
+        self.health.out_of_range();
+        self.lose(time_us);
         self.estimate(time_us, false, None)
     }
 
@@ -294,7 +307,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             Some(navigator) => {
                 (navigator.position(), navigator.velocity(), navigator.orientation())
             }
-            None => (self.lost.position, SVector::zeros(), self.lost.orientation),
+            None => (self.place, SVector::zeros(), self.lost.orientation),
         };
         Estimate { time_us, position, velocity, orientation, stance, stride }
     }
@@ -308,7 +321,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
-        self.health.warnings()
+        let warnings = self.health.warnings();
+        let out_of_range = warnings.out_of_range || self.strides.is_out_of_range();
+        Warnings { out_of_range, ..warnings }
     }
 }
 
