@@ -8,7 +8,7 @@ use core::fmt;
 pub enum Error {
     /// An argument is NaN or infinite, or a number is beyond what the scalar holds.
     NotFinite,
-    /// The sample is not later than the one before.
+    /// The sample is not later than the one before, by a second at most: by more, the clock was set back.
     OutOfOrder,
     /// The gap of so many seconds is longer than a million usual intervals.
     Gap(f64),

@@ -5,7 +5,7 @@ use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
 use crate::innovation_gate::PATIENCE;
-use crate::transitions::{Transitions, interval_us};
+use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
 /// Standard deviations of a state of which nothing is known: rad, rad/s, m/s, rad.
@@ -71,7 +71,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         &self.rejected
     }
 
-    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it.
+    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
+    /// more than a second older than the one before is not late: the clock was set back, and the filter begins anew.
     ///
     /// # Errors
     /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
@@ -82,7 +83,9 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         }
         let mut next = self.filter;
         let mut moved = None;
-        if let Some((before_us, input)) = &self.before {
+        if self.before.is_some_and(|(before_us, _)| is_set_back(before_us, sample.time_us)) {
+            next = next.begun_anew(&SVector::from(UNKNOWN));
+        } else if let Some((before_us, input)) = &self.before {
             let interval_us = interval_us(*before_us, sample.time_us)?;
             let transition = self.transitions.over(interval_us, Transition::new)?;
             next.predict(&transition, input)?;

@@ -4,7 +4,7 @@ use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 use crate::innovation_gate::InnovationGate;
-use crate::transitions::{Transitions, interval_us};
+use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 
 /// A Luenberger observer along a flight: samples at a usual interval, with gaps between them and outputs that are
@@ -65,6 +65,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it, in its unit.
+    /// One that is more than a second older than the one before is not late: the clock was set back, and the observer
+    /// begins anew.
     ///
     /// # Errors
     /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
@@ -76,7 +78,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         }
         let mut next = self.observer;
         let mut bridged = None;
-        if let Some((before_us, input)) = &self.before {
+        let set_back = |before: &&(i64, SVector<f64, 2>)| is_set_back(before.0, sample.time_us);
+        if let Some((before_us, input)) = self.before.as_ref().filter(|before| !set_back(before)) {
             let interval_us = interval_us(*before_us, sample.time_us)?;
             if interval_us == self.usual_us {
                 next.predict(&input.map(T::from_f64))?;

@@ -104,6 +104,14 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         Ok(Self { state, rows, variances, units: output_units })
     }
 
+    /// The same filter at zero, with errors of these standard deviations.
+    pub(crate) fn begun_anew(&self, start_sigmas: &SVector<f64, 4>) -> Self {
+        let (_, in_units) = units();
+        let known = (in_units * start_sigmas).map(|sigma| T::from_f64(sigma * sigma));
+        let covariance = Covariance::from_variances(known.as_array());
+        Self { state: Gaussian::new(SVector::zeros(), covariance), ..*self }
+    }
+
     /// x̂: α (rad), q (rad/s), V (m/s), θ (rad).
     pub fn estimate(&self) -> SVector<f64, 4> {
         self.state.mean.map(T::to_f64).component_mul(&SVector::from(UNITS))

@@ -58,6 +58,15 @@ impl<S: Copy, const L: usize> Transitions<S, L> {
     }
 }
 
+/// No sample is so late (µs): the clock was set back.
+const SET_BACK_US: i64 = 1_000_000;
+
+/// Whether a sample is so much older than the one before that the clock was set back; one wrong time stamp far ahead
+/// would be the last one taken otherwise.
+pub(crate) fn is_set_back(before_us: i64, now_us: i64) -> bool {
+    before_us.saturating_sub(now_us) > SET_BACK_US
+}
+
 /// The time between two samples, µs.
 pub(crate) fn interval_us(before_us: i64, now_us: i64) -> Result<i64, Error> {
     let interval = now_us.checked_sub(before_us).filter(|interval| *interval > 0);
