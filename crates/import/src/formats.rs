@@ -53,6 +53,11 @@ impl Format {
         self.description().name
     }
 
+    /// The names of all formats, as in the option `--format`.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        ALL.iter().map(|known| known.name)
+    }
+
     /// The format of a table, if it is one of these.
     pub fn of(table: &Table) -> Option<Self> {
         ALL.iter().find(|known| (known.is_it)(table)).map(|known| known.format)
