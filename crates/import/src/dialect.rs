@@ -7,6 +7,8 @@ use crate::text::Text;
 
 /// How many lines are looked at to tell the dialect.
 const SAMPLE: usize = 400;
+/// No log has more columns; what has is not taken apart.
+const MOST_FIELDS: usize = 1000;
 
 /// What stands between the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +83,7 @@ impl Dialect {
         let mut widths: Vec<[usize; 3]> = Vec::new();
         for line in lines.iter().filter(|line| !self.is_comment(line)) {
             let (width, numbers) = self.row(line);
-            if width < 2 || numbers * 2 < width {
+            if !(2..=MOST_FIELDS).contains(&width) || numbers * 2 < width {
                 continue;
             }
             match widths.iter_mut().find(|known| known[0] == width) {
@@ -121,7 +123,7 @@ impl Dialect {
         }
     }
 
-    /// The fields of a line, without surrounding blanks and quotation marks.
+    /// The fields of a line, without surrounding blanks and quotation marks; of more than 1000 the first ones.
     pub fn fields(self, line: &[u8]) -> Vec<Cow<'_, [u8]>> {
         let mut fields = Vec::new();
         let mut rest = line.trim_ascii();
@@ -129,6 +131,9 @@ impl Dialect {
             let (field, length) = self.field(rest);
             fields.push(field);
             let Some(after) = rest.get(length + 1..) else { return fields };
+            if fields.len() > MOST_FIELDS {
+                return fields;
+            }
             rest = match self.separator {
                 Separator::Blanks => after.trim_ascii_start(),
                 _ => after,

@@ -27,8 +27,10 @@
 //!
 //! **A turn of all axes together**, how the sensor is mounted, is no error: it changes nothing.
 
+mod by_name;
 mod columns;
 mod conclusion;
+mod evidence;
 mod motion;
 mod order;
 mod raw;

@@ -74,7 +74,7 @@ impl Way {
     fn write(&self, rows: &[[f64; 7]]) -> (Vec<u8>, Vec<usize>) {
         let mut text = String::new();
         if self.harm == Harm::Preamble {
-            text += "Recorder: myLogger 1.2\nDate: 2024-05-01\n\n";
+            text += &"Recorder: myLogger 1.2\nDate: 2024-05-01\n\n".replace('\n', self.line_break);
         }
         for line in self.header() {
             text += &line;
@@ -393,7 +393,7 @@ fn recorded_walks_in_every_way() {
             [sample.time_us as f64 * 1e-6, ax, ay, az, gx, gy, gz]
         };
         let rows: Vec<_> = log.samples.iter().map(row).collect();
-        let some: Vec<_> = ways.iter().step_by(3).cloned().collect();
+        let some: Vec<_> = ways.iter().step_by(5).cloned().collect();
         count(&name, &rows, &some);
     }
 }

@@ -1,0 +1,178 @@
+//! What the turns between moments of rest say about units and axes.
+
+use super::columns::Claim;
+use super::conclusion::Source;
+use super::motion::{Axes, Motion};
+use super::raw::Raw;
+use super::rest::Rest;
+use super::units::{Candidates, OPTIONS, rates};
+use crate::error::Error;
+use crate::unit::Unit;
+
+/// The scale that wins leaves no more than this in disagreement, …
+const AGREEMENT: f64 = 0.15;
+/// … and every other one leaves so many times as much, …
+const CLEAR: f64 = 2.0;
+/// … three times as much if it is the one that was said or is usual.
+const AGAINST: f64 = 3.0;
+/// Fewer stretches of motion tell nothing.
+const FEWEST_STRETCHES: usize = 2;
+/// Other axes must explain the motion so many times as well, in so many stretches, to accuse those of the log.
+const OTHER_AXES: f64 = 1.8;
+const FEWEST_FOR_AXES: usize = 5;
+/// So much disagreement is no recording of one sensor in these units.
+const HOPELESS: f64 = 0.4;
+/// So little disagreement accuses no axes.
+const SURE: f64 = 0.02;
+
+/// What the motion says.
+pub(super) struct Evidence {
+    pub(super) rest: Option<Rest>,
+    motion: Option<Motion>,
+}
+
+type Told = (Unit, Source);
+
+impl Evidence {
+    pub(super) fn find(raw: &[Raw], usual: f64, times: &Candidates) -> Self {
+        // With the first unit that shows rest: it only says how long windows are.
+        let mut steps =
+            times.units.iter().map(|unit| usual * unit.scale).filter(|step| step.is_finite());
+        let found = steps.find_map(|step| Some((Rest::find(raw, step)?, step)));
+        let motion = found.as_ref().map(|(rest, step)| Motion::find(raw, rest, usual, *step));
+        let motion = motion.filter(|motion| motion.count() >= FEWEST_STRETCHES);
+        Self { rest: found.map(|(rest, _)| rest), motion }
+    }
+
+    /// The units of rate and time, by how the turns carry gravity along.
+    pub(super) fn turns(
+        &self,
+        rates: &[Unit],
+        times: &Candidates,
+        claim: &Claim,
+        contradicted: bool,
+    ) -> Result<(Told, Told), Error> {
+        let rate_source = match claim {
+            Claim::Said(_, source) | Claim::Usual(_, source) => *source,
+            Claim::None => Source::Data,
+        };
+        let own = (claim != &Claim::None && (times.is_claimed || times.units.len() == 1))
+            .then_some((0, 0));
+        let winner = self.winner(rates, &times.units);
+        let told = |(rate, time): (usize, usize)| {
+            let rate_source = if rate == 0 { rate_source } else { Source::Data };
+            let time_source = if time == 0 { times.source } else { Source::Data };
+            ((rates[rate].clone(), rate_source), (times.units[time].clone(), time_source))
+        };
+        let is_said = rates.len() == 1 && times.units.len() == 1;
+        match (own, winner) {
+            (Some(_), _) if is_said => {
+                self.contradiction(&rates[0], rate_source, times).map(|()| told((0, 0)))
+            }
+            (Some(own), Some(winner))
+                if winner == own || self.is_better(winner, own, rates, &times.units) =>
+            {
+                Ok(told(winner))
+            }
+            (Some(own), _) if !contradicted => Ok(told(own)),
+            (None, Some(winner)) => Ok(told(winner)),
+            (_, _) if rates.len() > 1 => {
+                let problem =
+                    "expected turns from which the gyroscope's unit can be told, found too few";
+                Err(Error::undecided(problem, OPTIONS[1]))
+            }
+            _ => {
+                let problem =
+                    "expected turns from which the unit of time can be told, found too few";
+                Err(Error::undecided(problem, OPTIONS[2]))
+            }
+        }
+    }
+
+    /// The pair of units that explains the motion, and far better than every other.
+    fn winner(&self, rates: &[Unit], times: &[Unit]) -> Option<(usize, usize)> {
+        let motion = self.motion.as_ref()?;
+        let error = |scale: f64| motion.error(scale, Axes::SAME);
+        let pairs =
+            (0..rates.len()).flat_map(|rate| (0..times.len()).map(move |time| (rate, time)));
+        let scale = |(rate, time): (usize, usize)| rates[rate].scale * times[time].scale;
+        let errors: Vec<_> = pairs.map(|pair| (pair, error(scale(pair)))).collect();
+        let &(best, least) = errors.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_clear = errors.iter().all(|&(pair, error)| pair == best || error >= CLEAR * least);
+        // Half and double are no unit's, but the truth may lie there.
+        let is_valley =
+            [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= CLEAR * least);
+        (least <= AGREEMENT && is_clear && is_valley).then_some(best)
+    }
+
+    fn is_better(
+        &self,
+        winner: (usize, usize),
+        own: (usize, usize),
+        rates: &[Unit],
+        times: &[Unit],
+    ) -> bool {
+        let scale = |(rate, time): (usize, usize)| rates[rate].scale * times[time].scale;
+        self.motion.as_ref().is_some_and(|motion| {
+            let [winner, own] = [winner, own].map(|pair| motion.error(scale(pair), Axes::SAME));
+            own >= AGAINST * winner
+        })
+    }
+
+    /// Refuses units that are said if another one of the gyroscope explains the motion far better.
+    fn contradiction(&self, said: &Unit, source: Source, times: &Candidates) -> Result<(), Error> {
+        if source == Source::Option || times.source == Source::Option {
+            return Ok(());
+        }
+        let usual = Claim::Usual(Unit::new(said.scale, said.name.clone()), source);
+        let all = rates(&usual);
+        match self.winner(&all, &times.units) {
+            Some(winner)
+                if winner != (0, 0) && self.is_better(winner, (0, 0), &all, &times.units) =>
+            {
+                let problem = format!(
+                    "expected turns that carry gravity along with the angular rate in {said} ({source}), found them in {}",
+                    all[winner.0]
+                );
+                Err(Error::undecided(problem, OPTIONS[1]))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses axes of the gyroscope that are swapped or turned round against the accelerometer's.
+    pub(super) fn axes(&self, scale: f64) -> Result<(), Error> {
+        let Some(motion) = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_FOR_AXES)
+        else {
+            return Ok(());
+        };
+        let own = motion.error(scale, Axes::SAME);
+        if own <= SURE {
+            return Ok(());
+        }
+        let others = Axes::all().map(|axes| (axes, motion.error(scale, axes)));
+        let Some((axes, error)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+        if error > AGREEMENT || own < OTHER_AXES * error {
+            return if own < HOPELESS { Ok(()) } else { Err(hopeless(own)) };
+        }
+        let name = |axis: usize| {
+            let sign = if axes.signs[axis] < 0.0 { "-" } else { "" };
+            format!("{sign}{}", ["gx", "gy", "gz"][axes.from[axis]])
+        };
+        let [x, y, z] = [0, 1, 2].map(name);
+        Err(Error::undecided(
+            format!(
+                "expected a gyroscope with the accelerometer's axes, found one that fits as {x}, {y}, {z}"
+            ),
+            format!("--columns gx={x},gy={y},gz={z} (with the log's own names)"),
+        ))
+    }
+}
+
+fn hopeless(error: f64) -> Error {
+    let problem = format!(
+        "expected turns that carry gravity along, found them {:.0} % of gravity apart in these units",
+        100.0 * error
+    );
+    Error::undecided(problem, "--units acc=…,gyro=…,t=…")
+}
