@@ -17,9 +17,13 @@ const CLEAR: f64 = 2.0;
 const AGAINST: f64 = 3.0;
 /// Fewer stretches of motion tell nothing.
 const FEWEST_STRETCHES: usize = 2;
-/// Other axes must explain the motion so many times as well, in so many stretches, to accuse those of the log.
+/// Half and double of the winning scale leave so many times as much: the truth does not lie between two units.
+const VALLEY: f64 = 1.5;
+/// Other axes must explain the motion so many times as well to accuse those of the log, …
 const OTHER_AXES: f64 = 1.8;
-const FEWEST_FOR_AXES: usize = 5;
+/// … in so many stretches; in fewer, so many times.
+const ENOUGH_FOR_AXES: usize = 5;
+const OTHER_AXES_OF_FEW: f64 = 3.0;
 /// So much disagreement is no recording of one sensor in these units.
 const HOPELESS: f64 = 0.4;
 /// So little disagreement accuses no axes.
@@ -101,7 +105,7 @@ impl Evidence {
         let is_clear = errors.iter().all(|&(pair, error)| pair == best || error >= CLEAR * least);
         // Half and double are no unit's, but the truth may lie there.
         let is_valley =
-            [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= CLEAR * least);
+            [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= VALLEY * least);
         (least <= AGREEMENT && is_clear && is_valley).then_some(best)
     }
 
@@ -142,18 +146,17 @@ impl Evidence {
 
     /// Refuses axes of the gyroscope that are swapped or turned round against the accelerometer's.
     pub(super) fn axes(&self, scale: f64) -> Result<(), Error> {
-        let Some(motion) = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_FOR_AXES)
-        else {
-            return Ok(());
-        };
+        let Some(motion) = &self.motion else { return Ok(()) };
+        let is_enough = motion.count() >= ENOUGH_FOR_AXES;
+        let clearly = if is_enough { OTHER_AXES } else { OTHER_AXES_OF_FEW };
         let own = motion.error(scale, Axes::SAME);
         if own <= SURE {
             return Ok(());
         }
         let others = Axes::all().map(|axes| (axes, motion.error(scale, axes)));
         let Some((axes, error)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
-        if error > AGREEMENT || own < OTHER_AXES * error {
-            return if own < HOPELESS { Ok(()) } else { Err(hopeless(own)) };
+        if error > AGREEMENT || own < clearly * error {
+            return if own < HOPELESS || !is_enough { Ok(()) } else { Err(hopeless(own)) };
         }
         let name = |axis: usize| {
             let sign = if axes.signs[axis] < 0.0 { "-" } else { "" };
