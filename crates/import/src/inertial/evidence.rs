@@ -26,6 +26,7 @@ const ENOUGH_FOR_AXES: usize = 5;
 const OTHER_AXES_OF_FEW: f64 = 3.0;
 /// So much disagreement is no recording of one sensor in these units.
 const HOPELESS: f64 = 0.4;
+const HOPELESS_OF_FEW: f64 = 0.7;
 /// So little disagreement accuses no axes.
 const SURE: f64 = 0.02;
 
@@ -44,7 +45,7 @@ impl Evidence {
             times.units.iter().map(|unit| usual * unit.scale).filter(|step| step.is_finite());
         let found = steps.find_map(|step| Some((Rest::find(raw, step)?, step)));
         let motion = found.as_ref().map(|(rest, step)| Motion::find(raw, rest, usual, *step));
-        let motion = motion.filter(|motion| motion.count() >= FEWEST_STRETCHES);
+        let motion = motion.filter(|motion| motion.count() > 0);
         Self { rest: found.map(|(rest, _)| rest), motion }
     }
 
@@ -95,7 +96,7 @@ impl Evidence {
 
     /// The pair of units that explains the motion, and far better than every other.
     fn winner(&self, rates: &[Unit], times: &[Unit]) -> Option<(usize, usize)> {
-        let motion = self.motion.as_ref()?;
+        let motion = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_STRETCHES)?;
         let error = |scale: f64| motion.error(scale, Axes::SAME);
         let pairs =
             (0..rates.len()).flat_map(|rate| (0..times.len()).map(move |time| (rate, time)));
@@ -147,16 +148,18 @@ impl Evidence {
     /// Refuses axes of the gyroscope that are swapped or turned round against the accelerometer's.
     pub(super) fn axes(&self, scale: f64) -> Result<(), Error> {
         let Some(motion) = &self.motion else { return Ok(()) };
-        let is_enough = motion.count() >= ENOUGH_FOR_AXES;
-        let clearly = if is_enough { OTHER_AXES } else { OTHER_AXES_OF_FEW };
+        let count = motion.count();
+        let is_enough = count >= ENOUGH_FOR_AXES;
+        let (clearly, hopelessly) =
+            if is_enough { (OTHER_AXES, HOPELESS) } else { (OTHER_AXES_OF_FEW, HOPELESS_OF_FEW) };
         let own = motion.error(scale, Axes::SAME);
         if own <= SURE {
             return Ok(());
         }
         let others = Axes::all().map(|axes| (axes, motion.error(scale, axes)));
         let Some((axes, error)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
-        if error > AGREEMENT || own < clearly * error {
-            return if own < HOPELESS || !is_enough { Ok(()) } else { Err(hopeless(own)) };
+        if error > AGREEMENT || own < clearly * error || count < FEWEST_STRETCHES {
+            return if own < hopelessly { Ok(()) } else { Err(hopeless(own)) };
         }
         let name = |axis: usize| {
             let sign = if axes.signs[axis] < 0.0 { "-" } else { "" };
