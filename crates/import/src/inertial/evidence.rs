@@ -17,11 +17,16 @@ const CLEAR: f64 = 2.0;
 const AGAINST: f64 = 3.0;
 /// Fewer stretches of motion tell nothing.
 const FEWEST_STRETCHES: usize = 2;
-/// Other axes must explain the motion so many times as well, in so many stretches, to accuse those of the log.
+/// Half and double of the winning scale leave so many times as much: the truth does not lie between two units.
+const VALLEY: f64 = 1.5;
+/// Other axes must explain the motion so many times as well to accuse those of the log, …
 const OTHER_AXES: f64 = 1.8;
-const FEWEST_FOR_AXES: usize = 5;
+/// … in so many stretches; in fewer, so many times.
+const ENOUGH_FOR_AXES: usize = 5;
+const OTHER_AXES_OF_FEW: f64 = 3.0;
 /// So much disagreement is no recording of one sensor in these units.
 const HOPELESS: f64 = 0.4;
+const HOPELESS_OF_FEW: f64 = 0.7;
 /// So little disagreement accuses no axes.
 const SURE: f64 = 0.02;
 
@@ -40,7 +45,7 @@ impl Evidence {
             times.units.iter().map(|unit| usual * unit.scale).filter(|step| step.is_finite());
         let found = steps.find_map(|step| Some((Rest::find(raw, step)?, step)));
         let motion = found.as_ref().map(|(rest, step)| Motion::find(raw, rest, usual, *step));
-        let motion = motion.filter(|motion| motion.count() >= FEWEST_STRETCHES);
+        let motion = motion.filter(|motion| motion.count() > 0);
         Self { rest: found.map(|(rest, _)| rest), motion }
     }
 
@@ -91,7 +96,7 @@ impl Evidence {
 
     /// The pair of units that explains the motion, and far better than every other.
     fn winner(&self, rates: &[Unit], times: &[Unit]) -> Option<(usize, usize)> {
-        let motion = self.motion.as_ref()?;
+        let motion = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_STRETCHES)?;
         let error = |scale: f64| motion.error(scale, Axes::SAME);
         let pairs =
             (0..rates.len()).flat_map(|rate| (0..times.len()).map(move |time| (rate, time)));
@@ -101,7 +106,7 @@ impl Evidence {
         let is_clear = errors.iter().all(|&(pair, error)| pair == best || error >= CLEAR * least);
         // Half and double are no unit's, but the truth may lie there.
         let is_valley =
-            [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= CLEAR * least);
+            [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= VALLEY * least);
         (least <= AGREEMENT && is_clear && is_valley).then_some(best)
     }
 
@@ -142,18 +147,19 @@ impl Evidence {
 
     /// Refuses axes of the gyroscope that are swapped or turned round against the accelerometer's.
     pub(super) fn axes(&self, scale: f64) -> Result<(), Error> {
-        let Some(motion) = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_FOR_AXES)
-        else {
-            return Ok(());
-        };
+        let Some(motion) = &self.motion else { return Ok(()) };
+        let count = motion.count();
+        let is_enough = count >= ENOUGH_FOR_AXES;
+        let (clearly, hopelessly) =
+            if is_enough { (OTHER_AXES, HOPELESS) } else { (OTHER_AXES_OF_FEW, HOPELESS_OF_FEW) };
         let own = motion.error(scale, Axes::SAME);
         if own <= SURE {
             return Ok(());
         }
         let others = Axes::all().map(|axes| (axes, motion.error(scale, axes)));
         let Some((axes, error)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
-        if error > AGREEMENT || own < OTHER_AXES * error {
-            return if own < HOPELESS { Ok(()) } else { Err(hopeless(own)) };
+        if error > AGREEMENT || own < clearly * error || count < FEWEST_STRETCHES {
+            return if own < hopelessly { Ok(()) } else { Err(hopeless(own)) };
         }
         let name = |axis: usize| {
             let sign = if axes.signs[axis] < 0.0 { "-" } else { "" };

@@ -58,3 +58,52 @@ fn plain_recordings_are_read_as_before() {
         println!("{name}: {}", told.join("; "));
     }
 }
+
+/// A recording under a header, each row changed.
+fn written(log: &plain::Log, header: &str, change: impl Fn([f64; 7]) -> [f64; 7]) -> Vec<u8> {
+    let mut text = format!("{header}\n");
+    for sample in &log.samples {
+        let ([ax, ay, az], [gx, gy, gz]) = (sample.specific_force, sample.angular_rate);
+        let row = change([sample.time_us as f64 * 1e-6, ax, ay, az, gx, gy, gz]);
+        text += &row.map(|value| format!("{value:.9}")).join(",");
+        text.push('\n');
+    }
+    text.into_bytes()
+}
+
+#[test]
+fn no_recording_is_read_wrong_in_other_units_or_axes() {
+    const NAMED: &str = "time,AccX,AccY,AccZ,GyrX,GyrY,GyrZ";
+    let degree = std::f64::consts::PI / 180.0;
+    let (mut right, mut refused, mut swapped) = (0, Vec::new(), Vec::new());
+    for (name, bytes) in walks() {
+        let log = plain::read(&bytes).expect(&name);
+        let other = written(&log, NAMED, |[t, ax, ay, az, gx, gy, gz]| {
+            let [ax, ay, az] = [ax, ay, az].map(|x| x / kestirim_import::STANDARD_GRAVITY);
+            [t * 1e3, ax, ay, az, gx / degree, gy / degree, gz / degree]
+        });
+        match inertial::read(&other, &Options::default()) {
+            Ok(now) => {
+                // Doubled samples may be left out.
+                let (now, before) = (now.samples[now.samples.len() / 2], &log.samples);
+                let same = before.iter().filter(|sample| sample.time_us.abs_diff(now.time_us) <= 1);
+                let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-6);
+                let is_right = |sample: &&inertial::Sample| {
+                    near(sample.specific_force, now.specific_force)
+                        && near(sample.angular_rate, now.angular_rate)
+                };
+                assert!(same.into_iter().any(|sample| is_right(&sample)), "{name}: {now:?}");
+                right += 1;
+            }
+            Err(error) => refused.push(format!("{name}: {error}")),
+        }
+        let mixed = written(&log, "t,ax,ay,az,gx,gy,gz", |[t, ax, ay, az, gx, gy, gz]| {
+            [t, ax, ay, az, gy, gx, -gz]
+        });
+        if inertial::read(&mixed, &Options::default()).is_ok() {
+            swapped.push(name);
+        }
+    }
+    println!("{right} right, {} refused: {refused:#?}", refused.len());
+    println!("swapped axes not seen in {}: {swapped:?}", swapped.len());
+}

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
     use crate::system::{AnySystem, Files, Panel, Settings};
     use crate::systems::ALL;
-    use kestirim_telemetry::{Flight, Footprint, GlobalPosition, Imu, PathLoss, Position, Range};
+    use kestirim_telemetry::{Footprint, GlobalPosition, Imu, PathLoss, Position, Range};
 
     /// Whose estimators are built without files.
     fn systems() -> impl Iterator<Item = Following> {
