@@ -92,7 +92,7 @@ fn noisy(index: usize) -> f64 {
     (index as f64 * 12.9898).sin()
 }
 
-fn broken(epochs: &mut Vec<Epoch>, run: &Run) {
+fn broken(epochs: &mut [Epoch], run: &Run) {
     let end = (run.begin + run.length).min(epochs.len());
     let part = &mut epochs[run.begin..end];
     let Some(first) = part.first().cloned() else { return };
@@ -167,6 +167,12 @@ fn step(filter: &mut PppFilter<N>, epoch: &Epoch) -> Option<Solution<N>> {
     Some(solution)
 }
 
+fn take_all(filter: &mut PppFilter<N>, epochs: &[Epoch]) {
+    for epoch in epochs {
+        let _ = step(filter, epoch);
+    }
+}
+
 fn filters() -> [(&'static str, PppFilter<N>); 4] {
     let moving = |process_noise| Motion::Kinematic { process_noise };
     let plain = |motion| Config { estimator: Estimator::plain(), ..Config::new(motion) };
@@ -185,7 +191,7 @@ fn recovers(run: &Run) {
     for (name, mut filter) in filters() {
         if name.starts_with("plain") {
             // They take everything in, and what they make of it is what they are compared for.
-            epochs.iter().for_each(|epoch| drop(step(&mut filter, epoch)));
+            take_all(&mut filter, &epochs);
             continue;
         }
         for (k, epoch) in epochs.iter().enumerate() {
@@ -220,7 +226,7 @@ proptest! {
             broken(&mut epochs, run);
         }
         for (_, mut filter) in filters() {
-            epochs.iter().for_each(|epoch| drop(step(&mut filter, epoch)));
+            take_all(&mut filter, &epochs);
         }
     }
 
