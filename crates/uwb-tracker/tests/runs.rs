@@ -139,7 +139,7 @@ fn spoil(epochs: &mut [Epoch], fault: Fault) {
                     std::array::from_fn(|a| Some(size * (1.0 + noise(9 * k as u64 + a as u64))));
             }
             Fault::NotFinite => {
-                epoch.ranges = [Some(f64::NAN), Some(f64::INFINITY), Some(1e30), None]
+                epoch.ranges = [Some(f64::NAN), Some(f64::INFINITY), Some(1e30), None];
             }
             Fault::Missing => epoch.ranges = [None; 4],
             Fault::Repeated => epoch.time_us = first.time_us,
