@@ -1,18 +1,13 @@
-use core::array::from_fn;
-
-use kestirim_kalman::{Gate, Innovation, Verdict};
+use kestirim_kalman::Innovation;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-use crate::innovation_gate::PATIENCE;
+use crate::gate::Gate;
 use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
 /// Standard deviations of a state of which nothing is known: rad, rad/s, m/s, rad.
 const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
-
-/// NIS beyond which an output is left out: 5 σ.
-const GATE: f64 = 25.0;
 
 /// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
 ///
@@ -20,8 +15,8 @@ const GATE: f64 = 25.0;
 /// The estimate has seen the newest sample. It begins at zero deviation with standard deviations of 0.2 rad,
 /// 0.5 rad/s, 20 m/s and 0.5 rad, so that the first samples decide.
 ///
-/// An output that is more than 5 σ from what was expected of it is left out. After five in a row it is the
-/// estimate that must be wrong: then its covariance is widened, and the output is taken in.
+/// An output that is more than 5 σ from what was expected of it is left out, as long as that are not more than five in a
+/// row: then it is the estimate that must be wrong, and all are taken in until they agree with it again.
 ///
 /// The steps of up to L intervals are kept, the last one for each remainder of an interval's microseconds by L: 336
 /// bytes each in `f64`. With regular samples one is enough; other intervals are computed anew.
@@ -29,7 +24,7 @@ const GATE: f64 = 25.0;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     filter: KalmanFilter<T, P>,
-    gates: [Gate<T>; P],
+    gates: [Gate; P],
     /// How many times each output was left out.
     rejected: [u32; P],
     transitions: Transitions<Transition<T>, L>,
@@ -52,7 +47,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         let filter =
             KalmanFilter::new(c, &noise.outputs, &SVector::zeros(), &SVector::from(UNKNOWN))?;
         let transitions = Transitions::new(*dynamics, usual, noise.inputs);
-        let gates = from_fn(|_| Gate::new(T::from_f64(GATE), PATIENCE));
+        let gates = [Gate::default(); P];
         Ok(Self { filter, gates, rejected: [0; P], transitions, before: None })
     }
 
@@ -92,17 +87,16 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
             moved = Some((interval_us, transition));
         }
         let mut gates = self.gates;
-        let judged = next.correct_gated(&sample.measured, &mut gates)?;
+        let (innovations, is_left_out) = next.correct_gated(&sample.measured, &mut gates)?;
         self.filter = next;
         self.gates = gates;
-        for (rejected, judged) in self.rejected.iter_mut().zip(&judged) {
-            let is_rejected = judged.is_some_and(|(verdict, _)| verdict == Verdict::Reject);
-            *rejected = rejected.saturating_add(u32::from(is_rejected));
+        for (rejected, is_left_out) in self.rejected.iter_mut().zip(is_left_out) {
+            *rejected = rejected.saturating_add(u32::from(is_left_out));
         }
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, transition)) = &moved {
             self.transitions.keep(*interval_us, transition);
         }
-        Ok(judged.map(|judged| judged.map(|(_, innovation)| innovation)))
+        Ok(innovations)
     }
 }

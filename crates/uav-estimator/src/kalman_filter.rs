@@ -1,16 +1,18 @@
 use core::array::from_fn;
 
-use kestirim_kalman::{
-    Covariance, Gate, Gaussian, Innovation, LinearObservation, SparseRow, Verdict, Weighed,
-};
+use kestirim_kalman::{Covariance, Gaussian, Innovation, LinearObservation, SparseRow, Weighed};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
+use crate::gate::Gate;
 use crate::{Error, Step};
 
 /// Units of the states (rad, rad/s, m/s, rad) inside the filter: in these, fixed point holds the smallest and the
 /// largest variance of a flight. Powers of two, so that floats do not notice.
 const UNITS: [f64; 4] = [1.0 / 256.0, 1.0 / 256.0, 0.25, 1.0 / 256.0];
+
+/// NIS beyond which an output contradicts the estimate: 5 σ.
+const GATE: f64 = 25.0;
 
 /// A [`Step`] in the scalar and the units of a [`KalmanFilter`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,24 +172,22 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         self.correct_with(measured, |next, weighed, _| Ok(next.correct(weighed)?))
     }
 
-    /// The same with a gate an output, and what each gate decided.
+    /// The same without outputs that a gate leaves out; those are told, too.
     ///
     /// # Errors
     /// As [`KalmanFilter::correct`]; filter and gates are as they were.
-    pub fn correct_gated(
+    pub(crate) fn correct_gated(
         &mut self,
         measured: &[Option<f64>; P],
-        gates: &mut [Gate<T>; P],
-    ) -> Result<[Option<(Verdict, Innovation<f64>)>; P], Error> {
-        let mut judging = *gates;
-        let mut verdicts = [Verdict::Admit; P];
+        gates: &mut [Gate; P],
+    ) -> Result<([Option<Innovation<f64>>; P], [bool; P]), Error> {
+        let (mut judging, mut is_left_out) = (*gates, [false; P]);
         let innovations = self.correct_with(measured, |next, weighed, output| {
-            let (verdict, innovation) = judging[output].correct(next, weighed)?;
-            verdicts[output] = verdict;
-            Ok(innovation)
+            is_left_out[output] = !judging[output].admits(weighed.exceeds(T::from_f64(GATE)));
+            Ok(if is_left_out[output] { weighed.report() } else { next.correct(weighed)? })
         })?;
         *gates = judging;
-        Ok(from_fn(|output| Some((verdicts[output], innovations[output]?))))
+        Ok((innovations, is_left_out))
     }
 
     fn correct_with(

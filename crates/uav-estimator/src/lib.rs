@@ -7,6 +7,7 @@ mod estimator;
 mod flight_filter;
 mod flight_observer;
 mod gain;
+mod gate;
 mod innovation_gate;
 mod kalman_filter;
 mod sample;

@@ -1,6 +1,5 @@
 //! Everything of `kestirim-uav-estimator`.
 
-use kestirim_kalman::Gate;
 use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
@@ -62,9 +61,6 @@ fn filters<T: Scalar, const P: usize>() {
         let transition = any(Transition::new(&step()));
         try_on(&mut filter, |filter| KalmanFilter::predict(filter, &transition, &matrix()));
         try_on(&mut filter, |filter| KalmanFilter::correct(filter, &measured()));
-        try_on(&mut filter, |filter| {
-            KalmanFilter::correct_gated(filter, &measured(), &mut [Gate::new(number(), 1); P])
-        });
     }
     keep(KalmanFilter::estimate(&filter));
     keep(KalmanFilter::covariance(&filter));
