@@ -82,8 +82,7 @@ const DOUBT: f64 = 2.0;
 const LARGEST_COST: f64 = 20.0;
 /// Places beyond which the oldest fade, so that the sums stay small and the anchors may change.
 const MOST_PLACES: f64 = 128.0;
-/// The same difference of costs that a height of two standard deviations makes, and one of three.
-const CLEAR: f64 = 4.0;
+/// The difference of costs that a height of three standard deviations makes.
 const CERTAIN: f64 = 9.0;
 
 impl<T: Scalar, const A: usize> HeightSearch<T, A> {
@@ -228,8 +227,8 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
         };
         let best = |side: &[T]| side.iter().fold(T::MAX, |least, &cost| least.min(cost));
         let (below, above) = (best(below), best(above));
-        if barrier - below.min(above) <= T::from_f64(CLEAR) || barrier - below.max(above) <= T::ONE
-        {
+        // A standard deviation.
+        if barrier - below.max(above) <= T::ONE {
             return all;
         }
         if below - above < T::from_f64(CERTAIN) { (0, middle) } else { (middle, CANDIDATES - 1) }
@@ -244,8 +243,8 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
         let places = self.places.divisor();
         let step = T::from_f64(1.0 / f64::from(BETWEEN));
         // Weights, and places counted in candidates and in metres of the position's way.
-        let (mut sum, mut mean, mut square) = (T::ZERO, T::ZERO, T::ZERO);
-        let (mut way_mean, mut way_square) = (T::ZERO, T::ZERO);
+        let (mut sum, mut mean, mut variance) = (T::ZERO, T::ZERO, T::ZERO);
+        let (mut way_mean, mut way_variance) = (T::ZERO, T::ZERO);
         let mut way = T::ZERO;
         for index in first..last {
             let (here, next) = (*costs.get(index)?, *costs.get(index + 1)?);
@@ -264,18 +263,17 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
                 let (off, way_off) = (at - mean, along - way_mean);
                 mean += more * off;
                 way_mean += more * way_off;
-                square += weight * off * (at - mean);
-                way_square += weight * way_off * (along - way_mean);
+                variance += more * (off * (at - mean) - variance);
+                way_variance += more * (way_off * (along - way_mean) - way_variance);
             }
             way += length;
         }
         let (low, high) = (self.candidates.first()?.height, self.candidates.get(1)?.height);
         let spacing = high - low;
-        let deviation = |square: T| (square / sum).max(T::ZERO).sqrt();
         Some(Moments {
             metres: low + mean * spacing,
-            sigma: deviation(square) * spacing,
-            position_sigma: deviation(way_square),
+            sigma: variance.max(T::ZERO).sqrt() * spacing,
+            position_sigma: way_variance.max(T::ZERO).sqrt(),
             place: mean,
         })
     }

@@ -219,6 +219,22 @@ fn ranges_one_by_one_and_wild_ones() {
 }
 
 #[test]
+fn moments_may_be_seconds_apart() {
+    let places = corners(2.5);
+    let mut finder = HeightFinder::<f32, 4>::calibrated(&anchors(&places, 0.0)).unwrap();
+    for epoch in 0..20_u32 {
+        let [x, y] = on_the_round(3.0 * f64::from(epoch));
+        for (index, place) in places.iter().enumerate() {
+            let range = distance(*place, [x, y, 0.6]);
+            finder.range(&sample(u64::from(epoch) * 3_000_000, index, range)).unwrap();
+        }
+    }
+    finder.end_place();
+    let height = finder.height().unwrap();
+    assert!((height.metres - 0.6).abs() < 2.5 * height.sigma && height.sigma < 0.3, "{height:?}");
+}
+
+#[test]
 fn what_cannot_be_used_is_refused() {
     let new = |places: &[[f64; 3]]| HeightFinder::<f32, 4>::uncalibrated(&anchors(places, 0.0));
     assert_eq!(new(&corners(1.0)[..2]).unwrap_err(), Error::TooFewAnchors);

@@ -39,7 +39,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
         Setting::one_of("dim", "Dimensions of the position", &Dimensions::default()).live(),
         Setting::number(
             "height",
-            "Height of the tag in two dimensions [default: from the ranges]",
+            "Height of the tag in two dimensions [default: from the ranges, between floor and highest anchor]",
             "m",
             [least, most, 0.05],
             height,
@@ -224,7 +224,7 @@ impl Setup {
     ///
     /// # Errors
     /// [`Error::Usage`]: the ranges do not tell it.
-    pub(super) fn of_recording(recording: &Recording, settings: &Settings) -> Result<Self, Error> {
+    pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Self, Error> {
         let setup = Self::of(settings, &recording.anchors, recording.biases.as_deref());
         if !height::is_missing(recording, settings) {
             return Ok(setup);
