@@ -22,7 +22,7 @@ pub struct Calibration<T: Scalar, const A: usize> {
 }
 
 /// Standard deviation of a link from place to place, m.
-const LINK_SIGMA: f64 = 0.07;
+pub(crate) const LINK_SIGMA: f64 = 0.07;
 /// Standard deviation of an anchor's bias around the common one, m: less where few anchors leave little to learn from.
 const ANCHOR_SIGMA: f64 = 0.1;
 const ANCHOR_SIGMA_OF_FEW: f64 = 0.06;
@@ -152,7 +152,10 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
 }
 
 /// N⁻¹ g of a positive definite N, by elimination; `None` if a pivot is not positive.
-fn solved<T: Scalar, const A: usize>(normal: &[[T; A]; A], right: &[T; A]) -> Option<[T; A]> {
+pub(crate) fn solved<T: Scalar, const A: usize>(
+    normal: &[[T; A]; A],
+    right: &[T; A],
+) -> Option<[T; A]> {
     let (mut rest, mut x) = (*normal, *right);
     for pivot in 0..A {
         let line = *rest.get(pivot)?;

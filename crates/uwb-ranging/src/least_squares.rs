@@ -140,7 +140,7 @@ impl<T: Scalar> Solver<T> {
     }
 
     /// Minimum that the steps from one start reach; `None` if it is known already.
-    fn descend<const D: usize>(
+    pub(crate) fn descend<const D: usize>(
         &self,
         observations: &[Observation<T>],
         start: &SVector<T, D>,

@@ -16,6 +16,8 @@ pub enum Error {
     NoSuchAnchor,
     /// More anchors than the tracker has room for.
     TooManyAnchors,
+    /// Fewer than three anchors, where a height is to be found.
+    TooFewAnchors,
     /// The same anchor's range for the same time came before.
     Duplicate,
     /// The sample is older than the estimate. (A range that is so by more than ten seconds is not refused: the
@@ -39,6 +41,7 @@ impl fmt::Display for Error {
             Self::ImplausibleMotion => "no robot moves like this",
             Self::NoSuchAnchor => "there is no anchor of this number",
             Self::TooManyAnchors => "there are more anchors than the tracker has room for",
+            Self::TooFewAnchors => "there are fewer than three anchors",
             Self::Duplicate => "this range came before",
             Self::OutOfOrder => "the sample is older than the estimate",
             Self::Estimate(error) => return error.fmt(formatter),

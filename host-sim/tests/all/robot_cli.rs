@@ -56,11 +56,20 @@ fn the_track_has_a_row_for_every_epoch() {
 }
 
 #[test]
-fn without_a_height_the_anchors_is_assumed_and_said() {
+fn without_a_height_it_is_found_and_said() {
+    let room = Room::new([0.1; 4], |_, t, anchor, range| vec![line(t, anchor, range)]);
+    let report = room.report(&[]);
+    assert_eq!(report["warnings"], Value::Array(vec![]));
+    let of = |name: &str| report["height"][name].as_f64().unwrap();
+    assert!((of("metres") - 1.0).abs() < 2.5 * of("sigma_m"), "{report}");
+    assert!(of("sigma_m") < 0.3 && of("position_sigma_m") < 0.1, "{report}");
+    assert_eq!(report["height"]["biases_m"].as_array().unwrap().len(), 4);
+    assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.15, "{report}");
+    assert!(text(&host_sim(&room.replay(&[])).stdout).contains("from the ranges"));
+    // What is known is not looked for.
+    assert_eq!(room.report(&["--height", "1"])["height"], Value::Null);
+    assert_eq!(room.report(&["--dim", "3"])["height"], Value::Null);
     let room = Room::clean();
-    let output = host_sim(&room.replay(&["--json"]));
-    assert!(text(&output.stderr).contains("--height"));
-    assert!(json(&output)["warnings"][0].as_str().unwrap().contains("1.15 m"));
     let heights = room.desk.file("heights.csv", "t,z\n0,1.0\n40,1.0\n");
     assert_eq!(room.report(&["--height", &heights])["warnings"], Value::Array(vec![]));
     assert!(room.rmse(&["--height", &heights]) < 0.1);
@@ -68,16 +77,40 @@ fn without_a_height_the_anchors_is_assumed_and_said() {
 }
 
 #[test]
+fn a_height_that_ranges_do_not_tell_is_asked_for() {
+    // A tag that stands beside three anchors, and one of which two are heard.
+    let desk = Desk::new();
+    let places = [[2.8, 0.0, 1.3], [0.1, 0.0, 2.0], [1.9, 4.1, 2.1]];
+    let anchors = desk.file("a.csv", "anchor,x,y,z\n0,2.8,0,1.3\n1,0.1,0,2\n2,1.9,4.1,2.1\n");
+    for (heard, expected) in [(3, "only, and its position"), (2, "do not tell the tag's height")] {
+        let mut log = "t,anchor,range\n".to_owned();
+        for epoch in 0..50 {
+            for (index, [x, y, z]) in places.iter().enumerate().take(heard) {
+                let range = (x - 3.5_f64).hypot(y - 4.7).hypot(*z);
+                let _ = writeln!(log, "{},{index},{range:.3}", 0.1 * f64::from(epoch));
+            }
+        }
+        let log = desk.file("r.csv", log);
+        let replay = ["replay", "robot", "--anchors", &anchors, "--log", &log];
+        let sentence = refusal(&replay);
+        assert!(sentence.contains(expected) && sentence.contains("--height"), "{sentence}");
+        assert!(host_sim(&[&replay[..], &["--height", "0"]].concat()).status.success());
+    }
+}
+
+#[test]
 fn truth_never_reaches_the_estimator() {
     let room = Room::clean();
-    let track = |truth: &str, name: &str| {
+    let track = |truth: &str, name: &str, more: &[&str]| {
         let out = room.desk.named(name);
-        let arguments = ["--height", "1", "--truth", truth, "--track", &out];
+        let arguments = [&["--truth", truth, "--track", &out], more].concat();
         assert!(host_sim(&room.replay(&arguments)).status.success());
         fs::read_to_string(out).unwrap()
     };
     let wrong = room.desk.file("wrong.csv", "t,x,y,z\n0,99,-99,7\n40,99,-99,7\n");
-    assert_eq!(track(&room.truth, "a.csv"), track(&wrong, "b.csv"));
+    for more in [&["--height", "1"][..], &[]] {
+        assert_eq!(track(&room.truth, "a.csv", more), track(&wrong, "b.csv", more));
+    }
 }
 
 #[test]

@@ -3,9 +3,16 @@
 //! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
+use std::path::Path;
+
 use host_sim::metrics::{mean, median, rms};
-use host_sim::system::ScalarKind;
-use host_sim::systems::robot::settings::TrackerKind;
+use host_sim::system::{Detail, Files, ScalarKind, Settings, System};
+use host_sim::systems::robot::Robot;
+use host_sim::systems::robot::account::accuracy::Accuracy;
+use host_sim::systems::robot::height::FoundHeight;
+use host_sim::systems::robot::recording::points;
+use host_sim::systems::robot::settings::{Setup, TrackerKind};
+use host_sim::systems::robot::track::Trace;
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Method, Points, Recording, blocked};
 use kestirim_uwb_ranging::LevelBias;
@@ -162,4 +169,146 @@ fn the_received_level_tells_most_of_the_bias() {
     );
     assert!(corrected < 0.3 * plain && corrected < 0.07, "{plain} {corrected}");
     assert!(wrong_sign > plain);
+}
+
+/// How a recording with truth came out.
+struct Found {
+    /// The height by which it is known, and by which it was found, m, with its deviation; none if the run was refused.
+    known_m: f64,
+    height: Option<FoundHeight>,
+    /// Root mean square errors of the position at the one and the other, m.
+    at_known_m: f64,
+    at_found_m: Option<f64>,
+    /// Shares of the positions that err by no more than 2.5 σ, as the ellipse tells it.
+    within_at_known: f64,
+    within: Option<f64>,
+}
+
+/// Whether the truth lies within 2.5 σ of an estimate's ellipse.
+fn is_within(position: [f64; 3], [xx, xy, yy]: [f64; 3], truth: [f64; 2]) -> bool {
+    let (x, y) = (position[0] - truth[0], position[1] - truth[1]);
+    let squared = (yy * x * x - 2.0 * xy * x * y + xx * y * y) / (xx * yy - xy * xy);
+    squared <= 2.5 * 2.5
+}
+
+/// A recording as `host-sim replay robot` opens it, with the height and without.
+fn found(folder: &Path, name: &str, scalar: &str) -> Found {
+    let folder = folder.join(name);
+    let file = |name: &str| Some(folder.join(name)).filter(|path| path.exists());
+    let mut files = Files::default();
+    for (field, name) in [
+        ("anchors", "anchors.csv"),
+        ("log", "ranges.csv"),
+        ("truth", "truth.csv"),
+        ("imu", "imu.csv"),
+        ("odom", "odom.csv"),
+    ] {
+        file(name).into_iter().for_each(|path| files.add(field, path));
+    }
+    let settings = Settings::new(Robot::settings(None));
+    let recording = Robot::read(&files, &settings).expect("a recording");
+    let settings = |height: Option<f64>| {
+        let mut sent = serde_json::Map::new();
+        sent.insert("scalar".to_owned(), scalar.into());
+        height.into_iter().for_each(|height| drop(sent.insert("height".to_owned(), height.into())));
+        Settings::sent(Robot::settings(Some(&recording)), &sent).expect("settings")
+    };
+    let course = points::read_course(&folder.join("truth.csv"), ["z"]).expect("heights");
+    let known_m = mean(&course.rows().iter().map(|(_, [z])| *z).collect::<Vec<_>>());
+    let track = |settings: &Settings| Robot::track(&recording, settings, Detail::Every);
+    let rmse = |traces: &[Trace]| Accuracy::of_recording(&recording, traces).map(|it| it.rmse_m);
+    let at_known = track(&settings(Some(known_m))).expect("a track");
+    let without = settings(None);
+    let traces = track(&without).ok();
+    let within = |traces: &Vec<Trace>| {
+        let mut all = Vec::new();
+        for (part, trace) in recording.parts.iter().zip(traces) {
+            all.extend(trace.epochs.iter().filter_map(|epoch| {
+                let truth = part.truth.as_ref()?.at(epoch.time_us)?;
+                Some(f64::from(is_within(epoch.position?, epoch.spread?, truth)))
+            }));
+        }
+        mean(&all)
+    };
+    Found {
+        known_m,
+        height: Setup::of_recording(&recording, &without).ok().and_then(|setup| setup.found),
+        at_known_m: rmse(&at_known).unwrap_or(f64::NAN),
+        at_found_m: traces.as_ref().and_then(|traces| rmse(traces)),
+        within_at_known: within(&at_known),
+        within: traces.as_ref().map(within),
+    }
+}
+
+#[test]
+fn a_height_that_nobody_says_is_found_or_asked_for() {
+    let Some(folder) = folder_of("robot") else { return };
+    for scalar in ["f32", "f64", "fixed"] {
+        for (name, most) in [("esp32_los2", 0.15), ("esp32_wall2", 0.25)] {
+            let found = found(&folder, name, scalar);
+            match found.at_found_m {
+                Some(rmse_m) => assert!(rmse_m <= most, "{name}, {scalar}: {rmse_m} m"),
+                None => println!("{name}, {scalar}: refused"),
+            }
+            assert!(found.within.is_none_or(|within| within >= 0.9), "{name}: {:?}", found.within);
+        }
+    }
+}
+
+/// Recordings whose tag stays at one height, which is known.
+const AT_A_HEIGHT: [&str; 20] = [
+    "esp32_los2",
+    "esp32_nlos1",
+    "esp32_wall2",
+    "labyrinth",
+    "lias_mid_tag0",
+    "lias_mid_tag1",
+    "lias_mid_tag2",
+    "trek_4vba0",
+    "trek_4vba02",
+    "trek_4vba1",
+    "trek_4vba12",
+    "trek_4vba22",
+    "trek_4vba2s",
+    "trek_4vba32",
+    "trek_4vba3s",
+    "trek_4vnm",
+    "trek_4vnm2",
+    "trek_m1l",
+    "trek_m2r",
+    "trek_m3s",
+];
+
+#[test]
+fn heights_are_honest() {
+    let Some(folder) = folder_of("robot") else { return };
+    let (mut honest, mut told) = (0, 0);
+    println!(
+        "| | known, m | found, m | position by it, cm | known: RMSE, cm | within | found: RMSE, cm | within |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for name in AT_A_HEIGHT {
+        let found = found(&folder, name, "f32");
+        let known = format!("{:.2} | ", found.known_m);
+        let (known_cm, within) = (100.0 * found.at_known_m, 100.0 * found.within_at_known);
+        let at_known = format!("{known_cm:.1} | {within:.0} %");
+        let Some((height, rmse_m)) = found.height.zip(found.at_found_m) else {
+            println!("| `{name}` | {known}refused | | {at_known} | | |");
+            continue;
+        };
+        println!(
+            "| `{name}` | {known}{:.2} ± {:.2} | {:.1} | {at_known} | {:.1} | {:.0} % |",
+            height.metres,
+            height.sigma_m,
+            100.0 * height.position_sigma_m,
+            100.0 * rmse_m,
+            100.0 * found.within.unwrap_or_default(),
+        );
+        told += 1;
+        honest += u32::from((height.metres - found.known_m).abs() <= 2.5 * height.sigma_m);
+        // What the height costs is what was said.
+        let most = found.at_known_m + 2.5 * height.position_sigma_m;
+        assert!(rmse_m < most, "{name}: {rmse_m} m");
+    }
+    assert!(told >= 16 && 10 * honest >= 9 * told, "{honest} of {told}");
 }

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Robot;
-use super::recording::{Heights, Recording};
-use super::settings::Dimensions;
+use super::recording::Recording;
+use super::settings::Setup;
 use super::track::Trace;
 use crate::Error;
 use crate::system::{Account, Settings, System, Table};
@@ -22,7 +22,19 @@ struct Report {
     warnings: Vec<String>,
     accuracy: Option<Accuracy>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    height: Option<HeightReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     points: Option<Vec<PointReport>>,
+}
+
+/// The height of the tag as its ranges tell it, m, and what it adds to the position's standard deviation.
+#[derive(Debug, Clone, Serialize)]
+struct HeightReport {
+    metres: f64,
+    sigma_m: f64,
+    position_sigma_m: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    biases_m: Vec<f64>,
 }
 
 /// Where the tag was found at a marked point, m.
@@ -41,13 +53,20 @@ pub(super) fn account(
     traces: &[Trace],
 ) -> Result<Account, Error> {
     let points = points(recording, traces);
+    let found = Setup::of_recording(recording, settings)?.found;
     let report = Report {
         system: Robot::NAME,
         updates: traces.iter().map(Trace::taken).sum(),
         rejected: traces.iter().map(Trace::rejected).sum(),
         lost_s: traces.iter().map(Trace::lost_s).sum(),
-        warnings: warnings(recording, settings, traces, points.as_deref()),
+        warnings: warnings(recording, traces, points.as_deref()),
         accuracy: Accuracy::of_recording(recording, traces),
+        height: found.as_ref().map(|found| HeightReport {
+            metres: found.metres,
+            sigma_m: found.sigma_m,
+            position_sigma_m: found.position_sigma_m,
+            biases_m: found.biases.clone(),
+        }),
         points,
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
@@ -55,6 +74,9 @@ pub(super) fn account(
     account.fact("ranges taken in", report.updates.to_string());
     account.fact("ranges left out", report.rejected.to_string());
     account.fact("without a position", format!("{:.1} s", report.lost_s));
+    if let Some(found) = &found {
+        account.fact("height of the tag", found.in_words());
+    }
     if let Some(points) = &report.points {
         account.fact("points found", points.len().to_string());
     }
@@ -75,16 +97,10 @@ fn points(recording: &Recording, traces: &[Trace]) -> Option<Vec<PointReport>> {
 
 fn warnings(
     recording: &Recording,
-    settings: &Settings,
     traces: &[Trace],
     points: Option<&[PointReport]>,
 ) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let in_the_plane = settings.chosen::<Dimensions>("dim") == Dimensions::Two;
-    if in_the_plane && recording.heights == Heights::Unknown && !settings.is_given("height") {
-        warnings.push(assumed_height(recording.anchors.mean_height()));
-    }
-    warnings.extend(recording.warnings.iter().cloned());
+    let mut warnings = recording.warnings.clone();
     match points.map(|points| recording.parts.len() - points.len()) {
         Some(0) => {}
         Some(missing) => {
@@ -96,11 +112,6 @@ fn warnings(
         None => {}
     }
     warnings
-}
-
-/// What is said when a height (m) was assumed.
-pub(super) fn assumed_height(metres: f64) -> String {
-    format!("the tag's height is taken to be that of the anchors, {metres:.2} m (--height)")
 }
 
 /// Time and position of every epoch, or the position at every point.

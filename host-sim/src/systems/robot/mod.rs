@@ -8,6 +8,7 @@
 pub mod account;
 mod calibrate;
 pub mod figures;
+pub mod height;
 mod online;
 pub mod paper;
 pub mod recording;
@@ -110,7 +111,7 @@ impl System for Robot {
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Vec<Trace>, Error> {
-        track::track(recording, &Setup::of_recording(recording, settings), follow::build)
+        track::track(recording, &Setup::of_recording(recording, settings)?, follow::build)
     }
 
     fn account(
@@ -127,7 +128,7 @@ impl System for Robot {
         traces: &Vec<Trace>,
         answer: &mut Answer,
     ) -> Result<(), Error> {
-        figures::draw(recording, &Setup::of_recording(recording, settings), traces, answer)
+        figures::draw(recording, &Setup::of_recording(recording, settings)?, traces, answer)
     }
 
     fn table(_: &str, recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Table {
@@ -139,10 +140,12 @@ impl System for Robot {
     }
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
-        let office = || Setup::of(settings, &office_anchors(), None);
-        recording
-            .map_or_else(office, |recording| Setup::of_recording(recording, settings))
-            .firmware(recording.is_some())
+        let setup = match recording {
+            Some(recording) => Setup::of_recording(recording, settings),
+            None => Ok(Setup::of(settings, &office_anchors(), None)),
+        };
+        setup
+            .map_or_else(|error| format!("// {error}"), |setup| setup.firmware(recording.is_some()))
     }
 
     fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {

@@ -2,7 +2,7 @@
 
 use kestirim_telemetry::{Imu, Message, Range};
 
-use super::account::assumed_height;
+use super::height::Finder;
 use super::recording::anchors::{self, Anchors};
 use super::recording::calibration;
 use super::recording::event::{self, Event};
@@ -19,6 +19,8 @@ use crate::system::{Files, Online, Outcome, Plan, Settings};
 pub(super) struct Tag {
     anchors: Anchors,
     setup: Setup,
+    /// Whether nobody says how high the tag is.
+    is_height_missing: bool,
     assumptions: Vec<String>,
 }
 
@@ -39,17 +41,27 @@ impl Tag {
         let calibration = files.one("calibration").map(|path| calibration::of(path, &anchors));
         let (biases, warnings) = calibration.transpose()?.unzip();
         let setup = Setup::of(settings, &anchors, biases.as_deref());
-        if setup.dimensions == Dimensions::Two && !settings.is_given("height") {
-            assumptions.push(assumed_height(setup.height_m));
+        let is_height_missing = setup.dimensions == Dimensions::Two && !settings.is_given("height");
+        if is_height_missing {
+            assumptions.push(format!(
+                "until the ranges tell the tag's height it is taken to be that of the anchors, {:.2} m (--height)",
+                setup.height_m
+            ));
         }
         assumptions.extend(warnings.unwrap_or_default());
-        Ok(Self { anchors, setup, assumptions })
+        Ok(Self { anchors, setup, is_height_missing, assumptions })
     }
 }
 
 impl Plan for Tag {
     fn build(&self) -> Result<Box<dyn Online>, Error> {
-        Ok(Box::new(Followed { tracker: follow::build(&self.setup)?, begun_us: None }))
+        let finder = self.is_height_missing.then(|| Finder::new(&self.setup)).transpose()?;
+        Ok(Box::new(Followed {
+            tracker: follow::build(&self.setup)?,
+            setup: self.setup.clone(),
+            finder: finder.map(Box::new),
+            begun_us: None,
+        }))
     }
 
     fn map(&self) -> Vec<Series> {
@@ -67,7 +79,25 @@ impl Plan for Tag {
 #[derive(Debug)]
 struct Followed {
     tracker: Box<dyn Follow>,
+    setup: Setup,
+    /// Looks for the height until it is found.
+    finder: Option<Box<Finder>>,
     begun_us: Option<u64>,
+}
+
+impl Followed {
+    /// Once the ranges tell the height, the tag is followed anew at that height.
+    fn look_for_height(&mut self, time_us: u64, range: &event::Range) {
+        let Some(finder) = &mut self.finder else { return };
+        if !finder.take(time_us, range) {
+            return;
+        }
+        let Ok(found) = finder.found() else { return };
+        let setup = self.setup.clone().at(found);
+        if let Ok(tracker) = follow::build(&setup) {
+            (self.tracker, self.setup, self.finder) = (tracker, setup, None);
+        }
+    }
 }
 
 impl Online for Followed {
@@ -86,6 +116,9 @@ impl Online for Followed {
         };
         let begun_us = *self.begun_us.get_or_insert(time_us);
         let Some(since_us) = time_us.checked_sub(begun_us) else { return Outcome::Refused };
+        if let Event::Range(range) = &event {
+            self.look_for_height(since_us, range);
+        }
         let reception = self.tracker.take(since_us, &event);
         if let Event::Range(event::Range { time_us, .. }) = event {
             self.tracker.take(since_us, &Event::EpochEnd { time_us });

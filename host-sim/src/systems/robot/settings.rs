@@ -7,9 +7,11 @@ use clap::ValueEnum;
 use kestirim_uwb_ranging::Room;
 
 use self::tuning::Tuning;
+use super::height::{self, FoundHeight};
 use super::recording::anchors::Anchors;
 use super::recording::{Heights, Recording};
 use super::simulate::scenario::ANCHORS;
+use crate::Error;
 use crate::system::{Idle, ScalarKind, Setting, Settings};
 
 /// Number types the trackers are built for.
@@ -37,7 +39,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
         Setting::one_of("dim", "Dimensions of the position", &Dimensions::default()).live(),
         Setting::number(
             "height",
-            "Height of the tag in two dimensions [default: the anchors' mean height]",
+            "Height of the tag in two dimensions [default: from the ranges, between floor and highest anchor]",
             "m",
             [least, most, 0.05],
             height,
@@ -190,6 +192,9 @@ pub struct Setup {
     pub anchors: Vec<[f64; 3]>,
     /// What they measure too long by, m, if they are calibrated.
     pub biases: Option<Vec<f64>>,
+    /// The height as the ranges tell it, if nobody else does, with what uncalibrated anchors measure too long
+    /// then.
+    pub found: Option<FoundHeight>,
     /// Constants of the tracker.
     pub tuning: Tuning,
 }
@@ -205,6 +210,7 @@ impl Setup {
             height_m,
             anchors: anchors.to_vec(),
             biases: None,
+            found: None,
             tuning: Tuning::default(),
         }
     }
@@ -214,12 +220,26 @@ impl Setup {
         Self { scalar, ..Self::new(&ANCHORS, 0.0) }
     }
 
-    /// As set, for what was recorded.
-    pub(super) fn of_recording(recording: &Recording, settings: &Settings) -> Self {
-        Self::of(settings, &recording.anchors, recording.biases.as_deref())
+    /// As set, for what was recorded. A height that nobody says is found from the ranges.
+    ///
+    /// # Errors
+    /// [`Error::Usage`]: the ranges do not tell it.
+    pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Self, Error> {
+        let setup = Self::of(settings, &recording.anchors, recording.biases.as_deref());
+        if !height::is_missing(recording, settings) {
+            return Ok(setup);
+        }
+        let found = height::of_recording(recording, &setup)?;
+        Ok(setup.at(found))
     }
 
-    /// As set, for anchors and what they measure too long by (m), if that is known.
+    /// The same for a tag at the height that was found.
+    pub(super) fn at(self, found: FoundHeight) -> Self {
+        Self { height_m: found.metres, found: Some(found), ..self }
+    }
+
+    /// As set, for anchors and what they measure too long by (m), if that is known. A height that is not set is the
+    /// anchors' mean height.
     pub fn of(settings: &Settings, anchors: &Anchors, biases: Option<&[f64]>) -> Self {
         let room = settings.text("room").and_then(|text| match text.as_str() {
             WITHIN_ANCHORS => Some(anchors.rectangle()),
@@ -233,6 +253,7 @@ impl Setup {
             height_m: settings.number("height").unwrap_or_else(|| anchors.mean_height()),
             anchors: anchors.positions.clone(),
             biases: biases.filter(|_| settings.is_on("calibrated")).map(<[f64]>::to_vec),
+            found: None,
             tuning: Tuning::of(settings),
         }
     }
@@ -247,7 +268,9 @@ impl Setup {
 
     /// The bias of an anchor, m.
     pub fn bias(&self, anchor: usize) -> f64 {
-        self.biases.as_ref().and_then(|biases| biases.get(anchor)).copied().unwrap_or_default()
+        let of = |biases: Option<&Vec<f64>>| biases?.get(anchor).copied();
+        let found = self.found.as_ref().map(|found| &found.biases);
+        of(self.biases.as_ref()).unwrap_or_default() + of(found).unwrap_or_default()
     }
 }
 

@@ -49,6 +49,15 @@ impl Trace {
         self.ranges.len() - self.taken()
     }
 
+    /// Adds what else is uncertain: a root mean square distance in the plane, m, in no direction more than in
+    /// another.
+    fn widen(&mut self, sigma_m: f64) {
+        for [xx, _, yy] in self.epochs.iter_mut().filter_map(|epoch| epoch.spread.as_mut()) {
+            *xx += 0.5 * sigma_m * sigma_m;
+            *yy += 0.5 * sigma_m * sigma_m;
+        }
+    }
+
     /// Times, µs, and where the tag was then, m, wherever it was found.
     pub fn known(&self) -> impl Iterator<Item = (i64, [f64; 3])> {
         self.epochs.iter().filter_map(|epoch| Some((epoch.time_us, epoch.position?)))
@@ -97,7 +106,11 @@ pub fn track(
     let parts = recording.parts.iter().map(|part| {
         let height_m = part.height_m.unwrap_or(setup.height_m);
         let mut tracker = build(&Setup { height_m, ..setup.clone() })?;
-        Ok(follow(tracker.as_mut(), &part.events))
+        let mut trace = follow(tracker.as_mut(), &part.events);
+        if let Some(found) = &setup.found {
+            trace.widen(found.position_sigma_m);
+        }
+        Ok(trace)
     });
     parts.collect()
 }

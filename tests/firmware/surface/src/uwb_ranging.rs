@@ -2,8 +2,8 @@
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
-    AntennaDelay, Calibration, Channel, ClockOffset, DataRate, DoubleSided, Huber, LevelBias,
-    Observation, Quartiles, Room, SingleSided, Solver, Ticks, Timestamp, Trilateration,
+    AntennaDelay, Calibration, Channel, ClockOffset, DataRate, DoubleSided, HeightSearch, Huber,
+    LevelBias, Observation, Quartiles, Room, SingleSided, Solver, Ticks, Timestamp, Trilateration,
     dilution_of_precision, expected_range, survey, trilaterate,
 };
 
@@ -115,6 +115,18 @@ fn anchors<T: Scalar, const A: usize>() {
     keep(Calibration::biases(&calibration));
 }
 
+fn heights<T: Scalar, const A: usize>() {
+    let anchors = any([matrix(); 4]);
+    let search = HeightSearch::<T, A>::new(slice(&anchors), number(), number());
+    let Ok(mut search) = any(search) else { return };
+    for _ in 0..rounds() {
+        let ranges = any([option(); A]);
+        try_on(&mut search, |search| HeightSearch::add(search, &ranges));
+    }
+    keep(HeightSearch::places(&search));
+    keep(HeightSearch::height(&search));
+}
+
 fn triangles<T: Scalar, const A: usize, const D: usize>() {
     let Ok(cell) = any(Trilateration::<T, A, D>::new([matrix(); A])) else { return };
     keep(Trilateration::position(&cell, &numbers(), number()));
@@ -130,6 +142,7 @@ fn all_of<T: Scalar>() {
         solvers::<T, 3>,
         anchors::<T, 4>,
         anchors::<T, 9>,
+        heights::<T, 4>,
         triangles::<T, 4, 2>,
         triangles::<T, 9, 3>,
     ]);

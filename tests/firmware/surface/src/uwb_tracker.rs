@@ -3,7 +3,7 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Room, Solver};
 use kestirim_uwb_tracker::{
-    Anchor, Config, EpochMethod, EpochSolver, Error, InertialSample, OdometrySample,
+    Anchor, Config, EpochMethod, EpochSolver, Error, HeightFinder, InertialSample, OdometrySample,
     PublishedConfig, PublishedTracker, RangeSample, Tracker,
 };
 
@@ -99,6 +99,17 @@ fn published<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     keep(PublishedTracker::estimate(&tracker));
 }
 
+fn heights<T: Scalar, const A: usize>() {
+    let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
+    keep(HeightFinder::<T, A>::calibrated(slice(&anchors)));
+    let Ok(mut finder) = any(HeightFinder::<T, A>::uncalibrated(slice(&anchors))) else { return };
+    for _ in 0..rounds() {
+        try_on(&mut finder, |finder| HeightFinder::range(finder, &sample()));
+        HeightFinder::end_place(any(&mut finder));
+    }
+    keep(HeightFinder::height(&finder));
+}
+
 fn all_of<T: Scalar>() {
     call_each([
         configs::<T>,
@@ -108,6 +119,8 @@ fn all_of<T: Scalar>() {
         tracks::<T, 3, 7, 9>,
         epochs::<T, 2, 4>,
         epochs::<T, 3, 9>,
+        heights::<T, 4>,
+        heights::<T, 5>,
         published::<T, 2, 4, 4>,
         published::<T, 3, 6, 5>,
     ]);

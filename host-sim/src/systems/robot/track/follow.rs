@@ -128,7 +128,7 @@ pub fn build_published(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Fo
 }
 
 /// The anchors in another number type.
-pub(super) fn anchors<T: Scalar>(setup: &Setup) -> Vec<Anchor<T>> {
+pub(in crate::systems::robot) fn anchors<T: Scalar>(setup: &Setup) -> Vec<Anchor<T>> {
     let places = setup.anchors.iter().enumerate();
     let anchor = |(index, place): (usize, &[f64; 3])| Anchor {
         position: SVector::from(place.map(T::from_f64)),
@@ -138,7 +138,7 @@ pub(super) fn anchors<T: Scalar>(setup: &Setup) -> Vec<Anchor<T>> {
 }
 
 /// A tracker that cannot be made.
-pub(super) fn refused(error: kestirim_uwb_tracker::Error) -> Error {
+pub(in crate::systems::robot) fn refused(error: kestirim_uwb_tracker::Error) -> Error {
     Error::Usage(format!("these anchors cannot be used: {error}"))
 }
 

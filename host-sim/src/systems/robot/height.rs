@@ -1,0 +1,135 @@
+//! The height of a tag of which nobody says how high it is: from its ranges, or not at all.
+
+use kestirim_uwb_tracker::{HeightFinder, RangeSample};
+
+use super::recording::anchors::MOST;
+use super::recording::event::{Event, Range};
+use super::recording::{Heights, Recording};
+use super::settings::{Dimensions, Setup};
+use super::track::follow::{anchors, refused};
+use crate::Error;
+use crate::system::Settings;
+
+/// What an unknown height may add to the position's standard deviation, m: as much as everything else does among
+/// anchors as they come (the book's table has 9 to 21 cm).
+const LARGEST_SIGMA_M: f64 = 0.15;
+/// Time between the parts of a recording, µs: longer than ranges are fresh.
+const APART_US: u64 = 10_000_000;
+/// What helps if the ranges do not tell the height.
+const MISSING: &str = "expected --height, metres above the floor or a file (or --dim 3)";
+
+/// The height as the ranges tell it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundHeight {
+    /// The height, m.
+    pub metres: f64,
+    /// Its standard deviation, m.
+    pub sigma_m: f64,
+    /// What it adds to the position's standard deviation, m.
+    pub position_sigma_m: f64,
+    /// What the anchors measure too long at this height, m. Empty of calibrated ones, which keep what was measured.
+    pub biases: Vec<f64>,
+}
+
+impl FoundHeight {
+    /// As people read it.
+    pub fn in_words(&self) -> String {
+        let Self { metres, sigma_m, position_sigma_m, .. } = self;
+        let moved = 100.0 * position_sigma_m;
+        format!("{metres:.2} ± {sigma_m:.2} m from the ranges, the position ± {moved:.1} cm by it")
+    }
+
+    /// The same, if positions may depend on it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`]: they would be too uncertain.
+    fn accepted(self) -> Result<Self, Error> {
+        if self.position_sigma_m <= LARGEST_SIGMA_M {
+            return Ok(self);
+        }
+        let (sigma_m, moved) = (self.sigma_m, 100.0 * self.position_sigma_m);
+        Err(Error::Usage(format!(
+            "the ranges tell the tag's height to ± {sigma_m:.2} m only, and its position to ± {moved:.0} cm: \
+             {MISSING}"
+        )))
+    }
+}
+
+/// Finds the height from ranges as they come in.
+#[derive(Debug)]
+pub(super) struct Finder {
+    finder: HeightFinder<f64, MOST>,
+    /// How many anchors are not calibrated.
+    uncalibrated: usize,
+}
+
+impl Finder {
+    /// For the anchors of a setup.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if they will not do.
+    pub(super) fn new(setup: &Setup) -> Result<Self, Error> {
+        let places = anchors::<f64>(setup);
+        let (finder, uncalibrated) = if setup.biases.is_some() {
+            (HeightFinder::calibrated(&places), 0)
+        } else {
+            (HeightFinder::uncalibrated(&places), places.len())
+        };
+        Ok(Self { finder: finder.map_err(refused)?, uncalibrated })
+    }
+
+    /// Takes in a range, at a time in µs since the recording began; whether the height may be another then.
+    pub(super) fn take(&mut self, time_us: u64, range: &Range) -> bool {
+        let (anchor, range) = (range.anchor, range.metres);
+        // What a tracker refuses says nothing here either.
+        self.finder.range(&RangeSample { time_us, anchor, range }).unwrap_or(false)
+    }
+
+    /// The height, if the ranges tell it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`]: they do not.
+    pub(super) fn found(&self) -> Result<FoundHeight, Error> {
+        let Some(height) = self.finder.height() else {
+            let problem = format!("the ranges do not tell the tag's height: {MISSING}");
+            return Err(Error::Usage(problem));
+        };
+        let found = FoundHeight {
+            metres: height.metres,
+            sigma_m: height.sigma,
+            position_sigma_m: height.position_sigma,
+            biases: height.biases[..self.uncalibrated].to_vec(),
+        };
+        found.accepted()
+    }
+}
+
+/// Whether nobody says how high the tag is.
+pub(super) fn is_missing(recording: &Recording, settings: &Settings) -> bool {
+    settings.chosen::<Dimensions>("dim") == Dimensions::Two
+        && recording.heights == Heights::Unknown
+        && !settings.is_given("height")
+}
+
+/// The height at which the tag of a recording is, from its ranges alone.
+///
+/// # Errors
+/// [`Error::Usage`], naming the option that is missing: the ranges do not tell it.
+pub(super) fn of_recording(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
+    let mut finder = Finder::new(setup)?;
+    let mut begun_us = 0;
+    for part in &recording.parts {
+        let start_us = part.events.iter().map(Event::time_us).min().unwrap_or_default();
+        let mut latest_us = begun_us;
+        for event in &part.events {
+            let Event::Range(range) = event else { continue };
+            let since_us = range.time_us.saturating_sub(start_us).max(0) as u64;
+            let time_us = since_us.saturating_add(begun_us);
+            finder.take(time_us, range);
+            latest_us = latest_us.max(time_us);
+        }
+        finder.finder.end_place();
+        begun_us = latest_us.saturating_add(APART_US);
+    }
+    finder.found()
+}
