@@ -203,14 +203,18 @@ fn found(folder: &Path, name: &str, scalar: &str) -> Found {
         ("imu", "imu.csv"),
         ("odom", "odom.csv"),
     ] {
-        file(name).into_iter().for_each(|path| files.add(field, path));
+        if let Some(path) = file(name) {
+            files.add(field, path);
+        }
     }
     let settings = Settings::new(Robot::settings(None));
     let recording = Robot::read(&files, &settings).expect("a recording");
     let settings = |height: Option<f64>| {
         let mut sent = serde_json::Map::new();
         sent.insert("scalar".to_owned(), scalar.into());
-        height.into_iter().for_each(|height| drop(sent.insert("height".to_owned(), height.into())));
+        if let Some(height) = height {
+            sent.insert("height".to_owned(), height.into());
+        }
         Settings::sent(Robot::settings(Some(&recording)), &sent).expect("settings")
     };
     let course = points::read_course(&folder.join("truth.csv"), ["z"]).expect("heights");
