@@ -33,7 +33,7 @@ impl<const N: usize> PppFilter<N> {
     }
 
     /// Takes in an epoch, observed at `time` by the receiver's clock. Where the codes of five epochs were far from the
-    /// place and agree about another, the filter begins anew there.
+    /// place and agree about another, the default filter begins anew there; the published ones do not.
     ///
     /// # Errors
     /// [`Error`]: why the epoch has no solution. The filter is as it was.
@@ -76,6 +76,8 @@ impl<const N: usize> PppFilter<N> {
         time: GpsTime,
         observations: &[SatelliteObservation<'_>],
     ) -> Option<(Running<N>, f64)> {
+        // The published filters do not know better.
+        self.config.estimator.patience?;
         let start = code_position(observations).ok()?;
         let agreement = agreement(observations, &start)?;
         let mut next = Running::start(time, &start, &self.config);

@@ -28,8 +28,8 @@ pub enum Health {
     Converged,
     /// Hardly more observations are left than unknowns: no fault could be seen.
     Unchecked,
-    /// In the last ten epochs more than a tenth of the observations was rejected, or their residuals are three times
-    /// as large as their noise: times, products, codes or the model are wrong, and the standard deviations with them.
+    /// In the last ten epochs more than a fifth of the observations was rejected, or their residuals are almost three
+    /// times as large as their noise: times, products, codes or the model are wrong, and the standard deviations with them.
     Contradicted,
 }
 

@@ -94,7 +94,6 @@ fn broken_logs_are_refused_with_file_and_line() {
     let desk = Desk::new();
     let row = "0.00,0,0,9.8,0,0,0\n";
     for (name, contents, line) in [
-        ("column.csv", "t,ax,ay,az,gx,gy\n0,0,0,0,0,0\n".to_owned(), "line 1:"),
         ("text.csv", format!("{HEADER}{row}0.01,0,0,up,0,0,0\n"), "line 3:"),
         ("nan.csv", format!("{HEADER}{row}0.01,0,0,NaN,0,0,0\n"), "line 3:"),
         ("inf.csv", format!("{HEADER}{row}0.01,0,0,inf,0,0,0\n"), "line 3:"),
@@ -102,17 +101,84 @@ fn broken_logs_are_refused_with_file_and_line() {
         ("rate.csv", format!("{HEADER}{row}0.01,0,0,9,0,0,1800\n"), "line 3:"),
         ("back.csv", format!("{HEADER}{row}0.02,0,0,9,0,0,0\n0.01,0,0,9,0,0,0\n"), "line 4:"),
         ("cut.csv", format!("{HEADER}{row}0.01,0,0,9"), "line 3:"),
-        ("cut.txt", "0 0 0 1 0 0 0\n10 0 0 1 0\n".to_owned(), "line 2:"),
-        ("garbage.txt", "\0\u{7}\u{1b}[31m\n\0\n".to_owned(), "line 2:"),
+        ("column.csv", "t,ax,ay,az,gx,gy\n0,0,0,0,0,0\n".to_owned(), "column gz"),
+        ("garbage.txt", "\0\u{7}\u{1b}[31m\n\0\n".to_owned(), "a table of numbers"),
         ("empty.csv", String::new(), "empty"),
-        ("header.csv", HEADER.to_owned(), "samples"),
+        ("header.csv", HEADER.to_owned(), "a table of numbers"),
     ] {
-        let sentence =
-            refusal(&["replay", "pedestrian", "--json", "--log", &desk.file(name, contents)]);
+        let log = desk.file(name, contents);
+        let sentence = refusal(&["replay", "pedestrian", "--json", "--strict", "--log", &log]);
         assert!(sentence.contains(name) && sentence.contains(line), "{sentence}");
     }
     let bytes = desk.file("bytes.csv", b"t,ax\n\xff\xfe\n");
-    assert!(refusal(&["replay", "pedestrian", "--log", &bytes]).contains("bytes.csv, line 2:"));
+    assert!(refusal(&["replay", "pedestrian", "--log", &bytes]).contains("bytes.csv: expected"));
+}
+
+/// The power switch cuts a last line, and a wire loses a bit: the rest of the walk is there.
+#[test]
+fn damaged_lines_are_skipped_and_told() {
+    let desk = Desk::new();
+    let (log, _) = walk_and_footprints();
+    let replay = |name, text: &str| {
+        let log = desk.file(name, text);
+        json(&host_sim(&["replay", "pedestrian", "--json", "--log", &log]))
+    };
+    let whole = replay("whole.csv", &log);
+    let lines: Vec<_> = log.lines().collect();
+    let mut damaged = lines.clone();
+    damaged[100] = "8.1,0,0,NaN,0,0,0";
+    let cut = &lines[lines.len() - 1][..7];
+    *damaged.last_mut().unwrap() = cut;
+    let found = replay("damaged.csv", &damaged.join("\n"));
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("line 101") && warnings.contains("cut"), "{warnings}");
+    let length = |of: &serde_json::Value| of["path_length_m"].as_f64().unwrap();
+    assert!((length(&found) / length(&whole) - 1.0).abs() < 0.005, "{found} {whole}");
+}
+
+/// What a person reads at a glance the program does, and says how.
+#[test]
+fn units_and_columns_are_found_or_said() {
+    let desk = Desk::new();
+    let (log, _) = walk_and_footprints();
+    let written = |header: &str, separator: &str, scales: [f64; 3]| {
+        let mut text = format!("{header}\n");
+        for line in log.lines().skip(1) {
+            let fields = line.split(',').enumerate().map(|(column, field)| {
+                let scale = scales[[0, 1, 1, 1, 2, 2, 2][column]];
+                (field.parse::<f64>().unwrap() * scale).to_string()
+            });
+            text += &fields.collect::<Vec<_>>().join(separator);
+            text.push('\n');
+        }
+        text
+    };
+    let replay = |name, text: String, more: &[&str]| {
+        let log = desk.file(name, text);
+        json(&host_sim(&[&["replay", "pedestrian", "--json", "--log", &log], more].concat()))
+    };
+    let degrees = 180.0 / std::f64::consts::PI;
+    let plain = replay("plain.csv", log.clone(), &[]);
+    let names = "time [ms]\taccX [g]\taccY [g]\taccZ [g]\tgyrX [deg/s]\tgyrY [deg/s]\tgyrZ [deg/s]";
+    let scales = [1e3, 1.0 / 9.806_65, degrees];
+    let named = replay("named.tsv", written(names, "\t", scales), &[]);
+    let bare = written("c1,c2,c3,c4,c5,c6,c7", ",", scales);
+    let said = replay(
+        "said.csv",
+        bare,
+        &[
+            "--columns",
+            "t=c1,ax=c2,ay=c3,az=c4,gx=c5,gy=c6,gz=c7",
+            "--units",
+            "acc=g,gyro=deg/s,t=ms",
+        ],
+    );
+    for found in [named, said] {
+        let length = |of: &serde_json::Value| of["path_length_m"].as_f64().unwrap();
+        assert!((length(&found) / length(&plain) - 1.0).abs() < 1e-3, "{found} {plain}");
+        assert!(found["import"].to_string().contains("acceleration in g"), "{found}");
+        assert_eq!(found["warnings"], plain["warnings"]);
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #![no_std]
 #![no_main]
 
+#[allow(unreachable_pub)] // All modules together are a library for the host.
 #[path = "../air_to_ground.rs"]
 mod air_to_ground;
 

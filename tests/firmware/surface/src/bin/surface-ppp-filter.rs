@@ -3,6 +3,7 @@
 #![no_std]
 #![no_main]
 
+#[allow(unreachable_pub)] // All modules together are a library for the host.
 #[path = "../ppp_filter.rs"]
 mod ppp_filter;
 

@@ -3,6 +3,7 @@
 #![no_std]
 #![no_main]
 
+#[allow(unreachable_pub)] // All modules together are a library for the host.
 #[path = "../uav_longitudinal.rs"]
 mod uav_longitudinal;
 

@@ -3,6 +3,7 @@
 #![no_std]
 #![no_main]
 
+#[allow(unreachable_pub)] // All modules together are a library for the host.
 #[path = "../user_locator.rs"]
 mod user_locator;
 
