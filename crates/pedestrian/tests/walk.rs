@@ -102,3 +102,28 @@ fn a_biased_and_noisy_chip_walks_as_far() {
     check_all::<f32>(&foot, [12.0, 0.0]);
     check_all::<Q12_20>(&foot, [12.0, 0.0]);
 }
+
+/// A bus that stalls for 0.6 s delivers zeros: the walk before is as it was, and the tracker goes on.
+#[test]
+fn zeros_teach_nothing_and_end_nothing() {
+    fn check<T: Scalar, N: Navigator<T>>(samples: &[ImuSample<T>]) {
+        let mut stalled = samples.to_vec();
+        let middle = stalled.len() / 2;
+        for sample in &mut stalled[middle..middle + 120] {
+            sample.specific_force = [T::ZERO; 3];
+            sample.angular_rate = [T::ZERO; 3];
+        }
+        for walked in [causal::<T, N>(&stalled), offline::<T, N>(&stalled)] {
+            let position = walked.last.position.map(T::to_f64);
+            assert!(position.iter().all(|metres| metres.is_finite()), "{position:?}");
+            assert!(walked.path_length.is_finite() && walked.path_length > 0.0);
+        }
+    }
+    let foot = Foot::default();
+    check::<f32, Lite<f32>>(&foot.samples());
+    check::<f32, Ekf<f32>>(&foot.samples());
+    check::<f64, Lite<f64>>(&foot.samples());
+    check::<f64, Ekf<f64>>(&foot.samples());
+    check::<Q12_20, Lite<Q12_20>>(&foot.samples());
+    check::<Q12_20, Ekf<Q12_20>>(&foot.samples());
+}

@@ -11,8 +11,7 @@ pub enum Error {
     TooFewSatellites,
     /// The satellites stand so that the codes fix no position.
     PoorGeometry,
-    /// The epoch is not later than the one before, by a minute at most: by more, the clock was set back, and all
-    /// ambiguities begin anew.
+    /// The epoch is not later than the one before.
     TimeNotAdvancing,
     /// The iteration of the position does not converge: the observations contradict each other.
     Contradictory,

@@ -29,15 +29,6 @@ const LINEAR: f64 = 100.0;
 /// Largest number of relinearisations of an epoch.
 const RELINEARISATIONS: usize = 5;
 
-/// An epoch that is so much older than the last one is not late: the clock was set back, s.
-const SET_BACK: f64 = 60.0;
-
-/// More than a quarter of the codes farther than this from what the place that was found lets expect, in squares of
-/// their standard deviations, are no noise and hardly multipath …
-const FAR: f64 = 16.0;
-/// … and where they are so for this many epochs, the place may be another.
-const CONTRADICTIONS: u8 = 5;
-
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
 
@@ -55,10 +46,6 @@ pub(crate) struct Running<const N: usize> {
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
     pub(crate) consistency: Consistency,
-    /// Number of epochs, up to the last one, whose codes were far from the place.
-    contradictions: u8,
-    /// Mean square of their residuals in the last of these, m².
-    code_square: f64,
 }
 
 impl<const N: usize> Running<N> {
@@ -79,37 +66,18 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        Self {
-            estimate,
-            time,
-            interval: None,
-            channels: [None; N],
-            contradictions: 0,
-            code_square: 0.0,
-            consistency: Consistency::default(),
-        }
-    }
-
-    /// Where the codes have been far from the place for so long that it may be another: the mean square of their
-    /// residuals, m².
-    pub(crate) fn contradicted(&self) -> Option<f64> {
-        (self.contradictions >= CONTRADICTIONS).then_some(self.code_square)
+        let consistency = Consistency::default();
+        Self { estimate, time, interval: None, channels: [None; N], consistency }
     }
 
     /// Predicts to the time of an epoch.
     pub(crate) fn advance(&mut self, time: GpsTime, config: &Config) -> Result<(), Error> {
-        let mut elapsed = time.since(self.time);
-        if elapsed < -SET_BACK {
-            // One wrong time stamp far ahead would be the last one taken otherwise. The phases are those of other
-            // times; the place is not another.
-            self.channels = [None; N];
-            elapsed = -elapsed;
-        } else if elapsed > 0.0 {
-            self.interval = Some(self.interval.map_or(elapsed, |interval| interval.min(elapsed)));
-        } else {
+        let elapsed = time.since(self.time);
+        if elapsed <= 0.0 || elapsed.is_nan() {
             return Err(Error::TimeNotAdvancing);
         }
         self.time = time;
+        self.interval = Some(self.interval.map_or(elapsed, |interval| interval.min(elapsed)));
         if let Motion::Kinematic { process_noise } = config.motion {
             for coordinate in 0..3 {
                 self.estimate.add_variance_at(coordinate, process_noise * elapsed)?;
@@ -139,7 +107,6 @@ impl<const N: usize> Running<N> {
         }
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
-        self.count_contradiction(&lines, &decisions);
         self.monitor(&lines, &decisions, config);
         self.consistency.update(decisions.as_flattened().iter());
         Ok(self.solution(&site, &lines, &decisions, config))
@@ -202,20 +169,6 @@ impl<const N: usize> Running<N> {
             decisions.as_flattened_mut(),
         )?;
         Ok(())
-    }
-
-    /// Counts the epochs in which most codes are far from the place that was found.
-    fn count_contradiction(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>) {
-        let pairs = lines.iter().zip(decisions);
-        let is_far = |((_, line), [code, _]): &(&(_, Line), &[Decision<f64>; 2])| {
-            code.residual * code.residual > FAR * line.code_variance
-        };
-        let far = 4 * pairs.filter(is_far).count() > lines.len();
-        self.contradictions = if far { self.contradictions.saturating_add(1) } else { 0 };
-        if far {
-            let squares = decisions.iter().map(|[code, _]| code.residual * code.residual);
-            self.code_square = squares.sum::<f64>() / lines.len() as f64;
-        }
     }
 
     /// Updates the phases' monitors. An error common to all phases is no noise of any one.

@@ -57,20 +57,6 @@ pub(crate) fn code_position(
     }
 }
 
-/// Mean square of the codes' residuals at a position about which they agree (m²): more than half of them, and one more
-/// than determine it. `None` where they do not.
-pub(crate) fn agreement(
-    observations: &[SatelliteObservation<'_>],
-    solution: &CodePosition,
-) -> Option<f64> {
-    let misfits = observations.iter().filter_map(|it| Some(compare(it, solution)?.0));
-    let agreeing = misfits.filter(|misfit| misfit.abs() < LARGEST_RESIDUAL);
-    let (count, sum) =
-        agreeing.fold((0_u8, 0.0), |(count, sum), it| (count.saturating_add(1), sum + it * it));
-    let enough = count >= 5 && 2 * usize::from(count) > observations.len();
-    enough.then(|| sum / f64::from(count))
-}
-
 fn least_squares(
     observations: &[SatelliteObservation<'_>],
     used: impl Fn(usize) -> bool,

@@ -139,8 +139,7 @@ where
         }
     }
 
-    /// Predicts over `interval` (s). Where the user may have left the range of numbers in it, nothing is known any more,
-    /// and the cloud is spread anew.
+    /// Predicts over `interval` (s).
     ///
     /// # Errors
     /// [`Error::Filter`] with `NotFinite` or `NotPositive` for such an interval; then nothing has changed.
@@ -159,10 +158,6 @@ where
         let drift = self.velocity_deviation * interval;
         // A step deviates by √(drift² + place_noise²); what of it is velocity, the Kalman gain says.
         let step = T::norm(&[drift, place_noise]).max(T::EPSILON);
-        if !(step * T::from_f64(8.0)).is_finite() {
-            self.forget(rng);
-            return Ok(());
-        }
         let share = drift / step;
         let gain = share * (self.velocity_deviation / step);
         self.particles.predict(
@@ -203,15 +198,10 @@ where
         let evidence = log_evidence.max(-T::from_f64(20.0));
         self.evidence += (evidence - self.evidence) * T::from_f64(0.1);
         if self.motion.least_evidence.is_some_and(|least| self.evidence < least) {
-            self.forget(rng);
+            self.particles.spread(Start::Random, &self.region.extended(), rng);
+            self.velocity_deviation = self.motion.speed;
+            self.evidence = T::ZERO;
         }
-    }
-
-    /// Spreads the cloud over the region.
-    fn forget<R: Rng + ?Sized>(&mut self, rng: &mut R) {
-        self.particles.spread(Start::Random, &self.region.extended(), rng);
-        self.velocity_deviation = self.motion.speed;
-        self.evidence = T::ZERO;
     }
 
     fn look(particles: &Particles<T, 4, L>) -> TrackEstimate<T> {

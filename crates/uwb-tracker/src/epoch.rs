@@ -1,6 +1,6 @@
 //! Positions from the ranges of one moment, without memory: the paper's "unfiltered".
 
-use crate::link::{FRESH_US, SET_BACK_US};
+use crate::link::FRESH_US;
 use crate::{Anchor, Error, RangeSample};
 use heapless::Vec;
 use kestirim_scalar::Scalar;
@@ -78,12 +78,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         sample.check()?;
         match last {
             Some((heard_us, _)) if *heard_us == sample.time_us => Err(Error::Duplicate),
-            // One that is older than any late range is not: the clock was set back.
-            Some((heard_us, _))
-                if *heard_us > sample.time_us && *heard_us - sample.time_us <= SET_BACK_US =>
-            {
-                Err(Error::OutOfOrder)
-            }
+            Some((heard_us, _)) if *heard_us > sample.time_us => Err(Error::OutOfOrder),
             _ => {
                 *last = Some((sample.time_us, sample.range - anchor.bias));
                 Ok(())
@@ -104,7 +99,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         let mut observations = Vec::<Observation<T>, A>::new();
         for (anchor, last) in self.anchors.iter().zip(&self.last) {
             let Some((heard_us, range)) = *last else { continue };
-            if time_us.abs_diff(heard_us) > FRESH_US {
+            if time_us.saturating_sub(heard_us) > FRESH_US {
                 continue;
             }
             let variance = T::from_f64(Self::VARIANCE);

@@ -20,8 +20,8 @@ pub enum Error {
     TooFewAnchors,
     /// The same anchor's range for the same time came before.
     Duplicate,
-    /// The sample is older than the estimate. (A range that is so by more than ten seconds is not refused: the
-    /// clock was set back.)
+    /// The sample is older than the estimate. If all are, the clock has jumped: make a new
+    /// tracker.
     OutOfOrder,
     /// The estimate refused it.
     Estimate(kestirim_kalman::Error),

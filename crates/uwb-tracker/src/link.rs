@@ -25,9 +25,6 @@ impl<T: Scalar> Anchor<T> {
 /// Age beyond which a range is not used (µs).
 pub(crate) const FRESH_US: u64 = 1_000_000;
 
-/// No range is so late (µs): the clock was set back.
-pub(crate) const SET_BACK_US: u64 = 10_000_000;
-
 /// An anchor, its last range, and the noise and gate of its ranges.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<T: Scalar> {
@@ -72,11 +69,6 @@ impl<T: Scalar> Link<T> {
     pub(crate) fn hear(&mut self, time_us: u64, range: T) {
         self.next_us = time_us.wrapping_add(1);
         self.range = range;
-    }
-
-    /// Forgets the last range.
-    pub(crate) fn forget(&mut self) {
-        self.next_us = 0;
     }
 
     /// The same link for a new estimate: noise and gate begin anew.

@@ -3,7 +3,7 @@ mod measure;
 mod time;
 
 use crate::health::Counters;
-use crate::link::{Link, SET_BACK_US};
+use crate::link::Link;
 use crate::stillness::Stillness;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
 use heapless::Vec;
@@ -111,21 +111,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(())
     }
 
-    /// Takes in a range. One that is more than ten seconds old is not late: the clock was set back, and the tracker
-    /// begins anew with it.
+    /// Takes in a range.
     ///
     /// # Errors
     /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
     #[inline]
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
-        let range = match self.check(sample) {
-            Ok(range) => range,
-            Err(error) => self.set_back(sample, error)?,
-        };
+        let range = self.check(sample)?;
         if sample.time_us <= self.time_us {
-            if let Err(error) = self.check_time(sample.time_us) {
-                self.set_back(sample, error)?;
-            }
+            self.check_time(sample.time_us)?;
             return self.measure(sample, range);
         }
         let before = self.timed();
@@ -190,29 +184,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             return Err(if again { Error::Duplicate } else { Error::OutOfOrder });
         }
         Ok(sample.range - link.anchor.bias)
-    }
-
-    /// Begins anew at a range that is too old to be late, and answers with it, freed of its bias; refuses any other
-    /// with its error. One wrong time stamp far ahead would be the last one taken otherwise.
-    #[cold]
-    #[inline(never)]
-    fn set_back(&mut self, sample: &RangeSample<T>, error: Error) -> Result<T, Error> {
-        let set_back = self.time_us.saturating_sub(sample.time_us) > SET_BACK_US;
-        if error != Error::OutOfOrder || !set_back {
-            return Err(error);
-        }
-        let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
-        let range = sample.range - link.anchor.bias;
-        for link in &mut self.links {
-            link.forget();
-        }
-        self.estimate = None;
-        self.time_us = sample.time_us;
-        self.stillness = Stillness::new();
-        self.wheels = None;
-        self.doubted_until_us = 0;
-        self.heard = 0;
-        Ok(range)
     }
 
     #[inline]

@@ -25,18 +25,6 @@ pub(crate) fn sentences(warnings: Warnings) -> Vec<String> {
             warnings.axes_inconsistent,
             "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
         ),
-        (
-            warnings.dropout,
-            "the sensor measured nothing for a while (zeros): a stalled bus? The walk of that time is missing",
-        ),
-        (
-            warnings.stuck,
-            "the sensor said the same again and again for a while: the walk of that time is missing",
-        ),
-        (
-            warnings.out_of_range,
-            "the path or the position is beyond the number type: the estimate stops there; take a wider one",
-        ),
         (warnings.gaps, "samples are missing for more than 0.1 s"),
         (
             warnings.never_still,
