@@ -110,8 +110,8 @@ fn zeros_teach_nothing_and_end_nothing() {
         let mut stalled = samples.to_vec();
         let middle = stalled.len() / 2;
         for sample in &mut stalled[middle..middle + 120] {
-            sample.specific_force = [T::ZERO; 3];
-            sample.angular_rate = [T::ZERO; 3];
+            sample.specific_force.fill(T::ZERO);
+            sample.angular_rate.fill(T::ZERO);
         }
         for walked in [causal::<T, N>(&stalled), offline::<T, N>(&stalled)] {
             let position = walked.last.position.map(T::to_f64);

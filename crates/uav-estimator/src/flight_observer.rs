@@ -102,9 +102,10 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         if let Some((interval_us, step)) = &bridged {
             self.transitions.keep(*interval_us, step);
         }
-        for output in 0..P {
-            let is_rejected = sample.measured[output].is_some_and(|it| it != admitted[output]);
-            self.rejected[output] = self.rejected[output].saturating_add(u32::from(is_rejected));
+        let outputs = sample.measured.iter().zip(&admitted);
+        for (rejected, (measured, admitted)) in self.rejected.iter_mut().zip(outputs) {
+            let is_rejected = measured.is_some_and(|measured| measured != *admitted);
+            *rejected = rejected.saturating_add(u32::from(is_rejected));
         }
         Ok(innovations)
     }
@@ -134,12 +135,13 @@ fn judged<const P: usize>(
     expected: &[f64; P],
 ) -> ([Option<f64>; P], [f64; P]) {
     let (mut innovations, mut admitted) = ([None; P], *expected);
-    for (output, gate) in gates.iter_mut().enumerate() {
-        let Some(measured) = measured[output] else { continue };
-        let innovation = measured - expected[output];
-        innovations[output] = Some(innovation);
-        if gate.admits(innovation) {
-            admitted[output] = measured;
+    let outputs = innovations.iter_mut().zip(&mut admitted);
+    for ((gate, measured), (innovation, admitted)) in gates.iter_mut().zip(measured).zip(outputs) {
+        let Some(measured) = *measured else { continue };
+        let beyond = measured - *admitted;
+        *innovation = Some(beyond);
+        if gate.admits(beyond) {
+            *admitted = measured;
         }
     }
     (innovations, admitted)

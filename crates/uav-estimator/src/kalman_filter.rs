@@ -183,8 +183,15 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
     ) -> Result<([Option<Innovation<f64>>; P], [bool; P]), Error> {
         let (mut judging, mut is_left_out) = (*gates, [false; P]);
         let innovations = self.correct_with(measured, |next, weighed, output| {
-            is_left_out[output] = !judging[output].admits(weighed.exceeds(T::from_f64(GATE)));
-            Ok(if is_left_out[output] { weighed.report() } else { next.correct(weighed)? })
+            // Without an index, which would keep a check of its bounds.
+            let places = judging.get_mut(output).zip(is_left_out.get_mut(output));
+            if let Some((gate, is_left_out)) = places {
+                *is_left_out = !gate.admits(weighed.exceeds(T::from_f64(GATE)));
+                if *is_left_out {
+                    return Ok(weighed.report());
+                }
+            }
+            Ok(next.correct(weighed)?)
         })?;
         *gates = judging;
         Ok((innovations, is_left_out))
