@@ -87,16 +87,16 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
             moved = Some((interval_us, transition));
         }
         let mut gates = self.gates;
-        let (innovations, is_left_out) = next.correct_gated(&sample.measured, &mut gates)?;
+        let judged = next.correct_gated(&sample.measured, &mut gates)?;
         self.filter = next;
         self.gates = gates;
-        for (rejected, is_left_out) in self.rejected.iter_mut().zip(is_left_out) {
+        for (rejected, is_left_out) in self.rejected.iter_mut().zip(judged.is_left_out) {
             *rejected = rejected.saturating_add(u32::from(is_left_out));
         }
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, transition)) = &moved {
             self.transitions.keep(*interval_us, transition);
         }
-        Ok(innovations)
+        Ok(judged.innovations)
     }
 }

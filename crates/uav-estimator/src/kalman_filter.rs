@@ -44,6 +44,12 @@ impl<T: Scalar> Transition<T> {
     }
 }
 
+/// What was measured of each output, and whether a gate left it out.
+pub(crate) struct Gated<const P: usize> {
+    pub(crate) innovations: [Option<Innovation<f64>>; P],
+    pub(crate) is_left_out: [bool; P],
+}
+
 /// A Kalman filter with time-varying gain of α, q, V and θ, with P outputs of which each may be missing.
 ///
 /// What goes in and comes out is in `f64` and SI units; inside, all arithmetic is in `T`, in units in which Q16.16
@@ -180,7 +186,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         &mut self,
         measured: &[Option<f64>; P],
         gates: &mut [Gate; P],
-    ) -> Result<([Option<Innovation<f64>>; P], [bool; P]), Error> {
+    ) -> Result<Gated<P>, Error> {
         let (mut judging, mut is_left_out) = (*gates, [false; P]);
         let innovations = self.correct_with(measured, |next, weighed, output| {
             // Without an index, which would keep a check of its bounds.
@@ -194,7 +200,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
             Ok(next.correct(weighed)?)
         })?;
         *gates = judging;
-        Ok((innovations, is_left_out))
+        Ok(Gated { innovations, is_left_out })
     }
 
     fn correct_with(

@@ -15,6 +15,7 @@ use crate::text::printable_path;
 ///
 /// A setting of the same name is an alternative: `--height 0.1` or `--height FILE`.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each says something of its own")]
 pub struct FileField {
     /// Its name everywhere: `log` is `--log`.
     pub name: &'static str,

@@ -27,7 +27,7 @@ const STRICT: &str = "strict";
 /// What a user says about a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Reading {
-    options: Options,
+    options: Box<Options>,
     /// As it was said.
     given: BTreeMap<&'static str, String>,
 }
@@ -94,7 +94,7 @@ impl Reading {
     }
 
     /// For the importer.
-    pub const fn options(&self) -> &Options {
+    pub fn options(&self) -> &Options {
         &self.options
     }
 

@@ -66,8 +66,8 @@ fn check_samples(sent: &[Imu], walk: &[Sample]) {
 }
 
 /// The log on the card is what `host-sim replay pedestrian` reads, and says what was sent.
-fn check_log<T: Scalar>(text: Vec<u8>, sent: &[Imu], path: f32) -> Result<()> {
-    let log = log::parse(Path::new("WALK.TXT"), &text, &log::Options::default())?;
+fn check_log<T: Scalar>(text: &[u8], sent: &[Imu], path: f32) -> Result<()> {
+    let log = log::parse(Path::new("WALK.TXT"), text, &log::Options::default())?;
     assert_eq!(log.warnings, Vec::<String>::new());
     assert_eq!(log.samples.len(), sent.len());
     for (logged, sent) in log.samples.iter().zip(sent) {
