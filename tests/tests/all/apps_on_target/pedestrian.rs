@@ -113,7 +113,7 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     assert_eq!(*health, Health { time_us, accepted, rejected: 0, failed: 0 }.into());
 
     let mut written = run.card.context("the card")?;
-    check_log::<T>(card::file(&mut written, "WALK.TXT")?, &sent, path)?;
+    check_log::<T>(&card::file(&mut written, "WALK.TXT")?, &sent, path)?;
 
     let count = |text: &str| lines.iter().filter(|line| line.starts_with(text)).count();
     let strides = expected.iter().filter(|told| matches!(told, Message::Footprint(_))).count();
