@@ -60,7 +60,8 @@ fn every_bracket_of_a_readme_leads_somewhere() -> Result<()> {
 fn every_file_that_the_book_names_exists() -> Result<()> {
     let crates = fs::read_dir(root().join("crates"))?.collect::<Result<Vec<_>, _>>()?;
     let sources = crates.into_iter().map(|entry| entry.path().join("src"));
-    let mut folders: Vec<_> = ["", "crates", "docs/src"].map(|name| root().join(name)).into();
+    let mut folders: Vec<_> =
+        ["", "crates", "docs/src", "tests/firmware"].map(|name| root().join(name)).into();
     folders.extend(sources);
     for entry in fs::read_dir(root().join("docs/src"))? {
         let chapter = entry?.path();
