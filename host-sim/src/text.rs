@@ -65,11 +65,6 @@ impl TextFile {
         trimmed.filter(|line| !line.text.is_empty())
     }
 
-    /// Whether the last line is complete: a logger that is interrupted leaves none.
-    pub fn ends_with_line_break(&self) -> bool {
-        self.text.ends_with('\n')
-    }
-
     /// A complaint about the file as a whole.
     pub fn error(&self, problem: impl Into<String>) -> Error {
         Error::File { path: self.path.clone(), problem: problem.into() }
@@ -95,17 +90,6 @@ impl<'a> Line<'a> {
     /// The fields between commas, trimmed.
     pub fn comma_separated(&self) -> Vec<&'a str> {
         self.text.split(',').map(str::trim).collect()
-    }
-
-    /// The fields between blanks.
-    pub fn blank_separated(&self) -> Vec<&'a str> {
-        self.text.split_whitespace().collect()
-    }
-
-    /// Whether the first field is a number, as in a line of data.
-    pub fn starts_with_number(&self) -> bool {
-        let first = self.text.split([',', ' ', '\t']).next();
-        first.is_some_and(|field| field.parse::<f64>().is_ok())
     }
 
     /// Reads `field`, which stands in `column`, as a finite number.

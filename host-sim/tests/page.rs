@@ -111,36 +111,47 @@ fn a_slider_moves_and_the_path_changes() {
 }
 
 #[test]
-fn a_razors_log_is_opened_and_a_broken_one_refused_with_a_sentence() {
+fn a_razors_log_is_opened_damage_told_and_a_broken_one_refused_with_a_sentence() {
     let desk = Desk::new();
     let text = razor_text(&walk());
     let good = desk.file("walk.txt", &text);
-    let broken = desk.file("broken.txt", format!("{text}17 what\n"));
+    let damaged = desk.file("damaged.txt", format!("{text}17 what\n"));
+    let tears = |(index, line)| if index % 50 == 49 { "17 what\n" } else { line };
+    let broken: String = text.split_inclusive('\n').enumerate().map(tears).collect();
+    let broken = desk.file("broken.txt", broken);
     let server = Server::start(&["serve", "--port", "0"]);
     let Some(page) = Page::open(server.address(), 1280) else { return };
+    let open = |log: &str| {
+        page.choose_file("#file-log", log);
+        page.evaluate("document.getElementById('upload').click()");
+    };
     page.wait_for(DRAWN);
     page.evaluate(
         "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",
     );
-    page.choose_file("#file-log", &good);
-    page.evaluate("document.getElementById('upload').click()");
+    open(&good);
     // The log holds no truth: nothing is said of errors.
     page.wait_for(&format!(
         "{DRAWN} && !document.getElementById('facts').textContent.includes('RMSE')"
     ));
     let opened = path(&page);
-    page.choose_file("#file-log", &broken);
-    page.evaluate("document.getElementById('upload').click()");
+    open(&damaged);
+    let line = text.lines().count() + 1;
+    page.wait_for(&format!(
+        "document.getElementById('warnings').textContent.includes('line {line}')"
+    ));
+    assert_eq!(path(&page), opened, "a line that is skipped changes nothing");
+    open(&broken);
     page.wait_for("document.getElementById('alert').textContent !== ''");
     let sentence = page.evaluate("document.getElementById('alert').textContent");
-    let line = text.lines().count() + 1;
-    let begin = format!("broken.txt, line {line}: ");
-    assert!(sentence.as_str().expect("text").starts_with(&begin), "{sentence}");
+    let begin = "broken.txt: expected at most ";
+    assert!(sentence.as_str().expect("text").starts_with(begin), "{sentence}");
     // The same sentence as on the command line, but for where the file lies.
     let output = host_sim(&["replay", "pedestrian", "--log", &broken]);
-    let told =
-        program::text(&output.stderr).trim_end().rsplit_once('/').expect("a path").1.to_owned();
-    assert_eq!(sentence, told.as_str());
+    let told = program::text(&output.stderr);
+    let told = told.trim_end();
+    let told = &told[told.find("broken.txt").expect("the file's name")..];
+    assert_eq!(sentence, told);
     assert_eq!(path(&page), opened, "what was open stays open");
 }
 

@@ -21,8 +21,6 @@ pub enum Fault {
     Torn,
     /// A field of a column that is needed holds no number.
     Foreign,
-    /// A field of a column that is needed is infinite or not a number.
-    NotFinite,
     /// It is the same as the line above.
     Doubled,
     /// Its time is before that of a line above, or far after that of all lines below.
@@ -37,7 +35,6 @@ impl Fault {
             Self::Cut => "cut off",
             Self::Torn => "torn (another number of fields)",
             Self::Foreign => "without a number where one is needed",
-            Self::NotFinite => "not a finite number",
             Self::Doubled => "doubled",
             Self::OutOfOrder => "out of the order of time",
             Self::OutOfRange => "beyond any sensor's range",

@@ -1,5 +1,7 @@
 //! The height of a tag of which nobody says how high it is: from its ranges, or not at all.
 
+use std::sync::OnceLock;
+
 use kestirim_uwb_tracker::{HeightFinder, RangeSample};
 
 use super::recording::anchors::MOST;
@@ -104,6 +106,10 @@ impl Finder {
     }
 }
 
+/// The height of a recording with uncalibrated and with calibrated anchors: searched once, asked for at every slider.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FoundOnce([OnceLock<Result<FoundHeight, String>>; 2]);
+
 /// Whether nobody says how high the tag is.
 pub(super) fn is_missing(recording: &Recording, settings: &Settings) -> bool {
     settings.chosen::<Dimensions>("dim") == Dimensions::Two
@@ -116,6 +122,12 @@ pub(super) fn is_missing(recording: &Recording, settings: &Settings) -> bool {
 /// # Errors
 /// [`Error::Usage`], naming the option that is missing: the ranges do not tell it.
 pub(super) fn of_recording(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
+    let found = &recording.found_height.0[usize::from(setup.biases.is_some())];
+    let found = found.get_or_init(|| search(recording, setup).map_err(|error| error.to_string()));
+    found.clone().map_err(Error::Usage)
+}
+
+fn search(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
     let mut finder = Finder::new(setup)?;
     let mut begun_us = 0;
     for part in &recording.parts {

@@ -13,6 +13,7 @@ use self::anchors::Anchors;
 use self::event::{Event, Sensors};
 use self::points::Course;
 use self::ranges::RangeLog;
+use super::height::FoundOnce;
 use super::simulate::scenario::{self, EPOCH_US, EPOCHS, Office, office_anchors};
 use crate::Error;
 use crate::random::stream;
@@ -33,6 +34,8 @@ pub struct Recording {
     pub heights: Heights,
     /// What is suspicious but readable.
     pub warnings: Vec<String>,
+    /// The tag's height as the ranges tell it, where nobody says it.
+    pub(super) found_height: FoundOnce,
 }
 
 /// What is known of a tag's height.

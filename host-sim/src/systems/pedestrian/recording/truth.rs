@@ -4,14 +4,12 @@ use std::path::Path;
 
 use super::log::{Log, microseconds};
 use crate::Error;
+use crate::table::FARTHEST_POSITION;
 use crate::text::{Header, TextFile};
 
 /// How far beyond the ends of a log a footprint may lie, µs: a log that was averaged or rewritten
 /// in milliseconds ends a few samples early, while the foot stands.
 const SLACK_US: u64 = 100_000;
-
-/// Farther than any ruler reaches, m.
-const FARTHEST_POSITION: f64 = 1e8;
 
 /// Where the foot stood.
 #[derive(Debug, Clone, Copy, PartialEq)]
