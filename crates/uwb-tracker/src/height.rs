@@ -60,7 +60,8 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
     /// # Errors
     /// [`Error::TooManyAnchors`], [`Error::TooFewAnchors`] for fewer than three, or [`Error::NotFinite`].
     pub fn calibrated(anchors: &[Anchor<T>]) -> Result<Self, Error> {
-        Self::new(anchors, CALIBRATED)
+        let [common, own] = CALIBRATED;
+        Self::new(anchors, T::from_f64(common), T::from_f64(own))
     }
 
     /// For anchors as they come.
@@ -68,18 +69,18 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
     /// # Errors
     /// As [`HeightFinder::calibrated`].
     pub fn uncalibrated(anchors: &[Anchor<T>]) -> Result<Self, Error> {
-        Self::new(anchors, UNCALIBRATED)
+        let [common, own] = UNCALIBRATED;
+        Self::new(anchors, T::from_f64(common), T::from_f64(own))
     }
 
-    fn new(anchors: &[Anchor<T>], [common, own]: [f64; 2]) -> Result<Self, Error> {
+    fn new(anchors: &[Anchor<T>], common: T, own: T) -> Result<Self, Error> {
         let (mut places, mut biases) = (Vec::<SVector<T, 3>, A>::new(), Vec::new());
         for anchor in anchors {
             anchor.check()?;
             places.push(anchor.position).map_err(|_| Error::TooManyAnchors)?;
             biases.push(anchor.bias).map_err(|_| Error::TooManyAnchors)?;
         }
-        let search = HeightSearch::new(&places, T::from_f64(common), T::from_f64(own));
-        let search = search.map_err(|error| match error {
+        let search = HeightSearch::new(&places, common, own).map_err(|error| match error {
             NoPlace::TooFewRanges => Error::TooFewAnchors,
             _ => Error::NotFinite,
         })?;
