@@ -17,6 +17,9 @@
     element("facts").replaceChildren(...answer.facts.map(([name, value]) =>
       make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
     element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
+    element("findings").replaceChildren(...answer.findings.map(([fault, about, text]) =>
+      make("div", { className: fault ? "fault" : "" }, make("dt", { textContent: about }), make("dd", { textContent: text }))));
+    element("check").hidden = !answer.findings.length;
     disable(new Map(answer.disabled));
     for (const said of ["command", "firmware"]) element(said).textContent = answer[said];
     element("again").hidden = !answer.command;

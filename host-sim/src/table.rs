@@ -1,39 +1,270 @@
-//! Comma-separated tables with a header, of which some columns may be missing.
+//! Tables whose columns are wanted by name, whatever separates them, with every complaint naming the file and the line.
 
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::fs;
 use std::path::Path;
 
+use kestirim_import::{
+    Damage, Error as ImportError, Fault, Heading, NamedTable, Options, Text, Unit, unit_of_times,
+};
+
 use crate::Error;
-use crate::text::{Header, Line, TextFile};
+use crate::text::printable;
 
 /// Beyond any clock, s: three centuries, within which a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
 /// Beyond any place on earth in any projection, m.
 pub(crate) const FARTHEST_POSITION: f64 = 1e8;
 
-/// Reads a table: `row` is called for each line below the header.
+/// How a log was read.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Found {
+    /// What was concluded about columns and units, and from what.
+    pub import: Vec<String>,
+    /// What was skipped.
+    pub warnings: Vec<String>,
+}
+
+/// A log that is read.
+#[derive(Debug, Clone, Copy)]
+pub struct Log<'a> {
+    /// What it holds, for complaints.
+    pub what: &'a str,
+    /// The usual time between its lines is at most this, s: what is longer is in another unit. None if that says nothing.
+    pub longest_step_s: Option<f64>,
+    /// What the user says about it.
+    pub options: &'a Options,
+}
+
+/// Reads a table: `row` is called for each line below the header. Its first damaged line refuses it.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
 pub fn read<T>(
     path: &Path,
     what: &str,
-    columns: impl FnOnce(&Header<'_>) -> Result<T, Error>,
-    mut row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
+    columns: impl Fn(&Header<'_>) -> Result<T, Error>,
+    row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let file = TextFile::read(path)?;
-    let mut lines = file.lines();
-    let Some(first) = lines.next() else {
-        return Err(file.error(format!("expected {what}, found an empty file")));
-    };
-    let header = Header::new(first);
-    let columns = columns(&header)?;
-    let mut empty = true;
-    for line in lines {
-        let fields = header.fields(&line)?;
-        row(&columns, &Row { line, fields })?;
-        empty = false;
+    let options = Options { strict: true, ..Options::default() };
+    let table = Log { what, longest_step_s: None, options: &options };
+    read_log(path, &table, columns, row).map(drop)
+}
+
+/// Reads a log: as [`read`], but up to a hundredth of its lines, which `row` refuses without having changed anything, are
+/// skipped and counted.
+///
+/// # Errors
+/// The file, the line, and what was expected there.
+pub fn read_log<T>(
+    path: &Path,
+    log: &Log<'_>,
+    columns: impl Fn(&Header<'_>) -> Result<T, Error>,
+    row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
+) -> Result<Found, Error> {
+    let bytes =
+        fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+    parse(path, &bytes, log, columns, row)
+}
+
+/// Reads the contents of the file `path` as [`read_log`] does.
+///
+/// # Errors
+/// As [`read_log`].
+pub fn parse<T>(
+    path: &Path,
+    bytes: &[u8],
+    log: &Log<'_>,
+    columns: impl Fn(&Header<'_>) -> Result<T, Error>,
+    mut row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
+) -> Result<Found, Error> {
+    let Log { what, longest_step_s, options } = *log;
+    let file = |problem: String| Error::File { path: path.to_path_buf(), problem };
+    let nothing = || file(format!("expected {what}, found an empty file"));
+    let text = Text::new(bytes).map_err(|_| nothing())?;
+    let found = NamedTable::find(&text, options, |heading| {
+        let header = Header { path, heading, found: RefCell::default() };
+        columns(&header).map(|columns| (columns, header.found.into_inner()))
+    });
+    let (table, (columns, places)) = found.ok_or_else(nothing)??;
+    let mut import = conclusions(&table, &places);
+    let mut second = 1.0;
+    if let Some(longest) = longest_step_s {
+        let unit = unit_of_time(&table, &places, longest).map_err(|error| refused(path, &error))?;
+        if let Some(unit) = unit.filter(|unit| unit.scale != 1.0) {
+            second = unit.scale;
+            import.push(format!("time in {unit}: from the data"));
+        }
     }
-    if empty { Err(file.error(format!("expected {what}, found only a header"))) } else { Ok(()) }
+    let (mut damage, mut total) = (Damage::default(), 0);
+    for (number, fields) in table.rows() {
+        total += 1;
+        let line = Line { path, number };
+        let result =
+            fields_of(&table, line, fields, second).and_then(|row_of| row(&columns, &row_of));
+        if let Err(error) = result {
+            let Error::Line { problem, .. } = error else { return Err(error) };
+            damage.add(Fault::Unusable, number, || problem);
+        }
+    }
+    if total == 0 {
+        return Err(file(format!("expected {what}, found only a header")));
+    }
+    damage.accept(total, options.strict).map_err(|error| refused(path, &error))?;
+    damage.end_may_be_cut = !options.strict && !text.ends_with_line_break();
+    Ok(Found { import, warnings: damage.sentences() })
+}
+
+/// What the importer refuses, in a file.
+pub fn refused(path: &Path, error: &ImportError) -> Error {
+    let path = path.to_path_buf();
+    match error {
+        ImportError::Line { line, problem } => {
+            Error::Line { path, line: *line, problem: problem.clone() }
+        }
+        other => Error::File { path, problem: other.to_string() },
+    }
+}
+
+fn fields_of<'a>(
+    table: &'a NamedTable<'a>,
+    line: Line<'a>,
+    fields: Vec<Cow<'a, [u8]>>,
+    second: f64,
+) -> Result<Row<'a>, Error> {
+    let (expected, found) = (table.heading.names().len(), fields.len());
+    if expected == found {
+        return Ok(Row { line, table, fields, second });
+    }
+    Err(line.error(format!("expected {expected} fields as in the header, found {found}")))
+}
+
+/// The unit of a time of which nobody says it, from its spacing; none of dates and times of day.
+fn unit_of_time(
+    table: &NamedTable<'_>,
+    places: &[(String, Column, String)],
+    longest: f64,
+) -> Result<Option<Unit>, ImportError> {
+    let time = places.iter().find(|(wanted, column, _)| wanted == "t" && !column.has_unit);
+    let Some((_, column, _)) = time else { return Ok(None) };
+    let mut times = Vec::new();
+    for (_, fields) in table.rows() {
+        let Some(field) = fields.get(column.at) else { continue };
+        if table.moment(field).is_some() {
+            return Ok(None);
+        }
+        times.extend(table.number(field).filter(|time| time.is_finite()));
+    }
+    unit_of_times(&times, longest).map(Some)
+}
+
+/// What was understood of columns that are named otherwise than documented, or have other units.
+fn conclusions(table: &NamedTable<'_>, places: &[(String, Column, String)]) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for (wanted, _, told) in places {
+        if told != wanted && !parts.contains(told) {
+            parts.push(told.clone());
+        }
+    }
+    if table.dialect.separator != kestirim_import::Separator::Comma {
+        parts.push(table.dialect.to_string());
+    }
+    if parts.is_empty() { Vec::new() } else { vec![format!("{}: header", parts.join(", "))] }
+}
+
+/// A column that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Column {
+    at: usize,
+    /// How much one of its unit is in that of the SI.
+    scale: f64,
+    /// Whether the header or an option says the unit.
+    has_unit: bool,
+}
+
+impl Column {
+    const NONE: Self = Self { at: 0, scale: 1.0, has_unit: false };
+}
+
+/// The header of a table.
+#[derive(Debug)]
+pub struct Header<'a> {
+    path: &'a Path,
+    heading: &'a Heading<'a>,
+    /// What was wanted, where it stands, and what is to be told of it.
+    found: RefCell<Vec<(String, Column, String)>>,
+}
+
+impl Header<'_> {
+    /// A complaint about the header.
+    pub fn error(&self, problem: impl Into<String>) -> Error {
+        Line { path: self.path, number: self.heading.line }.error(problem)
+    }
+
+    /// The column `name`, if there is one: of exactly this name, or as people name it. Upper and lower case of other names
+    /// than those known to the importer differ: `T` may well be a temperature.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if two columns may be it.
+    pub fn find(&self, name: &str) -> Result<Option<Column>, Error> {
+        let place = self.heading.find(name).map_err(|error| refused(self.path, &error))?;
+        Ok(place.map(|place| {
+            let column =
+                Column { at: place.column, scale: place.scale(), has_unit: place.unit.is_some() };
+            let unit = place.unit.as_ref().map(|unit| format!(" in {unit}"));
+            let named = if place.name == name {
+                name.to_owned()
+            } else {
+                format!("{name} = {}", place.name)
+            };
+            let told = format!("{named}{}", unit.unwrap_or_default());
+            self.found.borrow_mut().push((name.to_owned(), column, told));
+            column
+        }))
+    }
+
+    /// The columns `names`.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if one is missing, or two may be it.
+    pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[Column; N], Error> {
+        let mut columns = [Column::NONE; N];
+        for (column, name) in columns.iter_mut().zip(names) {
+            *column = self.find(name)?.ok_or_else(|| {
+                self.error(format!("expected a header with a column {name}, found none"))
+            })?;
+        }
+        Ok(columns)
+    }
+
+    /// The columns `names`, if they are all there.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn all<const N: usize>(&self, names: [&str; N]) -> Result<Option<[Column; N]>, Error> {
+        let mut columns = [Column::NONE; N];
+        for (column, name) in columns.iter_mut().zip(names) {
+            let Some(found) = self.find(name)? else { return Ok(None) };
+            *column = found;
+        }
+        Ok(Some(columns))
+    }
+}
+
+/// A line of a file.
+#[derive(Debug, Clone, Copy)]
+pub struct Line<'a> {
+    path: &'a Path,
+    number: usize,
+}
+
+impl Line<'_> {
+    /// A complaint about this line.
+    pub fn error(&self, problem: impl Into<String>) -> Error {
+        let path = self.path.to_path_buf();
+        Error::Line { path, line: self.number, problem: problem.into() }
+    }
 }
 
 /// A line below the header.
@@ -41,28 +272,50 @@ pub fn read<T>(
 pub struct Row<'a> {
     /// The line, for complaints.
     pub line: Line<'a>,
-    fields: Vec<&'a str>,
+    table: &'a NamedTable<'a>,
+    fields: Vec<Cow<'a, [u8]>>,
+    /// How many s one of its time is, if no header says it.
+    second: f64,
 }
 
-impl<'a> Row<'a> {
-    /// The text of a field; empty beyond the columns.
-    pub fn text(&self, column: usize) -> &'a str {
-        self.fields.get(column).copied().unwrap_or_default()
+impl Row<'_> {
+    /// The text of a field.
+    pub fn text(&self, column: Column) -> Cow<'_, str> {
+        String::from_utf8_lossy(self.field(column))
     }
 
-    /// A finite number.
+    /// Whether there is nothing in a field.
+    pub fn is_empty(&self, column: Column) -> bool {
+        self.field(column).is_empty()
+    }
+
+    fn field(&self, column: Column) -> &[u8] {
+        self.fields.get(column.at).map_or(&[], |field| field)
+    }
+
+    /// A number in the unit of the SI, which may be infinite or not a number; none if there is something else.
+    pub fn any_number(&self, column: Column) -> Option<f64> {
+        let value = self.table.number(self.field(column))?;
+        // A value in the usual unit stays bit for bit as it stands there.
+        Some(if column.scale == 1.0 { value } else { value * column.scale })
+    }
+
+    /// A finite number in the unit of the SI.
     ///
     /// # Errors
     /// [`Error::Line`] if it is anything else.
-    pub fn number(&self, name: &str, column: usize) -> Result<f64, Error> {
-        self.line.number(name, self.text(column))
+    pub fn number(&self, name: &str, column: Column) -> Result<f64, Error> {
+        self.any_number(column).filter(|value| value.is_finite()).ok_or_else(|| {
+            let found = printable(&self.text(column));
+            self.line.error(format!("expected a finite number in column {name}, found {found}"))
+        })
     }
 
     /// Coordinates, m.
     ///
     /// # Errors
     /// [`Error::Line`] if one is not a number, or beyond the earth.
-    pub fn coordinate(&self, name: &str, column: usize) -> Result<f64, Error> {
+    pub fn coordinate(&self, name: &str, column: Column) -> Result<f64, Error> {
         let value = self.number(name, column)?;
         if value.abs() > FARTHEST_POSITION {
             return Err(self
@@ -72,15 +325,88 @@ impl<'a> Row<'a> {
         Ok(value)
     }
 
-    /// A time in seconds, as microseconds.
+    /// A time: a number, a date with a time, or a time of day, as microseconds.
     ///
     /// # Errors
-    /// [`Error::Line`] if it is not a number, or beyond any clock.
-    pub fn time_us(&self, column: usize) -> Result<i64, Error> {
-        let seconds = self.number("t", column)?;
+    /// [`Error::Line`] if it is none, or beyond any clock.
+    pub fn time_us(&self, column: Column) -> Result<i64, Error> {
+        let seconds = match self.table.moment(self.field(column)) {
+            Some(seconds) => seconds,
+            None if self.second == 1.0 => self.number("t", column)?,
+            None => self.number("t", column)? * self.second,
+        };
         if seconds.abs() > LATEST_TIME {
             return Err(self.line.error("expected a time in seconds, found one beyond any clock"));
         }
         Ok((seconds * 1e6).round() as i64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum(text: &[u8], options: &Options) -> Result<(f64, Found), String> {
+        let mut sum = 0.0;
+        let found = parse(
+            Path::new("a.csv"),
+            text,
+            &Log { what: "numbers", longest_step_s: Some(2.0), options },
+            |header| header.require(["t", "range"]),
+            |&[t, range], row| {
+                sum += row.time_us(t)? as f64 + row.number("range", range)?;
+                Ok(())
+            },
+        );
+        found.map(|found| (sum, found)).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn tables_are_read_however_they_are_written() {
+        let options = Options::default();
+        for text in [
+            "t,range\n1,2\n2,3\n",
+            "# made by hand\n\nt;range\n1;2\n2;3\n",
+            "range [cm]\ttime_ms\r\n200\t1000\r\n300\t2000\r\n",
+            "t;distance\n1,0;2,0\n2,0;3,0\n",
+            "time,d (mm)\n00:00:01,2000\n00:00:02,3000\n",
+            "t,range\n1000,2\n2000,3\n",
+        ] {
+            let (sum, found) = sum(text.as_bytes(), &options).unwrap();
+            assert!((sum - 3_000_005.0).abs() < 1e-6, "{text}: {sum}");
+            assert_eq!(found.warnings, [""; 0]);
+        }
+        let (_, found) = sum(b"range [cm];t\n1;1\n", &options).unwrap();
+        assert_eq!(found.import, ["range = range [cm] in cm, semicolons: header"]);
+    }
+
+    #[test]
+    fn damaged_lines_of_a_log_are_skipped_and_told() {
+        let text = b"t,range\n1,2\n2,x\n2,3\n3";
+        let (sum_found, found) = sum(text, &Options::default()).unwrap();
+        assert!((sum_found - 3_000_005.0).abs() < 1e-6);
+        assert_eq!(
+            found.warnings,
+            [
+                "2 lines unusable were skipped: lines 3, 5",
+                "the log does not end with a line break: its end may be cut"
+            ]
+        );
+        let strict = Options { strict: true, ..Options::default() };
+        assert_eq!(
+            sum(text, &strict).unwrap_err(),
+            "a.csv, line 3: expected a finite number in column range, found \"x\""
+        );
+        for (text, expected) in [
+            (&b"t\n1\n"[..], "a.csv, line 1: expected a header with a column range, found none"),
+            (b"", "a.csv: expected numbers, found an empty file"),
+            (b"t,range\n", "a.csv: expected numbers, found only a header"),
+            (
+                b"t,range\n1,x\n",
+                "a.csv, line 2: expected a finite number in column range, found \"x\"",
+            ),
+        ] {
+            assert_eq!(sum(text, &Options::default()).unwrap_err(), expected);
+        }
     }
 }

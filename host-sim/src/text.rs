@@ -1,7 +1,4 @@
-//! Text files of numbers, read so that every complaint names the file and the line.
-//!
-//! Lines are split here rather than by the `csv` crate, whose line numbers are off after blank
-//! lines; a log of numbers needs no quoting.
+//! Text files that are no tables, read so that every complaint names the file and the line; and text for people.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -80,87 +77,11 @@ pub struct Line<'a> {
     pub text: &'a str,
 }
 
-impl<'a> Line<'a> {
+impl Line<'_> {
     /// A complaint about this line.
     pub fn error(&self, problem: impl Into<String>) -> Error {
         let path = self.file.path.clone();
         Error::Line { path, line: self.number, problem: problem.into() }
-    }
-
-    /// The fields between commas, trimmed.
-    pub fn comma_separated(&self) -> Vec<&'a str> {
-        self.text.split(',').map(str::trim).collect()
-    }
-
-    /// Reads `field`, which stands in `column`, as a finite number.
-    ///
-    /// # Errors
-    /// [`Error::Line`] if it is anything else.
-    pub fn number(&self, column: &str, field: &str) -> Result<f64, Error> {
-        match field.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(self.error(format!(
-                "expected a finite number in column {column}, found {}",
-                printable(field)
-            ))),
-        }
-    }
-}
-
-/// The header of a comma-separated table.
-#[derive(Debug, Clone)]
-pub struct Header<'a> {
-    line: Line<'a>,
-    names: Vec<&'a str>,
-}
-
-impl<'a> Header<'a> {
-    /// Takes the names from the first line of a table.
-    pub fn new(line: Line<'a>) -> Self {
-        Self { line, names: line.comma_separated() }
-    }
-
-    /// A complaint about the header.
-    pub fn error(&self, problem: impl Into<String>) -> Error {
-        self.line.error(problem)
-    }
-
-    /// Where the column `name` stands, if there is one. Upper and lower case differ: `T` may well
-    /// be a temperature.
-    pub fn find(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|&column| column == name)
-    }
-
-    /// Where the columns `names` stand.
-    ///
-    /// # Errors
-    /// [`Error::Line`] if one is missing or stands there twice.
-    pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[usize; N], Error> {
-        let mut places = [0; N];
-        for (place, name) in places.iter_mut().zip(names) {
-            let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
-            *place = found.next().ok_or_else(|| {
-                self.line.error(format!("expected a header with a column {name}, found none"))
-            })?;
-            if found.next().is_some() {
-                return Err(self.line.error(format!("expected one column {name}, found two")));
-            }
-        }
-        Ok(places)
-    }
-
-    /// The fields of a row of this table, as many as the header has names.
-    ///
-    /// # Errors
-    /// [`Error::Line`] if their number differs.
-    pub fn fields<'b>(&self, row: &Line<'b>) -> Result<Vec<&'b str>, Error> {
-        let fields = row.comma_separated();
-        if fields.len() == self.names.len() {
-            Ok(fields)
-        } else {
-            let (expected, found) = (self.names.len(), fields.len());
-            Err(row.error(format!("expected {expected} fields as in the header, found {found}")))
-        }
     }
 }
 
@@ -223,15 +144,5 @@ mod tests {
         assert_eq!(printable("a\nb\0"), r#""a\nb\0""#);
         assert_eq!(printable(&"x".repeat(1000)).chars().count(), 27);
         assert_eq!(printable_path(Path::new("a\nb")), "a?b");
-    }
-
-    #[test]
-    fn a_column_must_stand_exactly_once() -> Result<(), Error> {
-        let file = file(b"t, x ,t\n")?;
-        let header = Header::new(file.lines().next().unwrap());
-        assert_eq!(header.require(["x"])?, [1]);
-        assert!(header.require(["y"]).unwrap_err().to_string().contains("column y"));
-        assert!(header.require(["t"]).unwrap_err().to_string().contains("found two"));
-        Ok(())
     }
 }

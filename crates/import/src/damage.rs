@@ -27,6 +27,8 @@ pub enum Fault {
     OutOfOrder,
     /// No sensor can have said it.
     OutOfRange,
+    /// A reader cannot use it.
+    Unusable,
 }
 
 impl Fault {
@@ -38,6 +40,7 @@ impl Fault {
             Self::Doubled => "doubled",
             Self::OutOfOrder => "out of the order of time",
             Self::OutOfRange => "beyond any sensor's range",
+            Self::Unusable => "unusable",
         }
     }
 }
@@ -92,7 +95,7 @@ impl Damage {
     }
 
     /// Counts a line; the complaint is put in words if it is the first one.
-    pub(crate) fn add(&mut self, fault: Fault, line: usize, problem: impl FnOnce() -> String) {
+    pub fn add(&mut self, fault: Fault, line: usize, problem: impl FnOnce() -> String) {
         if self.first.as_ref().is_none_or(|first| line < first.line) {
             self.first = Some(Complaint { line, problem: problem() });
         }
@@ -112,7 +115,7 @@ impl Damage {
     ///
     /// # Errors
     /// [`Error::Line`] at the first damaged line if `strict`; [`Error::Damaged`] if there are too many.
-    pub(crate) fn accept(&self, rows: usize, strict: bool) -> Result<(), Error> {
+    pub fn accept(&self, rows: usize, strict: bool) -> Result<(), Error> {
         let Some(first) = &self.first else { return Ok(()) };
         let (allowed, found) = (Self::allowed(rows), self.count());
         // Of a log of three lines not all three may be skipped.

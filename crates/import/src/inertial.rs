@@ -35,9 +35,11 @@ mod motion;
 mod order;
 mod raw;
 mod rest;
+mod turns;
 mod units;
 
 pub use conclusion::{Conclusion, Source};
+pub use turns::{Turns, turns};
 
 use columns::{Axis, Columns};
 use conclusion::conclusions;
@@ -101,6 +103,7 @@ impl Inertial {
 /// # Errors
 /// What was expected and what was found, and which option decides where the log does not tell.
 pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
+    options.refuse_others()?;
     let text = Text::new(bytes)?;
     let mut table = Table::read(&text)?;
     let mut damage = std::mem::take(&mut table.damage);

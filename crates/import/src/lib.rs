@@ -1,23 +1,30 @@
 #![doc = include_str!("../README.md")]
 
+mod clock;
 mod damage;
 mod dialect;
 mod error;
 mod formats;
+mod heading;
 pub mod inertial;
 mod layout;
 mod moment;
+mod named;
 mod names;
 mod options;
+pub mod ranging;
 mod table;
 mod text;
 mod unit;
 
+pub use clock::unit_of_times;
 pub use damage::{Damage, Fault, Loss};
 pub use dialect::{Dialect, Separator};
 pub use error::{Complaint, Error};
 pub use formats::Format;
+pub use heading::{Heading, Place};
 pub use layout::Kind;
+pub use named::NamedTable;
 pub use options::{Columns, Options, TimeUnit, Units};
 pub use table::{Column, Table};
 pub use text::{Line, Text};

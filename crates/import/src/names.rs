@@ -123,6 +123,32 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     })
 }
 
+/// Whether a name is one of these aliases, with a unit of the quantity behind it or in brackets; and that unit.
+pub(crate) fn measures(
+    name: &str,
+    quantity: Option<Quantity>,
+    aliases: &[&str],
+) -> Option<Option<Unit>> {
+    let (base, bracket) = split_unit(name);
+    let is_one = |text: &str| aliases.contains(&text);
+    let unit = |text: &str| quantity.and_then(|quantity| Unit::read(quantity, text));
+    // `speed_cm/s`: a unit of more than letters.
+    if let Some((base, text)) = base.rsplit_once(['_', ' '])
+        && let (true, Some(unit)) = (is_one(&words(base).concat()), unit(text))
+    {
+        return Some(Some(unit));
+    }
+    let words = words(base);
+    (1..=words.len()).rev().find_map(|end| {
+        if !is_one(&words[..end].concat()) {
+            return None;
+        }
+        let behind = if end < words.len() { Some(unit(&words[end..].concat())?) } else { None };
+        // What stands in brackets may say something else than a unit.
+        Some(bracket.and_then(unit).or(behind))
+    })
+}
+
 /// A name without what stands in brackets behind it, and that.
 pub(crate) fn split_unit(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use crate::error::{Error, quoted};
 use crate::formats::Format;
+use crate::heading;
 use crate::unit::{Quantity, Unit};
 
 /// What the user says about a log.
@@ -19,15 +20,39 @@ pub struct Options {
     pub strict: bool,
 }
 
+impl Options {
+    /// Refuses what is said about columns that the log of an inertial sensor has not.
+    pub(crate) fn refuse_others(&self) -> Result<(), Error> {
+        let columns = self.columns.others.iter().map(|(name, _)| *name);
+        let mut others = columns.chain(self.units.others.iter().map(|(name, _)| *name));
+        others.next().map_or(Ok(()), |name| {
+            let roles = ROLES.join(", ");
+            Err(Error::options(format!("expected options of {roles} alone, found one of {name}")))
+        })
+    }
+}
+
 /// The names of what a log must hold.
 pub(crate) const ROLES: [&str; 7] = ["t", "ax", "ay", "az", "gx", "gy", "gz"];
 
 /// Which columns are time, accelerometer and gyroscope: `t=timestamp,ax=AccX,gy=-GyrZ`. A minus sign turns an axis round.
-/// Without a header columns are named by their number, from 1.
+/// Without a header columns are named by their number, from 1. Of other logs: `anchor=node,range=dist`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Columns {
     /// In the order t, ax, ay, az, gx, gy, gz.
     pub(crate) picks: [Option<Pick>; 7],
+    /// Of logs of other sensors.
+    others: Vec<(&'static str, Pick)>,
+}
+
+impl Columns {
+    /// The column that is said to be the one of this name.
+    pub(crate) fn of(&self, name: &str) -> Option<&Pick> {
+        match ROLES.iter().position(|&role| role == name) {
+            Some(place) => self.picks[place].as_ref(),
+            None => self.others.iter().find(|(known, _)| *known == name).map(|(_, pick)| pick),
+        }
+    }
 }
 
 /// A column, as it is or turned round.
@@ -43,16 +68,20 @@ impl FromStr for Columns {
     fn from_str(text: &str) -> Result<Self, Error> {
         let mut columns = Self::default();
         for (role, name) in pairs(text, "t=timestamp,ax=AccX")? {
-            let Some(place) = ROLES.iter().position(|&known| known == role) else {
-                let roles = ROLES.join(", ");
-                return Err(Error::options(format!(
-                    "expected one of {roles}, found {}",
-                    quoted(role)
-                )));
-            };
             let (name, is_negative) =
                 name.strip_prefix('-').map_or((name, false), |name| (name, true));
-            columns.picks[place] = Some(Pick { name: name.to_owned(), is_negative });
+            let pick = Pick { name: name.to_owned(), is_negative };
+            let place = ROLES.iter().position(|&known| known == role);
+            match (place, heading::names().find(|(known, _)| *known == role)) {
+                (Some(place), _) => columns.picks[place] = Some(pick),
+                (None, Some((name, _))) => columns.others.push((name, pick)),
+                (None, None) => {
+                    let others = heading::names().map(|(name, _)| name);
+                    let names: Vec<_> = ROLES.into_iter().chain(others).collect();
+                    let (names, found) = (names.join(", "), quoted(role));
+                    return Err(Error::options(format!("expected one of {names}, found {found}")));
+                }
+            }
         }
         Ok(columns)
     }
@@ -69,6 +98,23 @@ pub struct Units {
     pub rate: Option<Unit>,
     /// Of time.
     pub time: Option<TimeUnit>,
+    /// Of the columns of other sensors.
+    others: Vec<(&'static str, Unit)>,
+}
+
+impl Units {
+    /// The unit that the column of this name is said to have.
+    pub(crate) fn of(&self, name: &str) -> Option<Unit> {
+        match (ROLES.iter().position(|&role| role == name), &self.time) {
+            (Some(0), Some(TimeUnit::Clock(unit))) => Some(unit.clone()),
+            (Some(1..=3), _) => self.acceleration.clone(),
+            (Some(4..=6), _) => self.rate.clone(),
+            (Some(_), _) => None,
+            (None, _) => {
+                self.others.iter().find(|(known, _)| *known == name).map(|(_, unit)| unit.clone())
+            }
+        }
+    }
 }
 
 /// How time is told.
@@ -106,9 +152,16 @@ impl FromStr for Units {
                     let expected = "a unit such as s, ms, us or ns, or a rate such as 100Hz";
                     units.time = Some(time_unit(unit).ok_or_else(|| wrong(expected))?);
                 }
-                _ => {
-                    let found = quoted(quantity);
-                    return Err(Error::options(format!("expected acc, gyro or t, found {found}")));
+                other => {
+                    let known = heading::names().find(|(name, _)| *name == other);
+                    let Some((name, Some(measured))) = known else {
+                        let expected =
+                            "expected acc, gyro, t or the name of a column such as range";
+                        let found = quoted(other);
+                        return Err(Error::options(format!("{expected}, found {found}")));
+                    };
+                    let read = Unit::read_scaled(measured, unit);
+                    units.others.push((name, read.ok_or_else(|| wrong("a unit such as cm"))?));
                 }
             }
         }
@@ -150,7 +203,7 @@ mod tests {
         let pick = columns.picks[5].as_ref().unwrap();
         assert_eq!((pick.name.as_str(), pick.is_negative), ("Gyr Z", true));
         for (text, expected) in [
-            ("x=y", "expected one of t, ax, ay, az, gx, gy, gz, found \"x\""),
+            ("mx=y", "expected one of t, ax, ay, az, gx, gy, gz, anchor, range, x, "),
             ("t", "expected pairs such as t=timestamp,ax=AccX, found \"t\""),
             ("t=", "found \"t=\""),
             ("", "found nothing"),

@@ -15,6 +15,12 @@ pub enum Quantity {
     Rate,
     /// Time, in s.
     Time,
+    /// Length, in m.
+    Length,
+    /// Speed, in m/s.
+    Speed,
+    /// Level or loss, in dB.
+    Level,
 }
 
 /// A unit of one [`Quantity`].
@@ -85,6 +91,26 @@ const TIME: [Known; 4] = [
     (&["ns", "nsec", "nsecs", "nanos", "nanosec", "nanoseconds", "nanosecond"], 1e-9, "ns"),
 ];
 
+const LENGTH: [Known; 6] = [
+    (&["m", "meter", "meters", "metre", "metres"], 1.0, "m"),
+    (&["cm", "centimeter", "centimeters", "centimetre", "centimetres"], 1e-2, "cm"),
+    (&["mm", "millimeter", "millimeters", "millimetre", "millimetres"], 1e-3, "mm"),
+    (&["km", "kilometer", "kilometers", "kilometre", "kilometres"], 1e3, "km"),
+    (&["ft", "foot", "feet"], 0.3048, "ft"),
+    (&["in", "inch", "inches"], 0.0254, "in"),
+];
+
+const SPEED: [Known; 6] = [
+    (&["m/s", "mps", "ms-1", "m.s-1", "m/sec"], 1.0, "m/s"),
+    (&["cm/s", "cmps", "cm/sec"], 1e-2, "cm/s"),
+    (&["mm/s", "mmps", "mm/sec"], 1e-3, "mm/s"),
+    (&["km/h", "kmh", "kph"], 1.0 / 3.6, "km/h"),
+    (&["ft/s", "fps"], 0.3048, "ft/s"),
+    (&["mph"], 0.447_04, "mph"),
+];
+
+const LEVEL: [Known; 1] = [(&["db", "dbm"], 1.0, "dB")];
+
 impl Unit {
     pub(crate) fn new(scale: f64, name: impl Into<String>) -> Self {
         Self { scale, name: name.into() }
@@ -129,7 +155,7 @@ pub(crate) fn counts(quantity: Quantity, each: f64) -> Option<Unit> {
             Some(Unit::new(STANDARD_GRAVITY / each, format!("counts of 1/{each} g")))
         }
         Quantity::Rate => Some(Unit::new(PI / 180.0 / each, format!("counts of 1/{each} °/s"))),
-        Quantity::Time => None,
+        _ => None,
     }
 }
 
@@ -138,6 +164,9 @@ fn table(quantity: Quantity) -> &'static [Known] {
         Quantity::Acceleration => &ACCELERATION,
         Quantity::Rate => &RATE,
         Quantity::Time => &TIME,
+        Quantity::Length => &LENGTH,
+        Quantity::Speed => &SPEED,
+        Quantity::Level => &LEVEL,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod calibrate;
+mod check;
 pub mod design;
 mod list;
 pub mod live;
@@ -37,6 +38,7 @@ pub fn command(arguments: &[OsString]) -> Command {
         .after_help(examples(ALL[0]))
         .subcommand(run::command())
         .subcommand(replay::command())
+        .subcommand(check::command())
         .subcommand(calibrate::command())
         .subcommand(Design::augment_args(Command::new("design").about(
             "Design observers: gains, discretisations and covariances of a file of cases",
@@ -87,6 +89,7 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
     match name {
         "run" => run::run(matches),
         "replay" => replay::run(matches),
+        "check" => check::run(matches),
         "calibrate" => calibrate::run(matches),
         "design" => read::<Design>(matches)?.run(),
         "serve" => read::<Serve>(matches)?.run(),

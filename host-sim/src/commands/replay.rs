@@ -6,7 +6,9 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
 use super::arguments::chosen;
-use crate::system::{Account, AnySystem, Files, Reading, Setting, Settings, Source, Wanted};
+use crate::system::{
+    Account, AnySystem, Files, Opened, Reading, Setting, Settings, Source, Wanted,
+};
 use crate::systems::ALL;
 use crate::{Error, output};
 
@@ -19,6 +21,16 @@ pub(super) fn command() -> Command {
 }
 
 fn of(system: &dyn AnySystem) -> Command {
+    let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
+    recorded(system).next_help_heading("Output").args(outputs).arg(file(
+        "mcap",
+        "OUT.mcap",
+        "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun",
+    ))
+}
+
+/// A command for a recording of a system, with the options that say where it is and how it is tracked.
+pub(super) fn recorded(system: &dyn AnySystem) -> Command {
     let settings = system.settings();
     let is_file = |name: &str| system.files().iter().any(|field| field.name == name);
     let files = system.files().iter().map(|field| {
@@ -37,7 +49,6 @@ fn of(system: &dyn AnySystem) -> Command {
         }));
     let imports = system.files().iter().any(|field| field.imported);
     let reading = Reading::arguments().filter(|_| imports);
-    let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
     Command::new(system.name())
         .about(system.title())
         .args(files)
@@ -45,12 +56,6 @@ fn of(system: &dyn AnySystem) -> Command {
         .args(reading.map(|arg| arg.conflicts_with("synthetic")))
         .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
         .next_help_heading("Output")
-        .args(outputs)
-        .arg(file(
-            "mcap",
-            "OUT.mcap",
-            "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun",
-        ))
         .arg(
             Arg::new("json")
                 .long("json")
@@ -72,15 +77,38 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 
 /// Reads, tracks, compares and writes.
 pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Account, Error> {
-    let mut settings = Settings::matched(system.settings(), matches);
-    let files = Files::matched(system.files(), matches, &mut settings)?;
     let outputs = system.outputs().iter();
     let tables = outputs
         .filter_map(|output| Some((output.name, matches.get_one::<PathBuf>(output.name)?.clone())));
     let mcap = matches.get_one::<PathBuf>("mcap").cloned();
     let wanted = Wanted { tables: tables.collect(), mcap };
+    let (settings, files) = named(system, matches)?;
     refuse_clashes(&wanted, &files)?;
-    system.refuse_idle(&settings)?;
+    open(system, matches, &settings, files)?.replay(&settings, &wanted)
+}
+
+/// The recording that a command line names, and what it sets.
+pub(super) fn opened(
+    system: &dyn AnySystem,
+    matches: &ArgMatches,
+) -> Result<(Box<dyn Opened>, Settings), Error> {
+    let (settings, files) = named(system, matches)?;
+    Ok((open(system, matches, &settings, files)?, settings))
+}
+
+fn named(system: &dyn AnySystem, matches: &ArgMatches) -> Result<(Settings, Files), Error> {
+    let mut settings = Settings::matched(system.settings(), matches);
+    let files = Files::matched(system.files(), matches, &mut settings)?;
+    Ok((settings, files))
+}
+
+fn open(
+    system: &dyn AnySystem,
+    matches: &ArgMatches,
+    settings: &Settings,
+    files: Files,
+) -> Result<Box<dyn Opened>, Error> {
+    system.refuse_idle(settings)?;
     let source = match matches.get_one::<String>("synthetic") {
         // A file whose name is no value of the setting of the same name.
         Some(_) if files.paths().next().is_some() => {
@@ -89,7 +117,7 @@ pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Ac
         Some(name) => Source::Synthetic(name.clone()),
         None => Source::Files(files),
     };
-    system.open(source, &settings)?.replay(&settings, &wanted)
+    system.open(source, settings)
 }
 
 fn show(account: &Account, json: bool) -> Result<(), Error> {

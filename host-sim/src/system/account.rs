@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::finding::Finding;
 use crate::Error;
 use crate::figure::Figure;
 
@@ -37,6 +38,19 @@ impl Account {
     pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
         self.facts.push((name.into(), value.into()));
     }
+
+    /// With another warning.
+    pub fn warn(&mut self, sentence: String) {
+        if let Some(warnings) = self.report.get_mut("warnings").and_then(Value::as_array_mut) {
+            warnings.push(Value::String(sentence.clone()));
+        }
+        self.warnings.push(sentence);
+    }
+
+    /// With what was concluded about the log.
+    pub fn understood(&mut self, conclusions: &[String]) {
+        conclusions.iter().for_each(|conclusion| self.fact("log", conclusion));
+    }
 }
 
 /// What the page shows.
@@ -54,6 +68,8 @@ pub struct Answer {
     pub command: String,
     /// The same settings in firmware, in Rust.
     pub firmware: String,
+    /// What the recording shows before an estimator has seen it.
+    pub findings: Vec<Finding>,
 }
 
 impl Answer {

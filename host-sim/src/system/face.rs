@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::account::{Account, Answer, Table};
 use super::files::{FileField, Files};
+use super::finding::Finding;
 use super::idle::Idle;
 use super::online::{Panel, Plan};
 use super::run::RunOptions;
@@ -48,6 +49,8 @@ pub trait System: Sync + 'static {
     const SYNTHETIC: &'static [(&'static str, &'static str)];
     /// Tables that a replay writes where it is asked to.
     const OUTPUTS: &'static [OutputField];
+    /// Settings that say something about the recording itself: its [`check`](Self::check) depends on no others.
+    const CHECKED: &'static [&'static str] = &[];
     /// Figures of a stream that is followed while it comes; none if no estimator follows one.
     const PANELS: &'static [Panel] = &[];
 
@@ -89,6 +92,12 @@ pub trait System: Sync + 'static {
     /// # Errors
     /// [`Error::Usage`] if there is none of that name.
     fn synthetic(name: &str) -> Result<Self::Recording, Error>;
+
+    /// What the recording shows before an estimator has seen it: what is measured how often, what is missing, what
+    /// contradicts itself, what comes of that and what to do.
+    fn check(_recording: &Self::Recording, _settings: &Settings) -> Vec<Finding> {
+        Vec::new()
+    }
 
     /// Feeds the estimator.
     ///

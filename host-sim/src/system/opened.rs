@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::account::{Account, Answer, Table};
 use super::face::{Detail, System};
 use super::files::Source;
+use super::finding::Finding;
 use super::idle::{Idle, refuse};
 use super::setting::Setting;
 use super::settings::Settings;
@@ -45,6 +46,12 @@ pub trait Opened: Send + Sync {
     /// cannot be written.
     fn replay(&self, settings: &Settings, wanted: &Wanted) -> Result<Account, Error>;
 
+    /// What the recording shows before an estimator has seen it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for settings that would change nothing.
+    fn check(&self, settings: &Settings) -> Result<Vec<Finding>, Error>;
+
     /// What the page shows.
     ///
     /// # Errors
@@ -57,6 +64,7 @@ struct Open<S: System> {
     recording: S::Recording,
     source: Source,
     last: Mutex<Option<Last<S>>>,
+    findings: Mutex<Option<(Settings, Vec<Finding>)>>,
 }
 
 /// How a track was made, and the track.
@@ -67,7 +75,7 @@ struct Last<S: System> {
 }
 
 pub(super) fn open<S: System>(recording: S::Recording, source: Source) -> Box<dyn Opened> {
-    Box::new(Open::<S> { recording, source, last: Mutex::new(None) })
+    Box::new(Open::<S> { recording, source, last: Mutex::new(None), findings: Mutex::new(None) })
 }
 
 impl<S: System> Open<S> {
@@ -85,6 +93,20 @@ impl<S: System> Open<S> {
         let last = Last { settings: key, detail, trace: Arc::clone(&trace) };
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(last);
         Ok(trace)
+    }
+
+    /// What the recording shows, looked for anew only if something else is said about it.
+    fn findings(&self, settings: &Settings) -> Vec<Finding> {
+        let key = settings.without(|name| !S::CHECKED.contains(&name));
+        let mut last = self.findings.lock().unwrap_or_else(PoisonError::into_inner);
+        match last.as_ref() {
+            Some((known, findings)) if *known == key => findings.clone(),
+            _ => {
+                let findings = S::check(&self.recording, settings);
+                *last = Some((key, findings.clone()));
+                findings
+            }
+        }
     }
 
     fn idle(&self, settings: &Settings, name: &str) -> Option<Idle> {
@@ -105,7 +127,10 @@ impl<S: System> Opened for Open<S> {
         let views = settings.table().iter().any(|it| it.is_view && settings.is_given(it.name));
         let detail = if wanted.any() || views { Detail::Every } else { Detail::Result };
         let trace = self.trace(settings, detail)?;
-        let account = S::account(&self.recording, settings, &trace)?;
+        let mut account = S::account(&self.recording, settings, &trace)?;
+        let findings = self.findings(settings);
+        let faults = findings.iter().filter(|finding| finding.is_fault());
+        faults.for_each(|fault| account.warn(fault.sentence()));
         for (output, path) in &wanted.tables {
             write(path, &S::table(output, &self.recording, settings, &trace))?;
         }
@@ -113,6 +138,11 @@ impl<S: System> Opened for Open<S> {
             mcap::write(path, &S::streams(&self.recording, settings, &trace))?;
         }
         Ok(account)
+    }
+
+    fn check(&self, settings: &Settings) -> Result<Vec<Finding>, Error> {
+        refuse(settings, |name| self.idle(settings, name))?;
+        Ok(self.findings(settings))
     }
 
     fn answer(&self, settings: &Settings) -> Result<Answer, Error> {
@@ -134,6 +164,7 @@ impl<S: System> Opened for Open<S> {
             disabled,
             command: text::command_line(command),
             firmware: S::firmware(Some(&self.recording), settings),
+            findings: self.findings(settings),
         };
         S::figures(&self.recording, settings, &trace, &mut answer)?;
         Ok(answer)

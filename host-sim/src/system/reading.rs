@@ -98,6 +98,20 @@ impl Reading {
         &self.options
     }
 
+    /// For a reader of tables, which are recognised by their columns.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if a format is said.
+    pub fn tables(&self) -> Result<&Options, Error> {
+        match self.options.format {
+            None => Ok(&self.options),
+            Some(format) => Err(Error::Usage(format!(
+                "--format {}: expected --columns and --units, as this log is no {format}",
+                format.name()
+            ))),
+        }
+    }
+
     /// The words of a command line that say the same.
     pub fn words(&self) -> Vec<String> {
         let texts = self.given.iter().flat_map(|(name, text)| [format!("--{name}"), text.clone()]);

@@ -4,9 +4,11 @@
 //! Apart stand `page`, which alone needs a browser's protocol, and `live_flood`, which measures what is lost when
 //! nothing else keeps the machine busy.
 
+mod check_cli;
 mod cli;
 mod design_cli;
 mod drone_cli;
+mod foreign_logs;
 mod gnss_cli;
 mod gnss_recorded_cli;
 mod gnss_refusals_cli;

@@ -307,7 +307,8 @@ fn broken_files_are_refused_with_file_and_line() {
         ("g.csv", "t,anchor,range\n1e99,A0,1\n", "beyond any clock"),
     ] {
         let log = desk.file(name, contents);
-        let sentence = refusal(&["replay", "robot", "--anchors", &room.anchors, "--log", &log]);
+        let files = ["replay", "robot", "--strict", "--anchors", &room.anchors, "--log", &log];
+        let sentence = refusal(&files);
         assert!(sentence.contains(name) && sentence.contains(expected), "{sentence}");
     }
     let seventeen = (0..17).map(|index| format!("{index},{index},0,1\n"));

@@ -253,7 +253,7 @@ fn wrong_input_is_refused_with_a_sentence() {
     let log = desk.file("flight.csv", log_of(&flight()));
     let named = |contents: &str| {
         let file = desk.file("wrong.csv", contents);
-        refusal(&["replay", "uav", "--log", &file, "--model", "P2"])
+        refusal(&["replay", "uav", "--strict", "--log", &file, "--model", "P2"])
     };
     assert!(named("").contains("empty"));
     assert!(named("t,delta_e,q\n").contains("delta_t"));

@@ -133,7 +133,7 @@ fn claims(
         let said = match quantity {
             Quantity::Acceleration => options.units.acceleration.clone(),
             Quantity::Rate => options.units.rate.clone(),
-            Quantity::Time => options.units.time.as_ref().map(|unit| match unit {
+            _ => options.units.time.as_ref().map(|unit| match unit {
                 TimeUnit::Clock(unit) => unit.clone(),
                 TimeUnit::Rate(rate) => Unit::new(1.0 / rate, format!("samples of {rate} Hz")),
             }),
@@ -147,7 +147,7 @@ fn claims(
             _ if !is_plain => Claim::None,
             Quantity::Acceleration => Claim::Usual(Unit::new(1.0, "m/s²"), Source::Header),
             Quantity::Rate => Claim::Usual(Unit::new(1.0, "rad/s"), Source::Header),
-            Quantity::Time => Claim::Usual(Unit::new(1.0, "s"), Source::Header),
+            _ => Claim::Usual(Unit::new(1.0, "s"), Source::Header),
         };
         said.or(by_format).or(by_header).or(usual)
     })
@@ -158,7 +158,7 @@ fn claim_of(known: &Description, quantity: Quantity, table: &Table, time: Option
     let text = match quantity {
         Quantity::Acceleration => known.acceleration,
         Quantity::Rate => known.rate,
-        Quantity::Time => {
+        _ => {
             let name = time.map(|time| table.columns[time].name.as_str());
             known.time.iter().find(|(time, _)| Some(*time) == name).map_or("", |(_, unit)| unit)
         }
@@ -181,18 +181,18 @@ fn claim_of_header(
     let of = |column: usize| Unit::clone(meanings.get(column)?.as_ref()?.unit.as_ref()?).into();
     let of = |column: usize| -> Option<Unit> { of(column) };
     let unit = match quantity {
-        Quantity::Time => columns.time.and_then(|time| {
+        Quantity::Acceleration => of(columns.sensors[0].column),
+        Quantity::Rate => of(columns.sensors[3].column),
+        _ => columns.time.and_then(|time| {
             let is_number = table.columns[time].kind == Kind::Number;
             if is_number { of(time) } else { Some(Unit::new(1e-6, "dates or times of day")) }
         }),
-        Quantity::Acceleration => of(columns.sensors[0].column),
-        Quantity::Rate => of(columns.sensors[3].column),
     };
     // A unit stands at the first axis alone, or at each.
     let others = match quantity {
-        Quantity::Time => &[][..],
         Quantity::Acceleration => &columns.sensors[1..3],
         Quantity::Rate => &columns.sensors[4..6],
+        _ => &[][..],
     };
     let disagrees =
         others.iter().any(|axis| of(axis.column).is_some_and(|other| Some(other) != unit));

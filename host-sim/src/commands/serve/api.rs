@@ -168,6 +168,7 @@ pub(super) fn page(answer: &Answer, windows: &BTreeMap<String, [f64; 2]>) -> Val
         "disabled": answer.disabled,
         "command": answer.command,
         "firmware": answer.firmware,
+        "findings": answer.findings.iter().map(|it| (it.is_fault(), it.about, it.sentence())).collect::<Vec<_>>(),
     })
 }
 

@@ -12,6 +12,7 @@ use super::track::trace::{Estimate, Track};
 use crate::Error;
 use crate::metrics::mean;
 use crate::system::{Account, Settings, System, Table};
+use crate::table::Found;
 
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
@@ -26,6 +27,8 @@ struct Report {
     /// Where the level was not known, what the transmitter sends, dB (received level = this − path loss); over
     /// open ground, where no frequency is known either, what is received at one metre.
     level_db: Option<f64>,
+    /// How the log was understood.
+    import: Vec<String>,
     warnings: Vec<String>,
     /// How far that is from the truth, if it is known.
     accuracy: Option<Accuracy>,
@@ -52,16 +55,22 @@ pub(super) fn account(
     let is_last = so_far.len() == track.estimates.len();
     let [x, y] = shown.place;
     let accuracy = Accuracy::of(track, so_far);
+    let found = match recording {
+        Recording::Flight(recorded) => recorded.found.clone(),
+        Recording::Moving | Recording::Staying => Found::default(),
+    };
     let report = Report {
         system: Drone::NAME,
         measurements: if is_last { track.stops.len() } else { shown.stop + 1 },
         estimate: Place { x, y },
         sd_m: shown.sd_m,
         level_db: shown.level_db,
-        warnings: track.warnings.clone(),
+        import: found.import.clone(),
+        warnings: found.warnings.iter().chain(&track.warnings).cloned().collect(),
         accuracy,
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
+    account.understood(&report.import);
     account.fact("measurements", report.measurements.to_string());
     account.fact("place", format!("{x:.1} m, {y:.1} m"));
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));

@@ -10,6 +10,7 @@
 )]
 
 pub mod account;
+mod check;
 pub mod figures;
 mod online;
 pub mod paper;
@@ -27,8 +28,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Idle, OutputField, Panel, Plan, RunOptions, Setting,
-    Settings, System, Table,
+    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
+    Setting, Settings, System, Table,
 };
 
 /// The system.
@@ -44,7 +45,8 @@ impl System for Drone {
         FileField::required(
             "log",
             "Flight: CSV with columns t,x,y,h and path_loss_db or rssi_db (s, m, dB)",
-        ),
+        )
+        .imported(),
         FileField::optional(
             "truth",
             "Where the user really is: CSV with columns x,y and one line (m); serves accuracy alone",
@@ -76,11 +78,15 @@ impl System for Drone {
     }
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
-        Recording::read(files.required("log")?, files.one("truth"), files.one("area"))
+        Recording::read(files)
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {
         Recording::synthetic(name)
+    }
+
+    fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
+        check::check(recording)
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {

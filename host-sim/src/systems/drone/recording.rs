@@ -3,11 +3,13 @@
 pub mod area;
 pub mod flight;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use self::area::Area;
 use self::flight::Flight;
 use crate::Error;
+use crate::system::Files;
+use crate::table::Found;
 
 /// A recording.
 #[derive(Debug, Clone)]
@@ -31,6 +33,8 @@ pub struct Recorded {
     pub area: Option<Box<Area>>,
     /// Where the user really is.
     pub truth: Option<[f64; 2]>,
+    /// How the log was read.
+    pub found: Found,
 }
 
 impl Recording {
@@ -38,11 +42,12 @@ impl Recording {
     ///
     /// # Errors
     /// The file, the line, and what was expected there; [`Error::File`] if there is too little.
-    pub fn read(log: &Path, truth: Option<&Path>, area: Option<&Path>) -> Result<Self, Error> {
-        let flight = flight::read(log)?;
-        let truth = truth.map(flight::read_truth).transpose()?;
-        let area = area.map(area::read).transpose()?;
-        let recorded = Recorded { log: log.to_path_buf(), flight, area, truth };
+    pub fn read(files: &Files) -> Result<Self, Error> {
+        let log = files.required("log")?;
+        let (flight, found) = flight::read(log, files.reading.tables()?)?;
+        let truth = files.one("truth").map(flight::read_truth).transpose()?;
+        let area = files.one("area").map(area::read).transpose()?;
+        let recorded = Recorded { log: log.to_path_buf(), flight, area, truth, found };
         if recorded.flight.stops.len() < 3 {
             return Err(recorded.refused(
                 "expected at least three measurements within ±300 dB, from above the ground",

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::system::{AnySystem, Opened, Source, Wanted};
+use crate::table::Found;
 
 const IDS: [&str; 4] = ["map", "error", "spread", "path-loss"];
 
@@ -206,7 +207,13 @@ fn settings_are_refused_only_where_no_recording_has_them() {
 fn firmware_says_which_filter_and_what_differs() {
     let flight = |quantity| {
         let flight = recording::flight::Flight { quantity, stops: Vec::new(), unusable: 0 };
-        let recorded = recording::Recorded { log: "a.csv".into(), flight, area: None, truth: None };
+        let recorded = recording::Recorded {
+            log: "a.csv".into(),
+            flight,
+            area: None,
+            truth: None,
+            found: Found::default(),
+        };
         Recording::Flight(Box::new(recorded))
     };
     let level = flight(recording::flight::Quantity::Level);

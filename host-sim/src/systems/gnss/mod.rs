@@ -5,6 +5,7 @@
 //! Times are seconds since the midnight before the first epoch, positions those of the marker, ECEF.
 
 pub mod account;
+mod check;
 pub mod figures;
 pub mod paper;
 pub mod recording;
@@ -21,8 +22,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Idle, OutputField, RunOptions, Setting, Settings,
-    System, Table,
+    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, RunOptions, Setting,
+    Settings, System, Table,
 };
 
 /// The system.
@@ -95,6 +96,10 @@ impl System for Gnss {
 
     fn synthetic(name: &str) -> Result<Recording, Error> {
         Recording::synthetic(name)
+    }
+
+    fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
+        check::check(recording)
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {

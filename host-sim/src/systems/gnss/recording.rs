@@ -204,6 +204,11 @@ impl Recording {
         &self.products
     }
 
+    /// The receiver's antenna, if its phase centres are known.
+    pub fn receiver_antenna(&self) -> Option<&str> {
+        self.antenna.as_ref().map(|antenna| antenna.name.as_str())
+    }
+
     /// What is known of the receiver, of which some `corrections` are applied.
     pub fn receiver(&self, corrections: Corrections) -> Receiver<'_> {
         let [up, east, north] = self.antenna_delta_hen;

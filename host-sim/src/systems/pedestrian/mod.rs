@@ -6,6 +6,7 @@
 //! origin at the start of the walk.
 
 pub mod account;
+mod check;
 pub mod figures;
 mod online;
 pub mod paper;
@@ -27,8 +28,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Idle, OutputField, Panel, Plan, RunOptions, Setting,
-    Settings, System, Table,
+    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
+    Setting, Settings, System, Table,
 };
 
 /// The system.
@@ -86,6 +87,10 @@ impl System for Pedestrian {
             _ => return Err(Error::Usage(format!("there is no synthetic walk {name:?}"))),
         };
         Recording::synthetic(walked, rate_hz, 0, 0)
+    }
+
+    fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
+        check::check(&recording.log)
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {

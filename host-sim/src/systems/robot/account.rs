@@ -19,6 +19,7 @@ struct Report {
     updates: usize,
     rejected: usize,
     lost_s: f64,
+    import: Vec<String>,
     warnings: Vec<String>,
     accuracy: Option<Accuracy>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,6 +60,7 @@ pub(super) fn account(
         updates: traces.iter().map(Trace::taken).sum(),
         rejected: traces.iter().map(Trace::rejected).sum(),
         lost_s: traces.iter().map(Trace::lost_s).sum(),
+        import: recording.import.clone(),
         warnings: warnings(recording, traces, points.as_deref()),
         accuracy: Accuracy::of_recording(recording, traces),
         height: found.as_ref().map(|found| HeightReport {
@@ -71,6 +73,7 @@ pub(super) fn account(
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.about.clone_from(&recording.path);
+    account.understood(&report.import);
     account.fact("ranges taken in", report.updates.to_string());
     account.fact("ranges left out", report.rejected.to_string());
     account.fact("without a position", format!("{:.1} s", report.lost_s));

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use kestirim_import::Options as Reading;
 use serde::Serialize;
 
 use super::Robot;
@@ -73,14 +74,17 @@ impl Options {
         let mut residuals = Residuals::new(anchors);
         if let Some(path) = &self.truth {
             let truth = points::read_course(path, ["x", "y", "z"])?;
-            for row in ranges::read_moving(&self.log, anchors)?.rows {
+            let (log, found) = ranges::read_moving(&self.log, anchors, &Reading::default())?;
+            output::warn_of(&self.log, &found.warnings);
+            for row in log.rows {
                 if let (Some(range), Some(place)) = (row.range, truth.within(row.time_us)) {
                     residuals.add(anchors, row.anchor, range, place);
                 }
             }
         }
         if let Some(path) = &self.points {
-            let logs = ranges::read_static(&self.log, anchors)?;
+            let (logs, found) = ranges::read_static(&self.log, anchors, &Reading::default())?;
+            output::warn_of(&self.log, &found.warnings);
             for point in points::read_points(path)? {
                 let (Some([x, y]), Some(z)) = (point.plane, point.height) else {
                     return Err(Error::File {

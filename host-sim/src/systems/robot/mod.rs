@@ -7,6 +7,7 @@
 
 pub mod account;
 mod calibrate;
+mod check;
 pub mod figures;
 pub mod height;
 mod online;
@@ -30,8 +31,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Calibration, Detail, FileField, Files, Idle, OutputField, Panel, Plan,
-    RunOptions, Setting, Settings, System, Table,
+    Account, Answer, Calibration, Detail, FileField, Files, Finding, Idle, OutputField, Panel,
+    Plan, RunOptions, Setting, Settings, System, Table,
 };
 
 /// The system.
@@ -49,7 +50,8 @@ impl System for Robot {
             "log",
             "Ranges: CSV t,anchor,range (s, m) of a moving tag, or with --points point,k,anchor,range (m) of a tag \
              put down, epochs k 0.1 s apart",
-        ),
+        )
+        .imported(),
         FileField::optional(
             "truth",
             "True track of a moving tag: CSV t,x,y (s, m); serves accuracy alone",
@@ -82,6 +84,7 @@ impl System for Robot {
         name: "track",
         help: "Write t,x,y,z of every epoch (point,x,y,z with --points) to this file",
     }];
+    const CHECKED: &'static [&'static str] = &["height", "dim", "calibrated"];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Ranges];
 
     type Recording = Recording;
@@ -108,6 +111,10 @@ impl System for Robot {
             _ => return Err(Error::Usage(format!("there is no synthetic recording {name:?}"))),
         };
         Ok(Recording::synthetic(driven, 0))
+    }
+
+    fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> {
+        check::check(recording, settings)
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Vec<Trace>, Error> {

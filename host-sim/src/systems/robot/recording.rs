@@ -9,6 +9,8 @@ pub mod ranges;
 
 use std::path::{Path, PathBuf};
 
+use kestirim_import::Options;
+
 use self::anchors::Anchors;
 use self::event::{Event, Sensors};
 use self::points::Course;
@@ -18,6 +20,7 @@ use super::simulate::scenario::{self, EPOCH_US, EPOCHS, Office, office_anchors};
 use crate::Error;
 use crate::random::stream;
 use crate::system::Files;
+use crate::table::Found;
 
 /// What was recorded.
 #[derive(Debug, Clone, Default)]
@@ -32,6 +35,8 @@ pub struct Recording {
     pub biases: Option<Vec<f64>>,
     /// What is known of the tag's height.
     pub heights: Heights,
+    /// What was concluded about columns and units of logs.
+    pub import: Vec<String>,
     /// What is suspicious but readable.
     pub warnings: Vec<String>,
     /// The tag's height as the ranges tell it, where nobody says it.
@@ -117,23 +122,30 @@ impl Recording {
             (recording.biases, recording.warnings) = (Some(biases), warnings);
         }
         match files.one("points") {
-            Some(points) => recording.read_static(log, points, height)?,
+            Some(points) => recording.read_static(log, points, height, files.reading.tables()?)?,
             None => recording.read_moving(log, files)?,
         }
         Ok(recording)
     }
 
     fn read_moving(&mut self, log: &Path, files: &Files) -> Result<(), Error> {
-        let log = ranges::read_moving(log, &self.anchors)?;
+        let options = files.reading.tables()?;
+        let (log, found) = ranges::read_moving(log, &self.anchors, options)?;
+        self.tell("ranges", found);
         let truth = files.one("truth").map(|path| points::read_course(path, ["x", "y"]));
         let height = files.one("height").map(|path| points::read_course(path, ["z"]));
         let (truth, height) = (truth.transpose()?, height.transpose()?);
-        let mut sensors = Sensors {
-            ranges: log.rows,
-            inertial: files.one("imu").map_or(Ok(vec![]), motion::read_inertial)?,
-            wheels: files.one("odom").map_or(Ok(vec![]), motion::read_wheels)?,
-            height,
-        };
+        let mut sensors = Sensors { ranges: log.rows, height, ..Sensors::default() };
+        if let Some(path) = files.one("imu") {
+            let (samples, found) = motion::read_inertial(path, options)?;
+            sensors.inertial = samples;
+            self.tell("IMU", found);
+        }
+        if let Some(path) = files.one("odom") {
+            let (samples, found) = motion::read_wheels(path, options)?;
+            sensors.wheels = samples;
+            self.tell("wheels", found);
+        }
         if files.one("imu").is_some() && sensors.inertial.is_empty() {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
@@ -156,9 +168,11 @@ impl Recording {
         log: &Path,
         points: &Path,
         height: Option<&Path>,
+        options: &Options,
     ) -> Result<(), Error> {
         let points = points::read_points(points)?;
-        let mut logs = ranges::read_static(log, &self.anchors)?;
+        let (mut logs, found) = ranges::read_static(log, &self.anchors, options)?;
+        self.tell("ranges", found);
         let heights = height.map(points::read_heights).transpose()?;
         self.warn_of_unlisted(logs.values().map(|log| log.unlisted).sum());
         for point in points {
@@ -178,6 +192,12 @@ impl Recording {
             });
         }
         Ok(())
+    }
+
+    /// Keeps how a log was read.
+    fn tell(&mut self, log: &str, found: Found) {
+        self.import.extend(found.import.iter().map(|line| format!("{log}: {line}")));
+        self.warnings.extend(found.warnings.iter().map(|line| format!("{log}: {line}")));
     }
 
     /// What a robot in the paper's office records on one day.

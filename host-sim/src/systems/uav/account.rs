@@ -15,6 +15,7 @@ use super::track::estimators::Estimate;
 use crate::Error;
 use crate::metrics::rms;
 use crate::system::{Account, System, Table};
+use crate::table::Found;
 
 /// What a replay prints. Units rad, rad/s, m/s, rad.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,6 +36,8 @@ struct Report {
     innovations: Vec<Residual>,
     /// α, q, V, θ after the last line.
     estimate: [f64; 4],
+    /// How the log was understood.
+    import: Vec<String>,
     /// What a reader should know.
     warnings: Vec<String>,
     /// How far from the truth, if it is known.
@@ -80,7 +83,11 @@ pub(super) fn account(
 ) -> Result<Account, Error> {
     let Track { flight, followed } = track;
     let accuracy = Accuracy::of(track);
-    let mut warnings = flight.warnings();
+    let found = match recording {
+        Recording::Logged(logged) => logged.found.clone(),
+        Recording::Synthetic(_) => Found::default(),
+    };
+    let mut warnings = [found.warnings, flight.warnings()].concat();
     if accuracy.as_ref().is_some_and(|accuracy| accuracy.samples == 0) {
         warnings.push("no time of the truth is one of the log's".to_owned());
     }
@@ -103,10 +110,12 @@ pub(super) fn account(
         missing: missing.filter(|measured| measured.is_none()).count(),
         innovations,
         estimate: last.into(),
+        import: found.import,
         warnings,
         accuracy,
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
+    account.understood(&report.import);
     if let Recording::Logged(logged) = recording {
         account.about = Some(logged.path.clone());
     }

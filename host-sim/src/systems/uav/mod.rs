@@ -11,6 +11,7 @@
 )]
 
 pub mod account;
+mod check;
 pub mod figures;
 mod online;
 pub mod paper;
@@ -30,8 +31,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Idle, OutputField, Panel, Plan, RunOptions, Setting,
-    Settings, System, Table,
+    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
+    Setting, Settings, System, Table,
 };
 
 /// The system.
@@ -49,7 +50,8 @@ impl System for Uav {
             "log",
             "Flight: CSV with columns t,delta_e,delta_t and some of alpha,q,V,theta (s, rad, rad/s, m/s); an empty \
              field was not measured",
-        ),
+        )
+        .imported(),
         FileField::optional(
             "model",
             "JSON: A (4 × 4), B (4 × 2), perhaps C with the names of its outputs, trim {x, u}, and h (s) if A and B \
@@ -87,6 +89,10 @@ impl System for Uav {
 
     fn synthetic(name: &str) -> Result<Recording, Error> {
         Recording::synthetic(name)
+    }
+
+    fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
+        check::check(recording)
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Track, Error> {

@@ -10,6 +10,7 @@ use self::model::{Model, STATE_COLUMNS};
 use super::simulate::scenario::Inputs;
 use crate::Error;
 use crate::system::Files;
+use crate::table::Found;
 
 /// A flight.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +32,8 @@ pub struct Logged {
     pub log: Log,
     /// What was really flown.
     pub truth: Option<Truth>,
+    /// How the log was read.
+    pub found: Found,
 }
 
 impl Recording {
@@ -45,9 +48,9 @@ impl Recording {
             || STATE_COLUMNS.to_vec(),
             |model| model.outputs.iter().map(|(name, _)| name.as_str()).collect(),
         );
-        let log = log::read(&path, &names)?;
+        let (log, found) = log::read(&path, &names, files.reading.tables()?)?;
         let truth = files.one("truth").map(log::read_truth).transpose()?;
-        Ok(Self::Logged(Box::new(Logged { path, model, log, truth })))
+        Ok(Self::Logged(Box::new(Logged { path, model, log, truth, found })))
     }
 
     /// A synthetic flight by name.

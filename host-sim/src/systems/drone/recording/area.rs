@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::Error;
 use crate::table;
-use crate::{Error, text::TextFile};
 
 /// Most corners of an area.
 pub const MOST_CORNERS: usize = 4096;
@@ -35,7 +35,7 @@ pub fn read(path: &Path) -> Result<Box<Area>, Error> {
         _ => {
             let problem =
                 "expected the corners of an area of a square metre at least, one after the other";
-            Err(TextFile::read(path)?.error(problem))
+            Err(Error::File { path: path.to_path_buf(), problem: problem.to_owned() })
         }
     }
 }

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use crate::text::Header;
-use crate::{Error, table};
+use kestirim_import::Options;
+
+use crate::Error;
+use crate::table::{self, Column, Found, Header, Log};
 
 /// What was measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,6 +40,8 @@ pub struct Flight {
     pub unusable: usize,
 }
 
+/// From stop to stop it takes less, s.
+const LONGEST_STEP_S: f64 = 60.0;
 /// Heights above which no drone flies, m.
 const HIGHEST_M: f64 = 20_000.0;
 /// No radio measures a larger loss or level, dB.
@@ -54,23 +58,19 @@ impl Stop {
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read(path: &Path) -> Result<Flight, Error> {
+pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     let mut flight = Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0 };
-    let mut quantity = Quantity::PathLoss;
-    table::read(
+    let found = table::read_log(
         path,
-        "a recorded flight",
-        |header| {
-            let columns = columns(header)?;
-            quantity = columns.1;
-            Ok(columns)
-        },
+        &Log { what: "a recorded flight", longest_step_s: Some(LONGEST_STEP_S), options },
+        columns,
         |&([t, x, y, h, value], quantity), row| {
+            flight.quantity = quantity;
             let t = row.time_us(t)? as f64 * 1e-6;
             let place = [row.coordinate("x", x)?, row.coordinate("y", y)?];
             let height = row.number("h", h)?;
             // An empty field means that no measurement came.
-            if row.text(value).is_empty() {
+            if row.is_empty(value) {
                 flight.unusable += 1;
                 return Ok(());
             }
@@ -87,13 +87,12 @@ pub fn read(path: &Path) -> Result<Flight, Error> {
             Ok(())
         },
     )?;
-    flight.quantity = quantity;
     flight.stops.sort_by(|a, b| a.t.total_cmp(&b.t));
-    Ok(flight)
+    Ok((flight, found))
 }
 
-fn columns(header: &Header<'_>) -> Result<([usize; 5], Quantity), Error> {
-    if header.find("path_loss_db").is_some() {
+fn columns(header: &Header<'_>) -> Result<([Column; 5], Quantity), Error> {
+    if header.find("path_loss_db")?.is_some() {
         return Ok((header.require(["t", "x", "y", "h", "path_loss_db"])?, Quantity::PathLoss));
     }
     Ok((header.require(["t", "x", "y", "h", "rssi_db"])?, Quantity::Level))

@@ -4,14 +4,13 @@
 use std::fs;
 use std::path::Path;
 
-use kestirim_import::Error as ImportError;
 pub use kestirim_import::Options;
 use kestirim_import::inertial::{self, Conclusion, Inertial};
 
 use super::position::TrackPoint;
 use crate::Error;
 use crate::systems::pedestrian::Sample;
-use crate::table::FARTHEST_POSITION;
+use crate::table::{FARTHEST_POSITION, refused};
 
 const TRUTH_COLUMNS: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
 
@@ -70,16 +69,6 @@ pub fn parse(path: &Path, bytes: &[u8], options: &Options) -> Result<Log, Error>
     })
 }
 
-fn refused(path: &Path, error: &ImportError) -> Error {
-    let path = path.to_path_buf();
-    match error {
-        ImportError::Line { line, problem } => {
-            Error::Line { path, line: *line, problem: problem.clone() }
-        }
-        other => Error::File { path, problem: other.to_string() },
-    }
-}
-
 /// Where the sensor was, by the columns that say so.
 fn truth(path: &Path, log: &Inertial) -> Result<Option<Vec<TrackPoint>>, Error> {
     let columns = TRUTH_COLUMNS.map(|name| log.column(name));
@@ -103,11 +92,6 @@ fn truth(path: &Path, log: &Inertial) -> Result<Option<Vec<TrackPoint>>, Error> 
         truth.push(TrackPoint { time_us: sample.time_us, position });
     }
     Ok(Some(truth))
-}
-
-/// Seconds, not negative, as the nearest microsecond.
-pub(super) fn microseconds(seconds: f64) -> u64 {
-    (seconds * 1e6).round() as u64
 }
 
 #[cfg(test)]

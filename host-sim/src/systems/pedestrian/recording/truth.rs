@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::log::{Log, microseconds};
+use super::log::Log;
 use crate::Error;
-use crate::table::FARTHEST_POSITION;
-use crate::text::{Header, TextFile};
+use crate::table;
 
 /// How far beyond the ends of a log a footprint may lie, µs: a log that was averaged or rewritten
 /// in milliseconds ends a few samples early, while the foot stands.
@@ -27,41 +26,37 @@ pub struct Footprint {
 /// The file, the line, and what was expected there; also if `t` lies beyond the `log`, which then
 /// belongs to another walk.
 pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
-    parse(&TextFile::read(path)?, log)
-}
-
-fn parse(file: &TextFile, log: &Log) -> Result<Vec<Footprint>, Error> {
-    let mut lines = file.lines();
-    let Some(first) = lines.next() else {
-        return Err(file.error("expected footprints, found an empty file"));
-    };
-    let header = Header::new(first);
-    let columns = header.require(["t", "x", "y"])?;
     let mut footprints: Vec<Footprint> = Vec::new();
-    for line in lines {
-        let fields = header.fields(&line)?;
-        let t = line.number("t", fields[columns[0]])?;
-        let position =
-            [line.number("x", fields[columns[1]])?, line.number("y", fields[columns[2]])?];
-        if position.iter().any(|value| value.abs() > FARTHEST_POSITION) {
-            return Err(line.error("expected a position in metres, found one beyond the earth"));
-        }
-        let time_us = microseconds(t);
-        let logged = log.start_us().saturating_sub(SLACK_US)..=log.end_us() + SLACK_US;
-        if t < 0.0 || !logged.contains(&time_us) {
-            let (start, end) = (log.start_us() as f64 * 1e-6, log.end_us() as f64 * 1e-6);
-            return Err(line.error(format!(
-                "expected a time within the log, {start:.3} to {end:.3} s, found {t:.3} s"
-            )));
-        }
-        if footprints.last().is_some_and(|last| time_us < last.time_us) {
-            return Err(line
-                .error("expected a time not before that of the line above, found an earlier one"));
-        }
-        footprints.push(Footprint { time_us, position });
-    }
+    table::read(
+        path,
+        "footprints",
+        |header| header.require(["t", "x", "y"]),
+        |&[t, x, y], row| {
+            let (time_us, position) =
+                (row.time_us(t)?, [row.coordinate("x", x)?, row.coordinate("y", y)?]);
+            let within = |time_us: &u64| {
+                let logged = log.start_us().saturating_sub(SLACK_US)..=log.end_us() + SLACK_US;
+                logged.contains(time_us)
+            };
+            let Some(time_us) = u64::try_from(time_us).ok().filter(within) else {
+                let [start, end] = [log.start_us(), log.end_us()].map(|us| us as f64 * 1e-6);
+                let found = time_us as f64 * 1e-6;
+                return Err(row.line.error(format!(
+                    "expected a time within the log, {start:.3} to {end:.3} s, found {found:.3} s"
+                )));
+            };
+            if footprints.last().is_some_and(|last| time_us < last.time_us) {
+                return Err(row.line.error(
+                    "expected a time not before that of the line above, found an earlier one",
+                ));
+            }
+            footprints.push(Footprint { time_us, position });
+            Ok(())
+        },
+    )?;
     if footprints.len() < 2 {
-        return Err(file.error("expected at least two footprints"));
+        let problem = "expected at least two footprints".to_owned();
+        return Err(Error::File { path: path.to_path_buf(), problem });
     }
     Ok(footprints)
 }
@@ -71,17 +66,18 @@ mod tests {
     use super::*;
     use crate::systems::pedestrian::Sample;
 
-    fn read(text: &str) -> Result<Vec<Footprint>, String> {
+    fn read_text(text: &str) -> Result<Vec<Footprint>, String> {
         let still =
             |time_us| Sample { time_us, specific_force: [0.0, 0.0, 9.8], angular_rate: [0.0; 3] };
         let log = Log { samples: vec![still(0), still(2_000_000)], ..Log::default() };
-        let file = TextFile::from_bytes(Path::new("feet"), text.as_bytes().to_vec());
-        file.and_then(|file| parse(&file, &log)).map_err(|error| error.to_string())
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(file.path(), text).expect("it is written");
+        read(file.path(), &log).map_err(|error| error.to_string())
     }
 
     #[test]
     fn footprints_are_read() {
-        let footprints = read("sample_index,t,x,y\n0,0.5,1,2\n9,2.05,3,4\n").unwrap();
+        let footprints = read_text("sample_index,t,x,y\n0,0.5,1,2\n9,2.05,3,4\n").unwrap();
         assert_eq!(footprints[1], Footprint { time_us: 2_050_000, position: [3.0, 4.0] });
     }
 
@@ -97,7 +93,7 @@ mod tests {
             ("t,x,y\n1,0,zero\n", "line 2: expected a finite number in column y"),
             ("t,x,y\n1,0,1e9\n", "line 2: expected a position in metres"),
         ] {
-            let complaint = read(text).unwrap_err();
+            let complaint = read_text(text).unwrap_err();
             assert!(complaint.contains(expected), "{complaint} / {expected}");
         }
     }

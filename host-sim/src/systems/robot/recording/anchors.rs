@@ -52,14 +52,14 @@ pub fn read(path: &Path) -> Result<Anchors, Error> {
             let position =
                 [row.coordinate("x", x)?, row.coordinate("y", y)?, row.coordinate("z", z)?];
             let name = row.text(name);
-            if name.is_empty() || anchors.find(name).is_some() {
-                let found = printable(name);
+            if name.is_empty() || anchors.find(&name).is_some() {
+                let found = printable(&name);
                 return Err(row.line.error(format!("expected another anchor, found {found}")));
             }
             if anchors.names.len() == MOST {
                 return Err(row.line.error(format!("expected at most {MOST} anchors")));
             }
-            anchors.names.push(name.to_owned());
+            anchors.names.push(name.into_owned());
             anchors.positions.push(position);
             Ok(())
         },

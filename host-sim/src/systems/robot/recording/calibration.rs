@@ -122,9 +122,9 @@ fn read(path: &Path, anchors: &Anchors) -> Result<Vec<Option<f64>>, Error> {
                     .error("expected a bias in metres, found one beyond any radio"));
             }
             // A calibration may know more anchors than are used.
-            let Some(place) = anchors.find(row.text(name)) else { return Ok(()) };
+            let Some(place) = anchors.find(&row.text(name)) else { return Ok(()) };
             let Some(known @ None) = biases.get_mut(place) else {
-                let found = printable(row.text(name));
+                let found = printable(&row.text(name));
                 return Err(row.line.error(format!("expected another anchor, found {found}")));
             };
             *known = Some(bias);

@@ -2,12 +2,16 @@
 
 use std::path::Path;
 
+use kestirim_import::Options;
+
 use crate::Error;
-use crate::table::{self, Row};
-use crate::text::Header;
+use crate::table::{self, Column, Found, Log, Row};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
+
+/// A robot's sensors are read at least this often, s.
+const LONGEST_STEP_S: f64 = 2.0;
 
 /// A sample of the IMU.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,18 +37,13 @@ pub struct Wheels {
 
 /// Columns of an IMU log, as far as they are there.
 struct Columns {
-    time: usize,
-    attitude: Option<[usize; 4]>,
-    linear: Option<[usize; 3]>,
-    force: Option<[usize; 3]>,
+    time: Column,
+    attitude: Option<[Column; 4]>,
+    linear: Option<[Column; 3]>,
+    force: Option<[Column; 3]>,
 }
 
-fn all<const K: usize>(header: &Header<'_>, names: [&str; K]) -> Option<[usize; K]> {
-    let places = names.map(|name| header.find(name));
-    places.iter().all(Option::is_some).then(|| places.map(Option::unwrap_or_default))
-}
-
-fn numbers<const K: usize>(row: &Row<'_>, columns: [usize; K]) -> Result<[f64; K], Error> {
+fn numbers<const K: usize>(row: &Row<'_>, columns: [Column; K]) -> Result<[f64; K], Error> {
     let mut values = [0.0; K];
     for (value, column) in values.iter_mut().zip(columns) {
         *value = row.number("of the IMU", column)?;
@@ -60,18 +59,18 @@ fn numbers<const K: usize>(row: &Row<'_>, columns: [usize; K]) -> Result<[f64; K
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_inertial(path: &Path) -> Result<Vec<Inertial>, Error> {
+pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, Found), Error> {
     let mut samples: Vec<Inertial> = Vec::new();
-    table::read(
+    let found = table::read_log(
         path,
-        "samples of an IMU",
+        &Log { what: "samples of an IMU", longest_step_s: Some(LONGEST_STEP_S), options },
         |header| {
             let [time] = header.require(["t"])?;
             Ok(Columns {
                 time,
-                attitude: all(header, ["qw", "qx", "qy", "qz"]),
-                linear: all(header, ["lax", "lay", "laz"]),
-                force: all(header, ["ax", "ay", "az"]),
+                attitude: header.all(["qw", "qx", "qy", "qz"])?,
+                linear: header.all(["lax", "lay", "laz"])?,
+                force: header.all(["ax", "ay", "az"])?,
             })
         },
         |columns, row| {
@@ -88,18 +87,18 @@ pub fn read_inertial(path: &Path) -> Result<Vec<Inertial>, Error> {
             Ok(())
         },
     )?;
-    Ok(samples)
+    Ok((samples, found))
 }
 
 /// Reads wheels: CSV with columns `t,v_left,v_right,track` (s, m/s, m).
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_wheels(path: &Path) -> Result<Vec<Wheels>, Error> {
+pub fn read_wheels(path: &Path, options: &Options) -> Result<(Vec<Wheels>, Found), Error> {
     let mut samples: Vec<Wheels> = Vec::new();
-    table::read(
+    let found = table::read_log(
         path,
-        "samples of the wheels",
+        &Log { what: "samples of the wheels", longest_step_s: Some(LONGEST_STEP_S), options },
         |header| header.require(["t", "v_left", "v_right", "track"]),
         |&[t, left, right, track], row| {
             let time_us = row.time_us(t)?;
@@ -113,7 +112,7 @@ pub fn read_wheels(path: &Path) -> Result<Vec<Wheels>, Error> {
             Ok(())
         },
     )?;
-    Ok(samples)
+    Ok((samples, found))
 }
 
 /// A body vector in the room; none for a quaternion of length zero.

@@ -29,16 +29,16 @@ pub fn read_points(path: &Path) -> Result<Vec<Point>, Error> {
         "points",
         |header| {
             let [name] = header.require(["point"])?;
-            Ok((name, header.find("x").zip(header.find("y")), header.find("z")))
+            Ok((name, header.all(["x", "y"])?, header.find("z")?))
         },
         |&(name, plane, height), row| {
-            let name = row.text(name).to_owned();
+            let name = row.text(name).into_owned();
             if points.iter().any(|point| point.name == name) {
                 let found = printable(&name);
                 return Err(row.line.error(format!("expected another point, found {found}")));
             }
             let plane = plane
-                .map(|(x, y)| Ok::<_, Error>([row.coordinate("x", x)?, row.coordinate("y", y)?]))
+                .map(|[x, y]| Ok::<_, Error>([row.coordinate("x", x)?, row.coordinate("y", y)?]))
                 .transpose()?;
             let height = height.map(|z| row.coordinate("z", z)).transpose()?;
             points.push(Point { name, plane, height });
@@ -122,7 +122,7 @@ pub fn read_heights(path: &Path) -> Result<BTreeMap<String, f64>, Error> {
         "heights of points",
         |header| header.require(["point", "z"]),
         |&[name, z], row| {
-            heights.insert(row.text(name).to_owned(), row.coordinate("z", z)?);
+            heights.insert(row.text(name).into_owned(), row.coordinate("z", z)?);
             Ok(())
         },
     )?;

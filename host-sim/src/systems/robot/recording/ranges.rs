@@ -1,15 +1,20 @@
 //! Recorded ranges, of a tag that moves or of one put down at marked points.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::Path;
+
+use kestirim_import::{Options, ranging};
 
 use super::anchors::Anchors;
 use crate::Error;
-use crate::table::{self, Row};
+use crate::table::{self, Column, Found, Log, Row};
 use crate::text::printable;
 
 /// Time between the epochs of a static recording, µs.
 const EPOCH_US: i64 = 100_000;
+/// A radio ranges at least this often, s.
+const LONGEST_STEP_S: f64 = 2.0;
 /// Beyond any count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
@@ -53,27 +58,57 @@ pub fn drop_far_ahead<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> u
     before - samples.len()
 }
 
-/// Reads the log of a moving tag: CSV with columns `t,anchor,range` (s, m).
+/// Reads the log of a moving tag: as its radio printed it, a column an anchor, or a table with columns `t,anchor,range` (s,
+/// m).
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_moving(path: &Path, anchors: &Anchors) -> Result<RangeLog, Error> {
+pub fn read_moving(
+    path: &Path,
+    anchors: &Anchors,
+    options: &Options,
+) -> Result<(RangeLog, Found), Error> {
     let mut log = RangeLog::default();
-    table::read(
+    if let Some(found) = of_radio(path, anchors, options)? {
+        return Ok(found);
+    }
+    let found = table::read_log(
         path,
-        "ranges",
+        &Log { what: "ranges", longest_step_s: Some(LONGEST_STEP_S), options },
         |header| header.require(["t", "anchor", "range"]),
         |&[t, anchor, range], row| {
             let time_us = row.time_us(t)?;
             let range = optional_range(row, range)?;
-            match anchors.find(row.text(anchor)) {
+            match anchors.find(&row.text(anchor)) {
                 Some(anchor) => log.rows.push(RangeRow { time_us, anchor, range }),
                 None => log.unlisted += 1,
             }
             Ok(())
         },
     )?;
-    Ok(log)
+    Ok((log, found))
+}
+
+/// Reads a log with a line or a column an anchor; none if it is another.
+fn of_radio(
+    path: &Path,
+    anchors: &Anchors,
+    options: &Options,
+) -> Result<Option<(RangeLog, Found)>, Error> {
+    let bytes =
+        fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+    let read = ranging::read(&bytes, &anchors.names, options);
+    let read = read.map_err(|error| table::refused(path, &error))?;
+    Ok(read.map(|read| {
+        let row = |range: &ranging::Range| RangeRow {
+            time_us: range.time_us,
+            anchor: range.anchor,
+            range: Some(range.metres),
+        };
+        let rows = read.ranges.iter().map(row).collect();
+        let found = Found { import: vec![read.conclusion], warnings: read.damage.sentences() };
+        (RangeLog { rows, unlisted: read.unlisted }, found)
+    }))
 }
 
 /// Reads the log of a tag put down at points: CSV with columns `point,k,anchor,range`, where k counts
@@ -81,21 +116,25 @@ pub fn read_moving(path: &Path, anchors: &Anchors) -> Result<RangeLog, Error> {
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_static(path: &Path, anchors: &Anchors) -> Result<BTreeMap<String, RangeLog>, Error> {
+pub fn read_static(
+    path: &Path,
+    anchors: &Anchors,
+    options: &Options,
+) -> Result<(BTreeMap<String, RangeLog>, Found), Error> {
     let mut logs = BTreeMap::<String, RangeLog>::new();
-    table::read(
+    let found = table::read_log(
         path,
-        "ranges",
+        &Log { what: "ranges", longest_step_s: None, options },
         |header| header.require(["point", "k", "anchor", "range"]),
         |&[point, k, anchor, range], row| {
             let epoch = row.number("k", k)?;
             if epoch.fract() != 0.0 || !(0.0..=LAST_EPOCH).contains(&epoch) {
-                let found = printable(row.text(k));
+                let found = printable(&row.text(k));
                 return Err(row.line.error(format!("expected a count of epochs, found {found}")));
             }
             let range = optional_range(row, range)?;
-            let log = logs.entry(row.text(point).to_owned()).or_default();
-            match anchors.find(row.text(anchor)) {
+            let log = logs.entry(row.text(point).into_owned()).or_default();
+            match anchors.find(&row.text(anchor)) {
                 Some(anchor) => {
                     let time_us = epoch as i64 * EPOCH_US;
                     log.rows.push(RangeRow { time_us, anchor, range });
@@ -105,18 +144,17 @@ pub fn read_static(path: &Path, anchors: &Anchors) -> Result<BTreeMap<String, Ra
             Ok(())
         },
     )?;
-    Ok(logs)
+    Ok((logs, found))
 }
 
 /// A range, or none from an empty field. Radios log the wildest values, NaN and infinities among them: what
 /// is a number at all is read, and refused by the tracker.
-fn optional_range(row: &Row<'_>, column: usize) -> Result<Option<f64>, Error> {
-    let field = row.text(column);
-    if field.is_empty() {
+fn optional_range(row: &Row<'_>, column: Column) -> Result<Option<f64>, Error> {
+    if row.is_empty(column) {
         return Ok(None);
     }
-    field.parse().map(Some).map_err(|_| {
-        let found = printable(field);
+    row.any_number(column).map(Some).ok_or_else(|| {
+        let found = printable(&row.text(column));
         row.line.error(format!("expected a range or nothing in column range, found {found}"))
     })
 }

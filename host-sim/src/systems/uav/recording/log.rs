@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use kestirim_import::Options;
+
+use crate::Error;
 use crate::systems::uav::recording::model::STATE_COLUMNS;
-use crate::text::Header;
-use crate::{Error, table};
+use crate::table::{self, Column, Found, Header, Log as Logged};
 
 /// Intervals that differ by less than this share from the usual one are jitter.
 const JITTER: f64 = 0.1;
@@ -12,6 +14,8 @@ const JITTER: f64 = 0.1;
 const REGULAR: f64 = 0.75;
 /// From this many usual intervals on, samples are missing.
 const GAP: f64 = 1.5;
+/// An aircraft's sensors are read at least this often, s.
+const LONGEST_STEP_S: f64 = 2.0;
 /// No sensor of an aircraft measures more, in any unit.
 pub(in crate::systems::uav) const LARGEST: f64 = 1e6;
 
@@ -43,12 +47,12 @@ pub struct Log {
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read(path: &Path, names: &[&str]) -> Result<Log, Error> {
+pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Found), Error> {
     let mut samples: Vec<Sample> = Vec::new();
     let mut outputs = Vec::new();
-    table::read(
+    let found = table::read_log(
         path,
-        "a recorded flight",
+        &Logged { what: "a recorded flight", longest_step_s: Some(LONGEST_STEP_S), options },
         |header| {
             let inputs = header.require(["t", "delta_e", "delta_t"])?;
             let columns = measured_columns(header, names)?;
@@ -58,11 +62,11 @@ pub fn read(path: &Path, names: &[&str]) -> Result<Log, Error> {
                     names.join(", ")
                 )));
             }
-            outputs = columns.iter().map(|(output, _)| *output).collect();
             Ok((inputs, columns))
         },
         |([t, elevator, throttle], columns), row| {
-            let number = |name: &str, column: usize| {
+            outputs = columns.iter().map(|(output, _)| *output).collect();
+            let number = |name: &str, column: Column| {
                 let value = row.number(name, column)?;
                 if value.abs() > LARGEST {
                     return Err(row.line.error(format!("expected {name} below a million")));
@@ -75,8 +79,11 @@ pub fn read(path: &Path, names: &[&str]) -> Result<Log, Error> {
             }
             let input = [number("delta_e", *elevator)?, number("delta_t", *throttle)?];
             let measured = columns.iter().map(|&(output, column)| {
-                let empty = row.text(column).is_empty();
-                if empty { Ok(None) } else { number(names[output], column).map(Some) }
+                if row.is_empty(column) {
+                    Ok(None)
+                } else {
+                    number(names[output], column).map(Some)
+                }
             });
             samples.push(Sample { t_us, input, measured: measured.collect::<Result<_, _>>()? });
             Ok(())
@@ -87,14 +94,13 @@ pub fn read(path: &Path, names: &[&str]) -> Result<Log, Error> {
         return Err(Error::File { path: path.to_path_buf(), problem });
     }
     let (interval_s, gaps) = regular(path, &samples)?;
-    Ok(Log { outputs, samples, interval_s, gaps })
+    Ok((Log { outputs, samples, interval_s, gaps }, found))
 }
 
-fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, usize)>, Error> {
+fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, Column)>, Error> {
     let mut columns = Vec::new();
     for (output, name) in names.iter().enumerate() {
-        if header.find(name).is_some() {
-            let [column] = header.require([name])?;
+        if let Some(column) = header.find(name)? {
             columns.push((output, column));
         }
     }
@@ -143,7 +149,7 @@ pub fn read_truth(path: &Path) -> Result<Truth, Error> {
         |(t, columns), row| {
             let mut states = [None; 4];
             for &(state, column) in columns {
-                if !row.text(column).is_empty() {
+                if !row.is_empty(column) {
                     let value = row.number(STATE_COLUMNS[state], column)?;
                     if value.abs() > LARGEST {
                         let name = STATE_COLUMNS[state];

@@ -1,0 +1,233 @@
+//! The columns that a reader wants by name, as people name them.
+
+use crate::error::{Error, quoted};
+use crate::names::{meaning, measures};
+use crate::options::Options;
+use crate::unit::{Quantity, Unit};
+
+/// A column that some reader wants, and what else it is called.
+#[derive(Debug)]
+struct Known {
+    name: &'static str,
+    quantity: Option<Quantity>,
+    /// In lower case, without what separates words and without units.
+    aliases: &'static [&'static str],
+}
+
+const fn of(quantity: Quantity, name: &'static str, aliases: &'static [&'static str]) -> Known {
+    Known { name, quantity: Some(quantity), aliases }
+}
+
+/// What is wanted by readers; time and the axes of an inertial sensor are known to [`crate::names`].
+const KNOWN: &[Known] = &[
+    Known {
+        name: "anchor",
+        quantity: None,
+        aliases: &[
+            "anchorid",
+            "anchorname",
+            "anc",
+            "ancid",
+            "beacon",
+            "beaconid",
+            "node",
+            "nodeid",
+            "id",
+            "name",
+        ],
+    },
+    of(Quantity::Length, "range", &["range", "distance", "dist", "d", "r"]),
+    of(Quantity::Length, "x", &["x", "posx", "positionx", "xpos", "xposition", "px"]),
+    of(Quantity::Length, "y", &["y", "posy", "positiony", "ypos", "yposition", "py"]),
+    of(Quantity::Length, "z", &["z", "posz", "positionz", "zpos", "zposition", "pz"]),
+    of(Quantity::Length, "h", &["h", "height", "alt", "altitude", "agl", "relalt"]),
+    of(Quantity::Level, "rssi_db", &["rssi", "rss", "signal", "level", "power", "rxpower"]),
+    of(Quantity::Level, "path_loss_db", &["pathloss", "loss", "pl"]),
+    of(
+        Quantity::Speed,
+        "v_left",
+        &["vleft", "vl", "left", "leftspeed", "speedleft", "leftvelocity", "velocityleft"],
+    ),
+    of(
+        Quantity::Speed,
+        "v_right",
+        &["vright", "vr", "right", "rightspeed", "speedright", "rightvelocity", "velocityright"],
+    ),
+    of(Quantity::Length, "track", &["track", "trackwidth", "wheeltrack", "axletrack"]),
+];
+
+/// The names that options may give columns and units to, beside time and the axes.
+pub(crate) fn names() -> impl Iterator<Item = (&'static str, Option<Quantity>)> {
+    KNOWN.iter().map(|known| (known.name, known.quantity))
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Which column, from 0.
+    pub column: usize,
+    /// As the header names it.
+    pub name: String,
+    /// Its unit, if the header or an option says it.
+    pub unit: Option<Unit>,
+    /// Whether an option says that its sign is the other one.
+    pub is_negative: bool,
+}
+
+impl Place {
+    /// How much one of the column's unit is in that of the SI.
+    pub fn scale(&self) -> f64 {
+        let scale = self.unit.as_ref().map_or(1.0, |unit| unit.scale);
+        if self.is_negative { -scale } else { scale }
+    }
+}
+
+/// The names of a table's columns.
+#[derive(Debug, Clone)]
+pub struct Heading<'a> {
+    /// The line it stands on, from 1.
+    pub line: usize,
+    names: Vec<String>,
+    options: &'a Options,
+}
+
+impl<'a> Heading<'a> {
+    pub(crate) fn new(line: usize, names: Vec<String>, options: &'a Options) -> Self {
+        Self { line, names, options }
+    }
+
+    /// The names as they stand there.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The column of this name, if there is one: as an option says, of exactly this name, or as people name it.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if two columns may be it, or if there is none of the name that an option says.
+    pub fn find(&self, name: &str) -> Result<Option<Place>, Error> {
+        let unit = self.options.units.of(name);
+        let said = self.options.columns.of(name);
+        let wanted = said.map_or(name, |pick| pick.name.as_str());
+        let exact: Vec<_> = (0..self.names.len()).filter(|&i| self.names[i] == wanted).collect();
+        let place = |column: usize, named: Option<Unit>| Place {
+            column,
+            name: self.names[column].clone(),
+            unit: unit.clone().or(named),
+            is_negative: said.is_some_and(|pick| pick.is_negative),
+        };
+        match (exact[..].first(), exact.len(), said) {
+            (Some(&column), 1, _) => {
+                let named = said.and_then(|_| self.named(name, column)).flatten();
+                return Ok(Some(place(column, named)));
+            }
+            (Some(_), _, _) => {
+                return Err(Error::line(
+                    self.line,
+                    format!("expected one column {wanted}, found two"),
+                ));
+            }
+            (None, _, Some(said)) => {
+                let problem = format!("expected a column {}, found none", quoted(&said.name));
+                return Err(Error::line(self.line, problem));
+            }
+            (None, _, None) => {}
+        }
+        let mut found = (0..self.names.len()).filter_map(|i| Some((i, self.named(name, i)?)));
+        let Some((column, named)) = found.next() else { return Ok(None) };
+        if let Some((other, _)) = found.next() {
+            let (one, other) = (quoted(&self.names[column]), quoted(&self.names[other]));
+            let problem = format!(
+                "expected one column {name}, found {one} and {other}; --columns {name}= decides"
+            );
+            return Err(Error::line(self.line, problem));
+        }
+        Ok(Some(place(column, named)))
+    }
+
+    /// Whether a column may be the wanted one, and the unit that its name says.
+    fn named(&self, wanted: &str, column: usize) -> Option<Option<Unit>> {
+        let name = &self.names[column];
+        if let Some(known) = KNOWN.iter().find(|known| known.name == wanted) {
+            return measures(name, known.quantity, known.aliases);
+        }
+        let (own, its) = (meaning(wanted)?, meaning(name)?);
+        let same = own.quantity == its.quantity && own.axis == its.axis;
+        same.then_some(its.unit)
+    }
+
+    /// The columns of these names.
+    ///
+    /// # Errors
+    /// As [`Self::find`]; [`Error::Line`] too if one is missing.
+    pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[Place; N], Error> {
+        let mut places = Vec::with_capacity(N);
+        for name in names {
+            places.push(self.find(name)?.ok_or_else(|| {
+                Error::line(
+                    self.line,
+                    format!("expected a header with a column {name}, found none"),
+                )
+            })?);
+        }
+        places.try_into().map_err(|_| Error::line(self.line, "expected a header, found none"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn find(names: &[&str], wanted: &str, options: &Options) -> Result<Option<Place>, Error> {
+        let names = names.iter().map(|&name| name.to_owned()).collect();
+        Heading::new(1, names, options).find(wanted)
+    }
+
+    #[test]
+    fn columns_are_found_as_people_name_them() {
+        let options = Options::default();
+        for (name, wanted, unit) in [
+            ("range", "range", None),
+            ("Distance [cm]", "range", Some("cm")),
+            ("dist_mm", "range", Some("mm")),
+            ("Range (m)", "range", Some("m")),
+            ("d (ft)", "range", Some("ft")),
+            ("AnchorID", "anchor", None),
+            ("timestamp_ms", "t", Some("ms")),
+            ("RSSI [dBm]", "rssi_db", Some("dB")),
+            ("rssi_dbm", "rssi_db", Some("dB")),
+            ("pos_x [m]", "x", Some("m")),
+            ("altitude (ft)", "h", Some("ft")),
+            ("left_speed (cm/s)", "v_left", Some("cm/s")),
+            ("AccX [g]", "ax", Some("g")),
+        ] {
+            let place = find(&["other", name], wanted, &options).unwrap();
+            let place = place.unwrap_or_else(|| panic!("{name}"));
+            assert_eq!(place.column, 1, "{name}");
+            assert_eq!(place.unit.map(|unit| unit.name).as_deref(), unit, "{name}");
+        }
+        for (name, wanted) in [("T", "t"), ("range_x", "range"), ("xy", "x"), ("lax", "ax")] {
+            assert_eq!(find(&[name], wanted, &options), Ok(None), "{name}");
+        }
+    }
+
+    #[test]
+    fn an_exact_name_or_an_option_decides() {
+        let options = Options::default();
+        assert_eq!(find(&["d", "range"], "range", &options).unwrap().unwrap().column, 1);
+        let error = find(&["d", "dist"], "range", &options).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "line 1: expected one column range, found \"d\" and \"dist\"; --columns range= decides"
+        );
+        let said = Options {
+            columns: "range=dist".parse().unwrap(),
+            units: "range=cm".parse().unwrap(),
+            ..Options::default()
+        };
+        let place = find(&["d", "dist"], "range", &said).unwrap().unwrap();
+        assert_eq!((place.column, place.scale()), (1, 0.01));
+        assert!(find(&["d"], "range", &said).unwrap_err().to_string().contains("\"dist\""));
+        assert!(find(&["x", "x"], "x", &options).unwrap_err().to_string().contains("found two"));
+    }
+}

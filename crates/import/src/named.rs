@@ -1,0 +1,152 @@
+//! Tables whose columns are wanted by name: logs of ranges, levels and wheels, and lists of places.
+//!
+//! The first line that holds the wanted names is the header, whatever separates them; the names decide, never the separator.
+
+use std::borrow::Cow;
+
+use crate::dialect::{Dialect, Separator};
+use crate::heading::Heading;
+use crate::moment;
+use crate::options::Options;
+use crate::text::{Text, letters};
+
+/// How many lines may stand above the header.
+const ABOVE: usize = 60;
+/// How many rows are looked at to tell how numbers are written.
+const SAMPLE: usize = 400;
+
+/// A table with a header.
+#[derive(Debug)]
+pub struct NamedTable<'a> {
+    text: &'a Text<'a>,
+    /// The header.
+    pub heading: Heading<'a>,
+    /// How it is written.
+    pub dialect: Dialect,
+}
+
+impl<'a> NamedTable<'a> {
+    /// Finds the header: the first line, and the first separator, with which `columns` finds all that it wants; and what
+    /// it finds, or what it says of the first line. None if there is no line.
+    pub fn find<T, E>(
+        text: &'a Text<'a>,
+        options: &'a Options,
+        columns: impl Fn(&Heading<'a>) -> Result<T, E>,
+    ) -> Option<Result<(Self, T), E>> {
+        const SEPARATORS: [Separator; 4] =
+            [Separator::Comma, Separator::Semicolon, Separator::Tab, Separator::Blanks];
+        let mut first = None;
+        for line in text.lines().take(ABOVE) {
+            let headings = SEPARATORS.into_iter().map(|separator| {
+                let fields = Dialect::new(separator, false).fields(bare(line.bytes));
+                let names = fields.iter().map(|field| letters(field)).collect();
+                (separator, Heading::new(line.number, names, options))
+            });
+            let mut headings: Vec<_> = headings.collect();
+            // Of the ways to take a line apart the one with most names is told.
+            headings.sort_by_key(|(_, heading)| std::cmp::Reverse(heading.names().len()));
+            for (separator, heading) in headings {
+                match columns(&heading) {
+                    Ok(found) => {
+                        let dialect = Dialect::new(separator, false);
+                        let mut table = Self { text, heading, dialect };
+                        table.dialect.decimal_comma = table.has_decimal_commas();
+                        return Some(Ok((table, found)));
+                    }
+                    Err(error) => {
+                        first.get_or_insert(error);
+                    }
+                }
+            }
+        }
+        first.map(Err)
+    }
+
+    /// The lines below the header that are no comments: their numbers and fields.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, Vec<Cow<'_, [u8]>>)> {
+        let below = self.text.lines().filter(|line| line.number > self.heading.line);
+        let rows = below.filter(|line| !self.dialect.is_comment(line.bytes));
+        rows.map(|line| (line.number, self.fields(line.bytes)))
+    }
+
+    /// The fields of a line; a separator may end it.
+    fn fields<'b>(&self, bytes: &'b [u8]) -> Vec<Cow<'b, [u8]>> {
+        let mut fields = self.dialect.fields(bytes);
+        let ends = fields.len() == self.heading.names().len() + 1;
+        if ends && fields.last().is_some_and(|last| last.is_empty()) {
+            fields.pop();
+        }
+        fields
+    }
+
+    /// Whether most numbers that could show it have a decimal comma.
+    fn has_decimal_commas(&self) -> bool {
+        if self.dialect.separator == Separator::Comma {
+            return false;
+        }
+        let comma = Dialect::new(self.dialect.separator, true);
+        let (mut commas, mut points) = (0, 0);
+        for (_, fields) in self.rows().take(SAMPLE) {
+            for field in fields {
+                if field.contains(&b',') {
+                    commas += usize::from(comma.number(&field).is_some());
+                } else if field.contains(&b'.') {
+                    points += usize::from(self.dialect.number(&field).is_some());
+                }
+            }
+        }
+        commas > points
+    }
+
+    /// A number, which may be infinite or not a number.
+    pub fn number(&self, field: &[u8]) -> Option<f64> {
+        self.dialect.number(field)
+    }
+
+    /// A date with a time, or a time of day, in s since 1970 or midnight.
+    pub fn moment(&self, field: &[u8]) -> Option<f64> {
+        moment::read(field).map(|moment| moment.microseconds() * 1e-6)
+    }
+}
+
+/// A header may be a comment.
+fn bare(line: &[u8]) -> &[u8] {
+    let mut line = line;
+    while let [b'#' | b'%' | b'/' | b' ', rest @ ..] = line {
+        line = rest;
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_names_find_the_header() {
+        for (text, decimal_comma) in [
+            ("t,anchor,range\n0.5,A 1,2.5\n", false),
+            ("t;anchor;range\n0,5;A 1;2,5\n", true),
+            ("made by x;y\n# t\tanchor\trange\n0.5\tA 1\t2.5\t\n", false),
+            ("site: 3\n\nrange,t,anchor,\n2.5,0.5,\"A 1\",\n", false),
+        ] {
+            let text = Text::new(text.as_bytes()).unwrap();
+            let options = Options::default();
+            let (table, places) = NamedTable::find(&text, &options, |heading| {
+                heading.require(["t", "anchor", "range"])
+            })
+            .unwrap()
+            .unwrap();
+            assert_eq!(table.dialect.decimal_comma, decimal_comma);
+            let (_, fields) = table.rows().next().unwrap();
+            let [t, anchor, range] = places.map(|place| fields[place.column].clone());
+            assert_eq!((table.number(&t), table.number(&range)), (Some(0.5), Some(2.5)));
+            assert_eq!(&*anchor, b"A 1");
+        }
+        let text = Text::new(b"t,anchor\n1,2\n").unwrap();
+        let options = Options::default();
+        let error = NamedTable::find(&text, &options, |heading| heading.require(["t", "range"]));
+        let error = error.unwrap().map(|_| ()).unwrap_err().to_string();
+        assert_eq!(error, "line 1: expected a header with a column range, found none");
+    }
+}

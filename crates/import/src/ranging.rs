@@ -1,0 +1,197 @@
+//! Logs of two-way ranging as radios and their programs write them: a line of text for the ranges to all anchors, or a
+//! column an anchor. A table with a row a range (`t,anchor,range`) is a [`crate::NamedTable`].
+//!
+//! | | |
+//! |---|---|
+//! | TREK1000, DecaRanging | `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`: mm, and ms of the tag's clock, in hexadecimal (TREK1000 User Manual, 8.1.1). `mr` is read if there is no `mc`, `ma` is between anchors |
+//! | Qorvo MDEK1001 | `les`: `1151[5.00,8.00,2.25]=6.48 … est[…]`; `lec`: `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,…,POS,…` (DWM1001 Firmware API Guide, shell commands): m |
+//! | Makerfabs `MaUWB` | `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,911,738,0,0,0,0),ancid:(0,1,2,3,-1,-1,-1,-1)` (AT command manual): cm |
+//! | a column an anchor | `t,d0,d1,…`, `time_ms,range_A1 [cm],…`; the log of Crazyflie's client: `Timestamp,ranging.distance0,…` |
+//!
+//! A line may begin with a time: a number, a date, or a time of day (`12:00:00.250 -> AT+RANGE=…`). A range of zero is
+//! none.
+
+mod lines;
+mod wide;
+
+use std::collections::BTreeMap;
+
+use crate::damage::Damage;
+use crate::error::{Error, quoted};
+use crate::options::Options;
+use crate::text::Text;
+
+/// A range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// The anchor's place in the list.
+    pub anchor: usize,
+    /// m
+    pub metres: f64,
+}
+
+/// A log of ranges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranging {
+    /// In the order of the log.
+    pub ranges: Vec<Range>,
+    /// How many ranges are to anchors that are not in the list; they are left out.
+    pub unlisted: usize,
+    /// What was recognised, in one line.
+    pub conclusion: String,
+    /// What was skipped.
+    pub damage: Damage,
+}
+
+/// Ranges to anchors as the log calls them.
+#[derive(Debug, Default)]
+struct Found {
+    labels: BTreeMap<String, usize>,
+    /// Time in µs, label, m.
+    ranges: Vec<(i64, usize, f64)>,
+}
+
+impl Found {
+    fn add(&mut self, time_us: i64, label: &str, metres: f64) {
+        if metres == 0.0 {
+            return;
+        }
+        let next = self.labels.len();
+        let label = match self.labels.get(label) {
+            Some(&known) => known,
+            None => *self.labels.entry(label.to_owned()).or_insert(next),
+        };
+        self.ranges.push((time_us, label, metres));
+    }
+}
+
+/// Reads a log of ranges to `anchors`; none if it is of none of these forms.
+///
+/// # Errors
+/// What was expected and what was found, and which option decides where the log does not tell.
+pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Option<Ranging>, Error> {
+    let text = Text::new(bytes)?;
+    let read = match lines::read(&text, options)? {
+        Some(read) => Some(read),
+        None => wide::read(&text, anchors, options)?,
+    };
+    let Some((found, conclusion, damage)) = read else { return Ok(None) };
+    let places: Vec<_> = {
+        let mut labels: Vec<_> = found.labels.iter().collect();
+        labels.sort_by_key(|(_, index)| **index);
+        labels.into_iter().map(|(label, _)| place(label, anchors)).collect()
+    };
+    if !found.ranges.is_empty() && places.iter().all(Option::is_none) {
+        let names: Vec<_> = found.labels.keys().map(|label| quoted(label)).collect();
+        let known: Vec<_> = anchors.iter().map(|name| quoted(name)).collect();
+        let problem =
+            format!("expected ranges to anchors {}, found {}", known.join(", "), names.join(", "));
+        return Err(Error::log(problem));
+    }
+    let mut unlisted = 0;
+    let ranges = found.ranges.into_iter().filter_map(|(time_us, label, metres)| {
+        let anchor = places.get(label).copied().flatten();
+        unlisted += usize::from(anchor.is_none());
+        Some(Range { time_us, anchor: anchor?, metres })
+    });
+    let ranges = ranges.collect();
+    Ok(Some(Ranging { ranges, unlisted, conclusion, damage }))
+}
+
+/// Which anchor a label means: the one of that name, or the one whose name ends with the same number, if only one does.
+fn place(label: &str, anchors: &[String]) -> Option<usize> {
+    let same = |name: &String| name.eq_ignore_ascii_case(label);
+    if let Some(place) = anchors.iter().position(same) {
+        return Some(place);
+    }
+    let number = number(label)?;
+    let mut numbered = (0..anchors.len()).filter(|&i| self::number(&anchors[i]) == Some(number));
+    numbered.next().filter(|_| numbered.next().is_none())
+}
+
+/// The number at the end of a name, behind letters alone.
+fn number(name: &str) -> Option<u32> {
+    let digits = name.trim_start_matches(|letter: char| !letter.is_ascii_digit());
+    digits.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ranges(text: &str, anchors: &[&str], options: &Options) -> Result<Ranging, String> {
+        let anchors: Vec<_> = anchors.iter().map(|&name| name.to_owned()).collect();
+        let read = read(text.as_bytes(), &anchors, options).map_err(|error| error.to_string())?;
+        read.ok_or_else(|| "nothing known".to_owned())
+    }
+
+    /// Two moments, 100 ms apart, of ranges 1.635 and 1.443 m, then 1.4 and 1.2 m.
+    fn assert_read(text: &str, anchors: &[&str], options: &Options) {
+        let read = ranges(text, anchors, options).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let found: Vec<_> = read.ranges.iter().map(|range| (range.anchor, range.metres)).collect();
+        let expected = [(0, 1.635), (1, 1.443), (0, 1.4), (1, 1.2)];
+        assert_eq!(found.len(), 4, "{text}");
+        for ((anchor, metres), (its, expected)) in found.iter().zip(expected) {
+            assert!(*anchor == its && (metres - expected).abs() < 5.1e-3, "{text}: {found:?}");
+        }
+        let step = read.ranges[2].time_us - read.ranges[0].time_us;
+        assert_eq!((step, read.ranges[1].time_us), (100_000, read.ranges[0].time_us), "{text}");
+        assert_eq!(read.damage.count(), 0, "{text}");
+    }
+
+    #[test]
+    fn radios_are_understood() {
+        let plain = Options::default();
+        let counted = Options { units: "t=10Hz".parse().unwrap(), ..Options::default() };
+        let trek = "ma 07 00000000 0000085c 00000659 000006b7 095b 26 00024bed a0:0\n\
+                    mr 03 00000600 00000500 00000000 00000000 095f c1 40424042 a0:0\n\
+                    mc 03 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0\n\
+                    mc 03 00000578 000004b0 00000512 000004cb 0960 c2 00024c88 a0:0\n";
+        assert_read(trek, &["0", "1"], &plain);
+        assert_read(trek, &["A0", "A1", "A2"], &plain);
+        let raw = "mr 03 00000663 000005a3 0 0 095f c1 40424042 a0:0\n\
+                   mr 03 00000578 000004b0 0 0 0960 c2 40424042 a0:0\n";
+        assert_read(raw, &["a0", "a1"], &counted);
+        assert!(ranges(raw, &["a0", "a1"], &plain).unwrap_err().contains("--units t=10Hz"));
+        let les = "1151[5.00,8.00,2.25]=1.64 0CA8[0.00,8.00,2.25]=1.44 le_us=2576 est[6.97,8.17,-1.37,53]\n\
+                   1151[5.00,8.00,2.25]=1.40 0CA8[0.00,8.00,2.25]=1.20 le_us=2576 est[6.97,8.17,-1.37,53]\n";
+        assert_read(les, &["1151", "0ca8"], &counted);
+        let lec = "10:00:00.000 DIST,2,AN0,1151,5.00,8.00,2.25,1.64,AN1,0CA8,0.00,8.00,2.25,1.44,POS,7.10,8.24,-1.31,97\n\
+                   10:00:00.100 DIST,2,AN0,1151,5.00,8.00,2.25,1.40,AN1,0CA8,0.00,8.00,2.25,1.20,POS,7.10,8.24,-1.31,97\n";
+        assert_read(lec, &["1151", "0CA8"], &plain);
+        let makerfabs = "[0.500] AT+RANGE=tid:1,mask:03,seq:128,range:(164,144,0,0,0,0,0,0),ancid:(0,1,-1,-1,-1,-1,-1,-1)\n\
+                         [0.600] AT+RANGE=tid:1,mask:03,seq:129,range:(140,120,0,0,0,0,0,0),rssi:(0.00,0.00)\n";
+        assert_read(makerfabs, &["A0", "A1"], &plain);
+        let error = ranges(les, &["7", "8"], &counted).unwrap_err();
+        assert_eq!(error, "expected ranges to anchors \"7\", \"8\", found \"0CA8\", \"1151\"");
+    }
+
+    #[test]
+    fn a_column_an_anchor_is_understood() {
+        let plain = Options::default();
+        for text in [
+            "t,d0,d1,d2\n0.0,1.635,1.443,\n0.1,1.4,1.2,\n",
+            "time_ms;range_A0 [cm];range_A1 [cm];range_A2 [cm]\n0;163,5;144,3;0\n100;140,0;120,0;0\n",
+            "Timestamp,ranging.distance0,ranging.distance1,ranging.distance2\n0,1.635,1.443,0\n100,1.4,1.2,0\n",
+            "t\tA0\tA1\tA2\n0\t1.635\t1.443\tnan\n0.1\t1.4\t1.2\tnan\n",
+            "t,dist_0_mm,dist_1_mm,dist_2_mm\n0,1635,1443,0\n0.1,1400,1200,0\n",
+        ] {
+            assert_read(text, &["A0", "A1", "A2"], &plain);
+        }
+        for text in ["t,anchor,range\n0,A0,1\n", "t,x,y,z\n0,1,2,3\n"] {
+            assert_eq!(ranges(text, &["A0", "A1"], &plain).unwrap_err(), "nothing known", "{text}");
+        }
+    }
+
+    #[test]
+    fn a_torn_line_is_skipped_and_told() {
+        let line = "mc 03 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0\n";
+        let text = format!("{}mc 03 0000\n", line.repeat(200));
+        let read = ranges(&text, &["0", "1"], &Options::default()).unwrap();
+        assert_eq!((read.ranges.len(), read.damage.count()), (400, 1));
+        let strict = Options { strict: true, ..Options::default() };
+        assert!(ranges(&text, &["0", "1"], &strict).unwrap_err().starts_with("line 201: expected"));
+    }
+}

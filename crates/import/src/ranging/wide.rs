@@ -1,0 +1,127 @@
+//! A column an anchor.
+
+use super::{Found, place};
+use crate::clock::unit_of_times;
+use crate::damage::{Damage, Fault};
+use crate::error::Error;
+use crate::heading::Heading;
+use crate::named::NamedTable;
+use crate::names::split_unit;
+use crate::options::Options;
+use crate::text::{Text, letters};
+use crate::unit::{Quantity, Unit};
+
+/// Fewer columns of ranges are taken for something else.
+const FEWEST: usize = 2;
+/// The usual time between rows is at most this, s.
+const LONGEST_STEP: f64 = 2.0;
+/// What stands before an anchor's name in that of a column.
+const BEFORE: [&str; 10] =
+    ["ranging.distance", "distance", "ranging", "range", "dist", "anchor", "rng", "anc", "d", "r"];
+
+/// A column of ranges.
+struct Ranges {
+    at: usize,
+    label: String,
+    scale: f64,
+}
+
+/// Reads a table with a column an anchor; none if it is none.
+pub(super) fn read(
+    text: &Text<'_>,
+    anchors: &[String],
+    options: &Options,
+) -> Result<Option<(Found, String, Damage)>, Error> {
+    let found = NamedTable::find(text, options, |heading| {
+        let time = heading.find("t").ok().flatten();
+        let ranges = columns(heading, anchors, options);
+        let is_wide =
+            ranges.len() >= FEWEST && !heading.names().iter().any(|name| name == "anchor");
+        time.filter(|_| is_wide).map(|time| (time, ranges)).ok_or(())
+    });
+    let Some(Ok((table, (time, columns)))) = found else { return Ok(None) };
+    let mut damage = Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() };
+    let (mut rows, mut total, mut are_moments) = (Vec::new(), 0, false);
+    for (line, fields) in table.rows() {
+        total += 1;
+        let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
+        let moment = table.moment(field);
+        are_moments |= moment.is_some();
+        let seconds = moment.or_else(|| table.number(field).filter(|time| time.is_finite()));
+        let (true, Some(seconds)) = (fields.len() == table.heading.names().len(), seconds) else {
+            damage.add(Fault::Torn, line, || {
+                let (expected, found) = (table.heading.names().len(), fields.len());
+                format!("expected {expected} fields with a time, found {found}: {}", letters(field))
+            });
+            continue;
+        };
+        let range = |column: &Ranges| {
+            let metres = table.number(fields.get(column.at)?)? * column.scale;
+            metres.is_finite().then_some(metres)
+        };
+        rows.push((seconds, columns.iter().map(range).collect::<Vec<_>>()));
+    }
+    damage.accept(total, options.strict)?;
+    let times: Vec<_> = rows.iter().map(|(time, _)| *time).collect();
+    let (unit, from) = match &time.unit {
+        _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
+        Some(unit) => (unit.clone(), "header"),
+        None => (unit_of_times(&times, LONGEST_STEP)?, "from the data"),
+    };
+    let mut found = Found::default();
+    for (time, ranges) in &rows {
+        for (column, range) in columns.iter().zip(ranges) {
+            if let Some(range) = range {
+                found.add((time * unit.scale * 1e6).round() as i64, &column.label, *range);
+            }
+        }
+    }
+    let names: Vec<_> =
+        columns.iter().map(|column| table.heading.names()[column.at].as_str()).collect();
+    let conclusion = format!("a column an anchor ({}), time in {unit}: {from}", names.join(", "));
+    Ok(Some((found, conclusion, damage)))
+}
+
+/// The columns whose names mean an anchor of the list, or a number behind a word for a range.
+fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<Ranges> {
+    let said = options.units.of("range");
+    let names = heading.names().iter().enumerate();
+    let column = |(at, name): (usize, &String)| {
+        let (base, unit) = taken_apart(name);
+        let label = label(base, anchors)?;
+        let scale = said.as_ref().or(unit.as_ref()).map_or(1.0, |unit| unit.scale);
+        Some(Ranges { at, label, scale })
+    };
+    names.filter_map(column).collect()
+}
+
+/// A name and the unit in brackets or behind it.
+fn taken_apart(name: &str) -> (&str, Option<Unit>) {
+    let (base, bracket) = split_unit(name);
+    if let Some(unit) = bracket.and_then(|text| Unit::read(Quantity::Length, text)) {
+        return (base, Some(unit));
+    }
+    match name.rsplit_once(['_', ' ']) {
+        Some((base, text)) if Unit::read(Quantity::Length, text).is_some() => {
+            (base, Unit::read(Quantity::Length, text))
+        }
+        _ => (name, None),
+    }
+}
+
+/// The anchor that a column's name means.
+fn label(name: &str, anchors: &[String]) -> Option<String> {
+    let is_anchor = |text: &str| anchors.iter().any(|anchor| anchor.eq_ignore_ascii_case(text));
+    let bare = |text: &str| text.trim_matches(|letter: char| !letter.is_alphanumeric()).to_owned();
+    if is_anchor(name) {
+        return Some(name.to_owned());
+    }
+    let lower = name.to_ascii_lowercase();
+    BEFORE.iter().find_map(|before| {
+        let behind =
+            bare(name.get(lower.strip_prefix(before).map(|rest| lower.len() - rest.len())?..)?);
+        let is_number = !behind.is_empty() && behind.bytes().all(|byte| byte.is_ascii_digit());
+        let is_one = is_anchor(&behind) || is_number && place(&behind, anchors).is_some();
+        is_one.then_some(behind)
+    })
+}

@@ -1,0 +1,43 @@
+//! `host-sim check`: what a log shows before it is used.
+
+use clap::{ArgMatches, Command};
+use serde_json::json;
+
+use super::arguments::chosen;
+use super::replay::{opened, recorded};
+use crate::system::AnySystem;
+use crate::systems::ALL;
+use crate::{Error, output};
+
+pub(super) fn command() -> Command {
+    let about =
+        "Look at a log before it is used: rates, gaps, clipping, rest, geometry, and what to do";
+    Command::new("check")
+        .about(about)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands(ALL.iter().map(|system| of(*system)))
+}
+
+fn of(system: &dyn AnySystem) -> Command {
+    recorded(system)
+}
+
+/// Reads, looks and prints; with a fault, too, it was done.
+pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
+    let (system, matches) = chosen(matches)?;
+    let (opened, settings) = opened(system, matches)?;
+    let findings = opened.check(&settings)?;
+    if matches.get_flag("json") {
+        let faults = findings.iter().filter(|finding| finding.is_fault()).count();
+        let report = json!({ "system": system.name(), "faults": faults, "findings": findings });
+        return output::print(&report.to_string());
+    }
+    let mut table = output::table();
+    for finding in findings {
+        let mark = if finding.is_fault() { "!" } else { "" };
+        let text = finding.sentence();
+        table.add_row([mark, finding.about, &text]);
+    }
+    output::print(&table.to_string())
+}

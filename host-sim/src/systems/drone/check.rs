@@ -1,0 +1,64 @@
+//! What a recorded flight shows before the user is searched.
+
+use super::recording::Recording;
+use super::recording::flight::Quantity;
+use crate::metrics::{median, standard_deviation};
+use crate::system::Finding;
+
+/// So many measurements in a row with the same level, to the last digit, while the drone moves: the radio is stuck.
+const STUCK: usize = 8;
+
+/// What the recording shows.
+pub(super) fn check(recording: &Recording) -> Vec<Finding> {
+    let Recording::Flight(recorded) = recording else {
+        return vec![Finding::note("log", "a synthetic flight: nothing is wrong with it")];
+    };
+    let flight = &recorded.flight;
+    let stops = &flight.stops;
+    let heights: Vec<f64> = stops.iter().map(|stop| stop.height).collect();
+    let losses: Vec<f64> = stops.iter().map(|stop| stop.loss).collect();
+    let far = |axis: usize| {
+        let along = stops.iter().map(|stop| stop.place[axis]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    let what = match flight.quantity {
+        Quantity::PathLoss => "path losses",
+        Quantity::Level => "levels",
+    };
+    let mut findings = vec![
+        Finding::note(
+            "measurements",
+            format!("{} {what} over {:.0} m × {:.0} m", stops.len(), far(0), far(1)),
+        ),
+        Finding::note("height", format!("{:.0} m usually", median(&heights))),
+        Finding::note(
+            "spread",
+            format!("the {what} vary by {:.1} dB", standard_deviation(&losses)),
+        ),
+    ];
+    if flight.unusable > 0 {
+        let found = format!("{} lines without a height or a level", flight.unusable);
+        findings.push(Finding::note("missing", found));
+    }
+    // What comes before the sign of a received level: −30 to −140 dBm.
+    let positive = losses.iter().filter(|loss| **loss < 0.0).count();
+    if flight.quantity == Quantity::PathLoss && positive * 2 > losses.len() {
+        findings.push(Finding::fault(
+            "sign",
+            "most path losses are below zero",
+            "the user is placed where the signal is weakest",
+            "a path loss is above zero; received levels belong into a column rssi_db",
+        ));
+    }
+    let runs = stops.chunk_by(|a, b| a.loss == b.loss && a.place != b.place);
+    let longest = runs.map(<[_]>::len).max().unwrap_or(0);
+    if longest >= STUCK {
+        findings.push(Finding::fault(
+            "stuck",
+            format!("{longest} measurements in a row are the same to the last digit"),
+            "they say nothing of where the user is",
+            "look at how the radio reports its level",
+        ));
+    }
+    findings
+}

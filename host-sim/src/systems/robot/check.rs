@@ -1,0 +1,137 @@
+//! What the ranges of a tag show before it is tracked.
+
+mod geometry;
+
+use std::collections::BTreeMap;
+
+use super::recording::Recording;
+use super::recording::event::{Event, Range};
+use super::settings::{Dimensions, Setup};
+use crate::metrics::{median, standard_deviation};
+use crate::system::{Finding, Settings};
+
+/// A range that stays the same to the last digit for so long and so often is stuck, s, …
+const STUCK_S: f64 = 3.0;
+const STUCK: usize = 15;
+/// … if the others change meanwhile by more than noise, m.
+const MOVING_M: f64 = 0.3;
+/// Ranges at the same largest value, of so many and such a share, were cut there.
+const CUT: usize = 20;
+const CUT_SHARE: f64 = 0.03;
+
+/// What the recording shows.
+pub(super) fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let parts: Vec<Vec<Range>> = recording.parts.iter().map(|part| ranges(&part.events)).collect();
+    let name = |anchor: usize| recording.anchors.names.get(anchor).map_or("", String::as_str);
+    findings.extend(links(&parts, recording.anchors.names.len(), &name));
+    findings.extend(parts.iter().find_map(|ranges| stuck(ranges, &name)));
+    findings.extend(cut(&parts));
+    let height = match settings.chosen::<Dimensions>("dim") {
+        Dimensions::Three => None,
+        // A height that the ranges tell or do not tell is the tracker's to say.
+        _ => Setup::of_recording(recording, settings).ok().map(|setup| setup.height_m),
+    };
+    let is_given = settings.is_given("height");
+    findings.extend(geometry::check(recording, height, is_given));
+    findings
+}
+
+fn ranges(events: &[Event]) -> Vec<Range> {
+    let range = |event: &Event| match event {
+        Event::Range(range) => Some(*range),
+        _ => None,
+    };
+    events.iter().filter_map(range).collect()
+}
+
+/// How often each anchor is heard, and what it says that is no range.
+fn links<'a>(
+    parts: &[Vec<Range>],
+    anchors: usize,
+    name: &impl Fn(usize) -> &'a str,
+) -> Vec<Finding> {
+    let seconds: f64 = parts
+        .iter()
+        .filter_map(|ranges| {
+            let times = ranges.iter().map(|range| range.time_us);
+            Some((times.clone().max()? - times.min()?) as f64 * 1e-6)
+        })
+        .sum();
+    let mut findings = Vec::new();
+    let mut rates = Vec::new();
+    for anchor in 0..anchors {
+        let its: Vec<f64> =
+            parts.iter().flatten().filter(|it| it.anchor == anchor).map(|it| it.metres).collect();
+        if its.is_empty() {
+            findings.push(Finding::note("anchors", format!("{} is never heard", name(anchor))));
+            continue;
+        }
+        rates.push(format!("{} {:.1} Hz", name(anchor), its.len() as f64 / seconds.max(1e-3)));
+        let wrong = its.iter().filter(|metres| !metres.is_finite() || **metres <= 0.0).count();
+        if wrong * 10 > its.len() {
+            findings.push(Finding::fault(
+                "ranges",
+                format!("{} of {} ranges to {} are no distances", wrong, its.len(), name(anchor)),
+                "they are left out",
+                "look at the antenna delay: a range must be above zero",
+            ));
+        }
+    }
+    findings.insert(0, Finding::note("rate", rates.join(", ")));
+    findings
+}
+
+/// An anchor whose range stays while those of others change.
+fn stuck<'a>(ranges: &[Range], name: &impl Fn(usize) -> &'a str) -> Option<Finding> {
+    let mut runs: BTreeMap<usize, (f64, usize, i64)> = BTreeMap::new();
+    for range in ranges {
+        let run = runs.entry(range.anchor).or_insert((range.metres, 0, range.time_us));
+        if run.0 != range.metres {
+            *run = (range.metres, 0, range.time_us);
+        }
+        run.1 += 1;
+        let seconds = (range.time_us - run.2) as f64 * 1e-6;
+        if run.1 < STUCK || seconds < STUCK_S {
+            continue;
+        }
+        let mut others: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        let during = ranges.iter().filter(|it| (run.2..=range.time_us).contains(&it.time_us));
+        for other in during.filter(|it| it.anchor != range.anchor && it.metres.is_finite()) {
+            others.entry(other.anchor).or_default().push(other.metres);
+        }
+        let moving = others.values().filter(|its| standard_deviation(its) > MOVING_M).count();
+        if moving >= 2 {
+            return Some(Finding::fault(
+                "stuck",
+                format!(
+                    "the range to {} stays at {:.3} m for {seconds:.1} s while others change",
+                    name(range.anchor),
+                    range.metres
+                ),
+                "the position is drawn to a circle that is not there",
+                "look at what the anchor or the logger repeats",
+            ));
+        }
+    }
+    None
+}
+
+/// Ranges that were cut at a largest value.
+fn cut(parts: &[Vec<Range>]) -> Option<Finding> {
+    let all: Vec<f64> =
+        parts.iter().flatten().map(|it| it.metres).filter(|it| it.is_finite()).collect();
+    let most = all.iter().copied().fold(0.0, f64::max);
+    let count = all.iter().filter(|metres| **metres == most).count();
+    let is_cut = count >= CUT && count as f64 >= CUT_SHARE * all.len() as f64;
+    // A tag that stands gives the same range again and again.
+    let spread = standard_deviation(&all);
+    (is_cut && spread > MOVING_M && most > median(&all)).then(|| {
+        Finding::fault(
+            "cut",
+            format!("{count} ranges are exactly {most} m, the largest of all"),
+            "what is farther away looks nearer than it is",
+            "look at the largest range that the radio or the logger can give",
+        )
+    })
+}

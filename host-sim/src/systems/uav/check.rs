@@ -1,0 +1,73 @@
+//! What the log of a flight shows before an estimator follows it.
+
+use super::recording::Recording;
+use super::recording::model::STATE_COLUMNS;
+use crate::metrics::{median, standard_deviation};
+use crate::system::Finding;
+
+/// A measurement that jumps by so many usual changes and back is a spike.
+const SPIKE: f64 = 30.0;
+/// Share of spikes from which on they are told as a fault.
+const MANY: f64 = 0.002;
+/// So many samples in a row that stay the same to the last digit while others change are stuck.
+const STUCK: usize = 50;
+
+/// What the recording shows.
+pub(super) fn check(recording: &Recording) -> Vec<Finding> {
+    let Recording::Logged(logged) = recording else {
+        return vec![Finding::note("log", "a synthetic flight: nothing is wrong with it")];
+    };
+    let log = &logged.log;
+    let count = log.samples.len();
+    let mut findings = vec![Finding::note(
+        "rate",
+        format!("{count} samples at {:.1} Hz, {} gaps", 1.0 / log.interval_s, log.gaps),
+    )];
+    let name = |output: usize| match &logged.model {
+        Some(model) => model.outputs.get(output).map_or("", |(name, _)| name),
+        None => STATE_COLUMNS.get(output).copied().unwrap_or_default(),
+    };
+    for (column, &output) in log.outputs.iter().enumerate() {
+        let name = name(output);
+        let values: Vec<f64> =
+            log.samples.iter().filter_map(|s| s.measured.get(column).copied().flatten()).collect();
+        let missing = count - values.len();
+        if missing > 0 {
+            let share = 100.0 * missing as f64 / count as f64;
+            findings.push(Finding::note("missing", format!("{name}: {share:.1} % of the samples")));
+        }
+        findings.extend(spikes(name, &values));
+        findings.extend(stuck(name, &values));
+    }
+    findings
+}
+
+fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
+    let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let limit = SPIKE * median(&changes);
+    let is_spike = |three: &&[f64]| {
+        let (there, back) = (three[1] - three[0], three[2] - three[1]);
+        there * back < 0.0 && there.abs().min(back.abs()) > limit
+    };
+    let count = values.windows(3).filter(is_spike).count();
+    (limit > 0.0 && count as f64 > MANY * values.len() as f64).then(|| {
+        Finding::fault(
+            "spikes",
+            format!("{name} jumps away and back {count} times in {} samples", values.len()),
+            "the estimators leave them out, and know less meanwhile",
+            "look at the sensor's wiring and at the logger",
+        )
+    })
+}
+
+fn stuck(name: &str, values: &[f64]) -> Option<Finding> {
+    let longest = values.chunk_by(|a, b| a == b).map(<[f64]>::len).max().unwrap_or(0);
+    (longest >= STUCK && longest < values.len() && standard_deviation(values) > 0.0).then(|| {
+        Finding::fault(
+            "stuck",
+            format!("{name} stays the same to the last digit for {longest} samples"),
+            "the estimate follows a sensor that measures nothing",
+            "leave the fields empty where nothing was measured",
+        )
+    })
+}
