@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod containers;
 mod damage;
 mod dialect;
 mod error;
@@ -9,6 +10,7 @@ mod layout;
 mod moment;
 mod names;
 mod options;
+mod part;
 mod table;
 mod text;
 mod unit;
@@ -19,6 +21,7 @@ pub use error::{Complaint, Error};
 pub use formats::Format;
 pub use layout::Kind;
 pub use options::{Columns, Options, TimeUnit, Units};
+pub use part::Part;
 pub use table::{Column, Table};
 pub use text::{Line, Text};
 pub use unit::{Quantity, STANDARD_GRAVITY, Unit};
