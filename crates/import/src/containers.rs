@@ -9,10 +9,14 @@ mod ardupilot;
 mod ardupilot_text;
 mod bytes;
 mod gather;
+mod join;
 mod numbered;
+mod px4;
+mod ulog;
 mod walk;
 
 pub(crate) use ardupilot::ARDUPILOT;
+pub(crate) use px4::PX4;
 
 use crate::error::Error;
 use crate::formats::Format;
@@ -42,6 +46,7 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         return Err(Error::options(format!("expected {said} as --format says, found {format}")));
     }
     let Decoded { table, notes } = match format {
+        Format::Px4 => px4::read(bytes, options)?,
         _ if ardupilot::is_it(bytes) => ardupilot::read(bytes, options)?,
         _ => ardupilot_text::read(bytes, options)?,
     };
@@ -58,6 +63,7 @@ struct Decoded {
 /// The format that the first bytes tell.
 fn recognise(bytes: &[u8]) -> Option<Format> {
     match bytes {
+        _ if px4::is_it(bytes) => Some(Format::Px4),
         _ if ardupilot::is_it(bytes) || ardupilot_text::is_it(bytes) => Some(Format::ArduPilot),
         _ => None,
     }

@@ -27,6 +27,8 @@ pub enum Format {
     OpenLogArtemis,
     /// Log of `ArduPilot`, binary or as text.
     ArduPilot,
+    /// `ULog` of PX4.
+    Px4,
 }
 
 /// What is known of a format.
@@ -47,12 +49,13 @@ pub(crate) struct Description {
     pub(crate) is_a_guess: bool,
 }
 
-const ALL: [&Description; 5] = [
+const ALL: [&Description; 6] = [
     &razor::RAZOR,
     &xio::XIO,
     &xsens::XSENS,
     &openlog_artemis::OPENLOG_ARTEMIS,
     &containers::ARDUPILOT,
+    &containers::PX4,
 ];
 
 impl Format {
@@ -84,6 +87,7 @@ impl Format {
             Self::Xsens => &xsens::XSENS,
             Self::OpenLogArtemis => &openlog_artemis::OPENLOG_ARTEMIS,
             Self::ArduPilot => &containers::ARDUPILOT,
+            Self::Px4 => &containers::PX4,
         }
     }
 }

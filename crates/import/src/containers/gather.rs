@@ -11,8 +11,8 @@ pub(super) type Row = [f64; 7];
 /// The numbers of one sensor, and the record of each row.
 #[derive(Debug, Default)]
 pub(super) struct Stream {
-    columns: [Vec<f64>; 7],
-    records: Vec<usize>,
+    pub(super) columns: [Vec<f64>; 7],
+    pub(super) records: Vec<usize>,
 }
 
 impl Stream {
@@ -21,6 +21,11 @@ impl Stream {
             column.push(value);
         }
         self.records.push(record);
+    }
+
+    /// The numbers of a row; not a number beyond the last one.
+    pub(super) fn row(&self, place: usize) -> Row {
+        self.columns.each_ref().map(|column| column.get(place).copied().unwrap_or(f64::NAN))
     }
 
     pub(super) fn len(&self) -> usize {

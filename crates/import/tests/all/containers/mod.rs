@@ -2,6 +2,7 @@
 //! ambiguous is told or refused.
 
 mod ardupilot;
+mod px4;
 
 use kestirim_import::inertial::{self, Inertial, Sample};
 use kestirim_import::{Error, Options};
