@@ -10,13 +10,22 @@ mod ardupilot_text;
 mod bytes;
 mod gather;
 mod join;
+mod member;
 mod numbered;
+mod phones;
+mod phyphox;
 mod px4;
+mod sensor_logger;
 mod ulog;
 mod walk;
+mod zipped;
 
 pub(crate) use ardupilot::ARDUPILOT;
+pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
+pub(crate) use sensor_logger::SENSOR_LOGGER;
+
+use phones::Phone;
 
 use crate::error::Error;
 use crate::formats::Format;
@@ -35,21 +44,35 @@ pub(crate) struct Opened<'a> {
     pub(crate) notes: Vec<String>,
 }
 
+/// What unpacks to more bytes in all is refused: 1 GiB.
+const LARGEST: u64 = 1 << 30;
+
+/// A file that holds too much.
+fn too_large() -> Error {
+    Error::log("expected a file that unpacks to at most 1 GiB, found a larger one")
+}
+
 /// Opens a log, whatever it is.
 ///
 /// # Errors
 /// What was expected and what was found.
 pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error> {
-    let Some(format) = recognise(bytes) else { return open_text(bytes, options) };
-    let other = options.format.filter(|&said| said != format);
-    if let Some(said) = other {
+    let (format, decoded) = if ardupilot::is_it(bytes) {
+        (Format::ArduPilot, ardupilot::read(bytes, options))
+    } else if px4::is_it(bytes) {
+        (Format::Px4, px4::read(bytes, options))
+    } else if zipped::is_it(bytes) {
+        let mut phone = Phone::open(bytes, options)?;
+        (phone.format(), phone.read(options))
+    } else if ardupilot_text::is_it(bytes) {
+        (Format::ArduPilot, ardupilot_text::read(bytes, options))
+    } else {
+        return open_text(bytes, options);
+    };
+    if let Some(said) = options.format.filter(|&said| said != format) {
         return Err(Error::options(format!("expected {said} as --format says, found {format}")));
     }
-    let Decoded { table, notes } = match format {
-        Format::Px4 => px4::read(bytes, options)?,
-        _ if ardupilot::is_it(bytes) => ardupilot::read(bytes, options)?,
-        _ => ardupilot_text::read(bytes, options)?,
-    };
+    let Decoded { table, notes } = decoded?;
     Ok(Opened { table, text: None, format: Some(format), notes })
 }
 
@@ -60,15 +83,6 @@ struct Decoded {
     notes: Vec<String>,
 }
 
-/// The format that the first bytes tell.
-fn recognise(bytes: &[u8]) -> Option<Format> {
-    match bytes {
-        _ if px4::is_it(bytes) => Some(Format::Px4),
-        _ if ardupilot::is_it(bytes) || ardupilot_text::is_it(bytes) => Some(Format::ArduPilot),
-        _ => None,
-    }
-}
-
 fn open_text<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error> {
     if let Some(said) = options.format.filter(|said| said.is_container()) {
         return Err(Error::options(format!(
@@ -77,10 +91,15 @@ fn open_text<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error
     }
     let text = Text::new(bytes)?;
     let table = Table::read(&text)?;
-    if options.topic.is_some() {
-        let problem = "expected a file of several sensors for --topic, found one table of text";
-        return Err(Error::options(problem));
-    }
+    refuse_topic(options, "one table of text")?;
     let format = options.format.or_else(|| Format::of(&table));
     Ok(Opened { table, text: Some(text), format, notes: Vec::new() })
+}
+
+/// Refuses to choose where there is no choice.
+fn refuse_topic(options: &Options, found: &str) -> Result<(), Error> {
+    if options.topic.is_none() {
+        return Ok(());
+    }
+    Err(Error::options(format!("expected a file of several sensors for --topic, found {found}")))
 }

@@ -87,6 +87,23 @@ impl Damage {
         Self { part, ..Self::default() }
     }
 
+    /// The same, of another part.
+    pub(crate) fn named(mut self, part: Part) -> Self {
+        self.losses.iter_mut().for_each(|loss| loss.part = part);
+        self.first.iter_mut().for_each(|first| first.part = part);
+        Self { part, end_may_be_cut: false, ..self }
+    }
+
+    /// That of several texts together; what is added then is of the first one.
+    pub(crate) fn joined<const N: usize>(parts: [Self; N]) -> Self {
+        let mut all = Self::of(parts.first().map_or(Part::Line, |first| first.part));
+        for part in parts {
+            all.losses.extend(part.losses);
+            all.first = all.first.or(part.first);
+        }
+        all
+    }
+
     /// How many lines or records were skipped.
     pub fn count(&self) -> usize {
         self.losses.iter().map(|loss| loss.count).sum()

@@ -118,6 +118,24 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}{dots}\"", start.escape_debug())
 }
 
+/// Names in a log, on one line and not too many; `none` of none.
+pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    const MOST: usize = 12;
+    let mut list = String::new();
+    for (place, name) in names.into_iter().enumerate() {
+        let separator = if place == 0 { "" } else { ", " };
+        if place == MOST {
+            list.push_str(", …");
+            break;
+        }
+        list.push_str(separator);
+        list.extend(
+            name.chars().take(60).map(|letter| if letter.is_control() { '?' } else { letter }),
+        );
+    }
+    if list.is_empty() { "none".to_owned() } else { list }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -29,6 +29,10 @@ pub enum Format {
     ArduPilot,
     /// `ULog` of PX4.
     Px4,
+    /// Zip file that phyphox exports.
+    Phyphox,
+    /// Zip file that Sensor Logger exports.
+    SensorLogger,
 }
 
 /// What is known of a format.
@@ -49,13 +53,15 @@ pub(crate) struct Description {
     pub(crate) is_a_guess: bool,
 }
 
-const ALL: [&Description; 6] = [
+const ALL: [&Description; 8] = [
     &razor::RAZOR,
     &xio::XIO,
     &xsens::XSENS,
     &openlog_artemis::OPENLOG_ARTEMIS,
     &containers::ARDUPILOT,
     &containers::PX4,
+    &containers::PHYPHOX,
+    &containers::SENSOR_LOGGER,
 ];
 
 impl Format {
@@ -88,6 +94,8 @@ impl Format {
             Self::OpenLogArtemis => &openlog_artemis::OPENLOG_ARTEMIS,
             Self::ArduPilot => &containers::ARDUPILOT,
             Self::Px4 => &containers::PX4,
+            Self::Phyphox => &containers::PHYPHOX,
+            Self::SensorLogger => &containers::SENSOR_LOGGER,
         }
     }
 }

@@ -16,7 +16,7 @@ use super::bytes::{Bytes, padded_text};
 use super::gather::{Losses, Row, Stream};
 use super::numbered::Numbered;
 use super::walk::{Framing, Step, Walk};
-use crate::error::Error;
+use crate::error::{Error, listed};
 use crate::formats::{Description, Format};
 use crate::options::Options;
 use crate::part::Part;
@@ -113,8 +113,7 @@ impl Gathered {
 
     pub(super) fn decoded(self, part: Part) -> Result<Decoded, Error> {
         if !self.sensor.is_seen() {
-            let names: Vec<_> = self.names.iter().take(20).map(String::as_str).collect();
-            let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            let names = listed(self.names.iter().map(String::as_str));
             return Err(Error::log(format!(
                 "expected messages IMU with GyrX and AccX of ArduPilot, found {names}"
             )));

@@ -40,8 +40,13 @@ impl Stream {
         losses: &Losses,
         part: Part,
     ) -> Table {
-        let names = std::iter::once(time).chain(known.sensors).map(str::to_owned);
         let damage = losses.damage(part, self.len());
+        self.named(known, time, damage)
+    }
+
+    /// A table under a format's names.
+    pub(super) fn named(self, known: &Description, time: &str, damage: Damage) -> Table {
+        let names = std::iter::once(time).chain(known.sensors).map(str::to_owned);
         Table::decoded(names.zip(self.columns), self.records, damage)
     }
 }

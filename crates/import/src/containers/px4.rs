@@ -20,7 +20,7 @@ use super::join::join;
 use super::numbered::Numbered;
 use super::ulog::{Formats, Place};
 use super::walk::{Step, Walk};
-use crate::error::Error;
+use crate::error::{Error, listed};
 use crate::formats::{Description, Format};
 use crate::options::Options;
 use crate::part::Part;
@@ -256,9 +256,7 @@ impl Reader {
 
 /// A log without an inertial sensor.
 fn none(formats: &Formats) -> Error {
-    let names: Vec<_> = formats.topics().map(|topic| topic.name.as_str()).take(12).collect();
-    let found = if names.is_empty() { "no topic".to_owned() } else { names.join(", ") };
-    let found: String = found.chars().filter(|letter| !letter.is_control()).take(300).collect();
+    let found = listed(formats.topics().map(|topic| topic.name.as_str()));
     Error::log(format!(
         "expected a topic sensor_combined, vehicle_imu, or sensor_gyro with sensor_accel, found {found}"
     ))

@@ -2,6 +2,7 @@
 //! ambiguous is told or refused.
 
 mod ardupilot;
+mod phones;
 mod px4;
 
 use kestirim_import::inertial::{self, Inertial, Sample};

@@ -191,7 +191,7 @@ fn a_log_without_the_sensor_is_refused() {
     let expected =
         "expected a topic sensor_combined, vehicle_imu, or sensor_gyro with sensor_accel, found ";
     assert_eq!(refusal(&log), format!("{expected}esc_status"));
-    assert_eq!(refusal(b"ULog\x01\x12\x35"), format!("{expected}no topic"));
+    assert_eq!(refusal(b"ULog\x01\x12\x35"), format!("{expected}none"));
 }
 
 #[test]
