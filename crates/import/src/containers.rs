@@ -9,18 +9,23 @@ mod ardupilot;
 mod ardupilot_text;
 mod bytes;
 mod gather;
+mod imu_message;
 mod join;
+mod mcap;
 mod member;
 mod numbered;
 mod phones;
 mod phyphox;
 mod px4;
 mod sensor_logger;
+mod topics;
 mod ulog;
+mod unpack;
 mod walk;
 mod zipped;
 
 pub(crate) use ardupilot::ARDUPILOT;
+pub(crate) use mcap::MCAP;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
 pub(crate) use sensor_logger::SENSOR_LOGGER;
@@ -61,6 +66,8 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         (Format::ArduPilot, ardupilot::read(bytes, options))
     } else if px4::is_it(bytes) {
         (Format::Px4, px4::read(bytes, options))
+    } else if mcap::is_it(bytes) {
+        (Format::Mcap, mcap::read(bytes, options))
     } else if zipped::is_it(bytes) {
         let mut phone = Phone::open(bytes, options)?;
         (phone.format(), phone.read(options))

@@ -29,6 +29,8 @@ pub enum Format {
     ArduPilot,
     /// `ULog` of PX4.
     Px4,
+    /// MCAP with messages of ROS 1 or ROS 2.
+    Mcap,
     /// Zip file that phyphox exports.
     Phyphox,
     /// Zip file that Sensor Logger exports.
@@ -53,13 +55,14 @@ pub(crate) struct Description {
     pub(crate) is_a_guess: bool,
 }
 
-const ALL: [&Description; 8] = [
+const ALL: [&Description; 9] = [
     &razor::RAZOR,
     &xio::XIO,
     &xsens::XSENS,
     &openlog_artemis::OPENLOG_ARTEMIS,
     &containers::ARDUPILOT,
     &containers::PX4,
+    &containers::MCAP,
     &containers::PHYPHOX,
     &containers::SENSOR_LOGGER,
 ];
@@ -94,6 +97,7 @@ impl Format {
             Self::OpenLogArtemis => &openlog_artemis::OPENLOG_ARTEMIS,
             Self::ArduPilot => &containers::ARDUPILOT,
             Self::Px4 => &containers::PX4,
+            Self::Mcap => &containers::MCAP,
             Self::Phyphox => &containers::PHYPHOX,
             Self::SensorLogger => &containers::SENSOR_LOGGER,
         }

@@ -136,8 +136,8 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     while let Some(step) = walk.next(&formats) {
         let record = match step {
             Step::Record(record) => record,
-            Step::Lost(fault, bytes) => {
-                gathered.losses.add(fault, walk.number, bytes);
+            Step::Lost(fault, lost) => {
+                gathered.losses.add(fault, walk.number, lost.len());
                 continue;
             }
         };

@@ -26,6 +26,20 @@ impl<'a> Bytes<'a> {
     pub(super) fn u16(&mut self) -> Option<u16> {
         self.take().map(u16::from_le_bytes)
     }
+
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    /// What stands behind its length of four bytes.
+    pub(super) fn counted(&mut self) -> Option<&'a [u8]> {
+        let length = usize::try_from(self.u32()?).ok()?;
+        self.slice(length)
+    }
 }
 
 /// A text of fixed length, without the zeros behind it.

@@ -182,7 +182,7 @@ impl Reader {
                     self.losses.read += record.len();
                     self.record(record, walk.number);
                 }
-                Step::Lost(fault, bytes) => self.losses.add(fault, walk.number, bytes),
+                Step::Lost(fault, lost) => self.losses.add(fault, walk.number, lost.len()),
             }
         }
         walk.number

@@ -20,8 +20,8 @@ pub(super) trait Framing {
 pub(super) enum Step<'a> {
     /// A record.
     Record(&'a [u8]),
-    /// So many bytes that cannot be read.
-    Lost(Fault, usize),
+    /// Bytes that cannot be read.
+    Lost(Fault, &'a [u8]),
 }
 
 /// A walk through bytes.
@@ -54,15 +54,14 @@ impl<'a> Walk<'a> {
             && let Some(on) = framing.candidate(rest)
         {
             skipped += on.max(1);
-            let Some(rest) = self.rest.get(skipped..) else { break };
+            let Some((lost, rest)) = self.rest.split_at_checked(skipped) else { break };
             if whole(framing, rest, false).is_some() {
                 self.rest = rest;
-                return Some(Step::Lost(Fault::Torn, skipped));
+                return Some(Step::Lost(Fault::Torn, lost));
             }
         }
-        let (lost, length) = (self.rest.len(), framing.length(self.rest, true));
-        self.rest = &[];
-        let is_cut = length.is_some_and(|length| length > lost);
+        let lost = std::mem::take(&mut self.rest);
+        let is_cut = framing.length(lost, true).is_some_and(|length| length > lost.len());
         Some(Step::Lost(if is_cut { Fault::Cut } else { Fault::Torn }, lost))
     }
 }

@@ -2,6 +2,8 @@
 //! ambiguous is told or refused.
 
 mod ardupilot;
+mod imu;
+mod mcap;
 mod phones;
 mod px4;
 
