@@ -8,6 +8,7 @@
 mod ardupilot;
 mod ardupilot_text;
 mod bytes;
+mod chunks;
 mod gather;
 mod imu_message;
 mod join;
@@ -17,6 +18,7 @@ mod numbered;
 mod phones;
 mod phyphox;
 mod px4;
+mod rosbag;
 mod sensor_logger;
 mod topics;
 mod ulog;
@@ -28,6 +30,7 @@ pub(crate) use ardupilot::ARDUPILOT;
 pub(crate) use mcap::MCAP;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
+pub(crate) use rosbag::ROS1;
 pub(crate) use sensor_logger::SENSOR_LOGGER;
 
 use phones::Phone;
@@ -68,6 +71,8 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         (Format::Px4, px4::read(bytes, options))
     } else if mcap::is_it(bytes) {
         (Format::Mcap, mcap::read(bytes, options))
+    } else if rosbag::is_it(bytes) {
+        (Format::Ros1, rosbag::read(bytes, options))
     } else if zipped::is_it(bytes) {
         let mut phone = Phone::open(bytes, options)?;
         (phone.format(), phone.read(options))

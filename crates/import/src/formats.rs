@@ -29,6 +29,8 @@ pub enum Format {
     ArduPilot,
     /// `ULog` of PX4.
     Px4,
+    /// Bag of ROS 1.
+    Ros1,
     /// MCAP with messages of ROS 1 or ROS 2.
     Mcap,
     /// Zip file that phyphox exports.
@@ -55,13 +57,14 @@ pub(crate) struct Description {
     pub(crate) is_a_guess: bool,
 }
 
-const ALL: [&Description; 9] = [
+const ALL: [&Description; 10] = [
     &razor::RAZOR,
     &xio::XIO,
     &xsens::XSENS,
     &openlog_artemis::OPENLOG_ARTEMIS,
     &containers::ARDUPILOT,
     &containers::PX4,
+    &containers::ROS1,
     &containers::MCAP,
     &containers::PHYPHOX,
     &containers::SENSOR_LOGGER,
@@ -97,6 +100,7 @@ impl Format {
             Self::OpenLogArtemis => &openlog_artemis::OPENLOG_ARTEMIS,
             Self::ArduPilot => &containers::ARDUPILOT,
             Self::Px4 => &containers::PX4,
+            Self::Ros1 => &containers::ROS1,
             Self::Mcap => &containers::MCAP,
             Self::Phyphox => &containers::PHYPHOX,
             Self::SensorLogger => &containers::SENSOR_LOGGER,

@@ -1,6 +1,5 @@
-//! MCAP (<https://mcap.dev/spec>): channels of ROS 2 (CDR) and ROS 1, in chunks or not, plain, LZ4 or Zstandard.
-//!
-//! A chunk whose checksum is wrong is skipped; of one that was cut off what remains is read. The index is not needed.
+//! MCAP (<https://mcap.dev/spec>): channels of ROS 2 (CDR) and ROS 1, in chunks or not, plain, LZ4 or Zstandard. The index is
+//! not needed.
 //!
 //! Weighed: the crate `mcap` 0.26 (MIT), which the tests write with. Its readers end at the first record that is damaged, and it
 //! unpacks with libraries of C.
@@ -9,11 +8,11 @@ use std::collections::BTreeMap;
 
 use super::Decoded;
 use super::bytes::Bytes;
+use super::chunks::{self, Chunk, Records, is_cut_chunk};
 use super::imu_message::Encoding;
 use super::topics::{SENSORS, TIME, Topics};
-use super::unpack::{Budget, Compression};
-use super::walk::{Framing, Step, Walk};
-use crate::damage::Fault;
+use super::unpack::Compression;
+use super::walk::Framing;
 use crate::error::Error;
 use crate::formats::{Description, Format};
 use crate::options::Options;
@@ -49,99 +48,18 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// # Errors
 /// If it holds no inertial sensor, or several and nobody says which, or unpacks to too much.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
-    let mut reader = Reader::default();
-    reader.records(bytes.get(MAGIC.len()..).unwrap_or_default(), Level::File)?;
-    reader.topics.decoded(&MCAP, options)
+    let records = bytes.get(MAGIC.len()..).unwrap_or_default();
+    chunks::read(records, Mcap::default())?.decoded(&MCAP, options)
 }
 
-/// Where records are.
-#[derive(Clone, Copy, PartialEq)]
-enum Level {
-    File,
-    Chunk,
-    /// In a chunk that was cut off, which is told already.
-    CutChunk,
-}
-
-#[derive(Default)]
-struct Reader {
+/// What is told of schemas and channels.
+#[derive(Debug, Default)]
+struct Mcap {
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, (usize, Encoding)>,
-    topics: Topics,
-    budget: Budget,
-    /// How many records there were.
-    number: usize,
 }
 
-impl Reader {
-    /// Reads the records of the file, or those in a chunk.
-    fn records(&mut self, bytes: &[u8], level: Level) -> Result<(), Error> {
-        let mut walk = Walk::new(bytes, self.number);
-        while let Some(step) = walk.next(&Records) {
-            self.number = walk.number;
-            match step {
-                Step::Record([CHUNK, rest @ ..]) if level == Level::File => {
-                    self.chunk(rest.get(HEADER - 1..).unwrap_or_default())?;
-                }
-                Step::Record(record) => {
-                    self.topics.losses.read += record.len();
-                    if let [kind, rest @ ..] = record
-                        && let Some(body) = rest.get(HEADER - 1..)
-                    {
-                        self.record(*kind, body);
-                    }
-                }
-                Step::Lost(Fault::Cut, lost) => match lost {
-                    [CHUNK, rest @ ..] if level == Level::File => {
-                        self.topics.losses.add(Fault::Cut, walk.number, 0);
-                        self.cut_chunk(rest.get(HEADER - 1..).unwrap_or_default())?;
-                    }
-                    _ if level == Level::CutChunk => {}
-                    _ => self.topics.losses.add(Fault::Cut, walk.number, lost.len()),
-                },
-                Step::Lost(fault, lost) => {
-                    self.topics.losses.add(fault, walk.number, lost.len());
-                }
-            }
-            walk.number = self.number;
-        }
-        Ok(())
-    }
-
-    /// Reads a chunk, if it is sound.
-    fn chunk(&mut self, body: &[u8]) -> Result<(), Error> {
-        let number = self.number;
-        let Some(chunk) = Chunk::of(body) else {
-            self.topics.losses.add(Fault::Torn, number, body.len());
-            return Ok(());
-        };
-        let packed = chunk.packed.get(..chunk.length).unwrap_or_default();
-        let records = self.budget.unpack(chunk.compression, packed, chunk.size)?;
-        let is_sound = records.len() as u64 == chunk.size
-            && (chunk.checksum == 0 || chunk.checksum == crc32fast::hash(&records));
-        if is_sound {
-            return self.records(&records, Level::Chunk);
-        }
-        self.topics.losses.add(Fault::Torn, number, records.len().max(body.len()));
-        Ok(())
-    }
-
-    /// Reads what remains of a chunk that was cut off.
-    fn cut_chunk(&mut self, body: &[u8]) -> Result<(), Error> {
-        let Some(chunk) = Chunk::of(body) else { return Ok(()) };
-        let records = self.budget.unpack(chunk.compression, chunk.packed, chunk.size)?;
-        self.records(&records, Level::CutChunk)
-    }
-
-    fn record(&mut self, kind: u8, body: &[u8]) {
-        match kind {
-            SCHEMA => drop(self.schema(body)),
-            CHANNEL => drop(self.channel(body)),
-            MESSAGE => drop(self.message(body)),
-            _ => {}
-        }
-    }
-
+impl Mcap {
     fn schema(&mut self, body: &[u8]) -> Option<()> {
         let mut bytes = Bytes(body);
         let (id, name) = (bytes.u16()?, bytes.counted()?);
@@ -150,7 +68,7 @@ impl Reader {
         Some(())
     }
 
-    fn channel(&mut self, body: &[u8]) -> Option<()> {
+    fn channel(&mut self, body: &[u8], topics: &mut Topics) -> Option<()> {
         let mut bytes = Bytes(body);
         let (id, schema) = (bytes.u16()?, bytes.u16()?);
         let (topic, encoding) = (bytes.counted()?, bytes.counted()?);
@@ -161,48 +79,50 @@ impl Reader {
             _ => None,
         };
         let kind = self.schemas.get(&schema).map_or("no type", String::as_str);
-        if let (Some(place), Some(encoding)) = (self.topics.add(&topic, kind, encoding), encoding) {
+        if let (Some(place), Some(encoding)) = (topics.add(&topic, kind, encoding), encoding) {
             self.channels.entry(id).or_insert((place, encoding));
         }
         Some(())
     }
 
-    fn message(&mut self, body: &[u8]) -> Option<()> {
+    fn message(&self, body: &[u8], number: usize, topics: &mut Topics) -> Option<()> {
         let mut bytes = Bytes(body);
         let (id, _sequence, logged, _published) =
             (bytes.u16()?, bytes.u32()?, bytes.u64()?, bytes.u64()?);
         let &(place, encoding) = self.channels.get(&id)?;
-        self.topics.message(place, encoding, self.number, logged, bytes.0);
+        topics.message(place, encoding, number, logged, bytes.0);
         Some(())
     }
 }
 
-/// A chunk of records.
-struct Chunk<'a> {
-    compression: Compression,
-    /// How many bytes the records take, and what they sum up to.
-    size: u64,
-    checksum: u32,
-    /// How many bytes they take as they are packed, and those, of which some may be missing.
-    length: usize,
-    packed: &'a [u8],
-}
+impl Records for Mcap {
+    fn chunk(record: &[u8]) -> Option<Chunk<'_>> {
+        if record.first() != Some(&CHUNK) {
+            return None;
+        }
+        let mut bytes = Bytes(record.get(HEADER..).unwrap_or_default());
+        let mut chunk = || {
+            let (_start, _end) = (bytes.u64()?, bytes.u64()?);
+            let (size, checksum) = (bytes.u64()?, bytes.u32()?);
+            let compression = Compression::of(bytes.counted()?);
+            let length = usize::try_from(bytes.u64()?).ok()?;
+            Some(Chunk { compression, size, checksum, length, packed: bytes.0 })
+        };
+        Some(chunk().unwrap_or_default())
+    }
 
-impl<'a> Chunk<'a> {
-    fn of(body: &'a [u8]) -> Option<Self> {
-        let mut bytes = Bytes(body);
-        let (_start, _end, size, checksum) =
-            (bytes.u64()?, bytes.u64()?, bytes.u64()?, bytes.u32()?);
-        let compression = Compression::of(bytes.counted()?)?;
-        let length = usize::try_from(bytes.u64()?).ok()?;
-        Some(Self { compression, size, checksum, length, packed: bytes.0 })
+    fn record(&mut self, record: &[u8], number: usize, topics: &mut Topics) {
+        let Some((kind, body)) = record.first().zip(record.get(HEADER..)) else { return };
+        match *kind {
+            SCHEMA => drop(self.schema(body)),
+            CHANNEL => drop(self.channel(body, topics)),
+            MESSAGE => drop(self.message(body, number, topics)),
+            _ => {}
+        }
     }
 }
 
-/// Records of MCAP: kind, length, body.
-struct Records;
-
-impl Framing for Records {
+impl Framing for Mcap {
     fn length(&self, bytes: &[u8], is_in_sequence: bool) -> Option<usize> {
         if bytes.starts_with(&MAGIC) {
             return Some(MAGIC.len());
@@ -216,19 +136,13 @@ impl Framing for Records {
     }
 
     fn follows(&self, bytes: &[u8]) -> bool {
-        // A length of more than a PiB is none.
+        // A length of more than 2⁴⁸ is none.
         bytes.starts_with(&MAGIC)
             || bytes.first().is_some_and(|&kind| kind != 0)
                 && bytes.get(7..HEADER).is_none_or(|highest| highest == [0, 0])
     }
 
     fn candidate(&self, bytes: &[u8]) -> Option<usize> {
-        // In a chunk that was cut off no record begins.
-        let is_cut = match bytes {
-            [CHUNK, rest @ ..] => rest.get(HEADER - 1..).and_then(Chunk::of).is_some(),
-            _ => false,
-        };
-        let is_cut = is_cut && self.length(bytes, true).is_some_and(|length| length > bytes.len());
-        (bytes.len() > HEADER && !is_cut).then_some(1)
+        (bytes.len() > HEADER && !is_cut_chunk(self, bytes)).then_some(1)
     }
 }

@@ -6,6 +6,7 @@ mod imu;
 mod mcap;
 mod phones;
 mod px4;
+mod rosbag;
 
 use kestirim_import::inertial::{self, Inertial, Sample};
 use kestirim_import::{Error, Options};
