@@ -77,7 +77,9 @@ impl Imu {
     pub(super) fn row(&self, field: impl Fn(usize) -> Option<f64>) -> Option<(u32, Row)> {
         let number = match self.number {
             (own, None) => own,
-            (_, Some(place)) => field(place)? as u32,
+            (_, Some(place)) => {
+                field(place).filter(|number| *number >= 0.0 && number.fract() == 0.0)? as u32
+            }
         };
         let time = self.time.map_or(Some(f64::NAN), |(place, _)| field(place))?;
         let [ax, ay, az, gx, gy, gz] = self.sensors.map(&field);
@@ -106,7 +108,8 @@ impl Gathered {
         if let Some((_, label)) = imu.and_then(|imu| imu.time) {
             self.time = label;
         }
-        if !self.names.iter().any(|known| known == name) {
+        // More are not told of.
+        if self.names.len() < 20 {
             self.names.push(name.to_owned());
         }
     }

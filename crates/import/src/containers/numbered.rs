@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::gather::{Row, Stream};
-use crate::error::{Error, quoted};
+use crate::error::{Error, listed, quoted};
 use crate::options::Options;
 
 /// The rows of the sensor with the wanted number, and which others there are.
@@ -52,7 +52,8 @@ impl Numbered {
             return Ok((count > 1).then(|| format!("{kind} {wanted} of {count}")));
         }
         let numbers: Vec<_> = self.seen.iter().map(u32::to_string).collect();
-        let problem = format!("expected {kind} {wanted}, found {kind} {}", numbers.join(", "));
+        let found = listed(numbers.iter().map(String::as_str));
+        let problem = format!("expected {kind} {wanted}, found {kind} {found}");
         let first = numbers.first().map_or("0", String::as_str);
         Err(if self.is_said {
             Error::options(format!("{problem} (--topic)"))

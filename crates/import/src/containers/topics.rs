@@ -1,5 +1,7 @@
 //! Topics of ROS in a file, of which one is an inertial sensor's that is wanted.
 
+use std::collections::BTreeMap;
+
 use super::Decoded;
 use super::gather::{Losses, Stream};
 use super::imu_message::Encoding;
@@ -34,6 +36,8 @@ struct Topic {
 #[derive(Debug, Default)]
 pub(super) struct Topics {
     inertial: Vec<Topic>,
+    /// Their places.
+    by_name: BTreeMap<String, usize>,
     /// The others, each with its type.
     others: Vec<String>,
     pub(super) losses: Losses,
@@ -56,12 +60,14 @@ impl Topics {
             }
             return None;
         }
-        let known = self.inertial.iter().position(|topic| topic.name == name);
-        Some(known.unwrap_or_else(|| {
-            let (name, stream) = (name.to_owned(), Stream::default());
-            self.inertial.push(Topic { name, stream, receipts: Vec::new() });
-            self.inertial.len() - 1
-        }))
+        if let Some(&place) = self.by_name.get(name) {
+            return Some(place);
+        }
+        let place = self.inertial.len();
+        let (stream, receipts) = (Stream::default(), Vec::new());
+        self.inertial.push(Topic { name: name.to_owned(), stream, receipts });
+        self.by_name.insert(name.to_owned(), place);
+        Some(place)
     }
 
     /// Takes a message of a topic, received at a time in ns since 1970.
