@@ -1,6 +1,7 @@
-//! Lines of a log that cannot be samples: skipped, counted and told.
+//! Lines or records of a log that cannot be samples: skipped, counted and told.
 
 use crate::error::{Complaint, Error};
+use crate::part::Part;
 
 /// The share of a log that may be skipped. A hundredth is more than a logger loses on a good day, and less than the share
 /// of a wrongly understood log whose lines seem damaged.
@@ -11,19 +12,19 @@ const FEWEST: usize = 3;
 /// How many lines are named of each kind.
 const NAMED: usize = 3;
 
-/// What is wrong with a line.
+/// What is wrong with a line or a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The last line ends before its last field.
+    /// The last one ends before its last field.
     Cut,
-    /// It has more or fewer fields than the header, or than the other lines.
+    /// A line has more or fewer fields than the header, or than the other lines; a record is not of the file's format.
     Torn,
     /// A field of a column that is needed holds no number.
     Foreign,
-    /// It is the same as the line above.
+    /// It is the same as the one before.
     Doubled,
-    /// Its time is before that of a line above, or far after that of all lines below.
+    /// Its time is before that of one before it, or far after that of all that follow.
     OutOfOrder,
     /// No sensor can have said it.
     OutOfRange,
@@ -32,9 +33,10 @@ pub enum Fault {
 }
 
 impl Fault {
-    fn words(self) -> &'static str {
+    fn words(self, part: Part) -> &'static str {
         match self {
             Self::Cut => "cut off",
+            Self::Torn if part == Part::Record => "torn (unreadable)",
             Self::Torn => "torn (another number of fields)",
             Self::Foreign => "without a number where one is needed",
             Self::Doubled => "doubled",
@@ -45,9 +47,11 @@ impl Fault {
     }
 }
 
-/// How many lines have a [`Fault`], and the first of them.
+/// How many lines or records have a [`Fault`], and the first of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Loss {
+    /// What they are.
+    pub part: Part,
     /// What is wrong with them.
     pub fault: Fault,
     /// How many there are.
@@ -58,11 +62,10 @@ pub struct Loss {
 
 impl std::fmt::Display for Loss {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let lines: Vec<_> = self.lines.iter().map(usize::to_string).collect();
-        let (noun, verb) = if self.count == 1 { ("line", "was") } else { ("lines", "were") };
-        let dots = if self.count > self.lines.len() { ", …" } else { "" };
-        let (count, words) = (self.count, self.fault.words());
-        write!(f, "{count} {noun} {words} {verb} skipped: {noun} {}{dots}", lines.join(", "))
+        let (count, words) = (self.count, self.fault.words(self.part));
+        let (noun, verb) = (self.part.noun(count), if count == 1 { "was" } else { "were" });
+        let place = self.part.place(&self.lines, count > self.lines.len());
+        write!(f, "{count} {noun} {words} {verb} skipped: {place}")
     }
 }
 
@@ -74,15 +77,39 @@ pub struct Damage {
     /// Whether the last line has no line break: its last number may have lost digits.
     pub end_may_be_cut: bool,
     pub(crate) first: Option<Complaint>,
+    /// What the log is made of.
+    pub(crate) part: Part,
 }
 
 impl Damage {
-    /// How many lines were skipped.
+    /// None yet.
+    pub(crate) fn of(part: Part) -> Self {
+        Self { part, ..Self::default() }
+    }
+
+    /// The same, of another part.
+    pub(crate) fn named(mut self, part: Part) -> Self {
+        self.losses.iter_mut().for_each(|loss| loss.part = part);
+        self.first.iter_mut().for_each(|first| first.part = part);
+        Self { part, end_may_be_cut: false, ..self }
+    }
+
+    /// That of several texts together; what is added then is of the first one.
+    pub(crate) fn joined<const N: usize>(parts: [Self; N]) -> Self {
+        let mut all = Self::of(parts.first().map_or(Part::Line, |first| first.part));
+        for part in parts {
+            all.losses.extend(part.losses);
+            all.first = all.first.or(part.first);
+        }
+        all
+    }
+
+    /// How many lines or records were skipped.
     pub fn count(&self) -> usize {
         self.losses.iter().map(|loss| loss.count).sum()
     }
 
-    /// A sentence for each kind of fault, with line numbers.
+    /// A sentence for each kind of fault, with the numbers of lines or records.
     pub fn sentences(&self) -> Vec<String> {
         let cut = "the log does not end with a line break: its end may be cut";
         let cut = self.end_may_be_cut.then(|| cut.to_owned());
@@ -94,18 +121,30 @@ impl Damage {
         FEWEST.max((rows as f64 * SHARE) as usize)
     }
 
-    /// Counts a line; the complaint is put in words if it is the first one.
+    /// Counts a line or record; the complaint is put in words if it is the first one.
     pub fn add(&mut self, fault: Fault, line: usize, problem: impl FnOnce() -> String) {
+        self.add_some(fault, line, 1, problem);
+    }
+
+    /// Counts as many as were lost at one place.
+    pub(crate) fn add_some(
+        &mut self,
+        fault: Fault,
+        line: usize,
+        count: usize,
+        problem: impl FnOnce() -> String,
+    ) {
+        let part = self.part;
         if self.first.as_ref().is_none_or(|first| line < first.line) {
-            self.first = Some(Complaint { line, problem: problem() });
+            self.first = Some(Complaint { part, line, problem: problem() });
         }
-        let at = self.losses.iter().position(|loss| loss.fault == fault);
+        let at = self.losses.iter().position(|loss| (loss.part, loss.fault) == (part, fault));
         let at = at.unwrap_or_else(|| {
-            self.losses.push(Loss { fault, count: 0, lines: Vec::new() });
+            self.losses.push(Loss { part, fault, count: 0, lines: Vec::new() });
             self.losses.len() - 1
         });
         let loss = &mut self.losses[at];
-        loss.count += 1;
+        loss.count += count;
         if loss.lines.len() < NAMED {
             loss.lines.push(line);
         }
@@ -114,7 +153,7 @@ impl Damage {
     /// Accepts what may be skipped of so many rows; nothing if `strict`.
     ///
     /// # Errors
-    /// [`Error::Line`] at the first damaged line if `strict`; [`Error::Damaged`] if there are too many.
+    /// [`Error::Line`] or [`Error::Part`] at the first damaged one if `strict`; [`Error::Damaged`] if there are too many.
     pub fn accept(&self, rows: usize, strict: bool) -> Result<(), Error> {
         let Some(first) = &self.first else { return Ok(()) };
         let (allowed, found) = (Self::allowed(rows), self.count());

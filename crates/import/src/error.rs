@@ -1,5 +1,7 @@
 //! What is wrong with a log, in one sentence on one line.
 
+use crate::part::Part;
+
 /// Why a log is refused: one sentence that says what was expected and what was found. It names the line; the caller, who
 /// knows the file's name, puts that before it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -19,16 +21,27 @@ pub enum Error {
         /// What was expected, and what was found.
         problem: String,
     },
+    /// A record, or a line of one of several texts, is not what it should be.
+    #[error("{}: {problem}", part.place(&[*number], false))]
+    Part {
+        /// What it is.
+        part: Part,
+        /// Its number, from 1.
+        number: usize,
+        /// What was expected, and what was found.
+        problem: String,
+    },
     /// More of the log is damaged than may be skipped.
     #[error(
-        "expected at most {allowed} damaged lines of {rows}, found {found}; the first is line {first}"
+        "expected at most {allowed} damaged {} of {rows}, found {found}; the first is {first}",
+        first.part.noun(2)
     )]
     Damaged {
-        /// How many lines may be skipped.
+        /// How many lines or records may be skipped.
         allowed: usize,
-        /// How many lines should be samples.
+        /// How many should be samples.
         rows: usize,
-        /// How many lines are damaged.
+        /// How many are damaged.
         found: usize,
         /// The first of them, and what is wrong with it.
         first: Complaint,
@@ -49,10 +62,12 @@ pub enum Error {
     },
 }
 
-/// What is wrong with a line.
+/// What is wrong with a line or a record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Complaint {
-    /// The line, from 1.
+    /// Which of the two.
+    pub part: Part,
+    /// Its number, from 1.
     pub line: usize,
     /// What was expected, and what was found.
     pub problem: String,
@@ -60,13 +75,16 @@ pub struct Complaint {
 
 impl std::fmt::Display for Complaint {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: {}", self.line, self.problem)
+        write!(f, "{}: {}", self.part.place(&[self.line], false), self.problem)
     }
 }
 
 impl From<Complaint> for Error {
-    fn from(Complaint { line, problem }: Complaint) -> Self {
-        Self::Line { line, problem }
+    fn from(Complaint { part, line, problem }: Complaint) -> Self {
+        match part {
+            Part::Line => Self::Line { line, problem },
+            part => Self::Part { part, number: line, problem },
+        }
     }
 }
 
@@ -100,6 +118,24 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}{dots}\"", start.escape_debug())
 }
 
+/// Names in a log, on one line and not too many; `none` of none.
+pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    const MOST: usize = 12;
+    let mut list = String::new();
+    for (place, name) in names.into_iter().enumerate() {
+        let separator = if place == 0 { "" } else { ", " };
+        if place == MOST {
+            list.push_str(", …");
+            break;
+        }
+        list.push_str(separator);
+        list.extend(
+            name.chars().take(60).map(|letter| if letter.is_control() { '?' } else { letter }),
+        );
+    }
+    if list.is_empty() { "none".to_owned() } else { list }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,7 +145,8 @@ mod tests {
         assert_eq!(quoted("a\nb\0"), r#""a\nb\0""#);
         assert_eq!(quoted(&"x".repeat(1000)).chars().count(), 27);
         assert_eq!(quoted(" "), "nothing");
-        let first = Complaint { line: 7, problem: "expected 7 fields, found 6".to_owned() };
+        let problem = "expected 7 fields, found 6".to_owned();
+        let first = Complaint { part: Part::Line, line: 7, problem };
         let error = Error::Damaged { allowed: 3, rows: 10, found: 4, first };
         assert_eq!(
             error.to_string(),

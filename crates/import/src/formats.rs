@@ -9,6 +9,7 @@ mod xsens;
 use std::fmt;
 use std::str::FromStr;
 
+use crate::containers;
 use crate::error::{Error, quoted};
 use crate::table::Table;
 
@@ -24,6 +25,18 @@ pub enum Format {
     Xsens,
     /// CSV of `SparkFun`'s `OpenLog` Artemis.
     OpenLogArtemis,
+    /// Log of `ArduPilot`, binary or as text.
+    ArduPilot,
+    /// `ULog` of PX4.
+    Px4,
+    /// Bag of ROS 1.
+    Ros1,
+    /// MCAP with messages of ROS 1 or ROS 2.
+    Mcap,
+    /// Zip file that phyphox exports.
+    Phyphox,
+    /// Zip file that Sensor Logger exports.
+    SensorLogger,
 }
 
 /// What is known of a format.
@@ -33,8 +46,8 @@ pub(crate) struct Description {
     /// As in the option.
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
-    /// Whether a table is of this format.
-    pub(crate) is_it: fn(&Table) -> bool,
+    /// Whether a table of text is of this format; none if the first bytes of a file tell, and not its columns.
+    pub(crate) is_it: Option<fn(&Table) -> bool>,
     /// Names, or numbers without a header, of t, ax, ay, az, gx, gy, gz; the first of several names of time that is there.
     pub(crate) time: &'static [(&'static str, &'static str)],
     pub(crate) sensors: [&'static str; 6],
@@ -44,8 +57,18 @@ pub(crate) struct Description {
     pub(crate) is_a_guess: bool,
 }
 
-const ALL: [&Description; 4] =
-    [&razor::RAZOR, &xio::XIO, &xsens::XSENS, &openlog_artemis::OPENLOG_ARTEMIS];
+const ALL: [&Description; 10] = [
+    &razor::RAZOR,
+    &xio::XIO,
+    &xsens::XSENS,
+    &openlog_artemis::OPENLOG_ARTEMIS,
+    &containers::ARDUPILOT,
+    &containers::PX4,
+    &containers::ROS1,
+    &containers::MCAP,
+    &containers::PHYPHOX,
+    &containers::SENSOR_LOGGER,
+];
 
 impl Format {
     /// The name in the option `--format`.
@@ -60,7 +83,13 @@ impl Format {
 
     /// The format of a table, if it is one of these.
     pub fn of(table: &Table) -> Option<Self> {
-        ALL.iter().find(|known| (known.is_it)(table)).map(|known| known.format)
+        let is_it = |known: &&&Description| known.is_it.is_some_and(|is_it| is_it(table));
+        ALL.iter().find(is_it).map(|known| known.format)
+    }
+
+    /// Whether a file's first bytes tell this format, and not the columns of a table of text.
+    pub(crate) fn is_container(self) -> bool {
+        self.description().is_it.is_none()
     }
 
     pub(crate) fn description(self) -> &'static Description {
@@ -69,6 +98,12 @@ impl Format {
             Self::Xio => &xio::XIO,
             Self::Xsens => &xsens::XSENS,
             Self::OpenLogArtemis => &openlog_artemis::OPENLOG_ARTEMIS,
+            Self::ArduPilot => &containers::ARDUPILOT,
+            Self::Px4 => &containers::PX4,
+            Self::Ros1 => &containers::ROS1,
+            Self::Mcap => &containers::MCAP,
+            Self::Phyphox => &containers::PHYPHOX,
+            Self::SensorLogger => &containers::SENSOR_LOGGER,
         }
     }
 }

@@ -31,28 +31,29 @@ mod by_name;
 mod columns;
 mod conclusion;
 mod evidence;
+mod found;
 mod motion;
 mod order;
 mod raw;
 mod rest;
+mod rows;
 mod turns;
 mod units;
 
 pub use conclusion::{Conclusion, Source};
 pub use turns::{Turns, turns};
 
-use columns::{Axis, Columns};
-use conclusion::conclusions;
+use columns::Columns;
+use found::Found;
 use order::Rows;
-use raw::Raw;
 use units::Units;
 
+use crate::containers::{self, Opened};
 use crate::damage::{Damage, Fault};
-use crate::error::{Error, quoted};
+use crate::error::Error;
 use crate::layout::Kind;
 use crate::options::{Options, ROLES};
 use crate::table::Table;
-use crate::text::{Text, letters};
 use crate::unit::STANDARD_GRAVITY;
 
 /// Beyond what any accelerometer gives, m/s²: 1000 g.
@@ -78,7 +79,7 @@ pub struct Sample {
 pub struct Inertial {
     /// At least one sample; times never decrease.
     pub samples: Vec<Sample>,
-    /// The line of each sample.
+    /// The line of each sample, or its record in a file that is no text; in a zip of texts its line in the gyroscope's.
     pub rows: Vec<usize>,
     /// What was taken from the log's times, s: 0 unless they begin below zero or beyond 10¹⁰ s.
     pub start: f64,
@@ -104,14 +105,13 @@ impl Inertial {
 /// What was expected and what was found, and which option decides where the log does not tell.
 pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     options.refuse_others()?;
-    let text = Text::new(bytes)?;
-    let mut table = Table::read(&text)?;
+    let Opened { mut table, text, format, notes } = containers::open(bytes, options)?;
     let mut damage = std::mem::take(&mut table.damage);
     let total = table.lines.len() + damage.count();
     damage.accept(total, options.strict)?;
     refuse_other_header(&table)?;
-    let columns = Columns::find(&table, options)?;
-    let mut rows = rows(&text, &table, &columns, &mut damage);
+    let columns = Columns::find(&table, format, options)?;
+    let mut rows = Rows::of(text.as_ref(), &table, &columns, &mut damage);
     damage.accept(total, options.strict)?;
     rows.put_in_order(&periods(&table, &columns), &mut damage)?;
     let doubles = if options.strict { 0 } else { rows.without_doubles(&mut damage) };
@@ -119,7 +119,8 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     let units = units::decide(&rows.raw, &columns.claims, columns.axes_are_said)?;
     let (samples, start) = samples(&mut rows, &columns, &units, &mut damage);
     damage.accept(total, options.strict)?;
-    let conclusions = all_conclusions(&table, &columns, &units, doubles, start);
+    let found = Found { table: &table, columns: &columns, units: &units, doubles, start };
+    let conclusions = found.conclusions(format, &notes);
     let other = other(table, &columns, &rows.places);
     Ok(Inertial { samples, rows: rows.lines, start, other, conclusions, damage })
 }
@@ -136,57 +137,6 @@ fn refuse_other_header(table: &Table) -> Result<(), Error> {
         *line,
         format!("expected as many names as fields below, found {names} and {fields}"),
     ))
-}
-
-/// The rows that hold a number in every column that is needed.
-fn rows(text: &Text<'_>, table: &Table, columns: &Columns, damage: &mut Damage) -> Rows {
-    let count = table.lines.len();
-    let mut rows = Rows {
-        raw: Vec::with_capacity(count),
-        lines: Vec::with_capacity(count),
-        places: Vec::with_capacity(count),
-    };
-    let values = |axis: Axis| {
-        (&table.columns[axis.column].values, if axis.is_negative { -1.0 } else { 1.0 })
-    };
-    let sensors = columns.sensors.map(values);
-    let times = columns.time.map(|time| &table.columns[time].values);
-    for (i, &line) in table.lines.iter().enumerate() {
-        let value =
-            |axis: usize| sensors[axis].1 * sensors[axis].0.get(i).copied().unwrap_or(f64::NAN);
-        let raw = Raw {
-            time: times.map_or(i as f64, |times| times.get(i).copied().unwrap_or(f64::NAN)),
-            force: [value(0), value(1), value(2)],
-            rate: [value(3), value(4), value(5)],
-        };
-        let is_finite = raw.time.is_finite()
-            && raw.force.iter().all(|x| x.is_finite())
-            && raw.rate.iter().all(|x| x.is_finite());
-        if is_finite {
-            rows.raw.push(raw);
-            rows.lines.push(line);
-            rows.places.push(i);
-        } else {
-            damage.add(Fault::Foreign, line, || complaint(text, table, columns, i));
-        }
-    }
-    rows
-}
-
-/// What is wrong with a row that has no number in a column that is needed.
-fn complaint(text: &Text<'_>, table: &Table, columns: &Columns, row: usize) -> String {
-    let needed = columns.time.into_iter().chain(columns.sensors.map(|axis| axis.column));
-    let wrong = needed.into_iter().find(|&column| {
-        table.columns[column].values.get(row).is_none_or(|value| !value.is_finite())
-    });
-    let column = wrong.unwrap_or_default();
-    let fields = table.dialect.fields(text.line(table.lines[row]));
-    let found = fields.get(column).map(|field| letters(field)).unwrap_or_default();
-    format!(
-        "expected a finite number in column {}, found {}",
-        table.columns[column].name,
-        quoted(&found)
-    )
 }
 
 /// What the clock may count to, in its own unit: a day, or 32 bits.
@@ -242,44 +192,6 @@ fn beyond(specific_force: &[f64; 3], angular_rate: &[f64; 3]) -> Option<String> 
         let (name, value) = (names[axis], values[axis]);
         Some(format!("expected at most {largest:.0} {unit} in column {name}, found {value:e}"))
     })
-}
-
-fn all_conclusions(
-    table: &Table,
-    columns: &Columns,
-    units: &Units,
-    doubles: usize,
-    start: f64,
-) -> Vec<Conclusion> {
-    let Units { units: [force, rate, time], sources } = units;
-    let mut parts = vec![
-        (format!("time in {time}"), sources[2]),
-        (format!("acceleration in {force}"), sources[0]),
-        (format!("angular rate in {rate}"), sources[1]),
-    ];
-    let name = |axis: &Axis| {
-        let sign = if axis.is_negative { "−" } else { "" };
-        format!("{sign}{}", table.columns[axis.column].name)
-    };
-    let names = columns
-        .time
-        .map(|time| table.columns[time].name.clone())
-        .into_iter()
-        .chain(columns.sensors.iter().map(name));
-    let names: Vec<_> = names.collect();
-    if names != ROLES {
-        parts.push((format!("columns {}", names.join(", ")), columns.source));
-    }
-    if table.dialect != crate::Dialect::new(crate::Separator::Comma, false) {
-        parts.push((table.dialect.to_string(), Source::Data));
-    }
-    if doubles > 0 {
-        parts.push((format!("{doubles} samples twice"), Source::Data));
-    }
-    if start != 0.0 {
-        parts.push((format!("times counted from {start} s"), Source::Data));
-    }
-    conclusions(parts)
 }
 
 /// The numbers that are neither time nor the sensor's.

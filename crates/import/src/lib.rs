@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod clock;
+mod containers;
 mod damage;
 mod dialect;
 mod error;
@@ -12,6 +13,7 @@ mod moment;
 mod named;
 mod names;
 mod options;
+mod part;
 pub mod ranging;
 mod table;
 mod text;
@@ -26,6 +28,7 @@ pub use heading::{Heading, Place};
 pub use layout::Kind;
 pub use named::NamedTable;
 pub use options::{Columns, Options, TimeUnit, Units};
+pub use part::Part;
 pub use table::{Column, Table};
 pub use text::{Line, Text};
 pub use unit::{Quantity, STANDARD_GRAVITY, Unit};

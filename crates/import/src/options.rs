@@ -16,6 +16,9 @@ pub struct Options {
     pub units: Units,
     /// Which program or device wrote the log.
     pub format: Option<Format>,
+    /// Which of several sensors in one file: the name of a topic in a ROS bag or MCAP file, the number of an `ArduPilot`
+    /// or PX4 sensor.
+    pub topic: Option<String>,
     /// Whether the first damaged line refuses the log, instead of being skipped.
     pub strict: bool,
 }

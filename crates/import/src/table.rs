@@ -23,8 +23,8 @@ pub struct Column {
 /// A table of numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// How it is written.
-    pub dialect: Dialect,
+    /// How it is written, if it is text.
+    pub dialect: Option<Dialect>,
     /// The line of the header, if there is one.
     pub header: Option<usize>,
     /// The words right above the first row that are no header, as there are more or fewer of them than columns; and
@@ -32,13 +32,13 @@ pub struct Table {
     pub other_header: Option<(usize, Vec<String>)>,
     /// The columns, in the order of the log.
     pub columns: Vec<Column>,
-    /// The line of each row.
+    /// The line or record of each row.
     pub lines: Vec<usize>,
     /// How many lines above the rows are neither header nor comment.
     pub above: usize,
     /// How many lines are comments.
     pub comments: usize,
-    /// The lines that are not rows of as many fields as there are columns.
+    /// The lines that are not rows of as many fields as there are columns, or the records that cannot be read.
     pub damage: Damage,
 }
 
@@ -61,7 +61,7 @@ impl Table {
             })
             .collect();
         let mut table = Self {
-            dialect,
+            dialect: Some(dialect),
             header: layout.header,
             other_header: layout.other_header,
             columns,
@@ -70,11 +70,36 @@ impl Table {
             comments: 0,
             damage: Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() },
         };
-        table.read_rows(text, layout.first_row);
+        table.read_rows(text, dialect, layout.first_row);
         Ok(table)
     }
 
-    fn read_rows(&mut self, text: &Text<'_>, first_row: usize) {
+    /// A table of columns that were decoded from something else than text: their names and values, and the record of
+    /// each row.
+    pub(crate) fn decoded(
+        columns: impl IntoIterator<Item = (String, Vec<f64>)>,
+        lines: Vec<usize>,
+        damage: Damage,
+    ) -> Self {
+        let column = |(name, values)| Column { name, unit: None, kind: Kind::Number, values };
+        Self {
+            dialect: None,
+            header: None,
+            other_header: None,
+            columns: columns.into_iter().map(column).collect(),
+            lines,
+            above: 0,
+            comments: 0,
+            damage,
+        }
+    }
+
+    /// Whether its columns have names; those of a text without a header only have numbers.
+    pub fn has_names(&self) -> bool {
+        self.header.is_some() || self.dialect.is_none()
+    }
+
+    fn read_rows(&mut self, text: &Text<'_>, dialect: Dialect, first_row: usize) {
         let width = self.columns.len();
         let mut row = vec![f64::NAN; width];
         let mut torn: Option<(Line<'_>, usize)> = None;
@@ -82,7 +107,7 @@ impl Table {
             if Some(line.number) == self.header {
                 continue;
             }
-            if self.dialect.is_comment(line.bytes) {
+            if dialect.is_comment(line.bytes) {
                 self.comments += 1;
                 continue;
             }
@@ -93,7 +118,7 @@ impl Table {
             if let Some((torn, found)) = torn.take() {
                 self.leave_out(Fault::Torn, torn, found);
             }
-            match self.read_row(line.bytes, &mut row) {
+            match self.read_row(dialect, line.bytes, &mut row) {
                 Ok(()) => {
                     for (column, &value) in self.columns.iter_mut().zip(&row) {
                         if column.kind != Kind::Words {
@@ -124,43 +149,43 @@ impl Table {
     ///
     /// # Errors
     /// The number of fields, if it is not that of the columns.
-    fn read_row(&self, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
+    fn read_row(&self, dialect: Dialect, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
         let mut rest = Some(line);
         for (column, value) in self.columns.iter().zip(row.iter_mut()) {
             let next = match (column.kind, rest) {
-                (Kind::Number, Some(rest)) => self.dialect.next_number(rest),
+                (Kind::Number, Some(rest)) => dialect.next_number(rest),
                 _ => None,
             };
-            let Some((number, after)) = next else { return self.read_fields(line, row) };
+            let Some((number, after)) = next else { return self.read_fields(dialect, line, row) };
             (*value, rest) = (number, after);
         }
         // A separator may end the line.
         match rest {
             None | Some([]) => Ok(()),
-            Some(_) => self.read_fields(line, row),
+            Some(_) => self.read_fields(dialect, line, row),
         }
     }
 
     /// As [`Self::read_row`], for fields that are not all plain numbers.
-    fn read_fields(&self, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
-        let fields = self.dialect.fields(line);
+    fn read_fields(&self, dialect: Dialect, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
+        let fields = dialect.fields(line);
         let width = self.columns.len();
         let ends = fields.len() == width + 1 && fields.last().is_some_and(|last| last.is_empty());
         if fields.len() != width && !ends {
             return Err(fields.len());
         }
         for ((column, value), field) in self.columns.iter().zip(row).zip(&fields) {
-            *value = self.value(column.kind, field).unwrap_or(f64::NAN);
+            *value = value_of(dialect, column.kind, field).unwrap_or(f64::NAN);
         }
         Ok(())
     }
+}
 
-    fn value(&self, kind: Kind, field: &[u8]) -> Option<f64> {
-        match kind {
-            Kind::Number => self.dialect.number(field),
-            Kind::Date | Kind::TimeOfDay => moment::read(field).map(moment::Moment::microseconds),
-            Kind::Words => None,
-        }
+fn value_of(dialect: Dialect, kind: Kind, field: &[u8]) -> Option<f64> {
+    match kind {
+        Kind::Number => dialect.number(field),
+        Kind::Date | Kind::TimeOfDay => moment::read(field).map(moment::Moment::microseconds),
+        Kind::Words => None,
     }
 }
 

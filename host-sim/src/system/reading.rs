@@ -8,7 +8,7 @@ use kestirim_import::{Format, Options};
 use crate::Error;
 
 /// Options with a text, the form of the text, and what they say.
-const TEXTS: [(&str, &str, &str); 3] = [
+const TEXTS: [(&str, &str, &str); 4] = [
     (
         "columns",
         "NAMES",
@@ -20,6 +20,11 @@ const TEXTS: [(&str, &str, &str); 3] = [
         "Units of the log, such as acc=g,gyro=deg/s,t=ms; acc=-g for one that shows -1 g upwards at rest [default: found]",
     ),
     ("format", "NAME", "Device or program that wrote the log [default: recognised]"),
+    (
+        "topic",
+        "NAME",
+        "Which of several sensors in the file: a topic of ROS or MCAP, the number of an ArduPilot or PX4 sensor [default: the only one, or 0]",
+    ),
 ];
 /// The option without one.
 const STRICT: &str = "strict";
@@ -86,6 +91,10 @@ impl Reading {
         let said = match name {
             "columns" => text.parse().map(|columns| self.options.columns = columns),
             "units" => text.parse().map(|units| self.options.units = units),
+            "topic" => {
+                self.options.topic = Some(text.to_owned());
+                Ok(())
+            }
             _ => text.parse().map(|format| self.options.format = Some(format)),
         };
         said.map_err(|error| Error::Usage(format!("--{name}: {error}")))?;

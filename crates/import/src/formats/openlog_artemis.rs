@@ -10,7 +10,7 @@ pub(super) const OPENLOG_ARTEMIS: Description = Description {
     format: Format::OpenLogArtemis,
     name: "openlog-artemis",
     title: "OpenLog Artemis CSV",
-    is_it,
+    is_it: Some(is_it),
     time: &[("micros", "us"), ("rtcTime", "us")],
     sensors: SENSORS,
     acceleration: "mg",

@@ -10,7 +10,7 @@ pub(super) const RAZOR: Description = Description {
     format: Format::Razor,
     name: "razor",
     title: "Razor text",
-    is_it,
+    is_it: Some(is_it),
     time: &[("1", "ms")],
     sensors: ["2", "3", "4", "5", "6", "7"],
     acceleration: "g",
@@ -19,6 +19,7 @@ pub(super) const RAZOR: Description = Description {
 };
 
 fn is_it(table: &Table) -> bool {
-    let blanks = matches!(table.dialect.separator, Separator::Blanks | Separator::Tab);
+    let is_blank = |separator| matches!(separator, Separator::Blanks | Separator::Tab);
+    let blanks = table.dialect.is_some_and(|dialect| is_blank(dialect.separator));
     blanks && table.header.is_none() && table.columns.len() >= 7
 }

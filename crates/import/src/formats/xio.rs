@@ -18,7 +18,7 @@ pub(super) const XIO: Description = Description {
     format: Format::Xio,
     name: "x-io",
     title: "x-io CSV",
-    is_it,
+    is_it: Some(is_it),
     time: &[("Time (s)", "s"), ("Timestamp (us)", "us")],
     sensors: SENSORS,
     acceleration: "g",

@@ -11,7 +11,7 @@ pub(super) const XSENS: Description = Description {
     format: Format::Xsens,
     name: "xsens",
     title: "Xsens MT export",
-    is_it,
+    is_it: Some(is_it),
     time: &[("SampleTimeFine", "0.1ms"), ("PacketCounter", "")],
     sensors: SENSORS,
     acceleration: "m/s2",

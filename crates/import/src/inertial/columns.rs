@@ -3,7 +3,7 @@
 use super::by_name::{sensors_by_name, time_by_name};
 use super::conclusion::Source;
 use crate::error::{Error, quoted};
-use crate::formats::Description;
+use crate::formats::{Description, Format};
 use crate::layout::Kind;
 use crate::names::{self, Meaning};
 use crate::options::{Columns as Picks, Options, Pick, ROLES, TimeUnit};
@@ -43,8 +43,10 @@ pub(crate) struct Columns {
     pub(crate) sensors: [Axis; 6],
     /// Of acceleration, rate and time.
     pub(crate) claims: [Claim; 3],
-    /// Whether options say which columns the gyroscope's are.
+    /// Whether options say which columns the sensors' are.
     pub(crate) axes_are_said: bool,
+    /// Whether options say any of the columns.
+    pub(crate) are_said: bool,
     /// What told which columns they are.
     pub(crate) source: Source,
 }
@@ -57,9 +59,12 @@ impl Columns {
     ///
     /// # Errors
     /// Which column is missing, or which two claim to be the same, and what decides.
-    pub(crate) fn find(table: &Table, options: &Options) -> Result<Self, Error> {
-        let format = options.format.or_else(|| crate::formats::Format::of(table));
-        let description = format.map(crate::formats::Format::description);
+    pub(crate) fn find(
+        table: &Table,
+        format: Option<Format>,
+        options: &Options,
+    ) -> Result<Self, Error> {
+        let description = format.map(Format::description);
         let source = format.map_or(Source::Header, Source::Format);
         let meanings: Vec<_> = table
             .columns
@@ -88,6 +93,7 @@ impl Columns {
             sensors,
             claims: [Claim::None, Claim::None, Claim::None],
             axes_are_said: picks.picks[1..].iter().any(Option::is_some),
+            are_said: picks.picks.iter().any(Option::is_some),
             source,
         };
         if is_bare(table, options) {
@@ -102,10 +108,7 @@ impl Columns {
 /// are left to the data, which show it wrong if it is.
 fn is_bare(table: &Table, options: &Options) -> bool {
     let is_said = options.columns.picks.iter().any(Option::is_some);
-    table.header.is_none()
-        && table.columns.len() >= ROLES.len()
-        && options.format.is_none()
-        && !is_said
+    !table.has_names() && table.columns.len() >= ROLES.len() && options.format.is_none() && !is_said
 }
 
 fn sensors_by_place() -> [Axis; 6] {
@@ -235,7 +238,7 @@ pub(super) fn found(table: &Table) -> String {
     let dots = if names.len() > MOST { ", …" } else { "" };
     let list = names[..names.len().min(MOST)].join(", ").replace(char::is_control, "?");
     let list: String = list.chars().take(200).collect();
-    if table.header.is_some() {
+    if table.has_names() {
         format!("{list}{dots}")
     } else {
         format!("{} columns without a header", names.len())

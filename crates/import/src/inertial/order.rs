@@ -3,7 +3,8 @@
 
 use super::raw::Raw;
 use crate::damage::{Damage, Fault};
-use crate::error::Error;
+use crate::error::{Complaint, Error};
+use crate::part::Part;
 
 /// Doubled lines up to so many are an accident; more are the logger's habit, and stay.
 const ACCIDENTS: usize = 3;
@@ -49,7 +50,7 @@ impl Rows {
     /// Leaves only samples whose times ascend or repeat. A clock that counts to one of `periods` goes on.
     ///
     /// # Errors
-    /// [`Error::Line`] where a recording begins anew.
+    /// [`Error::Line`] or [`Error::Part`] where a recording begins anew.
     pub(crate) fn put_in_order(
         &mut self,
         periods: &[f64],
@@ -73,7 +74,7 @@ impl Rows {
                     restart = if early == 1 { self.lines[i] } else { restart };
                     self.leave_out(i, damage);
                     if early > allowed {
-                        return Err(anew(restart));
+                        return Err(anew(damage.part, restart));
                     }
                     continue;
                 }
@@ -84,7 +85,7 @@ impl Rows {
             kept += 1;
         }
         if early >= RESTART {
-            return Err(anew(restart));
+            return Err(anew(damage.part, restart));
         }
         self.truncate(kept);
         Ok(())
@@ -101,8 +102,9 @@ impl Rows {
     }
 
     fn leave_out(&self, place: usize, damage: &mut Damage) {
+        let before = damage.part.before();
         damage.add(Fault::OutOfOrder, self.lines[place], || {
-            "expected a time not before that of the line above, found an earlier one".to_owned()
+            format!("expected a time not before that of {before}, found an earlier one")
         });
     }
 
@@ -116,8 +118,8 @@ impl Rows {
         let mut kept = 0;
         for i in 0..self.raw.len() {
             if kept > 0 && self.raw[i] == self.raw[kept - 1] {
-                let problem =
-                    || "expected another sample, found the one of the line above".to_owned();
+                let before = damage.part.before();
+                let problem = || format!("expected another sample, found the one of {before}");
                 damage.add(Fault::Doubled, self.lines[i], problem);
             } else {
                 self.move_to(kept, i);
@@ -136,8 +138,9 @@ fn period(periods: &[f64], last: f64, time: f64) -> Option<f64> {
     })
 }
 
-fn anew(line: usize) -> Error {
-    Error::line(line, "expected times that ascend, found a recording that begins anew")
+fn anew(part: Part, line: usize) -> Error {
+    let problem = "expected times that ascend, found a recording that begins anew".to_owned();
+    Complaint { part, line, problem }.into()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The importer against recordings, variants of them, and damage.
 
 mod claims;
+mod containers;
 mod mutations;
 mod plain;
 mod recordings;

@@ -33,11 +33,11 @@ fn logs() -> Vec<Vec<u8>> {
     ]
 }
 
-fn pick(random: &mut Xoshiro256PlusPlus, count: usize) -> usize {
+pub(crate) fn pick(random: &mut Xoshiro256PlusPlus, count: usize) -> usize {
     (random.next_u64() % count.max(1) as u64) as usize
 }
 
-fn mutate(random: &mut Xoshiro256PlusPlus, log: &mut Vec<u8>) {
+pub(crate) fn mutate(random: &mut Xoshiro256PlusPlus, log: &mut Vec<u8>) {
     const PIECES: [&[u8]; 12] = [
         b"\n",
         b",",
@@ -68,7 +68,7 @@ fn mutate(random: &mut Xoshiro256PlusPlus, log: &mut Vec<u8>) {
     }
 }
 
-fn read(log: &[u8], seed: u64) {
+pub(crate) fn read(log: &[u8], seed: u64) {
     for strict in [false, true] {
         match inertial::read(log, &Options { strict, ..Options::default() }) {
             Ok(read) => {

@@ -1,0 +1,117 @@
+//! Files that are no table of text, or hold several: recognised by their first bytes and decoded into a table of named
+//! columns with known units, which then goes the same way as a text.
+//!
+//! Every reader goes through a file once, from start to end, and takes no length from it that goes beyond what remains. A
+//! stretch that cannot be read is skipped and counted as the samples that it would have held, by how dense they are in the
+//! rest of the file.
+
+mod ardupilot;
+mod ardupilot_text;
+mod bytes;
+mod chunks;
+mod gather;
+mod imu_message;
+mod join;
+mod mcap;
+mod member;
+mod numbered;
+mod phones;
+mod phyphox;
+mod px4;
+mod rosbag;
+mod sensor_logger;
+mod topics;
+mod ulog;
+mod unpack;
+mod walk;
+mod zipped;
+
+pub(crate) use ardupilot::ARDUPILOT;
+pub(crate) use mcap::MCAP;
+pub(crate) use phyphox::PHYPHOX;
+pub(crate) use px4::PX4;
+pub(crate) use rosbag::ROS1;
+pub(crate) use sensor_logger::SENSOR_LOGGER;
+
+use phones::Phone;
+
+use crate::error::Error;
+use crate::formats::Format;
+use crate::options::Options;
+use crate::table::Table;
+use crate::text::Text;
+
+/// A log as a table, and what is known of it before anybody looks at its columns.
+pub(crate) struct Opened<'a> {
+    pub(crate) table: Table,
+    /// What a complaint may quote, if the table was read from one text.
+    pub(crate) text: Option<Text<'a>>,
+    /// What wrote it, if that is known.
+    pub(crate) format: Option<Format>,
+    /// What the format's reader tells.
+    pub(crate) notes: Vec<String>,
+}
+
+/// What unpacks to more bytes in all is refused: 1 GiB.
+const LARGEST: u64 = 1 << 30;
+
+/// A file that holds too much.
+fn too_large() -> Error {
+    Error::log("expected a file that unpacks to at most 1 GiB, found a larger one")
+}
+
+/// Opens a log, whatever it is.
+///
+/// # Errors
+/// What was expected and what was found.
+pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error> {
+    let (format, decoded) = if ardupilot::is_it(bytes) {
+        (Format::ArduPilot, ardupilot::read(bytes, options))
+    } else if px4::is_it(bytes) {
+        (Format::Px4, px4::read(bytes, options))
+    } else if mcap::is_it(bytes) {
+        (Format::Mcap, mcap::read(bytes, options))
+    } else if rosbag::is_it(bytes) {
+        (Format::Ros1, rosbag::read(bytes, options))
+    } else if zipped::is_it(bytes) {
+        let mut phone = Phone::open(bytes, options)?;
+        (phone.format(), phone.read(options))
+    } else if ardupilot_text::is_it(bytes) {
+        (Format::ArduPilot, ardupilot_text::read(bytes, options))
+    } else {
+        return open_text(bytes, options);
+    };
+    if let Some(said) = options.format.filter(|&said| said != format) {
+        return Err(Error::options(format!("expected {said} as --format says, found {format}")));
+    }
+    let Decoded { table, notes } = decoded?;
+    Ok(Opened { table, text: None, format: Some(format), notes })
+}
+
+/// What a reader makes of a file.
+struct Decoded {
+    table: Table,
+    /// What it tells beside the units.
+    notes: Vec<String>,
+}
+
+fn open_text<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error> {
+    if let Some(said) = options.format.filter(|said| said.is_container()) {
+        return Err(Error::options(format!(
+            "expected {said} as --format says, found another file"
+        )));
+    }
+    let text = Text::new(bytes)?;
+    let table = Table::read(&text)?;
+    refuse_topic(options, "one table of text")?;
+    let format = options.format.or_else(|| Format::of(&table));
+    Ok(Opened { table, text: Some(text), format, notes: Vec::new() })
+}
+
+/// Refuses to choose where there is no choice.
+fn refuse_topic(options: &Options, found: &str) -> Result<(), Error> {
+    if options.topic.is_none() {
+        return Ok(());
+    }
+    Err(Error::options(format!("expected a file of several sensors for --topic, found {found}")))
+}

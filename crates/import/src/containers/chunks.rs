@@ -1,0 +1,123 @@
+//! Records of ROS, of which some are chunks of others, packed or not.
+//!
+//! A chunk that is not sound is skipped; of one that was cut off what remains is read.
+
+use super::topics::Topics;
+use super::unpack::{Budget, Compression};
+use super::walk::{Framing, Step, Walk};
+use crate::damage::Fault;
+use crate::error::Error;
+
+/// A chunk of records.
+#[derive(Debug, Default)]
+pub(super) struct Chunk<'a> {
+    /// None if it is not known, or the chunk cannot be read at all.
+    pub(super) compression: Option<Compression>,
+    /// How many bytes the records take.
+    pub(super) size: u64,
+    /// What they sum up to; 0 if that is not told.
+    pub(super) checksum: u32,
+    /// How many bytes they take as they are packed, and those, of which some may be missing.
+    pub(super) length: usize,
+    pub(super) packed: &'a [u8],
+}
+
+/// A format of such records.
+pub(super) trait Records: Framing {
+    /// The chunk that a record is, if it is one; the record's end may be missing.
+    fn chunk(record: &[u8]) -> Option<Chunk<'_>>;
+
+    /// Takes a record of that number that is no chunk.
+    fn record(&mut self, record: &[u8], number: usize, topics: &mut Topics);
+}
+
+/// Whether bytes begin with a chunk whose end is missing, so that no other record begins in them.
+pub(super) fn is_cut_chunk<R: Records>(records: &R, bytes: &[u8]) -> bool {
+    R::chunk(bytes).is_some_and(|chunk| chunk.compression.is_some())
+        && records.length(bytes, true).is_some_and(|length| length > bytes.len())
+}
+
+/// Where records are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Level {
+    File,
+    Chunk,
+    /// In a chunk that was cut off, which is told already.
+    CutChunk,
+}
+
+/// Reads all records.
+///
+/// # Errors
+/// If they unpack to too much.
+pub(super) fn read<R: Records>(bytes: &[u8], records: R) -> Result<Topics, Error> {
+    let mut reader =
+        Reader { records, topics: Topics::default(), budget: Budget::default(), number: 0 };
+    reader.walk(bytes, Level::File)?;
+    Ok(reader.topics)
+}
+
+struct Reader<R> {
+    records: R,
+    topics: Topics,
+    budget: Budget,
+    /// How many records there were.
+    number: usize,
+}
+
+impl<R: Records> Reader<R> {
+    fn walk(&mut self, bytes: &[u8], level: Level) -> Result<(), Error> {
+        let mut walk = Walk::new(bytes, self.number);
+        while let Some(step) = walk.next(&self.records) {
+            self.number = walk.number;
+            let chunk = |bytes| R::chunk(bytes).filter(|_| level == Level::File);
+            match step {
+                Step::Record(record) => {
+                    if let Some(chunk) = chunk(record) {
+                        self.chunk(&chunk, record.len())?;
+                    } else {
+                        self.topics.losses.read += record.len();
+                        self.records.record(record, self.number, &mut self.topics);
+                    }
+                }
+                Step::Lost(Fault::Cut, lost) => match chunk(lost) {
+                    Some(chunk) => {
+                        self.topics.losses.add(Fault::Cut, self.number, 0);
+                        self.cut_chunk(&chunk)?;
+                    }
+                    None if level == Level::CutChunk => {}
+                    None => self.topics.losses.add(Fault::Cut, self.number, lost.len()),
+                },
+                Step::Lost(fault, lost) => {
+                    self.topics.losses.add(fault, self.number, lost.len());
+                }
+            }
+            walk.number = self.number;
+        }
+        Ok(())
+    }
+
+    /// Reads a chunk, if it is sound.
+    fn chunk(&mut self, chunk: &Chunk<'_>, length: usize) -> Result<(), Error> {
+        let Some((compression, packed)) = chunk.compression.zip(chunk.packed.get(..chunk.length))
+        else {
+            self.topics.losses.add(Fault::Torn, self.number, length);
+            return Ok(());
+        };
+        let records = self.budget.unpack(compression, packed, chunk.size)?;
+        let is_sound = records.len() as u64 == chunk.size
+            && (chunk.checksum == 0 || chunk.checksum == crc32fast::hash(&records));
+        if is_sound {
+            return self.walk(&records, Level::Chunk);
+        }
+        self.topics.losses.add(Fault::Torn, self.number, records.len().max(length));
+        Ok(())
+    }
+
+    /// Reads what remains of a chunk that was cut off.
+    fn cut_chunk(&mut self, chunk: &Chunk<'_>) -> Result<(), Error> {
+        let Some(compression) = chunk.compression else { return Ok(()) };
+        let records = self.budget.unpack(compression, chunk.packed, chunk.size)?;
+        self.walk(&records, Level::CutChunk)
+    }
+}

@@ -1,0 +1,87 @@
+//! What a reader gathers on its way through a file: rows of numbers, and stretches that cannot be read.
+
+use crate::damage::{Damage, Fault};
+use crate::formats::Description;
+use crate::part::Part;
+use crate::table::Table;
+
+/// Time, three axes of the accelerometer, three of the gyroscope, as they stand in a file.
+pub(super) type Row = [f64; 7];
+
+/// The numbers of one sensor, and the record of each row.
+#[derive(Debug, Default)]
+pub(super) struct Stream {
+    pub(super) columns: [Vec<f64>; 7],
+    pub(super) records: Vec<usize>,
+}
+
+impl Stream {
+    pub(super) fn push(&mut self, record: usize, row: Row) {
+        for (column, value) in self.columns.iter_mut().zip(row) {
+            column.push(value);
+        }
+        self.records.push(record);
+    }
+
+    /// The numbers of a row; not a number beyond the last one.
+    pub(super) fn row(&self, place: usize) -> Row {
+        self.columns.each_ref().map(|column| column.get(place).copied().unwrap_or(f64::NAN))
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.records.len()
+    }
+
+    /// A table under a format's names, with what was lost on the way.
+    pub(super) fn table(
+        self,
+        known: &Description,
+        time: &str,
+        losses: &Losses,
+        part: Part,
+    ) -> Table {
+        let damage = losses.damage(part, self.len());
+        self.named(known, time, damage)
+    }
+
+    /// A table under a format's names.
+    pub(super) fn named(self, known: &Description, time: &str, damage: Damage) -> Table {
+        let names = std::iter::once(time).chain(known.sensors).map(str::to_owned);
+        Table::decoded(names.zip(self.columns), self.records, damage)
+    }
+}
+
+/// What a file holds beside a sensor's rows.
+#[derive(Debug, Default)]
+pub(super) struct Losses {
+    /// How many bytes could be read.
+    pub(super) read: usize,
+    stretches: Vec<(Fault, usize, usize)>,
+}
+
+impl Losses {
+    /// Adds a stretch of so many bytes.
+    pub(super) fn add(&mut self, fault: Fault, record: usize, bytes: usize) {
+        self.stretches.push((fault, record, bytes));
+    }
+
+    /// As damage of a sensor with so many rows: each stretch counts as many of them as it would have held, and at least
+    /// one.
+    fn damage(&self, part: Part, rows: usize) -> Damage {
+        let mut damage = Damage::of(part);
+        let density = rows as f64 / self.read.max(1) as f64;
+        for &(fault, record, bytes) in &self.stretches {
+            let count = (bytes as f64 * density).ceil().max(1.0) as usize;
+            damage.add_some(fault, record, count, || {
+                let noun = part.noun(1);
+                match fault {
+                    Fault::Cut => format!("expected a whole {noun}, found the end of the file"),
+                    _ => format!(
+                        "expected a {noun} of the format, found {bytes} bytes that are none"
+                    ),
+                }
+            });
+        }
+        damage
+    }
+}

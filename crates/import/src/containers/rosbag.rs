@@ -1,0 +1,163 @@
+//! Bags of ROS 1, version 2.0 (<https://wiki.ros.org/Bags/Format/2.0>): chunks that are plain, bz2 or LZ4, or none. The index
+//! is not needed, so that a bag that was not closed is read as well.
+//!
+//! Weighed: the crate `rosbag` 0.6 (MIT or Apache-2.0, last release 2024) takes a path alone, panics where a bag was not closed,
+//! takes as much memory as a header says, and unpacks with libraries of C.
+
+use std::collections::BTreeMap;
+
+use super::Decoded;
+use super::bytes::Bytes;
+use super::chunks::{self, Chunk, Records, is_cut_chunk};
+use super::imu_message::Encoding;
+use super::topics::{SENSORS, TIME, Topics};
+use super::unpack::Compression;
+use super::walk::Framing;
+use crate::error::{Error, quoted};
+use crate::formats::{Description, Format};
+use crate::options::Options;
+
+pub(crate) const ROS1: Description = Description {
+    format: Format::Ros1,
+    name: "ros1",
+    title: "ROS 1 bag",
+    is_it: None,
+    time: &[(TIME, "us")],
+    sensors: SENSORS,
+    acceleration: "m/s2",
+    rate: "rad/s",
+    is_a_guess: false,
+};
+
+const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
+/// The header of records is no longer.
+const LONGEST: usize = 1 << 16;
+/// Kinds of records.
+const MESSAGE: u8 = 2;
+const CHUNK: u8 = 5;
+const CONNECTION: u8 = 7;
+
+/// Whether a file begins as bags of any version do.
+pub(super) fn is_it(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"#ROSBAG V")
+}
+
+/// Reads a bag.
+///
+/// # Errors
+/// If it is of another version, holds no inertial sensor, or several and nobody says which, or unpacks to too much.
+pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
+    let Some(records) = bytes.strip_prefix(MAGIC) else {
+        let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        let found = quoted(&String::from_utf8_lossy(line));
+        return Err(Error::log(format!("expected #ROSBAG V2.0, found {found}")));
+    };
+    chunks::read(records, Bag::default())?.decoded(&ROS1, options)
+}
+
+/// What is told of connections.
+#[derive(Debug, Default)]
+struct Bag {
+    topics: BTreeMap<u32, usize>,
+}
+
+/// A record: its kind, the fields of its header, its data, of which the end may be missing.
+struct Record<'a> {
+    kind: u8,
+    header: &'a [u8],
+    length: usize,
+    data: &'a [u8],
+}
+
+impl<'a> Record<'a> {
+    fn of(bytes: &'a [u8]) -> Option<Self> {
+        let mut bytes = Bytes(bytes);
+        let length = usize::try_from(bytes.u32()?).ok().filter(|&length| length <= LONGEST)?;
+        let header = bytes.slice(length)?;
+        let kind = match field(header, b"op")? {
+            [kind @ 2..=7] => *kind,
+            _ => return None,
+        };
+        let length = usize::try_from(bytes.u32()?).ok()?;
+        Some(Self { kind, header, length, data: bytes.0 })
+    }
+
+    /// A number of four bytes in its header.
+    fn number(&self, name: &[u8]) -> Option<u32> {
+        Bytes(field(self.header, name)?).u32()
+    }
+}
+
+/// The value of a field of a header.
+fn field<'a>(header: &'a [u8], name: &[u8]) -> Option<&'a [u8]> {
+    let mut bytes = Bytes(header);
+    loop {
+        let field = bytes.counted()?;
+        let value = field.strip_prefix(name).and_then(|rest| rest.strip_prefix(b"="));
+        if value.is_some() {
+            return value;
+        }
+        if !field.contains(&b'=') {
+            return None;
+        }
+    }
+}
+
+impl Bag {
+    fn connection(&mut self, record: &Record<'_>, topics: &mut Topics) -> Option<()> {
+        let (id, topic) = (record.number(b"conn")?, field(record.header, b"topic")?);
+        let kind = field(record.data, b"type")?;
+        let [topic, kind] = [topic, kind].map(String::from_utf8_lossy);
+        if let Some(place) = topics.add(&topic, &kind, Some(Encoding::Ros1)) {
+            self.topics.entry(id).or_insert(place);
+        }
+        Some(())
+    }
+
+    fn message(&self, record: &Record<'_>, number: usize, topics: &mut Topics) -> Option<()> {
+        let &place = self.topics.get(&record.number(b"conn")?)?;
+        let mut time = Bytes(field(record.header, b"time")?);
+        let (seconds, nanoseconds) = (u64::from(time.u32()?), u64::from(time.u32()?));
+        let receipt = seconds * 1_000_000_000 + nanoseconds;
+        topics.message(place, Encoding::Ros1, number, receipt, record.data);
+        Some(())
+    }
+}
+
+impl Records for Bag {
+    fn chunk(record: &[u8]) -> Option<Chunk<'_>> {
+        let record = Record::of(record).filter(|record| record.kind == CHUNK)?;
+        let compression = field(record.header, b"compression").and_then(Compression::of);
+        let size = u64::from(record.number(b"size").unwrap_or(0));
+        Some(Chunk { compression, size, checksum: 0, length: record.length, packed: record.data })
+    }
+
+    fn record(&mut self, record: &[u8], number: usize, topics: &mut Topics) {
+        let Some(record) = Record::of(record) else { return };
+        match record.kind {
+            CONNECTION => drop(self.connection(&record, topics)),
+            MESSAGE => drop(self.message(&record, number, topics)),
+            _ => {}
+        }
+    }
+}
+
+impl Framing for Bag {
+    fn length(&self, bytes: &[u8], is_in_sequence: bool) -> Option<usize> {
+        if let Some(record) = Record::of(bytes) {
+            return (bytes.len() - record.data.len()).checked_add(record.length);
+        }
+        // The end of the header may be missing.
+        let length = Bytes(bytes).u32().map_or(4, |length| length as usize);
+        let is_cut = length <= LONGEST && length + 8 > bytes.len();
+        (is_cut && is_in_sequence).then_some(bytes.len() + 1)
+    }
+
+    fn follows(&self, bytes: &[u8]) -> bool {
+        self.length(bytes, true).is_some()
+    }
+
+    fn candidate(&self, bytes: &[u8]) -> Option<usize> {
+        (bytes.len() > 8 && !is_cut_chunk(self, bytes)).then_some(1)
+    }
+}

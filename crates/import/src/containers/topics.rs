@@ -1,0 +1,159 @@
+//! Topics of ROS in a file, of which one is an inertial sensor's that is wanted.
+
+use std::collections::BTreeMap;
+
+use super::Decoded;
+use super::gather::{Losses, Stream};
+use super::imu_message::Encoding;
+use crate::damage::Fault;
+use crate::error::{Error, listed};
+use crate::formats::Description;
+use crate::options::Options;
+use crate::part::Part;
+
+/// The columns of the message `Imu`.
+pub(super) const SENSORS: [&str; 6] = [
+    "linear_acceleration.x",
+    "linear_acceleration.y",
+    "linear_acceleration.z",
+    "angular_velocity.x",
+    "angular_velocity.y",
+    "angular_velocity.z",
+];
+/// Its time, µs since 1970.
+pub(super) const TIME: &str = "header.stamp";
+
+/// An inertial sensor's topic.
+#[derive(Debug)]
+struct Topic {
+    name: String,
+    stream: Stream,
+    /// When each message was received, µs.
+    receipts: Vec<f64>,
+}
+
+/// What topics there are.
+#[derive(Debug, Default)]
+pub(super) struct Topics {
+    inertial: Vec<Topic>,
+    /// Their places.
+    by_name: BTreeMap<String, usize>,
+    /// The others, each with its type.
+    others: Vec<String>,
+    pub(super) losses: Losses,
+}
+
+impl Topics {
+    /// Takes a topic: its place if it is an inertial sensor's that can be read.
+    pub(super) fn add(
+        &mut self,
+        name: &str,
+        kind: &str,
+        encoding: Option<Encoding>,
+    ) -> Option<usize> {
+        let is_inertial = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
+        if !is_inertial || encoding.is_none() {
+            let other = format!("{name} ({kind})");
+            // More are not told of.
+            if self.others.len() < 100 && !self.others.contains(&other) {
+                self.others.push(other);
+            }
+            return None;
+        }
+        if let Some(&place) = self.by_name.get(name) {
+            return Some(place);
+        }
+        let place = self.inertial.len();
+        let (stream, receipts) = (Stream::default(), Vec::new());
+        self.inertial.push(Topic { name: name.to_owned(), stream, receipts });
+        self.by_name.insert(name.to_owned(), place);
+        Some(place)
+    }
+
+    /// Takes a message of a topic, received at a time in ns since 1970.
+    pub(super) fn message(
+        &mut self,
+        place: usize,
+        encoding: Encoding,
+        record: usize,
+        receipt: u64,
+        message: &[u8],
+    ) {
+        match (encoding.read(message), self.inertial.get_mut(place)) {
+            (Some(row), Some(topic)) => {
+                topic.stream.push(record, row);
+                topic.receipts.push(receipt as f64 / 1e3);
+            }
+            // Its bytes were read, but it is none.
+            _ => self.losses.add(Fault::Torn, record, 0),
+        }
+    }
+
+    /// The table of the one that is wanted.
+    ///
+    /// # Errors
+    /// If there is none, or several and nobody says which.
+    pub(super) fn decoded(
+        mut self,
+        known: &Description,
+        options: &Options,
+    ) -> Result<Decoded, Error> {
+        let place = self.wanted(options)?;
+        let Topic { name, mut stream, receipts } = self.inertial.swap_remove(place);
+        let name: String =
+            name.chars().map(|c| if c.is_control() { '?' } else { c }).take(80).collect();
+        let mut notes = vec![format!("topic {name}")];
+        if stream.columns[0].iter().all(|&stamp| stamp == 0.0) {
+            stream.columns[0] = receipts;
+            notes.push("times of receipt, as all stamps are 0".to_owned());
+        }
+        let table = stream.table(known, TIME, &self.losses, Part::Record);
+        Ok(Decoded { table, notes })
+    }
+
+    fn wanted(&self, options: &Options) -> Result<usize, Error> {
+        let bare = |name: &str| name.trim().trim_start_matches('/').to_owned();
+        let names = || self.inertial.iter().map(|topic| topic.name.as_str());
+        if let Some(said) = &options.topic {
+            let place = names().position(|name| bare(name) == bare(said));
+            return place.filter(|&place| self.inertial[place].stream.len() > 0).ok_or_else(|| {
+                let said = listed([said.as_str()]);
+                let problem = format!("expected messages of sensor_msgs/Imu on topic {said}");
+                Error::options(format!("{problem}, found topics {} (--topic)", listed(names())))
+            });
+        }
+        let filled = |&place: &usize| self.inertial[place].stream.len() > 0;
+        let places: Vec<_> = (0..self.inertial.len()).filter(filled).collect();
+        match places[..] {
+            [place] => Ok(place),
+            [] if self.inertial.is_empty() => Err(self.none()),
+            [] => {
+                let found = listed(names());
+                Err(Error::log(format!(
+                    "expected messages of sensor_msgs/Imu, found none on {found}"
+                )))
+            }
+            [first, ..] => {
+                let names = places.iter().map(|&place| self.inertial[place].name.as_str());
+                let problem =
+                    format!("expected one topic of sensor_msgs/Imu, found {}", listed(names));
+                let option = format!("--topic {}", listed([self.inertial[first].name.as_str()]));
+                Err(Error::undecided(problem, option))
+            }
+        }
+    }
+
+    /// A file without an inertial sensor.
+    fn none(&self) -> Error {
+        let is_own = |other: &String| other.contains("(kestirim.") || other.contains("(foxglove.");
+        if !self.others.is_empty() && self.others.iter().all(is_own) {
+            return Error::log(
+                "expected a recording of sensors, found results of host-sim, which hold no sensor's samples",
+            );
+        }
+        let found = listed(self.others.iter().map(String::as_str));
+        Error::log(format!(
+            "expected a topic of sensor_msgs/Imu in ROS 1's encoding or CDR, found {found}"
+        ))
+    }
+}
