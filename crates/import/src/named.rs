@@ -42,22 +42,31 @@ impl<'a> NamedTable<'a> {
                 let names = fields.iter().map(|field| letters(field)).collect();
                 (separator, Heading::new(line.number, names, options))
             });
-            let mut headings: Vec<_> = headings.collect();
-            // Of the ways to take a line apart the one with most names is told.
-            headings.sort_by_key(|(_, heading)| std::cmp::Reverse(heading.names().len()));
+            let mut best: Option<(usize, Self, T)> = None;
+            let mut worst: Option<(usize, E)> = None;
             for (separator, heading) in headings {
+                let names = heading.names().len();
                 match columns(&heading) {
                     Ok(found) => {
                         let dialect = Dialect::new(separator, false);
-                        let mut table = Self { text, heading, dialect };
-                        table.dialect.decimal_comma = table.has_decimal_commas();
-                        return Some(Ok((table, found)));
+                        let table = Self { text, heading, dialect };
+                        let fits = table.fitting_rows();
+                        if best.as_ref().is_none_or(|(most, ..)| fits > *most) {
+                            best = Some((fits, table, found));
+                        }
                     }
-                    Err(error) => {
-                        first.get_or_insert(error);
+                    // Of the ways to take a line apart the one with most names is told.
+                    Err(error) if worst.as_ref().is_none_or(|(most, _)| names > *most) => {
+                        worst = Some((names, error));
                     }
+                    Err(_) => {}
                 }
             }
+            if let Some((_, mut table, found)) = best {
+                table.dialect.decimal_comma = table.has_decimal_commas();
+                return Some(Ok((table, found)));
+            }
+            first = first.or(worst.map(|(_, error)| error));
         }
         first.map(Err)
     }
@@ -77,6 +86,12 @@ impl<'a> NamedTable<'a> {
             fields.pop();
         }
         fields
+    }
+
+    /// How many of the first rows have as many fields as the header.
+    fn fitting_rows(&self) -> usize {
+        let width = self.heading.names().len();
+        self.rows().take(SAMPLE).filter(|(_, fields)| fields.len() == width).count()
     }
 
     /// Whether most numbers that could show it have a decimal comma.

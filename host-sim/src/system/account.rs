@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::finding::Finding;
+use super::health::{Health, Reason};
 use crate::Error;
 use crate::figure::Figure;
 
@@ -22,6 +23,8 @@ pub struct Account {
     pub warnings: Vec<String>,
     /// Which file the warnings are about; none if each says so itself.
     pub about: Option<PathBuf>,
+    /// Whether it can be relied upon.
+    pub health: Health,
 }
 
 impl Account {
@@ -45,6 +48,20 @@ impl Account {
             warnings.push(Value::String(sentence.clone()));
         }
         self.warnings.push(sentence);
+    }
+
+    /// With a reason to rely upon it less.
+    pub fn doubt(&mut self, reason: Reason) {
+        self.health.add(reason);
+    }
+
+    /// The health is told where everybody looks.
+    pub(super) fn tell_health(&mut self) {
+        let health = serde_json::to_value(&self.health);
+        if let (Some(report), Ok(health)) = (self.report.as_object_mut(), health) {
+            report.insert("health".to_owned(), health);
+        }
+        self.fact("health", self.health.in_words());
     }
 
     /// With what was concluded about the log.

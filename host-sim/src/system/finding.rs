@@ -2,11 +2,16 @@
 
 use serde::Serialize;
 
+use super::health::Reason;
+
 /// Something that a log shows.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// What it is about, such as `rate`.
     pub about: &'static str,
+    /// Why answers suffer, if it harms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<Reason>,
     /// What was found.
     pub found: String,
     /// What comes of it, if it harms.
@@ -20,17 +25,19 @@ pub struct Finding {
 impl Finding {
     /// What harms nothing.
     pub fn note(about: &'static str, found: impl Into<String>) -> Self {
-        Self { about, found: found.into(), consequence: None, remedy: None }
+        Self { about, reason: None, found: found.into(), consequence: None, remedy: None }
     }
 
     /// What harms, how, and what to do.
     pub fn fault(
         about: &'static str,
+        reason: Reason,
         found: impl Into<String>,
         consequence: impl Into<String>,
         remedy: impl Into<String>,
     ) -> Self {
         Self {
+            reason: Some(reason),
             consequence: Some(consequence.into()),
             remedy: Some(remedy.into()),
             ..Self::note(about, found)
@@ -39,7 +46,7 @@ impl Finding {
 
     /// Whether it harms.
     pub fn is_fault(&self) -> bool {
-        self.consequence.is_some()
+        self.reason.is_some()
     }
 
     /// As a warning.

@@ -109,6 +109,24 @@ impl<S: System> Open<S> {
         }
     }
 
+    /// What came of it, with what the recording itself shows.
+    fn account(
+        &self,
+        settings: &Settings,
+        trace: &S::Trace,
+    ) -> Result<(Account, Vec<Finding>), Error> {
+        let mut account = S::account(&self.recording, settings, trace)?;
+        let findings = self.findings(settings);
+        for finding in &findings {
+            if let Some(reason) = finding.reason {
+                account.warn(finding.sentence());
+                account.doubt(reason);
+            }
+        }
+        account.tell_health();
+        Ok((account, findings))
+    }
+
     fn idle(&self, settings: &Settings, name: &str) -> Option<Idle> {
         S::idle(Some(&self.recording), settings, name)
     }
@@ -127,10 +145,7 @@ impl<S: System> Opened for Open<S> {
         let views = settings.table().iter().any(|it| it.is_view && settings.is_given(it.name));
         let detail = if wanted.any() || views { Detail::Every } else { Detail::Result };
         let trace = self.trace(settings, detail)?;
-        let mut account = S::account(&self.recording, settings, &trace)?;
-        let findings = self.findings(settings);
-        let faults = findings.iter().filter(|finding| finding.is_fault());
-        faults.for_each(|fault| account.warn(fault.sentence()));
+        let (account, _) = self.account(settings, &trace)?;
         for (output, path) in &wanted.tables {
             write(path, &S::table(output, &self.recording, settings, &trace))?;
         }
@@ -154,7 +169,7 @@ impl<S: System> Opened for Open<S> {
         // A page that was left with them sends them still, and the command line refuses them.
         let settings = &settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name));
         let trace = self.trace(settings, Detail::Every)?;
-        let Account { facts, warnings, .. } = S::account(&self.recording, settings, &trace)?;
+        let (Account { facts, warnings, .. }, findings) = self.account(settings, &trace)?;
         let command = ["host-sim", "replay", S::NAME].map(str::to_owned).into_iter();
         let command = command.chain(self.source.arguments()).chain(settings.arguments());
         let mut answer = Answer {
@@ -164,7 +179,7 @@ impl<S: System> Opened for Open<S> {
             disabled,
             command: text::command_line(command),
             firmware: S::firmware(Some(&self.recording), settings),
-            findings: self.findings(settings),
+            findings,
         };
         S::figures(&self.recording, settings, &trace, &mut answer)?;
         Ok(answer)

@@ -6,13 +6,13 @@ use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
 use host_sim::systems::pedestrian::simulate::scenario::Scenario;
 use host_sim::systems::pedestrian::simulate::sensor::{measure, razor_text};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use crate::program::{Desk, host_sim, json, text};
+use crate::program::{Desk, host_sim, json as parsed, text};
 use crate::room::{Room, line};
 
 fn faults(arguments: &[&str]) -> Vec<String> {
-    let report = json(&host_sim(&[&["check"], arguments, &["--json"]].concat()));
+    let report = parsed(&host_sim(&[&["check"], arguments, &["--json"]].concat()));
     let findings = report["findings"].as_array().expect("findings").clone();
     let told = |finding: &Value| {
         let [found, consequence, remedy] = ["found", "consequence", "remedy"]
@@ -61,8 +61,9 @@ fn the_faults_of_a_walk_are_told_with_what_to_do() {
     assert!(told("slow.txt", &slow)[0].contains("20.0 Hz"));
     // A warning of the replay, too.
     let log = desk.named("stuck.txt");
-    let replay = json(&host_sim(&["replay", "pedestrian", "--json", "--log", &log]));
+    let replay = parsed(&host_sim(&["replay", "pedestrian", "--json", "--log", &log]));
     assert!(replay["warnings"].to_string().contains("repeated itself"), "{replay}");
+    assert_eq!(replay["health"], json!({ "state": "degraded", "reasons": ["stuck"] }));
     let table = host_sim(&["check", "pedestrian", "--log", &desk.named("clean.txt")]);
     assert!(text(&table.stdout).contains("at rest, gravity 9."), "{}", text(&table.stdout));
 }
@@ -94,6 +95,10 @@ fn the_faults_of_ranges_are_told_with_what_to_do() {
     assert!(sentences.iter().any(|it| it.contains("exactly 5 m")), "{sentences:?}");
     // A warning of the replay, too.
     let files = ["replay", "robot", "--json", "--anchors", &swapped, "--log", &room.log];
-    let replay = json(&host_sim(&[&files[..], &height].concat()));
+    let replay = parsed(&host_sim(&[&files[..], &height].concat()));
     assert!(replay["warnings"].to_string().contains("swapped"), "{replay}");
+    assert_eq!(replay["health"]["state"], "bad");
+    assert!(replay["health"]["reasons"].as_array().expect("reasons").contains(&json!("anchor")));
+    let clean = room.report(&height);
+    assert_eq!(clean["health"], json!({ "state": "good", "reasons": [] }));
 }

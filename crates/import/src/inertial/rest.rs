@@ -60,6 +60,7 @@ impl Rest {
         if windows.len() < FEWEST_WINDOWS {
             return None;
         }
+        leave_out_repeated(&mut windows);
         let stillest = least(&windows, STILLEST);
         let limit = windows[*stillest.last()?].change;
         if limit >= MOST_CHANGE {
@@ -77,6 +78,17 @@ impl Rest {
             window.is_still = window.change <= limit && off <= NORM * norm;
         }
         Some(Self { windows, norm, bias })
+    }
+}
+
+/// A sensor that repeats itself to the last digit where it has noise elsewhere is stuck, not at rest.
+fn leave_out_repeated(windows: &mut [Window]) {
+    let noisy = windows.iter().filter(|window| window.change > 0.0).count();
+    if 2 * noisy < windows.len() {
+        return;
+    }
+    for window in windows.iter_mut().filter(|window| window.change == 0.0) {
+        window.change = f64::INFINITY;
     }
 }
 

@@ -3,7 +3,7 @@
 use super::recording::Recording;
 use super::recording::flight::Quantity;
 use crate::metrics::{median, standard_deviation};
-use crate::system::Finding;
+use crate::system::{Finding, Reason};
 
 /// So many measurements in a row with the same level, to the last digit, while the drone moves: the radio is stuck.
 const STUCK: usize = 8;
@@ -45,6 +45,7 @@ pub(super) fn check(recording: &Recording) -> Vec<Finding> {
     if flight.quantity == Quantity::PathLoss && positive * 2 > losses.len() {
         findings.push(Finding::fault(
             "sign",
+            Reason::Units,
             "most path losses are below zero",
             "the user is placed where the signal is weakest",
             "a path loss is above zero; received levels belong into a column rssi_db",
@@ -55,6 +56,7 @@ pub(super) fn check(recording: &Recording) -> Vec<Finding> {
     if longest >= STUCK {
         findings.push(Finding::fault(
             "stuck",
+            Reason::Stuck,
             format!("{longest} measurements in a row are the same to the last digit"),
             "they say nothing of where the user is",
             "look at how the radio reports its level",

@@ -14,7 +14,14 @@ use super::settings::{Choice, FilterKind, Mode, Setup};
 use super::track::Track;
 use super::track::followed::Followed;
 use crate::Error;
-use crate::system::{Account, System};
+use crate::system::{Account, Reason, System};
+
+/// Says why the solutions cannot be relied upon.
+fn doubt(account: &mut Account, track: &Track) {
+    if track.filters.iter().any(|(_, followed)| !followed.contradicted.is_empty()) {
+        account.doubt(Reason::Innovations);
+    }
+}
 
 /// What came of one filter, or of all.
 pub(super) fn account(
@@ -38,6 +45,7 @@ pub(super) fn account(
         };
         let mut account = Account::new(&comparison, comparison.warnings.clone())?;
         account.text = Some(comparison.to_string());
+        doubt(&mut account, track);
         for report in &comparison.filters {
             account.fact(report.title(), report.in_a_line());
         }
@@ -50,5 +58,6 @@ pub(super) fn account(
     for (name, value) in report.facts() {
         account.fact(name, value);
     }
+    doubt(&mut account, track);
     Ok(account)
 }

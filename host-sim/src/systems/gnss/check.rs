@@ -2,7 +2,7 @@
 
 use super::recording::Recording;
 use crate::metrics::median;
-use crate::system::Finding;
+use crate::system::{Finding, Reason};
 
 /// Fewer satellites give no position.
 const FEWEST: usize = 4;
@@ -31,6 +31,7 @@ pub(super) fn check(recording: &Recording) -> Vec<Finding> {
     findings.push(if few as f64 > POOR * counts.len() as f64 {
         Finding::fault(
             "satellites",
+            Reason::Dropout,
             format!("{found}; {few} epochs have fewer than {FEWEST}"),
             "no position at these times",
             "look at the antenna's sky, and at what the receiver logs of L2",
@@ -47,6 +48,7 @@ pub(super) fn check(recording: &Recording) -> Vec<Finding> {
     findings.push(if begin > first || end < last {
         Finding::fault(
             "products",
+            Reason::Time,
             format!(
                 "orbits from {:.1} h to {:.1} h, observations from {:.1} h to {:.1} h",
                 begin / 3600.0,

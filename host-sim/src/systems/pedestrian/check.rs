@@ -5,7 +5,7 @@ use kestirim_import::inertial::turns;
 use super::Sample;
 use super::recording::log::Log;
 use crate::metrics::median;
-use crate::system::Finding;
+use crate::system::{Finding, Reason};
 
 /// Samples farther apart than so many usual steps have others missing between them.
 const GAP: f64 = 3.0;
@@ -52,6 +52,7 @@ fn rate(steps: &[f64], usual: f64) -> Finding {
     if usual > 0.04 {
         return Finding::fault(
             "rate",
+            Reason::Dropout,
             found,
             "a footprint has too few samples to be found surely",
             "log at 50 Hz or more, 100 Hz or more of a running foot",
@@ -88,7 +89,7 @@ fn stuck(samples: &[Sample]) -> Option<Finding> {
     }
     (runs > 0).then(|| {
         Finding::fault(
-            "repeated samples",
+            "repeated samples", Reason::Stuck,
             format!("the sensor repeated itself {runs} times, {lost:.1} s in all, at most {longest:.1} s"),
             "what the foot did meanwhile is not in the log",
             "look at the bus and at the logger's buffer",
@@ -139,6 +140,7 @@ fn clipped(samples: &[Sample]) -> Vec<Finding> {
         };
         findings.push(Finding::fault(
             "clipping",
+            Reason::Saturated,
             format!("the {name} saturated at {end:.0} {unit} ({})", each.join(", ")),
             "strides come out too short or bent",
             remedy,
@@ -199,6 +201,7 @@ fn turned(samples: &[Sample]) -> Option<Finding> {
     }
     Some(Finding::fault(
         "turns",
+        Reason::Time,
         format!("turns have to be {:.2} times as large to agree with gravity", turns.factor),
         "strides and their directions come out wrong",
         "look at the times (--units t=…) and at the gyroscope's scale (--units gyro=…)",

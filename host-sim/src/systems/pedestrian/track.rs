@@ -22,7 +22,7 @@ use super::recording::position::TrackPoint;
 use super::settings::{DetectorKind, Options, TrackerKind};
 use crate::Error;
 use crate::metrics::STANDARD_GRAVITY;
-use crate::system::{Detail, ScalarKind};
+use crate::system::{Detail, Reason, ScalarKind};
 
 /// What the tracker made of a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +78,8 @@ pub struct Walk {
     pub closure_m: f64,
     /// What is suspicious about the sensor or the walk.
     pub warnings: Vec<String>,
+    /// Why it suffers.
+    pub reasons: Vec<Reason>,
 }
 
 /// One stride of the foot, from stance to stance.
@@ -280,7 +282,7 @@ impl Walk {
         if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
             self.closure_m = x.hypot(*y);
         }
-        self.warnings = warning::sentences(warnings);
+        (self.warnings, self.reasons) = (warning::sentences(warnings), warning::reasons(warnings));
     }
 }
 

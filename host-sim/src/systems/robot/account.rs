@@ -10,7 +10,7 @@ use super::recording::Recording;
 use super::settings::Setup;
 use super::track::Trace;
 use crate::Error;
-use crate::system::{Account, Settings, System, Table};
+use crate::system::{Account, Reason, Settings, System, Table};
 
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
@@ -74,6 +74,12 @@ pub(super) fn account(
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.about.clone_from(&recording.path);
     account.understood(&report.import);
+    if report.rejected > report.updates {
+        account.doubt(Reason::Rejected);
+    }
+    if traces.iter().all(|trace| trace.last().is_none()) {
+        account.doubt(Reason::NotObservable);
+    }
     account.fact("ranges taken in", report.updates.to_string());
     account.fact("ranges left out", report.rejected.to_string());
     account.fact("without a position", format!("{:.1} s", report.lost_s));

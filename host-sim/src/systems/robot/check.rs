@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use super::recording::Recording;
 use super::recording::event::{Event, Range};
 use super::settings::{Dimensions, Setup};
-use crate::metrics::{median, standard_deviation};
-use crate::system::{Finding, Settings};
+use crate::metrics::standard_deviation;
+use crate::system::{Finding, Reason, Settings};
 
 /// A range that stays the same to the last digit for so long and so often is stuck, s, …
 const STUCK_S: f64 = 3.0;
@@ -25,8 +25,10 @@ pub(super) fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> 
     let parts: Vec<Vec<Range>> = recording.parts.iter().map(|part| ranges(&part.events)).collect();
     let name = |anchor: usize| recording.anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, recording.anchors.names.len(), &name));
-    findings.extend(parts.iter().find_map(|ranges| stuck(ranges, &name)));
-    findings.extend(cut(&parts));
+    let cut_at = cut_at(&parts);
+    findings.extend(cut_at.map(cut));
+    let cut_at = cut_at.map(|(_, metres)| metres);
+    findings.extend(parts.iter().find_map(|ranges| stuck(ranges, cut_at, &name)));
     let height = match settings.chosen::<Dimensions>("dim") {
         Dimensions::Three => None,
         // A height that the ranges tell or do not tell is the tracker's to say.
@@ -72,6 +74,7 @@ fn links<'a>(
         if wrong * 10 > its.len() {
             findings.push(Finding::fault(
                 "ranges",
+                Reason::Units,
                 format!("{} of {} ranges to {} are no distances", wrong, its.len(), name(anchor)),
                 "they are left out",
                 "look at the antenna delay: a range must be above zero",
@@ -83,7 +86,11 @@ fn links<'a>(
 }
 
 /// An anchor whose range stays while those of others change.
-fn stuck<'a>(ranges: &[Range], name: &impl Fn(usize) -> &'a str) -> Option<Finding> {
+fn stuck<'a>(
+    ranges: &[Range],
+    cut_at: Option<f64>,
+    name: &impl Fn(usize) -> &'a str,
+) -> Option<Finding> {
     let mut runs: BTreeMap<usize, (f64, usize, i64)> = BTreeMap::new();
     for range in ranges {
         let run = runs.entry(range.anchor).or_insert((range.metres, 0, range.time_us));
@@ -92,7 +99,7 @@ fn stuck<'a>(ranges: &[Range], name: &impl Fn(usize) -> &'a str) -> Option<Findi
         }
         run.1 += 1;
         let seconds = (range.time_us - run.2) as f64 * 1e-6;
-        if run.1 < STUCK || seconds < STUCK_S {
+        if run.1 < STUCK || seconds < STUCK_S || Some(run.0) == cut_at {
             continue;
         }
         let mut others: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -104,6 +111,7 @@ fn stuck<'a>(ranges: &[Range], name: &impl Fn(usize) -> &'a str) -> Option<Findi
         if moving >= 2 {
             return Some(Finding::fault(
                 "stuck",
+                Reason::Stuck,
                 format!(
                     "the range to {} stays at {:.3} m for {seconds:.1} s while others change",
                     name(range.anchor),
@@ -117,21 +125,26 @@ fn stuck<'a>(ranges: &[Range], name: &impl Fn(usize) -> &'a str) -> Option<Findi
     None
 }
 
-/// Ranges that were cut at a largest value.
-fn cut(parts: &[Vec<Range>]) -> Option<Finding> {
-    let all: Vec<f64> =
-        parts.iter().flatten().map(|it| it.metres).filter(|it| it.is_finite()).collect();
-    let most = all.iter().copied().fold(0.0, f64::max);
-    let count = all.iter().filter(|metres| **metres == most).count();
-    let is_cut = count >= CUT && count as f64 >= CUT_SHARE * all.len() as f64;
-    // A tag that stands gives the same range again and again.
-    let spread = standard_deviation(&all);
-    (is_cut && spread > MOVING_M && most > median(&all)).then(|| {
-        Finding::fault(
-            "cut",
-            format!("{count} ranges are exactly {most} m, the largest of all"),
-            "what is farther away looks nearer than it is",
-            "look at the largest range that the radio or the logger can give",
-        )
-    })
+/// How many ranges were cut at a largest value, and that value, m.
+fn cut_at(parts: &[Vec<Range>]) -> Option<(usize, f64)> {
+    let all: Vec<&Range> = parts.iter().flatten().filter(|it| it.metres.is_finite()).collect();
+    let metres: Vec<f64> = all.iter().map(|it| it.metres).collect();
+    let most = metres.iter().copied().fold(0.0, f64::max);
+    let at_most: Vec<usize> =
+        all.iter().filter(|it| it.metres == most).map(|it| it.anchor).collect();
+    let is_often = at_most.len() >= CUT && at_most.len() as f64 >= CUT_SHARE * metres.len() as f64;
+    // A tag that stands gives the same range to one anchor again and again.
+    let of_several = at_most.iter().any(|anchor| *anchor != at_most[0]);
+    let is_cut = is_often && of_several && standard_deviation(&metres) > MOVING_M;
+    is_cut.then_some((at_most.len(), most))
+}
+
+fn cut((count, metres): (usize, f64)) -> Finding {
+    Finding::fault(
+        "cut",
+        Reason::Saturated,
+        format!("{count} ranges are exactly {metres} m, the largest of all"),
+        "what is farther away looks nearer than it is",
+        "look at the largest range that the radio or the logger can give",
+    )
 }

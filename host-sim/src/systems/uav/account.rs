@@ -14,7 +14,7 @@ use super::track::Track;
 use super::track::estimators::Estimate;
 use crate::Error;
 use crate::metrics::rms;
-use crate::system::{Account, System, Table};
+use crate::system::{Account, Reason, System, Table};
 use crate::table::Found;
 
 /// What a replay prints. Units rad, rad/s, m/s, rad.
@@ -116,6 +116,9 @@ pub(super) fn account(
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.understood(&report.import);
+    if report.innovations.iter().any(|residual| residual.warning().is_some()) {
+        account.doubt(Reason::Rejected);
+    }
     if let Recording::Logged(logged) = recording {
         account.about = Some(logged.path.clone());
     }

@@ -3,7 +3,7 @@
 use super::recording::Recording;
 use super::recording::model::STATE_COLUMNS;
 use crate::metrics::{median, standard_deviation};
-use crate::system::Finding;
+use crate::system::{Finding, Reason};
 
 /// A measurement that jumps by so many usual changes and back is a spike.
 const SPIKE: f64 = 30.0;
@@ -53,6 +53,7 @@ fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
     (limit > 0.0 && count as f64 > MANY * values.len() as f64).then(|| {
         Finding::fault(
             "spikes",
+            Reason::Rejected,
             format!("{name} jumps away and back {count} times in {} samples", values.len()),
             "the estimators leave them out, and know less meanwhile",
             "look at the sensor's wiring and at the logger",
@@ -65,6 +66,7 @@ fn stuck(name: &str, values: &[f64]) -> Option<Finding> {
     (longest >= STUCK && longest < values.len() && standard_deviation(values) > 0.0).then(|| {
         Finding::fault(
             "stuck",
+            Reason::Stuck,
             format!("{name} stays the same to the last digit for {longest} samples"),
             "the estimate follows a sensor that measures nothing",
             "leave the fields empty where nothing was measured",

@@ -37,7 +37,7 @@ pub struct Report {
     /// Its standard deviations to the east, north and up, m.
     pub sd_enu_m: [f64; 3],
     /// Of the last solution.
-    pub health: &'static str,
+    pub convergence: &'static str,
     /// Since when every solution has been a converged one, min since the first epoch.
     pub converged_since_min: Option<f64>,
     /// Zenith delay of the troposphere at the end, m.
@@ -104,7 +104,7 @@ impl Report {
             solved: followed.fixes.len(),
             position_ecef_m: fix.position.into(),
             sd_enu_m: last.sd_enu,
-            health: health(last.health),
+            convergence: convergence(last.health),
             converged_since_min: followed.converged_since.map(|t| (t - begin) / 60.0),
             zenith_delay_m: dry + last.wet_delay,
             observations: followed.observations,
@@ -123,7 +123,7 @@ impl Report {
 }
 
 /// As in reports.
-const fn health(health: Health) -> &'static str {
+const fn convergence(health: Health) -> &'static str {
     match health {
         Health::Converging => "converging",
         Health::Converged => "converged",
@@ -188,7 +188,7 @@ impl Report {
             Some(minutes) => format!(", since {minutes:.1} min"),
             None => String::new(),
         };
-        fact("health", format!("{}{since}", self.health));
+        fact("convergence", format!("{}{since}", self.convergence));
         fact("zenith delay", format!("{:.1} mm", 1e3 * self.zenith_delay_m));
         fact("observations", self.observations.to_string());
         let both = |both: Both| format!("{} codes, {} phases", both.code, both.phase);

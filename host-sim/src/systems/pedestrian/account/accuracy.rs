@@ -112,6 +112,7 @@ mod tests {
             path_length_m: 4.0 * stretch,
             closure_m: 4.0 * stretch,
             warnings: vec![],
+            reasons: vec![],
         }
     }
 

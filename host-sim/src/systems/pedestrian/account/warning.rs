@@ -2,37 +2,53 @@
 
 use kestirim_pedestrian::Warnings;
 
+use crate::system::Reason;
+
 /// A sentence for each warning that was raised.
 pub(crate) fn sentences(warnings: Warnings) -> Vec<String> {
+    raised(warnings).map(|(_, sentence)| sentence.to_owned()).collect()
+}
+
+/// Why the path suffers, for each warning that was raised.
+pub(crate) fn reasons(warnings: Warnings) -> Vec<Reason> {
+    raised(warnings).map(|(reason, _)| reason).collect()
+}
+
+fn raised(warnings: Warnings) -> impl Iterator<Item = (Reason, &'static str)> {
     [
         (
             warnings.accelerometer_saturated,
+            Reason::Saturated,
             "the accelerometer saturated: choose a wider range than the walker's steps",
         ),
         (
             warnings.gyroscope_saturated,
+            Reason::Saturated,
             "the gyroscope saturated: choose a wider range than the walker's steps",
         ),
         (
             warnings.gravity_implausible,
+            Reason::Units,
             "at rest the accelerometer does not show 9.8 m/s²: wrong unit, or uncalibrated",
         ),
         (
             warnings.rate_implausible,
+            Reason::Units,
             "angular rates beyond any foot's: degrees a second where radians are expected?",
         ),
         (
             warnings.axes_inconsistent,
+            Reason::Axes,
             "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
         ),
-        (warnings.gaps, "samples are missing for more than 0.1 s"),
+        (warnings.gaps, Reason::Dropout, "samples are missing for more than 0.1 s"),
         (
             warnings.never_still,
+            Reason::NotObservable,
             "no standstill of half a second was found: the gyro bias is unknown",
         ),
     ]
     .into_iter()
-    .filter(|(raised, _)| *raised)
-    .map(|(_, sentence)| sentence.to_owned())
-    .collect()
+    .filter(|(raised, ..)| *raised)
+    .map(|(_, reason, sentence)| (reason, sentence))
 }

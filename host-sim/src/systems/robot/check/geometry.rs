@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::ranges;
 use crate::metrics::median;
-use crate::system::Finding;
+use crate::system::{Finding, Reason};
 use crate::systems::robot::recording::event::Range;
 use crate::systems::robot::recording::{Heights, Recording};
 
@@ -55,21 +55,21 @@ pub(super) fn check(recording: &Recording, height: Option<f64>, is_given: bool) 
     let consequence = "positions may be wrong by as much";
     if let Some(with) = explained(tried.scaled(FOOT)) {
         let remedy = format!("in feet they would agree within {with:.2} m: --units range=ft");
-        return Some(Finding::fault("geometry", found, consequence, remedy));
+        return Some(Finding::fault("geometry", Reason::Units, found, consequence, remedy));
     }
     if let Some((with, [a, b])) =
         tried.swapped().filter(|(with, _)| explained(Some(*with)).is_some())
     {
         let remedy =
             format!("with {} and {} swapped they would agree within {with:.2} m", name(a), name(b));
-        return Some(Finding::fault("geometry", found, consequence, remedy));
+        return Some(Finding::fault("geometry", Reason::Anchor, found, consequence, remedy));
     }
     if let Some((with, by)) =
         tried.higher().filter(|(with, _)| is_given && explained(Some(*with)).is_some())
     {
         let remedy =
             format!("with the tag {by:+.1} m higher they would agree within {with:.2} m: --height");
-        return Some(Finding::fault("geometry", found, consequence, remedy));
+        return Some(Finding::fault("geometry", Reason::Height, found, consequence, remedy));
     }
     if let Some((with, anchor)) =
         tried.without_one().filter(|(with, _)| explained(Some(*with)).is_some())
@@ -78,14 +78,14 @@ pub(super) fn check(recording: &Recording, height: Option<f64>, is_given: bool) 
             "without {} the others would agree within {with:.2} m: look where it stands, and what it measures",
             name(anchor)
         );
-        return Some(Finding::fault("geometry", found, consequence, remedy));
+        return Some(Finding::fault("geometry", Reason::Anchor, found, consequence, remedy));
     }
     let ranges: Vec<f64> = moments.iter().flatten().map(|(_, range)| *range).collect();
     if left < UNEXPLAINED_M + UNEXPLAINED_SHARE * median(&ranges) {
         return Some(Finding::note("geometry", found));
     }
     let remedy = "look at the anchors' places and names, at the unit, and at what stands between";
-    Some(Finding::fault("geometry", found, consequence, remedy))
+    Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy))
 }
 
 /// Moments at which several anchors were heard, spread over the recording.
