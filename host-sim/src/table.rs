@@ -31,8 +31,9 @@ pub struct Found {
 pub struct Log<'a> {
     /// What it holds, for complaints.
     pub what: &'a str,
-    /// The usual time between its lines is at most this, s: what is longer is in another unit. None if that says nothing.
-    pub longest_step_s: Option<f64>,
+    /// The usual time between its lines is one of these, from one to the other, s: what is not is in another unit. None if
+    /// that says nothing.
+    pub usual_step_s: Option<[f64; 2]>,
     /// What the user says about it.
     pub options: &'a Options,
 }
@@ -48,7 +49,7 @@ pub fn read<T>(
     row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let options = Options { strict: true, ..Options::default() };
-    let table = Log { what, longest_step_s: None, options: &options };
+    let table = Log { what, usual_step_s: None, options: &options };
     read_log(path, &table, columns, row).map(drop)
 }
 
@@ -79,7 +80,7 @@ pub fn parse<T>(
     columns: impl Fn(&Header<'_>) -> Result<T, Error>,
     mut row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
 ) -> Result<Found, Error> {
-    let Log { what, longest_step_s, options } = *log;
+    let Log { what, usual_step_s, options } = *log;
     let file = |problem: String| Error::File { path: path.to_path_buf(), problem };
     let nothing = || file(format!("expected {what}, found an empty file"));
     let text = Text::new(bytes).map_err(|_| nothing())?;
@@ -90,8 +91,8 @@ pub fn parse<T>(
     let (table, (columns, places)) = found.ok_or_else(nothing)??;
     let mut import = conclusions(&table, &places);
     let mut second = 1.0;
-    if let Some(longest) = longest_step_s {
-        let unit = unit_of_time(&table, &places, longest).map_err(|error| refused(path, &error))?;
+    if let Some(usual) = usual_step_s {
+        let unit = unit_of_time(&table, &places, usual).map_err(|error| refused(path, &error))?;
         if let Some(unit) = unit.filter(|unit| unit.scale != 1.0) {
             second = unit.scale;
             import.push(format!("time in {unit}: from the data"));
@@ -144,7 +145,7 @@ fn fields_of<'a>(
 fn unit_of_time(
     table: &NamedTable<'_>,
     places: &[(String, Column, String)],
-    longest: f64,
+    [shortest, longest]: [f64; 2],
 ) -> Result<Option<Unit>, ImportError> {
     let time = places.iter().find(|(wanted, column, _)| wanted == "t" && !column.has_unit);
     let Some((_, column, _)) = time else { return Ok(None) };
@@ -156,7 +157,7 @@ fn unit_of_time(
         }
         times.extend(table.number(field).filter(|time| time.is_finite()));
     }
-    unit_of_times(&times, longest).map(Some)
+    unit_of_times(&times, shortest..=longest).map(Some)
 }
 
 /// What was understood of columns that are named otherwise than documented, or have other units.
@@ -351,7 +352,7 @@ mod tests {
         let found = parse(
             Path::new("a.csv"),
             text,
-            &Log { what: "numbers", longest_step_s: Some(2.0), options },
+            &Log { what: "numbers", usual_step_s: Some([2e-3, 2.0]), options },
             |header| header.require(["t", "range"]),
             |&[t, range], row| {
                 sum += row.time_us(t)? as f64 + row.number("range", range)?;

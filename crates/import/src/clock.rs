@@ -1,18 +1,18 @@
 //! The unit of times that nothing names: from their spacing.
 
+use std::ops::RangeInclusive;
+
 use crate::error::Error;
 use crate::unit::{Quantity, Unit};
 
-/// No log of these kinds has shorter steps, s.
-const SHORTEST_STEP: f64 = 1e-4;
 /// Enough to tell the usual step.
 const SAMPLE: usize = 4000;
 
-/// The unit of times whose usual step is at most `longest`, in s: seconds if they may be, or else the one unit that fits.
+/// The unit of times whose usual step is one of these, in s: seconds if they may be, or else the one unit that fits.
 ///
 /// # Errors
-/// [`Error::Undecided`] if no unit fits, or if whole numbers may be seconds as well as shorter.
-pub fn unit_of_times(times: &[f64], longest: f64) -> Result<Unit, Error> {
+/// [`Error::Undecided`] if no unit fits, or several that are shorter than a second.
+pub fn unit_of_times(times: &[f64], usual: RangeInclusive<f64>) -> Result<Unit, Error> {
     let times = &times[..times.len().min(SAMPLE)];
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.retain(|step| *step > 0.0 && step.is_finite());
@@ -25,10 +25,8 @@ pub fn unit_of_times(times: &[f64], longest: f64) -> Result<Unit, Error> {
         return Ok(Unit::new(1.0, "s"));
     }
     let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    let fitting: Vec<_> = units
-        .iter()
-        .filter(|unit| (SHORTEST_STEP..=longest).contains(&(step * unit.scale)))
-        .collect();
+    let fitting: Vec<_> =
+        units.iter().filter(|unit| usual.contains(&(step * unit.scale))).collect();
     match fitting[..] {
         [first, ..] if first.scale == 1.0 => Ok(first.clone()),
         [only] => Ok(only.clone()),
@@ -47,12 +45,14 @@ mod tests {
     fn the_spacing_tells_the_unit() {
         let times = |step: f64| (0..100).map(|i| 17.0 + f64::from(i) * step).collect::<Vec<_>>();
         for (step, unit) in [(0.05, "s"), (1.0, "s"), (50.0, "ms"), (5e4, "µs"), (5e7, "ns")] {
-            assert_eq!(unit_of_times(&times(step), 2.0).unwrap().name, unit);
+            assert_eq!(unit_of_times(&times(step), 2e-3..=2.0).unwrap().name, unit);
         }
-        // A tenth of a second in ms, or a day and more in s.
-        assert_eq!(unit_of_times(&times(100.0), 60.0).unwrap().name, "ms");
-        assert_eq!(unit_of_times(&[1.0], 2.0).unwrap().name, "s");
-        let error = unit_of_times(&times(1e-7), 2.0).unwrap_err().to_string();
-        assert!(error.contains("--units t="), "{error}");
+        assert_eq!(unit_of_times(&times(100.0), 2e-2..=60.0).unwrap().name, "ms");
+        assert_eq!(unit_of_times(&[1.0], 2e-3..=2.0).unwrap().name, "s");
+        // Nothing fits; and a thousand may be a second in ms or a millisecond in µs.
+        for (step, shortest) in [(1e-7, 2e-3), (1e3, 5e-4)] {
+            let error = unit_of_times(&times(step), shortest..=2.0).unwrap_err().to_string();
+            assert!(error.contains("--units t="), "{error}");
+        }
     }
 }

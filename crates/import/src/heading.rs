@@ -41,6 +41,12 @@ const KNOWN: &[Known] = &[
     of(Quantity::Length, "y", &["y", "posy", "positiony", "ypos", "yposition", "py"]),
     of(Quantity::Length, "z", &["z", "posz", "positionz", "zpos", "zposition", "pz"]),
     of(Quantity::Length, "h", &["h", "height", "alt", "altitude", "agl", "relalt"]),
+    of(Quantity::Angle, "lat", &["lat", "latitude", "gpslat", "gpslatitude"]),
+    of(
+        Quantity::Angle,
+        "lon",
+        &["lon", "lng", "long", "longitude", "gpslon", "gpslng", "gpslongitude"],
+    ),
     of(Quantity::Level, "rssi_db", &["rssi", "rss", "signal", "level", "power", "rxpower"]),
     of(Quantity::Level, "path_loss_db", &["pathloss", "loss", "pl"]),
     of(
@@ -198,6 +204,8 @@ mod tests {
             ("rssi_dbm", "rssi_db", Some("dB")),
             ("pos_x [m]", "x", Some("m")),
             ("altitude (ft)", "h", Some("ft")),
+            ("Latitude [deg]", "lat", Some("°")),
+            ("lon", "lon", None),
             ("left_speed (cm/s)", "v_left", Some("cm/s")),
             ("AccX [g]", "ax", Some("g")),
         ] {

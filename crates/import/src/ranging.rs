@@ -21,6 +21,9 @@ use crate::error::{Error, quoted};
 use crate::options::Options;
 use crate::text::Text;
 
+/// The usual time between two moments of a tag is one of these, s.
+const USUAL_STEP: std::ops::RangeInclusive<f64> = 2e-3..=2.0;
+
 /// A range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {

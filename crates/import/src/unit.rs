@@ -21,6 +21,8 @@ pub enum Quantity {
     Speed,
     /// Level or loss, in dB.
     Level,
+    /// Latitude or longitude, in degrees.
+    Angle,
 }
 
 /// A unit of one [`Quantity`].
@@ -109,6 +111,12 @@ const SPEED: [Known; 6] = [
     (&["mph"], 0.447_04, "mph"),
 ];
 
+const ANGLE: [Known; 3] = [
+    (&["deg", "degs", "degree", "degrees"], 1.0, "°"),
+    (&["rad", "radian", "radians"], 180.0 / PI, "rad"),
+    (&["1e7", "e7", "dege7", "1e-7deg"], 1e-7, "10⁻⁷ °"),
+];
+
 const LEVEL: [Known; 1] = [(&["db", "dbm"], 1.0, "dB")];
 
 impl Unit {
@@ -167,6 +175,7 @@ fn table(quantity: Quantity) -> &'static [Known] {
         Quantity::Length => &LENGTH,
         Quantity::Speed => &SPEED,
         Quantity::Level => &LEVEL,
+        Quantity::Angle => &ANGLE,
     }
 }
 

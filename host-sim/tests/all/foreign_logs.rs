@@ -207,4 +207,19 @@ fn levels_of_any_program_give_the_same_place() {
         let off = (found[0] - plain[0]).hypot(found[1] - plain[1]);
         assert!(off < 0.05, "{name}: {off} m");
     }
+    // By latitude and longitude, counted from the first measurement.
+    let degrees = [1.0, 1.0 / 69_460.0, 1.0 / 111_267.0, 1.0, 1.0];
+    let log = desk.file("degrees.csv", {
+        let line = |row: &[f64; 5]| {
+            let [t, x, y, h, level] = std::array::from_fn(|i| row[i] * degrees[i]);
+            format!("{t},{:.9},{:.9},{h},{level:.4}", 51.5 + y, 7.25 + x)
+        };
+        format!("time,latitude,longitude,alt,rssi\n{}", lines(&rows, line))
+    });
+    let found = place(&log);
+    let off = (found[0] + rows[0][1] - plain[0]).hypot(found[1] + rows[0][2] - plain[1]);
+    assert!(off < 1.5, "{off} m");
+    let truth = desk.file("truth.csv", "x,y\n1,2\n");
+    let sentence = refusal(&["replay", "drone", "--log", &log, "--truth", &truth]);
+    assert!(sentence.contains("expected lat,lon as in the log"), "{sentence}");
 }

@@ -83,11 +83,13 @@ impl Rest {
 
 /// A sensor that repeats itself to the last digit where it has noise elsewhere is stuck, not at rest.
 fn leave_out_repeated(windows: &mut [Window]) {
-    let noisy = windows.iter().filter(|window| window.change > 0.0).count();
+    // Beyond the rounding of a mean.
+    const NOTHING: f64 = 1e-12;
+    let noisy = windows.iter().filter(|window| window.change > NOTHING).count();
     if 2 * noisy < windows.len() {
         return;
     }
-    for window in windows.iter_mut().filter(|window| window.change == 0.0) {
+    for window in windows.iter_mut().filter(|window| window.change <= NOTHING) {
         window.change = f64::INFINITY;
     }
 }

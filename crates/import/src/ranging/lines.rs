@@ -1,6 +1,6 @@
 //! A line of text for the ranges to all anchors at a moment.
 
-use super::Found;
+use super::{Found, USUAL_STEP};
 use crate::clock::unit_of_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
@@ -10,8 +10,6 @@ use crate::text::{Text, letters};
 
 /// How many lines are looked at to recognise a log.
 const SAMPLE: usize = 400;
-/// The usual time between the lines of a tag is at most this, s.
-const LONGEST_STEP: f64 = 2.0;
 
 /// What a line says.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,7 +109,7 @@ fn times(
         let values: Vec<_> = said.iter().map(|(value, _)| *value).collect();
         let (unit, from) = match &options.units.time {
             Some(TimeUnit::Clock(unit)) => (unit.clone(), "option"),
-            _ => (unit_of_times(&values, LONGEST_STEP)?, "from the data"),
+            _ => (unit_of_times(&values, USUAL_STEP)?, "from the data"),
         };
         let times = values.iter().map(|value| microseconds(value * unit.scale)).collect();
         return Ok((times, format!("in {unit}: {from}")));

@@ -1,6 +1,6 @@
 //! A column an anchor.
 
-use super::{Found, place};
+use super::{Found, USUAL_STEP, place};
 use crate::clock::unit_of_times;
 use crate::damage::{Damage, Fault};
 use crate::error::Error;
@@ -13,8 +13,6 @@ use crate::unit::{Quantity, Unit};
 
 /// Fewer columns of ranges are taken for something else.
 const FEWEST: usize = 2;
-/// The usual time between rows is at most this, s.
-const LONGEST_STEP: f64 = 2.0;
 /// What stands before an anchor's name in that of a column.
 const BEFORE: [&str; 10] =
     ["ranging.distance", "distance", "ranging", "range", "dist", "anchor", "rng", "anc", "d", "r"];
@@ -66,7 +64,7 @@ pub(super) fn read(
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),
-        None => (unit_of_times(&times, LONGEST_STEP)?, "from the data"),
+        None => (unit_of_times(&times, USUAL_STEP)?, "from the data"),
     };
     let mut found = Found::default();
     for (time, ranges) in &rows {

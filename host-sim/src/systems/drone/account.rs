@@ -41,6 +41,11 @@ struct Place {
     x: f64,
     /// As y in the log.
     y: f64,
+    /// Degrees, if the log told places so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    latitude: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    longitude: Option<f64>,
 }
 
 /// What came of a flight up to the measurement that is shown.
@@ -55,14 +60,20 @@ pub(super) fn account(
     let is_last = so_far.len() == track.estimates.len();
     let [x, y] = shown.place;
     let accuracy = Accuracy::of(track, so_far);
-    let found = match recording {
-        Recording::Flight(recorded) => recorded.found.clone(),
-        Recording::Moving | Recording::Staying => Found::default(),
+    let (found, origin) = match recording {
+        Recording::Flight(recorded) => (recorded.found.clone(), recorded.flight.origin),
+        Recording::Moving | Recording::Staying => (Found::default(), None),
     };
+    let degrees = origin.map(|origin| origin.degrees([x, y]));
     let report = Report {
         system: Drone::NAME,
         measurements: if is_last { track.stops.len() } else { shown.stop + 1 },
-        estimate: Place { x, y },
+        estimate: Place {
+            x,
+            y,
+            latitude: degrees.map(|it| it[0]),
+            longitude: degrees.map(|it| it[1]),
+        },
         sd_m: shown.sd_m,
         level_db: shown.level_db,
         import: found.import.clone(),
@@ -73,6 +84,9 @@ pub(super) fn account(
     account.understood(&report.import);
     account.fact("measurements", report.measurements.to_string());
     account.fact("place", format!("{x:.1} m, {y:.1} m"));
+    if let Some([latitude, longitude]) = degrees {
+        account.fact("latitude, longitude", format!("{latitude:.6}°, {longitude:.6}°"));
+    }
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
     match recording {
         Recording::Flight(recorded) => {

@@ -44,7 +44,7 @@ impl System for Drone {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "log",
-            "Flight: CSV with columns t,x,y,h and path_loss_db or rssi_db (s, m, dB)",
+            "Flight: CSV with columns t,x,y,h and path_loss_db or rssi_db (s, m, dB), or lat,lon (°) instead of x,y",
         )
         .imported(),
         FileField::optional(

@@ -27,7 +27,7 @@ impl Listening {
     /// # Errors
     /// Whatever is wrong with the area.
     pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
-        let area = files.one("area").map(area::read).transpose()?;
+        let area = files.one("area").map(|path| area::read(path, None)).transpose()?;
         Ok(Self { area, environment: built(settings) })
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod area;
 pub mod flight;
+pub mod plane;
 
 use std::path::PathBuf;
 
@@ -45,8 +46,9 @@ impl Recording {
     pub fn read(files: &Files) -> Result<Self, Error> {
         let log = files.required("log")?;
         let (flight, found) = flight::read(log, files.reading.tables()?)?;
-        let truth = files.one("truth").map(flight::read_truth).transpose()?;
-        let area = files.one("area").map(area::read).transpose()?;
+        let truth =
+            files.one("truth").map(|path| flight::read_truth(path, flight.origin)).transpose()?;
+        let area = files.one("area").map(|path| area::read(path, flight.origin)).transpose()?;
         let recorded = Recorded { log: log.to_path_buf(), flight, area, truth, found };
         if recorded.flight.stops.len() < 3 {
             return Err(recorded.refused(

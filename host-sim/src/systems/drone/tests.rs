@@ -206,7 +206,8 @@ fn settings_are_refused_only_where_no_recording_has_them() {
 #[test]
 fn firmware_says_which_filter_and_what_differs() {
     let flight = |quantity| {
-        let flight = recording::flight::Flight { quantity, stops: Vec::new(), unusable: 0 };
+        let flight =
+            recording::flight::Flight { quantity, stops: Vec::new(), unusable: 0, origin: None };
         let recorded = recording::Recorded {
             log: "a.csv".into(),
             flight,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table;
 
@@ -11,22 +12,22 @@ pub const MOST_CORNERS: usize = 4096;
 /// A polygon, m.
 pub type Area = kestirim_user_locator::Area<f64, MOST_CORNERS>;
 
-/// Reads columns x,y: the corners in their order.
+/// Reads columns x,y, or lat,lon as in the log: the corners in their order.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read(path: &Path) -> Result<Box<Area>, Error> {
+pub fn read(path: &Path, origin: Option<Origin>) -> Result<Box<Area>, Error> {
     let mut corners = Vec::new();
     table::read(
         path,
         "the corners of an area",
-        |header| header.require(["x", "y"]),
-        |&[x, y], row| {
+        |header| Places::find(header)?.as_in_log(header, origin),
+        |places, row| {
             if corners.len() == MOST_CORNERS {
                 let problem = format!("expected at most {MOST_CORNERS} corners, found one more");
                 return Err(row.line.error(problem));
             }
-            corners.push([row.coordinate("x", x)?, row.coordinate("y", y)?]);
+            corners.push(places.read(row, &mut origin.clone())?);
             Ok(())
         },
     )?;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use kestirim_import::Options;
 
+use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table::{self, Column, Found, Header, Log};
 
@@ -38,10 +39,12 @@ pub struct Flight {
     pub stops: Vec<Stop>,
     /// Rows that no channel can use: without height, or a loss that no radio measures.
     pub unusable: usize,
+    /// Where the plane touches the Earth, if places were read by latitude and longitude.
+    pub origin: Option<Origin>,
 }
 
-/// From stop to stop it takes less, s.
-const LONGEST_STEP_S: f64 = 60.0;
+/// From stop to stop it takes so long, s.
+const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
 /// Heights above which no drone flies, m.
 const HIGHEST_M: f64 = 20_000.0;
 /// No radio measures a larger loss or level, dB.
@@ -54,20 +57,21 @@ impl Stop {
     }
 }
 
-/// Reads columns t,x,y,h and `path_loss_db` or `rssi_db`.
+/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
-    let mut flight = Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0 };
+    let mut flight =
+        Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0, origin: None };
     let found = table::read_log(
         path,
-        &Log { what: "a recorded flight", longest_step_s: Some(LONGEST_STEP_S), options },
+        &Log { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         columns,
-        |&([t, x, y, h, value], quantity), row| {
+        |&(places, [t, h, value], quantity), row| {
             flight.quantity = quantity;
             let t = row.time_us(t)? as f64 * 1e-6;
-            let place = [row.coordinate("x", x)?, row.coordinate("y", y)?];
+            let place = places.read(row, &mut flight.origin)?;
             let height = row.number("h", h)?;
             // An empty field means that no measurement came.
             if row.is_empty(value) {
@@ -91,28 +95,29 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     Ok((flight, found))
 }
 
-fn columns(header: &Header<'_>) -> Result<([Column; 5], Quantity), Error> {
+fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity), Error> {
+    let places = Places::find(header)?;
     if header.find("path_loss_db")?.is_some() {
-        return Ok((header.require(["t", "x", "y", "h", "path_loss_db"])?, Quantity::PathLoss));
+        return Ok((places, header.require(["t", "h", "path_loss_db"])?, Quantity::PathLoss));
     }
-    Ok((header.require(["t", "x", "y", "h", "rssi_db"])?, Quantity::Level))
+    Ok((places, header.require(["t", "h", "rssi_db"])?, Quantity::Level))
 }
 
-/// Reads the user's true place: columns x,y, one line.
+/// Reads the user's true place: columns x,y or lat,lon as in the log, one line.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_truth(path: &Path) -> Result<[f64; 2], Error> {
+pub fn read_truth(path: &Path, origin: Option<Origin>) -> Result<[f64; 2], Error> {
     let mut places = Vec::new();
     table::read(
         path,
         "the user's place",
-        |header| header.require(["x", "y"]),
-        |&[x, y], row| {
+        |header| Places::find(header)?.as_in_log(header, origin),
+        |columns, row| {
             if !places.is_empty() {
                 return Err(row.line.error("expected one place, found a second one"));
             }
-            places.push([row.coordinate("x", x)?, row.coordinate("y", y)?]);
+            places.push(columns.read(row, &mut origin.clone())?);
             Ok(())
         },
     )?;

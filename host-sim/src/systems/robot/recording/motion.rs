@@ -10,8 +10,8 @@ use crate::table::{self, Column, Found, Log, Row};
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
 
-/// A robot's sensors are read at least this often, s.
-const LONGEST_STEP_S: f64 = 2.0;
+/// A robot's sensors are read so often, s.
+const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
 
 /// A sample of the IMU.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, F
     let mut samples: Vec<Inertial> = Vec::new();
     let found = table::read_log(
         path,
-        &Log { what: "samples of an IMU", longest_step_s: Some(LONGEST_STEP_S), options },
+        &Log { what: "samples of an IMU", usual_step_s: Some(USUAL_STEP_S), options },
         |header| {
             let [time] = header.require(["t"])?;
             Ok(Columns {
@@ -98,7 +98,7 @@ pub fn read_wheels(path: &Path, options: &Options) -> Result<(Vec<Wheels>, Found
     let mut samples: Vec<Wheels> = Vec::new();
     let found = table::read_log(
         path,
-        &Log { what: "samples of the wheels", longest_step_s: Some(LONGEST_STEP_S), options },
+        &Log { what: "samples of the wheels", usual_step_s: Some(USUAL_STEP_S), options },
         |header| header.require(["t", "v_left", "v_right", "track"]),
         |&[t, left, right, track], row| {
             let time_us = row.time_us(t)?;

@@ -13,8 +13,8 @@ use crate::text::printable;
 
 /// Time between the epochs of a static recording, µs.
 const EPOCH_US: i64 = 100_000;
-/// A radio ranges at least this often, s.
-const LONGEST_STEP_S: f64 = 2.0;
+/// A radio ranges so often, s.
+const USUAL_STEP_S: [f64; 2] = [2e-3, 2.0];
 /// Beyond any count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
@@ -74,7 +74,7 @@ pub fn read_moving(
     }
     let found = table::read_log(
         path,
-        &Log { what: "ranges", longest_step_s: Some(LONGEST_STEP_S), options },
+        &Log { what: "ranges", usual_step_s: Some(USUAL_STEP_S), options },
         |header| header.require(["t", "anchor", "range"]),
         |&[t, anchor, range], row| {
             let time_us = row.time_us(t)?;
@@ -124,7 +124,7 @@ pub fn read_static(
     let mut logs = BTreeMap::<String, RangeLog>::new();
     let found = table::read_log(
         path,
-        &Log { what: "ranges", longest_step_s: None, options },
+        &Log { what: "ranges", usual_step_s: None, options },
         |header| header.require(["point", "k", "anchor", "range"]),
         |&[point, k, anchor, range], row| {
             let epoch = row.number("k", k)?;

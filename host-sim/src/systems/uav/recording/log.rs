@@ -14,8 +14,8 @@ const JITTER: f64 = 0.1;
 const REGULAR: f64 = 0.75;
 /// From this many usual intervals on, samples are missing.
 const GAP: f64 = 1.5;
-/// An aircraft's sensors are read at least this often, s.
-const LONGEST_STEP_S: f64 = 2.0;
+/// An aircraft's sensors are read so often, s.
+const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
 /// No sensor of an aircraft measures more, in any unit.
 pub(in crate::systems::uav) const LARGEST: f64 = 1e6;
 
@@ -52,7 +52,7 @@ pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Foun
     let mut outputs = Vec::new();
     let found = table::read_log(
         path,
-        &Logged { what: "a recorded flight", longest_step_s: Some(LONGEST_STEP_S), options },
+        &Logged { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         |header| {
             let inputs = header.require(["t", "delta_e", "delta_t"])?;
             let columns = measured_columns(header, names)?;

@@ -1,0 +1,116 @@
+//! Places by latitude and longitude as metres to the east and north of a first one.
+
+use crate::Error;
+use crate::table::{Column, Header, Row};
+
+/// The Earth's semi-major axis, m, and the square of its eccentricity (WGS 84).
+const SEMI_MAJOR_M: f64 = 6_378_137.0;
+const ECCENTRICITY_SQUARE: f64 = 6.694_379_990_14e-3;
+
+/// Where a plane touches the Earth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Origin {
+    /// Degrees.
+    pub latitude: f64,
+    /// Degrees.
+    pub longitude: f64,
+}
+
+impl Origin {
+    /// Metres that a degree to the east and to the north is here.
+    fn metres_a_degree(&self) -> [f64; 2] {
+        let (sine, cosine) = self.latitude.to_radians().sin_cos();
+        let square = 1.0 - ECCENTRICITY_SQUARE * sine * sine;
+        let normal = SEMI_MAJOR_M / square.sqrt();
+        let meridian = normal * (1.0 - ECCENTRICITY_SQUARE) / square;
+        [normal * cosine, meridian].map(f64::to_radians)
+    }
+
+    /// A place in the plane, m to the east and north. Within 10 km it is right to a metre.
+    fn plane(&self, latitude: f64, longitude: f64) -> [f64; 2] {
+        let [east, north] = self.metres_a_degree();
+        let turn = longitude - self.longitude;
+        // Across the date line the other way round is shorter.
+        let turn = turn - 360.0 * (turn / 360.0).round();
+        [east * turn, north * (latitude - self.latitude)]
+    }
+
+    /// Latitude and longitude of a place in the plane, degrees.
+    pub fn degrees(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [east, north] = self.metres_a_degree();
+        [self.latitude + y / north, self.longitude + x / east]
+    }
+}
+
+/// The columns of places.
+#[derive(Debug, Clone, Copy)]
+pub enum Places {
+    /// x and y, m.
+    Plane([Column; 2]),
+    /// Latitude and longitude, degrees.
+    Earth([Column; 2]),
+}
+
+impl Places {
+    /// Finds `x,y` or `lat,lon`.
+    ///
+    /// # Errors
+    /// As [`Header::require`].
+    pub fn find(header: &Header<'_>) -> Result<Self, Error> {
+        match header.all(["lat", "lon"])? {
+            Some(columns) if header.all(["x", "y"])?.is_none() => Ok(Self::Earth(columns)),
+            _ => header.require(["x", "y"]).map(Self::Plane),
+        }
+    }
+
+    /// Refuses places that are told otherwise than the log's, of which `origin` is where its plane touches the Earth.
+    ///
+    /// # Errors
+    /// The header, and what was expected there.
+    pub fn as_in_log(self, header: &Header<'_>, origin: Option<Origin>) -> Result<Self, Error> {
+        match (self, origin) {
+            (Self::Plane(_), Some(_)) => {
+                Err(header.error("expected lat,lon as in the log, found x,y"))
+            }
+            (Self::Earth(_), None) => {
+                Err(header.error("expected x,y as in the log, found lat,lon"))
+            }
+            _ => Ok(self),
+        }
+    }
+
+    /// The place of a row, m; the first one by latitude and longitude is the origin of all.
+    ///
+    /// # Errors
+    /// The line, and what was expected there.
+    pub fn read(&self, row: &Row<'_>, origin: &mut Option<Origin>) -> Result<[f64; 2], Error> {
+        match *self {
+            Self::Plane([x, y]) => Ok([row.coordinate("x", x)?, row.coordinate("y", y)?]),
+            Self::Earth([lat, lon]) => {
+                let (latitude, longitude) = (row.number("lat", lat)?, row.number("lon", lon)?);
+                if latitude.abs() > 89.0 || longitude.abs() > 360.0 {
+                    return Err(row.line.error("expected latitude and longitude in degrees"));
+                }
+                let origin = origin.get_or_insert(Origin { latitude, longitude });
+                Ok(origin.plane(latitude, longitude))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plane_touches_the_earth() {
+        let origin = Origin { latitude: 52.0, longitude: 179.999 };
+        // A minute of the meridian at 52° is 1854 m.
+        let [x, y] = origin.plane(52.0 + 1.0 / 60.0, 179.999);
+        assert!(x.abs() < 1e-9 && (y - 1854.5).abs() < 0.5, "{y}");
+        let [x, _] = origin.plane(52.0, -179.999);
+        assert!((x - 137.3).abs() < 0.1, "{x}");
+        let [latitude, longitude] = origin.degrees(origin.plane(52.01, 179.99));
+        assert!((latitude - 52.01).abs() < 1e-12 && (longitude - 179.99).abs() < 1e-12);
+    }
+}
