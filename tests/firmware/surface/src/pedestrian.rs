@@ -49,6 +49,7 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
     let start = any(Orientation::identity());
     let mut navigator = any(<N as Navigator<T>>::start(
         one_of([SensorClass::Industrial, SensorClass::Consumer]),
+        matrix(),
         start,
     ));
     let step =
@@ -67,7 +68,8 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
 fn navigators<T: Scalar>() {
     call_each([navigates::<T, Lite<T>>, navigates::<T, Ekf<T>>]);
     let start = Orientation::identity();
-    keep(Ekf::<T>::covariance(&any(<Ekf<T> as Navigator<T>>::start(SensorClass::Consumer, start))));
+    let started = <Ekf<T> as Navigator<T>>::start(SensorClass::Consumer, matrix(), start);
+    keep(Ekf::<T>::covariance(&any(started)));
 }
 
 fn tracks<T: Scalar, N: Navigator<T> + Debug>() {
