@@ -87,10 +87,14 @@ fn stuck(samples: &[Sample]) -> Option<Finding> {
         }
         begin = i;
     }
+    let times = if runs == 1 { "once".to_owned() } else { format!("{runs} times") };
     (runs > 0).then(|| {
         Finding::fault(
-            "repeated samples", Reason::Stuck,
-            format!("the sensor repeated itself {runs} times, {lost:.1} s in all, at most {longest:.1} s"),
+            "repeated samples",
+            Reason::Stuck,
+            format!(
+                "the sensor repeated itself {times}, {lost:.1} s in all, {longest:.1} s at most"
+            ),
             "what the foot did meanwhile is not in the log",
             "look at the bus and at the logger's buffer",
         )
