@@ -248,15 +248,13 @@ impl Formats {
             fields.push(Field { from, letter });
             end = Field::size(letter).map(|size| from + size);
         }
-        let is_whole = match end {
-            Some(end) => end + HEADER == length && labels.len() == fields.len(),
-            None => length > HEADER,
-        };
+        let is_whole = end.is_none_or(|end| end + HEADER == length) && length > HEADER;
         let slot = self.0.get_mut(usize::from(kind))?;
         if !is_whole || slot.is_some() {
             return None;
         }
-        let imu = Imu::of(name, &labels);
+        // The end of a long list of labels may be missing.
+        let imu = Imu::of(name, &labels).filter(|_| labels.len() == fields.len());
         *slot = Some(Message { length, fields, imu: imu.clone() });
         Some((name.to_owned(), imu))
     }

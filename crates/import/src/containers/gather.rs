@@ -74,8 +74,11 @@ impl Losses {
             let count = (bytes as f64 * density).ceil().max(1.0) as usize;
             damage.add_some(fault, record, count, || {
                 let noun = part.noun(1);
-                match fault {
-                    Fault::Cut => format!("expected a whole {noun}, found the end of the file"),
+                match (fault, bytes) {
+                    (Fault::Cut, _) => {
+                        format!("expected a whole {noun}, found the end of the file")
+                    }
+                    (_, 0) => format!("expected a {noun} of the format, found one that is none"),
                     _ => format!(
                         "expected a {noun} of the format, found {bytes} bytes that are none"
                     ),
