@@ -24,6 +24,9 @@ use crate::text::Text;
 /// The usual time between two moments of a tag is one of these, s.
 const USUAL_STEP: std::ops::RangeInclusive<f64> = 2e-3..=2.0;
 
+/// Beyond any clock, µs: three centuries.
+const LATEST_US: u64 = 10_000_000_000_000_000;
+
 /// A range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
@@ -81,6 +84,12 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
         None => wide::read(&text, anchors, options)?,
     };
     let Some((found, conclusion, damage)) = read else { return Ok(None) };
+    if found.ranges.iter().any(|(time_us, ..)| time_us.unsigned_abs() > LATEST_US) {
+        return Err(Error::undecided(
+            "expected times in s, found one beyond any clock",
+            "--units t=",
+        ));
+    }
     let places: Vec<_> = {
         let mut labels: Vec<_> = found.labels.iter().collect();
         labels.sort_by_key(|(_, index)| **index);

@@ -3,7 +3,7 @@
 use super::{Found, USUAL_STEP, place};
 use crate::clock::unit_of_times;
 use crate::damage::{Damage, Fault};
-use crate::error::Error;
+use crate::error::{Error, quoted};
 use crate::heading::Heading;
 use crate::named::NamedTable;
 use crate::names::split_unit;
@@ -49,7 +49,8 @@ pub(super) fn read(
         let (true, Some(seconds)) = (fields.len() == table.heading.names().len(), seconds) else {
             damage.add(Fault::Torn, line, || {
                 let (expected, found) = (table.heading.names().len(), fields.len());
-                format!("expected {expected} fields with a time, found {found}: {}", letters(field))
+                let field = quoted(&letters(field));
+                format!("expected {expected} fields with a time, found {found} and {field}")
             });
             continue;
         };

@@ -1,7 +1,7 @@
 //! Damaged and random logs, by seeds: nothing panics or hangs, and what is read is in order and finite.
 
 use kestirim_import::Options;
-use kestirim_import::inertial;
+use kestirim_import::{inertial, ranging};
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -31,6 +31,50 @@ fn logs() -> Vec<Vec<u8>> {
         write("", " ", false),
         dates.into_bytes(),
     ]
+}
+
+/// Logs of ranges, a moment a line.
+fn logs_of_ranges() -> Vec<Vec<u8>> {
+    let log = |line: fn(u32) -> String| (0..80).map(line).collect::<String>().into_bytes();
+    let wide = |i| format!("{},{:.3},{:.3},\n", i * 100, f64::from(i) * 0.1, 7.0);
+    vec![
+        log(|i| format!("mc 03 {:08x} 000005a3 0 0 095f c1 {:08x} a0:0\n", 1000 + i, i * 100)),
+        log(|i| {
+            format!(
+                "12:00:{:02}.5 AT+RANGE=tid:1,mask:03,seq:1,range:(100,{i},0),ancid:(0,1,-1)\n",
+                i % 60
+            )
+        }),
+        log(|i| format!("{i}.5 DIST,2,AN0,A0,5,8,2,1.6,AN1,A1,0,8,2,{i}.4,POS,7,8,-1,97\n")),
+        log(|i| format!("{i}.5 A0[5,8,2]=1.6 A1[0,8,2]={i}.4 le_us=2576 est[6,8,-1,53]\n")),
+        ["time_ms,d0,d1,d2\n".to_owned(), (0..80).map(wide).collect()].concat().into_bytes(),
+    ]
+}
+
+#[test]
+fn damaged_logs_of_ranges_do_no_harm() {
+    let (logs, anchors) = (logs_of_ranges(), ["A0", "A1", "A2"].map(str::to_owned));
+    let mut read_on = 0;
+    for seed in 0..20_000 {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut log = logs[pick(&mut random, logs.len())].clone();
+        for _ in 0..=pick(&mut random, 4) {
+            mutate(&mut random, &mut log);
+        }
+        for strict in [false, true] {
+            match ranging::read(&log, &anchors, &Options { strict, ..Options::default() }) {
+                Ok(Some(read)) => {
+                    assert!(read.ranges.iter().all(|it| it.anchor < 3 && it.metres.is_finite()));
+                    read_on += 1;
+                }
+                Ok(None) => {}
+                Err(error) => {
+                    assert!(!error.to_string().contains(['\n', '\r']), "seed {seed}: {error}");
+                }
+            }
+        }
+    }
+    assert!(read_on > 10_000, "{read_on}");
 }
 
 pub(crate) fn pick(random: &mut Xoshiro256PlusPlus, count: usize) -> usize {
