@@ -1,7 +1,7 @@
 //! The columns that a reader wants by name, as people name them.
 
 use crate::error::{Error, quoted};
-use crate::names::{meaning, measures};
+use crate::names::{Named, meaning, named};
 use crate::options::Options;
 use crate::unit::{Quantity, Unit};
 
@@ -124,7 +124,7 @@ impl<'a> Heading<'a> {
         };
         match (exact[..].first(), exact.len(), said) {
             (Some(&column), 1, _) => {
-                let named = said.and_then(|_| self.named(name, column)).flatten();
+                let named = said.and_then(|_| self.named(name, column)?.unit);
                 return Ok(Some(place(column, named)));
             }
             (Some(_), _, _) => {
@@ -140,7 +140,7 @@ impl<'a> Heading<'a> {
             (None, _, None) => {}
         }
         let mut found = (0..self.names.len()).filter_map(|i| Some((i, self.named(name, i)?)));
-        let Some((column, named)) = found.next() else { return Ok(None) };
+        let Some((column, Named { unit: named })) = found.next() else { return Ok(None) };
         if let Some((other, _)) = found.next() {
             let (one, other) = (quoted(&self.names[column]), quoted(&self.names[other]));
             let problem = format!(
@@ -152,14 +152,14 @@ impl<'a> Heading<'a> {
     }
 
     /// Whether a column may be the wanted one, and the unit that its name says.
-    fn named(&self, wanted: &str, column: usize) -> Option<Option<Unit>> {
+    fn named(&self, wanted: &str, column: usize) -> Option<Named> {
         let name = &self.names[column];
         if let Some(known) = KNOWN.iter().find(|known| known.name == wanted) {
-            return measures(name, known.quantity, known.aliases);
+            return named(name, known.quantity, known.aliases);
         }
         let (own, its) = (meaning(wanted)?, meaning(name)?);
         let same = own.quantity == its.quantity && own.axis == its.axis;
-        same.then_some(its.unit)
+        same.then_some(Named { unit: its.unit })
     }
 
     /// The columns of these names.

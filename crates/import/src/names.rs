@@ -123,12 +123,14 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     })
 }
 
-/// Whether a name is one of these aliases, with a unit of the quantity behind it or in brackets; and that unit.
-pub(crate) fn measures(
-    name: &str,
-    quantity: Option<Quantity>,
-    aliases: &[&str],
-) -> Option<Option<Unit>> {
+/// That a column's name is the one that is wanted, and the unit that it says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Named {
+    pub(crate) unit: Option<Unit>,
+}
+
+/// Whether a name is one of these aliases, with a unit of the quantity behind it or in brackets.
+pub(crate) fn named(name: &str, quantity: Option<Quantity>, aliases: &[&str]) -> Option<Named> {
     let (base, bracket) = split_unit(name);
     let is_one = |text: &str| aliases.contains(&text);
     let unit = |text: &str| quantity.and_then(|quantity| Unit::read(quantity, text));
@@ -136,7 +138,7 @@ pub(crate) fn measures(
     if let Some((base, text)) = base.rsplit_once(['_', ' '])
         && let (true, Some(unit)) = (is_one(&words(base).concat()), unit(text))
     {
-        return Some(Some(unit));
+        return Some(Named { unit: Some(unit) });
     }
     let words = words(base);
     (1..=words.len()).rev().find_map(|end| {
@@ -145,7 +147,7 @@ pub(crate) fn measures(
         }
         let behind = if end < words.len() { Some(unit(&words[end..].concat())?) } else { None };
         // What stands in brackets may say something else than a unit.
-        Some(bracket.and_then(unit).or(behind))
+        Some(Named { unit: bracket.and_then(unit).or(behind) })
     })
 }
 

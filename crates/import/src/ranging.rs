@@ -3,7 +3,7 @@
 //!
 //! | | |
 //! |---|---|
-//! | TREK1000, DecaRanging | `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`: mm, and ms of the tag's clock, in hexadecimal (TREK1000 User Manual, 8.1.1). `mr` is read if there is no `mc`, `ma` is between anchors |
+//! | TREK1000, `DecaRanging` | `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`: mm, and ms of the tag's clock, in hexadecimal (TREK1000 User Manual, 8.1.1). `mr` is read if there is no `mc`, `ma` is between anchors |
 //! | Qorvo MDEK1001 | `les`: `1151[5.00,8.00,2.25]=6.48 … est[…]`; `lec`: `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,…,POS,…` (DWM1001 Firmware API Guide, shell commands): m |
 //! | Makerfabs `MaUWB` | `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,911,738,0,0,0,0),ancid:(0,1,2,3,-1,-1,-1,-1)` (AT command manual): cm |
 //! | a column an anchor | `t,d0,d1,…`, `time_ms,range_A1 [cm],…`; the log of Crazyflie's client: `Timestamp,ranging.distance0,…` |

@@ -36,18 +36,12 @@ struct Block<T: Scalar> {
     rate: SVector<T, 3>,
     /// m/s².
     force: SVector<T, 3>,
-    /// A sample of it turned faster than any bias.
-    turning: bool,
-    /// The sensor repeated itself.
-    frozen: bool,
 }
 
 /// Deviations of a run of blocks from the first of them.
 #[derive(Clone, Copy, Debug)]
 struct Standstill<T: Scalar> {
     blocks: i32,
-    /// In one of them the sensor repeated itself.
-    frozen: bool,
     rate: SVector<T, 3>,
     force: SVector<T, 3>,
     /// 0.01 rad/s.
@@ -59,22 +53,14 @@ struct Standstill<T: Scalar> {
 
 impl<T: Scalar> Block<T> {
     fn new() -> Self {
-        Self {
-            begun_us: None,
-            count: 0,
-            rate: SVector::zeros(),
-            force: SVector::zeros(),
-            turning: false,
-            frozen: false,
-        }
+        Self { begun_us: None, count: 0, rate: SVector::zeros(), force: SVector::zeros() }
     }
 }
 
 impl<T: Scalar> Standstill<T> {
-    fn from_block(rate: SVector<T, 3>, force: SVector<T, 3>, frozen: bool) -> Self {
+    fn from_block(rate: SVector<T, 3>, force: SVector<T, 3>) -> Self {
         Self {
             blocks: 1,
-            frozen,
             rate,
             force,
             rate_sum: SVector::zeros(),
@@ -91,13 +77,12 @@ impl<T: Scalar> Alignment<T> {
     const RATE_SPREAD: f64 = 0.03;
     /// … nor is a rate that no bias explains (rad/s), however steady …
     const LARGEST_BIAS: f64 = 0.35;
-    /// … nor is a block in which the foot turned faster than that with a bare chip's noise (rad/s), whatever its
-    /// mean …
-    const LARGEST_RATE: f64 = 0.5;
     /// … nor forces further apart than this (g).
     const FORCE_SPREAD: f64 = 0.04;
     /// The gyroscope's own noise over a standstill (0.01 rad/s), below which no spread is believed.
     const RATE_FLOOR: f64 = 0.07;
+    /// So far from gravity (g) no accelerometer is at rest: nothing is learnt there.
+    const NO_GRAVITY: f64 = 0.5;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
     /// Standard deviation by which a bias wanders between two standstills (0.01 rad/s).
@@ -113,7 +98,7 @@ impl<T: Scalar> Alignment<T> {
             gravity_variance: T::from_f64(gravity * gravity),
             accelerometer_bias: SVector::zeros(),
             block: Block::new(),
-            standstill: Standstill::from_block(SVector::zeros(), SVector::zeros(), false),
+            standstill: Standstill::from_block(SVector::zeros(), SVector::zeros()),
         }
     }
 
@@ -135,45 +120,36 @@ impl<T: Scalar> Alignment<T> {
         self
     }
 
-    /// Takes the next sample, and whether the sensor has begun to repeat itself; `Some(|f|/g₀)` after a
-    /// standstill, which refines the estimates.
-    pub(crate) fn update(&mut self, sample: &ImuSample<T>, frozen: bool) -> Option<T> {
+    /// Takes the next sample; `Some(|f|/g₀)` when a standstill has just refined the estimates.
+    pub(crate) fn update(&mut self, sample: &ImuSample<T>) -> Option<T> {
         // The lower half is enough for differences.
         let time_us = sample.time_us as u32;
         let begun_us = *self.block.begun_us.get_or_insert(time_us);
         self.block.rate += sample.angular_rate;
         self.block.force += sample.specific_force;
         self.block.count += 1;
-        self.block.turning |= largest(&sample.angular_rate) > T::from_f64(Self::LARGEST_RATE);
-        self.block.frozen |= frozen;
         if time_us.wrapping_sub(begun_us) < Self::BLOCK_US {
             return None;
         }
         let reciprocal = T::ONE / T::from_micro(self.block.count.saturating_mul(1_000_000));
         let rate = self.block.rate * reciprocal;
         let force = self.block.force * reciprocal * T::from_f64(1.0 / STANDARD_GRAVITY);
-        let Block { turning, frozen, .. } = self.block;
         self.block = Block { begun_us: Some(time_us), ..Block::new() };
-        if turning {
-            self.standstill.blocks = 0;
-            return None;
-        }
-        self.join(rate, force, frozen)
+        self.join(rate, force)
     }
 
-    fn join(&mut self, rate: SVector<T, 3>, force: SVector<T, 3>, frozen: bool) -> Option<T> {
+    fn join(&mut self, rate: SVector<T, 3>, force: SVector<T, 3>) -> Option<T> {
         let (rate_step, force_step) = (rate - self.standstill.rate, force - self.standstill.force);
         let still = largest(&rate_step) < T::from_f64(Self::RATE_SPREAD)
             && largest(&force_step) < T::from_f64(Self::FORCE_SPREAD)
             && largest(&rate) < T::from_f64(Self::LARGEST_BIAS);
         if self.standstill.blocks == 0 || !still {
-            self.standstill = Standstill::from_block(rate, force, frozen);
+            self.standstill = Standstill::from_block(rate, force);
             return None;
         }
         let step = rate_step * T::from_f64(100.0);
         let run = &mut self.standstill;
         run.blocks += 1;
-        run.frozen |= frozen;
         run.rate_sum += step;
         run.rate_square += T::dot(step.as_array(), step.as_array());
         run.force_sum += force_step;
@@ -184,13 +160,6 @@ impl<T: Scalar> Alignment<T> {
         self.standstill.blocks = 0;
         Some(magnitude)
     }
-
-    /// Largest deviation of the magnitude at rest from standard gravity that a bias explains (g).
-    const LARGEST_EXCESS: f64 = 0.5;
-    /// A standstill that contradicts the bias by more (0.01 rad/s) …
-    const RATE_CONTRADICTION: f64 = 10.0;
-    /// … or gravity by more (g) is believed: what was learnt before was no standstill.
-    const FORCE_CONTRADICTION: f64 = 0.1;
 
     /// One scalar update of the bias and one of gravity from a whole standstill.
     fn learn(&mut self) -> T {
@@ -203,35 +172,18 @@ impl<T: Scalar> Alignment<T> {
         let force = run.force + run.force_sum * share;
         let [x, y, z] = *force.as_array();
         let magnitude = x.hypot(y).hypot(z);
-
-        // What is no gravity with a bias has no direction to learn from: a wrong unit, or no standstill.
-        if (magnitude - T::ONE).abs() > T::from_f64(Self::LARGEST_EXCESS) {
+        // A bus that stalls delivers zeros, which stand still, too.
+        if (magnitude - T::ONE).abs() > T::from_f64(Self::NO_GRAVITY) {
             return magnitude;
         }
+
         let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
-        let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
-        let rate_off = largest(&(rate - self.gyro_bias)) * T::from_f64(100.0);
-        let force_off = (magnitude - self.gravity).abs();
-        // A sensor that repeats itself looks still as well, wherever the foot is: it may confirm, not teach.
-        let nine = T::from_f64(9.0);
-        if run.frozen
-            && (rate_off * rate_off > (self.bias_variance + floor) * nine
-                || force_off * force_off > (self.gravity_variance + noise) * nine)
-        {
-            return magnitude;
-        }
-        if rate_off > T::from_f64(Self::RATE_CONTRADICTION) {
-            self.bias_variance = self.bias_variance.max(rate_off * rate_off);
-        }
-        if force_off > T::from_f64(Self::FORCE_CONTRADICTION) {
-            self.gravity_variance = self.gravity_variance.max(force_off * force_off);
-        }
-
         self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
         let gain = self.bias_variance / (self.bias_variance + spread + floor);
         self.gyro_bias += (rate - self.gyro_bias) * gain;
         self.bias_variance *= T::ONE - gain;
 
+        let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
         let gain = self.gravity_variance / (self.gravity_variance + noise);
         self.gravity += (magnitude - self.gravity) * gain;
         self.gravity_variance *= T::ONE - gain;

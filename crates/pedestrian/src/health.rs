@@ -21,16 +21,8 @@ pub struct Warnings {
     /// Repeatedly strides end with a velocity of metres a second left over: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
     pub axes_inconsistent: bool,
-    /// Samples are missing (more than a tenth of a second), or the clock was set back.
+    /// Samples are missing (more than a tenth of a second).
     pub gaps: bool,
-    /// Samples came that measured nothing: a specific force of exactly zero, as a stalled bus delivers.
-    /// They are taken for missing.
-    pub dropout: bool,
-    /// A sensor was stuck: the gyroscope repeated its values while the foot moved, or all six axes did for half
-    /// a second.
-    pub stuck: bool,
-    /// The position or the path has left the range of numbers, and stays at its end.
-    pub out_of_range: bool,
     /// The stream showed no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,
 }
@@ -112,27 +104,8 @@ impl<T: Scalar> Health<T> {
     }
 
     /// Samples are missing.
-    #[cold]
     pub(crate) fn gap(&mut self) {
         self.warnings.gaps = true;
-    }
-
-    /// A sample measured nothing.
-    #[cold]
-    pub(crate) fn dropout(&mut self) {
-        self.warnings.dropout = true;
-    }
-
-    /// A sensor repeats itself.
-    #[cold]
-    pub(crate) fn stuck(&mut self) {
-        self.warnings.stuck = true;
-    }
-
-    /// A number is at the end of its range.
-    #[cold]
-    pub(crate) fn out_of_range(&mut self) {
-        self.warnings.out_of_range = true;
     }
 
     /// A standstill showed gravity (in units of standard gravity).
@@ -150,14 +123,8 @@ impl<T: Scalar> Health<T> {
     pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>) {
         let limit = T::from_f64(Self::LANDING);
         if velocity.as_array().iter().any(|component| component.abs() > limit) {
-            self.contradiction();
+            self.bad_landings = self.bad_landings.saturating_add(1);
         }
-    }
-
-    /// Gyroscope and accelerometer contradict each other at the end of a swing.
-    #[cold]
-    pub(crate) fn contradiction(&mut self) {
-        self.bad_landings = self.bad_landings.saturating_add(1);
         self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;
     }
 }

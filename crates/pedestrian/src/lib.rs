@@ -6,7 +6,6 @@ mod clock;
 pub mod detector;
 mod engine;
 mod error;
-mod freshness;
 mod health;
 mod navigator;
 mod offline;

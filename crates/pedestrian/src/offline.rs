@@ -1,6 +1,6 @@
+use crate::clock::Tick;
 use crate::detector::{RecentMinimum, Shoe, Verdict};
-use crate::engine::{Engine, Taken};
-use crate::freshness::{Freshness, Worth};
+use crate::engine::Engine;
 use crate::navigator::Navigator;
 use crate::{Config, Error, Estimate, ImuSample, Stride, Warnings};
 use kestirim_scalar::Scalar;
@@ -45,17 +45,14 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
             return Err((statistic.len(), Error::NoMemory));
         }
         let mut engine = Engine::<T, N>::new(config);
-        let mut freshness = Freshness::new();
         let mut last_us = 0;
         for (index, sample) in samples.iter().enumerate() {
             sample.check().map_err(|error| (index, error))?;
             if sample.time_us < last_us {
                 return Err((index, Error::TimeBackwards));
             }
-            if sample.time_us != last_us
-                && let Worth::New { frozen, .. } = freshness.update(sample, &engine.motion(sample))
-            {
-                engine.alignment.update(sample, frozen);
+            if sample.time_us != last_us {
+                engine.alignment.update(sample);
             }
             last_us = sample.time_us;
         }
@@ -104,14 +101,13 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
         let minimum = self.minimum_around(sample.time_us);
         // Every sample was examined when the walk was prepared.
         let examined = self.engine.examine(sample).ok()?;
-        Some(match self.engine.take(sample, examined.0) {
-            Taken::Nothing(estimate) => estimate,
-            Taken::Motion(motion) => {
-                let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
-                let verdict = Verdict { stance: statistic < bound, statistic };
-                self.engine.advance(sample, examined, &motion, verdict)
-            }
-        })
+        if examined.0 == Tick::Duplicate {
+            return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
+        }
+        let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
+        let verdict = Verdict { stance: statistic < bound, statistic };
+        let motion = self.engine.motion(sample);
+        Some(self.engine.advance(sample, examined, &motion, verdict))
     }
 }
 
@@ -122,16 +118,10 @@ fn centred_statistic<T: Scalar, N: Navigator<T>>(
     statistic: &mut [T],
 ) {
     let mut shoe = Shoe::default();
-    let mut freshness = Freshness::new();
     let mut centred = 0;
     let mut last = T::MAX;
     for sample in samples {
-        let motion = engine.motion(sample);
-        // What is no measurement says nothing of the foot; it is skipped again when its turn comes.
-        if !matches!(freshness.update(sample, &motion), Worth::New { .. }) {
-            continue;
-        }
-        last = shoe.update(&motion);
+        last = shoe.update(&engine.motion(sample));
         let middle_us = sample.time_us.saturating_sub(u64::from(Shoe::<T>::WINDOW_US / 2));
         while samples.get(centred).is_some_and(|sample| sample.time_us <= middle_us) {
             if let Some(entry) = statistic.get_mut(centred) {

@@ -40,8 +40,6 @@ pub(crate) struct Strides<T: Scalar> {
     last: Option<Footprint<T>>,
     heading: Option<T>,
     path_length: T,
-    /// The path has left the range of numbers.
-    out_of_range: bool,
 }
 
 impl<T: Scalar> Strides<T> {
@@ -49,23 +47,12 @@ impl<T: Scalar> Strides<T> {
     const SHORTEST: f64 = 0.1;
 
     pub(crate) fn new() -> Self {
-        Self {
-            standing: None,
-            last: None,
-            heading: None,
-            path_length: T::ZERO,
-            out_of_range: false,
-        }
+        Self { standing: None, last: None, heading: None, path_length: T::ZERO }
     }
 
     /// The horizontal path from stance to stance so far (m).
     pub(crate) fn path_length(&self) -> T {
         self.path_length
-    }
-
-    /// Whether the path was longer than the numbers reach: it stays at what it was.
-    pub(crate) fn is_out_of_range(&self) -> bool {
-        self.out_of_range
     }
 
     /// Takes the next position; a stride is complete when the stance it led to ends.
@@ -95,26 +82,17 @@ impl<T: Scalar> Strides<T> {
         if length < T::from_f64(Self::SHORTEST) {
             return None;
         }
-        self.last = Some(footprint);
-        let path_length = self.path_length + length;
-        if path_length.is_finite() {
-            self.path_length = path_length;
-        } else {
-            self.out_of_range = true;
-        }
-        // No foot strides so far; only in fixed point can a difference of two places overflow.
-        if !length.is_finite() {
-            return None;
-        }
         let heading = y.atan2(x);
         let heading_change = self.heading.map_or(T::ZERO, |before| wrapped(heading - before));
+        self.path_length += length;
+        self.last = Some(footprint);
         self.heading = Some(heading);
         let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
         Some(Stride {
             time_us: footprint.time_us,
             position: footprint.position,
             length,
-            duration: T::from_micro(micro as i32).min(T::MAX - T::EPSILON),
+            duration: T::from_micro(micro as i32),
             heading_change,
         })
     }

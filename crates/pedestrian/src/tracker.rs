@@ -1,5 +1,6 @@
+use crate::clock::Tick;
 use crate::detector::{Adaptive, StanceDetector};
-use crate::engine::{Engine, Taken};
+use crate::engine::Engine;
 use crate::navigator::{Ekf, Lite, Navigator};
 use crate::{Alignment, Error, ImuSample, SensorClass, Stride, Warnings};
 use kestirim_attitude::Orientation;
@@ -77,29 +78,19 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
     }
 
     /// Takes the next sample. One with the same time as the last is taken for a row written twice and
-    /// changes nothing. One that measured nothing (a specific force of zero; a gyroscope that repeats itself while
-    /// the foot moves) is taken for missing. After more than 0.2 s without samples, or where the motion contradicts
-    /// itself, the position is held until a stance levels the foot anew.
+    /// changes nothing.
     ///
     /// # Errors
-    /// [`Error`] if the sample cannot have been measured or is out of order; the tracker is as it was. (A clock
-    /// set back by more than a second is believed with the second sample.)
+    /// [`Error`] if the sample cannot have been measured or is out of order; the tracker is as it was.
     #[inline]
     pub fn update(&mut self, sample: &ImuSample<T>) -> Result<Estimate<T>, Error> {
-        let examined = match self.engine.examine(sample) {
-            Ok(examined) => examined,
-            Err(error) => {
-                self.engine.refuse(sample.time_us, error);
-                return Err(error);
-            }
-        };
-        match self.engine.take(sample, examined.0) {
-            Taken::Nothing(estimate) => Ok(estimate),
-            Taken::Motion(motion) => {
-                let verdict = self.detector.update(&motion);
-                Ok(self.engine.advance(sample, examined, &motion, verdict))
-            }
+        let examined = self.engine.examine(sample)?;
+        if examined.0 == Tick::Duplicate {
+            return Ok(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
         }
+        let motion = self.engine.motion(sample);
+        let verdict = self.detector.update(&motion);
+        Ok(self.engine.advance(sample, examined, &motion, verdict))
     }
 
     /// Ends the walk: the stride that led to the stance the foot is in, if any.

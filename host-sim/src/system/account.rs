@@ -66,7 +66,9 @@ impl Account {
 
     /// With what was concluded about the log.
     pub fn understood(&mut self, conclusions: &[String]) {
-        conclusions.iter().for_each(|conclusion| self.fact("log", conclusion));
+        for conclusion in conclusions {
+            self.fact("log", conclusion);
+        }
     }
 }
 

@@ -41,8 +41,6 @@ pub enum Reason {
     Anchor,
     /// The height that was said contradicts the measurements.
     Height,
-    /// A number has left the range of its type.
-    OutOfRange,
     /// What is left of the measurements is beyond its bound.
     Innovations,
 }
@@ -61,7 +59,6 @@ impl Reason {
             | Self::Geometry
             | Self::Anchor
             | Self::Height
-            | Self::OutOfRange
             | Self::Innovations => State::Bad,
         }
     }
@@ -79,7 +76,6 @@ impl Reason {
             Self::Geometry => "geometry",
             Self::Anchor => "anchor",
             Self::Height => "height",
-            Self::OutOfRange => "out of range",
             Self::Innovations => "innovations",
         }
     }

@@ -68,42 +68,6 @@ fn the_faults_of_a_walk_are_told_with_what_to_do() {
     assert!(text(&table.stdout).contains("at rest, gravity 9."), "{}", text(&table.stdout));
 }
 
-/// A bus that stalls for a tenth of a second to ten seconds in the midst of a walk: the rest of it stays as long as it was.
-#[test]
-fn a_stalled_bus_takes_no_more_than_its_time() {
-    let desk = Desk::new();
-    let clean = walk();
-    let replay = |name: &str, samples: &[Sample], more: &[&str]| {
-        let log = desk.file(name, razor_text(samples));
-        let replay = ["replay", "pedestrian", "--json", "--log", &log];
-        parsed(&host_sim(&[&replay[..], more].concat()))
-    };
-    let length = |report: &Value| report["path_length_m"].as_f64().expect("a length");
-    let strides = |report: &Value| report["strides"].as_array().expect("strides").len();
-    for scalar in ["f32", "f64", "fixed"] {
-        let options = ["--scalar", scalar];
-        let whole = replay("whole.txt", &clean, &options);
-        let step = length(&whole) / strides(&whole) as f64;
-        for samples in [10, 60, 300] {
-            let mut stalled = clean.clone();
-            let middle = stalled.len() / 2;
-            for sample in &mut stalled[middle..middle + samples] {
-                (sample.specific_force, sample.angular_rate) = ([0.0; 3], [0.0; 3]);
-            }
-            let found = replay("stalled.txt", &stalled, &options);
-            // A walker makes less than 1.2 strides a second.
-            let lost = (0.012 * samples as f64 + 2.0) * step;
-            let (before, after) = (length(&whole), length(&found));
-            assert!(
-                (before - lost..before * 1.02).contains(&after),
-                "{scalar} {samples}: {before} {after}"
-            );
-            let told = found["health"]["reasons"].as_array().expect("reasons").len();
-            assert!(told > 0 && found["warnings"].to_string().contains("nothing"), "{found}");
-        }
-    }
-}
-
 #[test]
 fn the_faults_of_ranges_are_told_with_what_to_do() {
     let room = Room::clean();

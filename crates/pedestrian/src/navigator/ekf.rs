@@ -80,13 +80,13 @@ impl<T: Scalar> Ekf<T> {
 }
 
 impl<T: Scalar> Navigator<T> for Ekf<T> {
-    fn start(sensor: SensorClass, position: SVector<T, 3>, orientation: Orientation<T>) -> Self {
+    fn start(sensor: SensorClass, orientation: Orientation<T>) -> Self {
         let tilt = T::from_f64(Self::TILT * Self::TILT * Self::SCALE);
         let zero = T::ZERO;
         let variances = [zero, zero, zero, tilt, tilt, zero];
         Self {
             error: Gaussian::new(SVector::zeros(), Covariance::from_variances(&variances)),
-            strapdown: Strapdown::at_rest(position),
+            strapdown: Strapdown::at_rest(),
             orientation,
             noise: sensor.noise(Self::SCALE),
             swing: T::ZERO,

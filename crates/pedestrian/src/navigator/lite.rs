@@ -32,13 +32,13 @@ impl<T: Scalar> Lite<T> {
 }
 
 impl<T: Scalar> Navigator<T> for Lite<T> {
-    fn start(_: SensorClass, position: SVector<T, 3>, orientation: Orientation<T>) -> Self {
+    fn start(_: SensorClass, orientation: Orientation<T>) -> Self {
         // In stance gravity corrects the tilt within a second; the bias is the alignment's business.
         let tilt = T::from_f64(f64::from(Self::GRAVITY_EVERY));
         let gains = Gains { tilt, bias: T::ZERO, gate: T::from_f64(0.2) };
         Self {
             ahrs: Ahrs::new(orientation, SVector::zeros(), gains),
-            strapdown: Strapdown::at_rest(position),
+            strapdown: Strapdown::at_rest(),
             drifted: T::ZERO,
             until_gravity: 1,
         }

@@ -43,8 +43,8 @@ pub struct ZeroVelocity<T: Scalar> {
 ///
 /// Steps are checked before they come here: finite, bounded, of positive length.
 pub trait Navigator<T: Scalar> {
-    /// A navigator at rest at a position (m, earth).
-    fn start(sensor: SensorClass, position: SVector<T, 3>, orientation: Orientation<T>) -> Self;
+    /// A navigator at the origin, at rest.
+    fn start(sensor: SensorClass, orientation: Orientation<T>) -> Self;
     /// Moves by one step.
     fn propagate(&mut self, step: &Step<T>, stance: bool);
     /// The foot stands at the end of this step.

@@ -12,8 +12,8 @@ pub(super) struct Strapdown<T: Scalar> {
 }
 
 impl<T: Scalar> Strapdown<T> {
-    pub(super) fn at_rest(position: SVector<T, 3>) -> Self {
-        Self { position, velocity: SVector::zeros() }
+    pub(super) fn at_rest() -> Self {
+        Self { position: SVector::zeros(), velocity: SVector::zeros() }
     }
 
     /// Integrates one step from the orientation at its beginning; returns the force's velocity change

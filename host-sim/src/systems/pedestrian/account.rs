@@ -58,7 +58,9 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.about = Some(recording.path.clone());
     account.understood(&report.import);
-    walk.reasons.iter().for_each(|reason| account.doubt(*reason));
+    for reason in &walk.reasons {
+        account.doubt(*reason);
+    }
     account.fact("samples", format!("{} in {:.1} s", report.samples, report.duration_s));
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));

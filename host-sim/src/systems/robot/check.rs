@@ -32,7 +32,9 @@ pub(super) fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> 
     let height = match settings.chosen::<Dimensions>("dim") {
         Dimensions::Three => None,
         // A height that the ranges tell or do not tell is the tracker's to say.
-        _ => Setup::of_recording(recording, settings).ok().map(|setup| setup.height_m),
+        Dimensions::Two => {
+            Setup::of_recording(recording, settings).ok().map(|setup| setup.height_m)
+        }
     };
     let is_given = settings.is_given("height");
     findings.extend(geometry::check(recording, height, is_given));

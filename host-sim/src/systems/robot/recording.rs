@@ -131,7 +131,7 @@ impl Recording {
     fn read_moving(&mut self, log: &Path, files: &Files) -> Result<(), Error> {
         let options = files.reading.tables()?;
         let (log, found) = ranges::read_moving(log, &self.anchors, options)?;
-        self.tell("ranges", found);
+        self.tell("ranges", &found);
         let truth = files.one("truth").map(|path| points::read_course(path, ["x", "y"]));
         let height = files.one("height").map(|path| points::read_course(path, ["z"]));
         let (truth, height) = (truth.transpose()?, height.transpose()?);
@@ -139,12 +139,12 @@ impl Recording {
         if let Some(path) = files.one("imu") {
             let (samples, found) = motion::read_inertial(path, options)?;
             sensors.inertial = samples;
-            self.tell("IMU", found);
+            self.tell("IMU", &found);
         }
         if let Some(path) = files.one("odom") {
             let (samples, found) = motion::read_wheels(path, options)?;
             sensors.wheels = samples;
-            self.tell("wheels", found);
+            self.tell("wheels", &found);
         }
         if files.one("imu").is_some() && sensors.inertial.is_empty() {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
@@ -172,7 +172,7 @@ impl Recording {
     ) -> Result<(), Error> {
         let points = points::read_points(points)?;
         let (mut logs, found) = ranges::read_static(log, &self.anchors, options)?;
-        self.tell("ranges", found);
+        self.tell("ranges", &found);
         let heights = height.map(points::read_heights).transpose()?;
         self.warn_of_unlisted(logs.values().map(|log| log.unlisted).sum());
         for point in points {
@@ -195,7 +195,7 @@ impl Recording {
     }
 
     /// Keeps how a log was read.
-    fn tell(&mut self, log: &str, found: Found) {
+    fn tell(&mut self, log: &str, found: &Found) {
         self.import.extend(found.import.iter().map(|line| format!("{log}: {line}")));
         self.warnings.extend(found.warnings.iter().map(|line| format!("{log}: {line}")));
     }

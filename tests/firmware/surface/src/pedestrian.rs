@@ -49,7 +49,6 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
     let start = any(Orientation::identity());
     let mut navigator = any(<N as Navigator<T>>::start(
         one_of([SensorClass::Industrial, SensorClass::Consumer]),
-        matrix(),
         start,
     ));
     let step =
@@ -68,8 +67,7 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
 fn navigators<T: Scalar>() {
     call_each([navigates::<T, Lite<T>>, navigates::<T, Ekf<T>>]);
     let start = Orientation::identity();
-    let started = <Ekf<T> as Navigator<T>>::start(SensorClass::Consumer, matrix(), start);
-    keep(Ekf::<T>::covariance(&any(started)));
+    keep(Ekf::<T>::covariance(&any(<Ekf<T> as Navigator<T>>::start(SensorClass::Consumer, start))));
 }
 
 fn tracks<T: Scalar, N: Navigator<T> + Debug>() {

@@ -41,21 +41,6 @@ fn raised(warnings: Warnings) -> impl Iterator<Item = (Reason, &'static str)> {
             Reason::Axes,
             "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
         ),
-        (
-            warnings.dropout,
-            Reason::Dropout,
-            "the sensor measured nothing for a while (zeros): a stalled bus? The walk of that time is missing",
-        ),
-        (
-            warnings.stuck,
-            Reason::Stuck,
-            "the sensor said the same again and again for a while: the walk of that time is missing",
-        ),
-        (
-            warnings.out_of_range,
-            Reason::OutOfRange,
-            "the path or the position is beyond the number type: the estimate stops there; take a wider one",
-        ),
         (warnings.gaps, Reason::Dropout, "samples are missing for more than 0.1 s"),
         (
             warnings.never_still,

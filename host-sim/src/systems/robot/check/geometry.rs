@@ -43,7 +43,7 @@ pub(super) fn check(recording: &Recording, height: Option<f64>, is_given: bool) 
     let anchors: Vec<Vector3<f64>> =
         recording.anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
     let tried = Tried { moments: &moments, anchors: &anchors, height };
-    let left = tried.left(|moment| moment.clone(), &anchors, height)?;
+    let left = tried.left(Moment::clone, &anchors, height)?;
     if left < CONTRADICTION_M {
         let found = format!("ranges and anchors agree within {left:.2} m");
         return Some(Finding::note("geometry", found));
