@@ -13,6 +13,7 @@ use host_sim::systems::robot::recording::ranges::{self, RangeRow};
 use host_sim::systems::robot::settings::{Setup, TrackerKind};
 use host_sim::systems::robot::track::follow::{self, Follow};
 use host_sim::systems::robot::track::{self, Trace};
+use kestirim_import::Options;
 use kestirim_uwb_tracker::Config;
 
 /// A change of the default tracker's constants.
@@ -70,12 +71,18 @@ impl Recording {
     pub fn read(folder: &Path, name: &str) -> Self {
         let folder = folder.join(name);
         let anchors = anchors::read(&folder.join("anchors.csv")).expect("anchors");
-        let rows = ranges::read_moving(&folder.join("ranges.csv"), &anchors).expect("ranges").rows;
+        let rows = ranges::read_moving(&folder.join("ranges.csv"), &anchors, &Options::default())
+            .expect("ranges")
+            .0
+            .rows;
         let truth =
             points::read_course(&folder.join("truth.csv"), ["x", "y", "z"]).expect("a truth");
         let imu = folder.join("imu.csv");
-        let inertial =
-            if imu.exists() { motion::read_inertial(&imu).expect("an IMU") } else { vec![] };
+        let inertial = if imu.exists() {
+            motion::read_inertial(&imu, &Options::default()).expect("an IMU").0
+        } else {
+            vec![]
+        };
         let heights: Vec<f64> =
             rows.iter().filter_map(|row| Some(truth.held(row.time_us)?[2])).collect();
         let height_m = host_sim::metrics::mean(&heights);
@@ -153,7 +160,9 @@ impl Points {
                 positions: kept.iter().map(|&index| anchors.positions[index]).collect(),
             };
         }
-        let mut logs = ranges::read_static(&folder.join("ranges.csv"), &anchors).expect("ranges");
+        let (mut logs, _) =
+            ranges::read_static(&folder.join("ranges.csv"), &anchors, &Options::default())
+                .expect("ranges");
         let read = points::read_points(&folder.join("points.csv")).expect("points");
         let points = read.into_iter().map(|point| {
             let ([x, y], z) = (point.plane.expect("x and y"), point.height.expect("z"));

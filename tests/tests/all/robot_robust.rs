@@ -6,6 +6,7 @@ use std::path::Path;
 
 use host_sim::metrics::mean;
 use host_sim::systems::robot::recording::{anchors, points, ranges};
+use kestirim_import::Options;
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian};
 use kestirim_robust_kalman::{Block, Decision, Measurement, Robust};
 use kestirim_tests::recordings::folder_of;
@@ -23,7 +24,10 @@ const DENSITY: f64 = 0.3;
 fn follow(folder: &Path, name: &str, biases: &[f64], robust: &Robust<f64>) -> f64 {
     let folder = folder.join(name);
     let anchors = anchors::read(&folder.join("anchors.csv")).expect("anchors");
-    let rows = ranges::read_moving(&folder.join("ranges.csv"), &anchors).expect("ranges").rows;
+    let rows = ranges::read_moving(&folder.join("ranges.csv"), &anchors, &Options::default())
+        .expect("ranges")
+        .0
+        .rows;
     let truth = points::read_course(&folder.join("truth.csv"), ["x", "y", "z"]).expect("a truth");
     let places: Vec<Vector3<f64>> =
         anchors.positions.iter().map(|&place| Vector3::from(place)).collect();
