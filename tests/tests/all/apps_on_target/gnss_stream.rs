@@ -132,12 +132,20 @@ fn clock_header() -> String {
         + &line("", "END OF HEADER")
 }
 
+/// A number in the format E19.12, whose exponent has two digits.
+fn e19_12(value: f64) -> String {
+    let text = format!("{value:.12e}");
+    let (mantissa, exponent) = text.split_once('e').expect("an exponent");
+    let exponent: i32 = exponent.parse().expect("a number");
+    format!("{mantissa}E{exponent:+03}")
+}
+
 /// The clocks at an epoch, or at the one before the first.
 fn clocks_at(epoch: i32) -> String {
     let elapsed = INTERVAL * f64::from(epoch);
     let [hour, minute, second] = calendar(43_200.0 - INTERVAL + elapsed);
     let record = |satellite| {
-        let bias = format!("{:.12e}", in_orbit(satellite, elapsed).clock);
+        let bias = e19_12(in_orbit(satellite, elapsed).clock);
         let number = satellite + 1;
         format!(
             "AS G{number:02}  2020 06 25 {hour:02} {minute:02} {second:02}.000000  1   {bias:>19}\n"
