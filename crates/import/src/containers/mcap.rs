@@ -10,24 +10,14 @@ use super::Decoded;
 use super::bytes::Bytes;
 use super::chunks::{self, Chunk, Records, is_cut_chunk};
 use super::imu_message::Encoding;
-use super::topics::{SENSORS, TIME, Topics};
+use super::topics::{self, Topics};
 use super::unpack::Compression;
 use super::walk::Framing;
 use crate::error::Error;
 use crate::formats::{Description, Format};
 use crate::options::Options;
 
-pub(crate) const MCAP: Description = Description {
-    format: Format::Mcap,
-    name: "mcap",
-    title: "MCAP",
-    is_it: None,
-    time: &[(TIME, "us")],
-    sensors: SENSORS,
-    acceleration: "m/s2",
-    rate: "rad/s",
-    is_a_guess: false,
-};
+pub(crate) const MCAP: Description = topics::description(Format::Mcap, "mcap", "MCAP");
 
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// Kind and length of a record.

@@ -10,24 +10,14 @@ use super::Decoded;
 use super::bytes::Bytes;
 use super::chunks::{self, Chunk, Records, is_cut_chunk};
 use super::imu_message::Encoding;
-use super::topics::{SENSORS, TIME, Topics};
+use super::topics::{self, Topics};
 use super::unpack::Compression;
 use super::walk::Framing;
 use crate::error::{Error, quoted};
 use crate::formats::{Description, Format};
 use crate::options::Options;
 
-pub(crate) const ROS1: Description = Description {
-    format: Format::Ros1,
-    name: "ros1",
-    title: "ROS 1 bag",
-    is_it: None,
-    time: &[(TIME, "us")],
-    sensors: SENSORS,
-    acceleration: "m/s2",
-    rate: "rad/s",
-    is_a_guess: false,
-};
+pub(crate) const ROS1: Description = topics::description(Format::Ros1, "ros1", "ROS 1 bag");
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 /// The header of records is no longer.

@@ -7,12 +7,12 @@ use super::gather::{Losses, Stream};
 use super::imu_message::Encoding;
 use crate::damage::Fault;
 use crate::error::{Error, listed};
-use crate::formats::Description;
+use crate::formats::{Description, Format};
 use crate::options::Options;
 use crate::part::Part;
 
 /// The columns of the message `Imu`.
-pub(super) const SENSORS: [&str; 6] = [
+const SENSORS: [&str; 6] = [
     "linear_acceleration.x",
     "linear_acceleration.y",
     "linear_acceleration.z",
@@ -21,7 +21,26 @@ pub(super) const SENSORS: [&str; 6] = [
     "angular_velocity.z",
 ];
 /// Its time, µs since 1970.
-pub(super) const TIME: &str = "header.stamp";
+const TIME: &str = "header.stamp";
+
+/// A format of files that hold the message `Imu`.
+pub(super) const fn description(
+    format: Format,
+    name: &'static str,
+    title: &'static str,
+) -> Description {
+    Description {
+        format,
+        name,
+        title,
+        is_it: None,
+        time: &[(TIME, "us")],
+        sensors: SENSORS,
+        acceleration: "m/s2",
+        rate: "rad/s",
+        is_a_guess: false,
+    }
+}
 
 /// An inertial sensor's topic.
 #[derive(Debug)]
