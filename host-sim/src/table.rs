@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::cell::RefCell;
-use std::fs;
 use std::path::Path;
 
 use kestirim_import::{
@@ -10,7 +9,7 @@ use kestirim_import::{
 };
 
 use crate::Error;
-use crate::text::printable;
+use crate::text::{self, printable};
 
 /// Beyond any clock, s: three centuries, within which a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
@@ -64,9 +63,7 @@ pub fn read_log<T>(
     columns: impl Fn(&Header<'_>) -> Result<T, Error>,
     row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
 ) -> Result<Found, Error> {
-    let bytes =
-        fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
-    parse(path, &bytes, log, columns, row)
+    parse(path, &text::bytes(path)?, log, columns, row)
 }
 
 /// Reads the contents of the file `path` as [`read_log`] does.
@@ -149,15 +146,14 @@ fn unit_of_time(
 ) -> Result<Option<Unit>, ImportError> {
     let time = places.iter().find(|(wanted, column, _)| wanted == "t" && !column.has_unit);
     let Some((_, column, _)) = time else { return Ok(None) };
-    let mut times = Vec::new();
-    for (_, fields) in table.rows() {
-        let Some(field) = fields.get(column.at) else { continue };
-        if table.moment(field).is_some() {
-            return Ok(None);
-        }
-        times.extend(table.number(field).filter(|time| time.is_finite()));
-    }
-    unit_of_times(&times, shortest..=longest).map(Some)
+    let mut has_moments = false;
+    let times = table.rows().filter_map(|(_, fields)| {
+        let field = fields.get(column.at)?;
+        has_moments |= table.moment(field).is_some();
+        table.number(field).filter(|time| time.is_finite())
+    });
+    let unit = unit_of_times(times, shortest..=longest);
+    if has_moments { Ok(None) } else { unit.map(Some) }
 }
 
 /// What was understood of columns that are named otherwise than documented, or have other units.

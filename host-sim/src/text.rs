@@ -7,6 +7,14 @@ use serde::de::DeserializeOwned;
 
 use crate::Error;
 
+/// What a file holds.
+///
+/// # Errors
+/// [`Error::Read`] if it cannot be read.
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })
+}
+
 /// A text file in memory.
 #[derive(Debug, Clone)]
 pub struct TextFile {
@@ -20,9 +28,7 @@ impl TextFile {
     /// # Errors
     /// [`Error::Read`] if the file cannot be read, [`Error::Line`] where it is not text.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let bytes =
-            fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
-        Self::from_bytes(path, bytes)
+        Self::from_bytes(path, bytes(path)?)
     }
 
     /// Takes the contents of the file `path`; a byte order mark is dropped.

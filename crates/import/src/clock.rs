@@ -12,8 +12,11 @@ const SAMPLE: usize = 4000;
 ///
 /// # Errors
 /// [`Error::Undecided`] if no unit fits, or several that are shorter than a second.
-pub fn unit_of_times(times: &[f64], usual: RangeInclusive<f64>) -> Result<Unit, Error> {
-    let times = &times[..times.len().min(SAMPLE)];
+pub fn unit_of_times(
+    times: impl IntoIterator<Item = f64>,
+    usual: RangeInclusive<f64>,
+) -> Result<Unit, Error> {
+    let times: Vec<f64> = times.into_iter().take(SAMPLE).collect();
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.retain(|step| *step > 0.0 && step.is_finite());
     let units: Vec<_> = ["s", "ms", "us", "ns"]
@@ -45,13 +48,13 @@ mod tests {
     fn the_spacing_tells_the_unit() {
         let times = |step: f64| (0..100).map(|i| 17.0 + f64::from(i) * step).collect::<Vec<_>>();
         for (step, unit) in [(0.05, "s"), (1.0, "s"), (50.0, "ms"), (5e4, "µs"), (5e7, "ns")] {
-            assert_eq!(unit_of_times(&times(step), 2e-3..=2.0).unwrap().name, unit);
+            assert_eq!(unit_of_times(times(step), 2e-3..=2.0).unwrap().name, unit);
         }
-        assert_eq!(unit_of_times(&times(100.0), 2e-2..=60.0).unwrap().name, "ms");
-        assert_eq!(unit_of_times(&[1.0], 2e-3..=2.0).unwrap().name, "s");
+        assert_eq!(unit_of_times(times(100.0), 2e-2..=60.0).unwrap().name, "ms");
+        assert_eq!(unit_of_times([1.0], 2e-3..=2.0).unwrap().name, "s");
         // Nothing fits; and a thousand may be a second in ms or a millisecond in µs.
         for (step, shortest) in [(1e-7, 2e-3), (1e3, 5e-4)] {
-            let error = unit_of_times(&times(step), shortest..=2.0).unwrap_err().to_string();
+            let error = unit_of_times(times(step), shortest..=2.0).unwrap_err().to_string();
             assert!(error.contains("--units t="), "{error}");
         }
     }

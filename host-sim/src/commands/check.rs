@@ -5,7 +5,6 @@ use serde_json::json;
 
 use super::arguments::chosen;
 use super::replay::{opened, recorded};
-use crate::system::AnySystem;
 use crate::systems::ALL;
 use crate::{Error, output};
 
@@ -16,11 +15,7 @@ pub(super) fn command() -> Command {
         .about(about)
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands(ALL.iter().map(|system| of(*system)))
-}
-
-fn of(system: &dyn AnySystem) -> Command {
-    recorded(system)
+        .subcommands(ALL.iter().map(|system| recorded(*system)))
 }
 
 /// Reads, looks and prints; with a fault, too, it was done.

@@ -22,7 +22,7 @@ pub(super) fn command() -> Command {
 
 fn of(system: &dyn AnySystem) -> Command {
     let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
-    recorded(system).next_help_heading("Output").args(outputs).arg(file(
+    recorded(system).args(outputs).arg(file(
         "mcap",
         "OUT.mcap",
         "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun",

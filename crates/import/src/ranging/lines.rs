@@ -109,7 +109,7 @@ fn times(
         let values: Vec<_> = said.iter().map(|(value, _)| *value).collect();
         let (unit, from) = match &options.units.time {
             Some(TimeUnit::Clock(unit)) => (unit.clone(), "option"),
-            _ => (unit_of_times(&values, USUAL_STEP)?, "from the data"),
+            _ => (unit_of_times(values.iter().copied(), USUAL_STEP)?, "from the data"),
         };
         let times = values.iter().map(|value| microseconds(value * unit.scale)).collect();
         return Ok((times, format!("in {unit}: {from}")));

@@ -61,11 +61,10 @@ pub(super) fn read(
         rows.push((seconds, columns.iter().map(range).collect::<Vec<_>>()));
     }
     damage.accept(total, options.strict)?;
-    let times: Vec<_> = rows.iter().map(|(time, _)| *time).collect();
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),
-        None => (unit_of_times(&times, USUAL_STEP)?, "from the data"),
+        None => (unit_of_times(rows.iter().map(|(time, _)| *time), USUAL_STEP)?, "from the data"),
     };
     let mut found = Found::default();
     for (time, ranges) in &rows {

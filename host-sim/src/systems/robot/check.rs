@@ -37,7 +37,7 @@ pub(super) fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> 
         }
     };
     let is_given = settings.is_given("height");
-    findings.extend(geometry::check(recording, height, is_given));
+    findings.extend(geometry::check(recording, &parts, height, is_given));
     findings
 }
 
@@ -93,38 +93,59 @@ fn stuck<'a>(
     cut_at: Option<f64>,
     name: &impl Fn(usize) -> &'a str,
 ) -> Option<Finding> {
-    let mut runs: BTreeMap<usize, (f64, usize, i64)> = BTreeMap::new();
-    for range in ranges {
-        let run = runs.entry(range.anchor).or_insert((range.metres, 0, range.time_us));
-        if run.0 != range.metres {
-            *run = (range.metres, 0, range.time_us);
-        }
-        run.1 += 1;
-        let seconds = (range.time_us - run.2) as f64 * 1e-6;
-        if run.1 < STUCK || seconds < STUCK_S || Some(run.0) == cut_at {
-            continue;
+    runs(ranges).into_iter().find_map(|run| {
+        let Run { anchor, metres, count, first, last } = run;
+        let seconds = (ranges[last].time_us - ranges[first].time_us) as f64 * 1e-6;
+        if count < STUCK || seconds < STUCK_S || Some(metres) == cut_at {
+            return None;
         }
         let mut others: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        let during = ranges.iter().filter(|it| (run.2..=range.time_us).contains(&it.time_us));
-        for other in during.filter(|it| it.anchor != range.anchor && it.metres.is_finite()) {
+        let during = ranges[first..=last].iter();
+        for other in during.filter(|it| it.anchor != anchor && it.metres.is_finite()) {
             others.entry(other.anchor).or_default().push(other.metres);
         }
         let moving = others.values().filter(|its| standard_deviation(its) > MOVING_M).count();
-        if moving >= 2 {
-            return Some(Finding::fault(
+        (moving >= 2).then(|| {
+            let name = name(anchor);
+            Finding::fault(
                 "stuck",
                 Reason::Stuck,
                 format!(
-                    "the range to {} stays at {:.3} m for {seconds:.1} s while others change",
-                    name(range.anchor),
-                    range.metres
+                    "the range to {name} stays at {metres:.3} m for {seconds:.1} s while others change"
                 ),
                 "the position is drawn to a circle that is not there",
                 "look at what the anchor or the logger repeats",
-            ));
+            )
+        })
+    })
+}
+
+/// Ranges to an anchor that are all the same.
+struct Run {
+    anchor: usize,
+    metres: f64,
+    count: usize,
+    /// Their places in the log.
+    first: usize,
+    last: usize,
+}
+
+/// The runs of each anchor, in the order in which they end: looked at once each, however long they are.
+fn runs(ranges: &[Range]) -> Vec<Run> {
+    let mut going: BTreeMap<usize, Run> = BTreeMap::new();
+    let mut runs = Vec::new();
+    for (i, range) in ranges.iter().enumerate() {
+        let Range { anchor, metres, .. } = *range;
+        match going.get_mut(&anchor) {
+            Some(run) if run.metres == metres => (run.count, run.last) = (run.count + 1, i),
+            _ => {
+                let run = Run { anchor, metres, count: 1, first: i, last: i };
+                runs.extend(going.insert(anchor, run));
+            }
         }
     }
-    None
+    runs.extend(going.into_values());
+    runs
 }
 
 /// How many ranges were cut at a largest value, and that value, m.

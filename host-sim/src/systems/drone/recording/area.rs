@@ -16,18 +16,18 @@ pub type Area = kestirim_user_locator::Area<f64, MOST_CORNERS>;
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read(path: &Path, origin: Option<Origin>) -> Result<Box<Area>, Error> {
+pub fn read(path: &Path, mut origin: Option<Origin>) -> Result<Box<Area>, Error> {
     let mut corners = Vec::new();
     table::read(
         path,
         "the corners of an area",
-        |header| Places::find(header)?.as_in_log(header, origin),
+        move |header| Places::find(header)?.as_in_log(header, origin),
         |places, row| {
             if corners.len() == MOST_CORNERS {
                 let problem = format!("expected at most {MOST_CORNERS} corners, found one more");
                 return Err(row.line.error(problem));
             }
-            corners.push(places.read(row, &mut origin.clone())?);
+            corners.push(places.read(row, &mut origin)?);
             Ok(())
         },
     )?;

@@ -107,17 +107,17 @@ fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity), Error
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
-pub fn read_truth(path: &Path, origin: Option<Origin>) -> Result<[f64; 2], Error> {
+pub fn read_truth(path: &Path, mut origin: Option<Origin>) -> Result<[f64; 2], Error> {
     let mut places = Vec::new();
     table::read(
         path,
         "the user's place",
-        |header| Places::find(header)?.as_in_log(header, origin),
+        move |header| Places::find(header)?.as_in_log(header, origin),
         |columns, row| {
             if !places.is_empty() {
                 return Err(row.line.error("expected one place, found a second one"));
             }
-            places.push(columns.read(row, &mut origin.clone())?);
+            places.push(columns.read(row, &mut origin)?);
             Ok(())
         },
     )?;

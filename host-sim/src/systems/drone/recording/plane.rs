@@ -57,9 +57,12 @@ impl Places {
     /// # Errors
     /// As [`Header::require`].
     pub fn find(header: &Header<'_>) -> Result<Self, Error> {
+        if let Some(columns) = header.all(["x", "y"])? {
+            return Ok(Self::Plane(columns));
+        }
         match header.all(["lat", "lon"])? {
-            Some(columns) if header.all(["x", "y"])?.is_none() => Ok(Self::Earth(columns)),
-            _ => header.require(["x", "y"]).map(Self::Plane),
+            Some(columns) => Ok(Self::Earth(columns)),
+            None => header.require(["x", "y"]).map(Self::Plane),
         }
     }
 

@@ -1,7 +1,6 @@
 //! Recorded walks: text of any device, read by [`kestirim_import`], and the truth that may stand beside the sensor's
 //! columns as `gt_x`, `gt_y`, `gt_z` (m; all three or none).
 
-use std::fs;
 use std::path::Path;
 
 pub use kestirim_import::Options;
@@ -11,6 +10,7 @@ use super::position::TrackPoint;
 use crate::Error;
 use crate::systems::pedestrian::Sample;
 use crate::table::{FARTHEST_POSITION, refused};
+use crate::text;
 
 const TRUTH_COLUMNS: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
 
@@ -49,9 +49,7 @@ impl Log {
 /// # Errors
 /// The file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<Log, Error> {
-    let bytes =
-        fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
-    parse(path, &bytes, options)
+    parse(path, &text::bytes(path)?, options)
 }
 
 /// Reads the contents of the file `path`.

@@ -3,7 +3,6 @@
 use kestirim_uwb_ranging::{Observation, Solver};
 use nalgebra::Vector3;
 
-use super::ranges;
 use crate::metrics::median;
 use crate::system::{Finding, Reason};
 use crate::systems::robot::recording::event::Range;
@@ -34,12 +33,17 @@ const FOOT: f64 = 0.3048;
 type Moment = Vec<(usize, f64)>;
 
 /// What the geometry shows; nothing if there are too few ranges at a time to contradict each other.
-pub(super) fn check(recording: &Recording, height: Option<f64>, is_given: bool) -> Option<Finding> {
+pub(super) fn check(
+    recording: &Recording,
+    parts: &[Vec<Range>],
+    height: Option<f64>,
+    is_given: bool,
+) -> Option<Finding> {
     // A tag whose height changes with time is no plane's.
     if recording.heights == Heights::Read {
         return None;
     }
-    let moments = moments(recording);
+    let moments = moments(parts);
     let anchors: Vec<Vector3<f64>> =
         recording.anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
     let tried = Tried { moments: &moments, anchors: &anchors, height };
@@ -89,10 +93,9 @@ pub(super) fn check(recording: &Recording, height: Option<f64>, is_given: bool) 
 }
 
 /// Moments at which several anchors were heard, spread over the recording.
-fn moments(recording: &Recording) -> Vec<Moment> {
+fn moments(parts: &[Vec<Range>]) -> Vec<Moment> {
     let mut all = Vec::new();
-    for part in &recording.parts {
-        let ranges = ranges(&part.events);
+    for ranges in parts {
         let mut begin = 0;
         for i in 1..=ranges.len() {
             let is_over =

@@ -1,7 +1,6 @@
 //! Recorded ranges, of a tag that moves or of one put down at marked points.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use kestirim_import::{Options, ranging};
@@ -9,7 +8,7 @@ use kestirim_import::{Options, ranging};
 use super::anchors::Anchors;
 use crate::Error;
 use crate::table::{self, Column, Found, Log, Row};
-use crate::text::printable;
+use crate::text::{self, printable};
 
 /// Time between the epochs of a static recording, µs.
 const EPOCH_US: i64 = 100_000;
@@ -69,11 +68,13 @@ pub fn read_moving(
     options: &Options,
 ) -> Result<(RangeLog, Found), Error> {
     let mut log = RangeLog::default();
-    if let Some(found) = of_radio(path, anchors, options)? {
+    let bytes = text::bytes(path)?;
+    if let Some(found) = of_radio(path, &bytes, anchors, options)? {
         return Ok(found);
     }
-    let found = table::read_log(
+    let found = table::parse(
         path,
+        &bytes,
         &Log { what: "ranges", usual_step_s: Some(USUAL_STEP_S), options },
         |header| header.require(["t", "anchor", "range"]),
         |&[t, anchor, range], row| {
@@ -92,12 +93,11 @@ pub fn read_moving(
 /// Reads a log with a line or a column an anchor; none if it is another.
 fn of_radio(
     path: &Path,
+    bytes: &[u8],
     anchors: &Anchors,
     options: &Options,
 ) -> Result<Option<(RangeLog, Found)>, Error> {
-    let bytes =
-        fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
-    let read = ranging::read(&bytes, &anchors.names, options);
+    let read = ranging::read(bytes, &anchors.names, options);
     let read = read.map_err(|error| table::refused(path, &error))?;
     Ok(read.map(|read| {
         let row = |range: &ranging::Range| RangeRow {
