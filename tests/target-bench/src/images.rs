@@ -11,11 +11,18 @@ use anyhow::{Error, Result, bail};
 use crate::elf::Elf;
 use crate::output::Output;
 use crate::qemu;
-use crate::target::Target;
+use crate::target::{CORTEX_M0, CORTEX_M4F, Target};
 use crate::toolchain::{Toolchain, is_installed};
 
 /// Set to 1, a missing tool is a failure instead of a reason to skip: CI cannot skip unseen.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
+
+/// Set to `short`, images are built and looked at for [`SHORT_FORM`] alone: CI has half an hour.
+const TARGETS: &str = "KESTIRIM_TARGETS";
+
+/// Targets and profiles of the short form: with and without a floating-point unit, for speed and for size.
+const SHORT_FORM: [(&Target, Profile); 2] =
+    [(&CORTEX_M0, Profile::Size), (&CORTEX_M4F, Profile::Speed)];
 
 /// The packages of images with our workloads and with the peers', built in one go.
 const WORKLOADS: Packages = &["images", "peers"];
@@ -71,12 +78,13 @@ impl Images {
     /// Builds the images, or finds them built: a second call in this process costs nothing, one in
     /// another process as much as cargo needs to see that nothing changed.
     ///
-    /// `None` on a machine without the tools, which is said once on the standard error stream.
+    /// `None` on a machine without the tools, and for what the short form leaves out (`KESTIRIM_TARGETS=short`);
+    /// both are said once on the standard error stream.
     ///
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        Self::of_packages(WORKLOADS, target, profile)
+        Self::of_form(WORKLOADS, target, profile)
     }
 
     /// The same for the programs that call everything the crates offer: to be looked at, not to be run.
@@ -84,7 +92,23 @@ impl Images {
     /// # Errors
     /// As [`Images::of`].
     pub fn of_surface(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        Self::of_packages(SURFACE, target, profile)
+        Self::of_form(SURFACE, target, profile)
+    }
+
+    fn of_form(
+        packages: Packages,
+        target: &'static Target,
+        profile: Profile,
+    ) -> Result<Option<Self>> {
+        let is_this = |(of, at): &(&Target, Profile)| of.triple == target.triple && *at == profile;
+        let is_short = env::var(TARGETS).is_ok_and(|form| form == "short");
+        if is_short && !SHORT_FORM.iter().any(is_this) {
+            let (triple, opt) = (target.triple, profile.opt());
+            // Not `eprintln!`, which the test runner swallows when the test passes.
+            writeln!(io::stderr(), "SKIPPED: images for {triple} at {opt}: {TARGETS}=short")?;
+            return Ok(None);
+        }
+        Self::of_packages(packages, target, profile)
     }
 
     /// The same as [`Images::of`] for who cannot do without.

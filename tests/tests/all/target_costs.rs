@@ -15,19 +15,19 @@ use target_bench::{
     CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, TARGETS, Target, workloads,
 };
 
-/// Everything that was measured, and by what compilers; `None` without the tools.
-type Measured = Option<(Vec<Row>, BTreeMap<String, String>)>;
+/// Everything that was measured, and by what compilers: nothing without the tools, less in the short form.
+type Measured = (Vec<Row>, BTreeMap<String, String>);
 
 fn measure() -> Result<Measured> {
     let (mut rows, mut compilers) = (Vec::new(), BTreeMap::new());
     for target in TARGETS {
         for profile in Profile::ALL {
-            let Some(images) = Images::of(target, profile)? else { return Ok(None) };
+            let Some(images) = Images::of(target, profile)? else { continue };
             rows.extend(workloads::measure(&images)?);
             compilers.insert(target.triple.to_owned(), images.compiler);
         }
     }
-    Ok(Some((rows, compilers)))
+    Ok((rows, compilers))
 }
 
 fn measured() -> &'static Measured {
@@ -36,26 +36,28 @@ fn measured() -> &'static Measured {
     measured.as_ref().expect("every image runs")
 }
 
-/// The row of a workload.
+/// The row of a workload; `None` if this target was left out.
 fn row<'a>(
     rows: &'a [Row],
     name: &str,
     scalar: &str,
     target: &Target,
     profile: Profile,
-) -> &'a Row {
-    let key = [name, scalar, target.triple, profile.opt()];
-    rows.iter().find(|row| row.key() == key).expect("it was measured")
+) -> Option<&'a Row> {
+    let of = [target.triple, profile.opt()];
+    let mut here = rows.iter().filter(|row| row.key()[2..] == of).peekable();
+    here.peek()?;
+    Some(here.find(|row| row.key()[..2] == [name, scalar]).expect("it was measured"))
 }
 
 #[test]
 fn nothing_costs_more_than_it_did() -> Result<()> {
-    let Some((rows, compilers)) = measured() else { return Ok(()) };
+    let (rows, compilers) = measured();
     if Common::read()?.reference.is_none() {
         return Ok(()); // Other ranges cost other amounts; that they are absent has been said.
     }
     let baseline = Baseline::kept()?;
-    if &baseline.compilers != compilers {
+    if compilers.iter().any(|(target, by)| baseline.compilers.get(target) != Some(by)) {
         // Not `eprintln!`, which the test runner swallows when the test passes.
         writeln!(
             io::stderr(),
@@ -71,7 +73,7 @@ fn nothing_costs_more_than_it_did() -> Result<()> {
 
 #[test]
 fn estimators_link_neither_panics_nor_doubles_nor_static_memory() {
-    let Some((rows, _)) = measured() else { return };
+    let (rows, _) = measured();
     for row in rows.iter().filter(|row| !row.name.starts_with("peer-")) {
         assert_eq!((row.panic_symbols, row.ram_bytes), (0, 0), "{row}");
         assert!(row.scalar == "f64" || row.double_symbols == 0, "{row}");
@@ -80,28 +82,34 @@ fn estimators_link_neither_panics_nor_doubles_nor_static_memory() {
 
 #[test]
 fn the_common_scenario_is_within_its_bars() {
-    let Some((rows, _)) = measured() else { return };
+    let (rows, _) = measured();
     let ours = |scalar, target, profile| row(rows, "ekf4-ranges4", scalar, target, profile);
-
-    assert!(ours("f32", &CORTEX_M4F, Profile::Speed).instructions_mean <= 720.0);
-    assert!(ours("f32", &CORTEX_M0, Profile::Speed).instructions_mean <= 56_000.0);
+    let takes_at_most = |most: f64, scalar, target| {
+        let Some(row) = ours(scalar, target, Profile::Speed) else { return };
+        assert!(row.instructions_mean <= most, "{row}");
+    };
+    takes_at_most(720.0, "f32", &CORTEX_M4F);
+    takes_at_most(56_000.0, "f32", &CORTEX_M0);
     for scalar in ["q8.24", "q12.20", "q16.16"] {
-        let fixed = ours(scalar, &CORTEX_M0, Profile::Speed);
-        assert!(fixed.instructions_mean <= 18_500.0, "{fixed}");
-        assert!(fixed.jitter() <= 0.01, "{fixed}");
-        assert!(ours(scalar, &RV32IMC, Profile::Speed).instructions_mean <= 6_900.0);
-        let small = ours(scalar, &CORTEX_M0, Profile::Size);
-        assert!(small.flash_bytes <= 5_000 && small.stack_bytes <= 380, "{small}");
+        takes_at_most(18_500.0, scalar, &CORTEX_M0);
+        takes_at_most(6_900.0, scalar, &RV32IMC);
+        if let Some(fixed) = ours(scalar, &CORTEX_M0, Profile::Speed) {
+            assert!(fixed.jitter() <= 0.01, "{fixed}");
+        }
+        if let Some(small) = ours(scalar, &CORTEX_M0, Profile::Size) {
+            assert!(small.flash_bytes <= 5_000 && small.stack_bytes <= 380, "{small}");
+        }
     }
-    let small = ours("f32", &CORTEX_M4F, Profile::Size);
-    assert!(small.instructions_mean <= 3_300.0, "{small}");
-    assert!(small.flash_bytes <= 2_300 && small.stack_bytes <= 260, "{small}");
+    if let Some(small) = ours("f32", &CORTEX_M4F, Profile::Size) {
+        assert!(small.instructions_mean <= 3_300.0, "{small}");
+        assert!(small.flash_bytes <= 2_300 && small.stack_bytes <= 260, "{small}");
+    }
 }
 
 /// Everywhere more; almost twice as many in single precision at opt-level 3.
 #[test]
 fn peers_take_more_instructions() {
-    let Some((rows, _)) = measured() else { return };
+    let (rows, _) = measured();
     let peers = [
         ("peer-adskalman", "f32"),
         ("peer-kfilter", "f32"),
@@ -112,8 +120,11 @@ fn peers_take_more_instructions() {
         for profile in Profile::ALL {
             for (peer, scalar) in peers {
                 let instructions =
-                    |name| row(rows, name, scalar, target, profile).instructions_mean;
-                let (theirs, ours) = (instructions(peer), instructions("ekf4-ranges4"));
+                    |name| Some(row(rows, name, scalar, target, profile)?.instructions_mean);
+                let Some((theirs, ours)) = instructions(peer).zip(instructions("ekf4-ranges4"))
+                else {
+                    continue;
+                };
                 let ratio = theirs / ours;
                 let what = format!("{peer} {scalar} on {} at {}", target.triple, profile.opt());
                 println!("{what}: {theirs:.0} instructions, {ratio:.2} times ours");
