@@ -84,6 +84,19 @@ pub fn best_turn(ours: &[[f64; 2]], truth: &[[f64; 2]]) -> f64 {
     f64::atan2(sine, cosine)
 }
 
+/// Root mean square error over root mean square standard deviation, of pairs of both; none of none.
+pub fn error_over_sigma(told: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
+    let [errors, sigmas] = told.into_iter().fold([0.0, 0.0], |[errors, sigmas], (error, sigma)| {
+        [errors + error * error, sigmas + sigma * sigma]
+    });
+    (sigmas > 0.0).then(|| (errors / sigmas).sqrt())
+}
+
+/// A ratio as people read it.
+pub fn ratio_in_words(ratio: Option<f64>) -> String {
+    ratio.map_or_else(|| "—".to_owned(), |ratio| format!("{ratio:.2}"))
+}
+
 fn from_start(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let start = points.first().copied().unwrap_or_default();
     points.iter().map(|point| [point[0] - start[0], point[1] - start[1]]).collect()

@@ -142,6 +142,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
-        self.health.warnings()
+        // Fixed point stays at its largest value, and the path length only grows.
+        let out_of_range = self.strides.path_length() == T::MAX;
+        Warnings { out_of_range, ..self.health.warnings() }
     }
 }

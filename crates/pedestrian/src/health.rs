@@ -25,6 +25,9 @@ pub struct Warnings {
     pub gaps: bool,
     /// The stream showed no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,
+    /// The path is longer than the number type can tell (`Q12_20`: 2 km): its length stands still, and the position
+    /// may be at the end of its range.
+    pub out_of_range: bool,
 }
 
 /// Checks of a stream for faults that no filter can correct.

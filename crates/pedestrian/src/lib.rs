@@ -13,6 +13,7 @@ mod sample;
 mod sensor;
 mod stride;
 mod tracker;
+mod uncertainty;
 
 pub use alignment::Alignment;
 pub use error::Error;
@@ -23,3 +24,4 @@ pub use sample::ImuSample;
 pub use sensor::SensorClass;
 pub use stride::Stride;
 pub use tracker::{Config, EkfTracker, Estimate, LiteTracker, Tracker};
+pub use uncertainty::PathUncertainty;

@@ -38,6 +38,22 @@ impl SensorClass {
         }
     }
 
+    /// Standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
+    pub(crate) fn heading_rate(self) -> f64 {
+        match self {
+            Self::Industrial => 0.0008,
+            Self::Consumer => 0.002,
+        }
+    }
+
+    /// Standard deviation of the scale of all strides of a walk.
+    pub(crate) fn stride_scale(self) -> f64 {
+        match self {
+            Self::Industrial => 0.006,
+            Self::Consumer => 0.01,
+        }
+    }
+
     /// Variances a second, multiplied by `scale`.
     pub(crate) fn noise<T: Scalar>(self, scale: f64) -> Noise<T> {
         let attitude = match self {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::finding::Finding;
-use super::health::{Health, Reason};
+use super::health::{Health, Reason, State};
 use crate::Error;
 use crate::figure::Figure;
 
@@ -105,11 +105,24 @@ pub struct Table {
     pub header: Vec<String>,
     /// A field a column.
     pub rows: Vec<Vec<String>>,
+    /// Of a track: how far each row can be relied upon, as the estimator tells; the last column, when it is written.
+    pub health: Vec<State>,
 }
 
 impl Table {
     /// Without rows.
     pub fn new(header: &[&str]) -> Self {
-        Self { header: header.iter().map(|&name| name.to_owned()).collect(), rows: Vec::new() }
+        Self { header: header.iter().map(|&name| name.to_owned()).collect(), ..Self::default() }
+    }
+
+    /// With the health of each row as its last column, no better than `of_all`.
+    pub(super) fn with_health(mut self, of_all: State) -> Self {
+        if !self.health.is_empty() {
+            self.header.push("health".to_owned());
+            for (row, health) in self.rows.iter_mut().zip(self.health.drain(..)) {
+                row.push(health.max(of_all).word().to_owned());
+            }
+        }
+        self
     }
 }

@@ -43,10 +43,24 @@ pub enum Reason {
     Height,
     /// What is left of the measurements is beyond its bound.
     Innovations,
+    /// The estimate left the range of its numbers.
+    Range,
+}
+
+impl State {
+    /// As a field of a table has it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Degraded => "degraded",
+            Self::Bad => "bad",
+        }
+    }
 }
 
 impl Reason {
-    fn state(self) -> State {
+    /// How far an answer can be relied upon for all that.
+    pub fn state(self) -> State {
         match self {
             Self::Saturated
             | Self::Stuck
@@ -59,7 +73,8 @@ impl Reason {
             | Self::Geometry
             | Self::Anchor
             | Self::Height
-            | Self::Innovations => State::Bad,
+            | Self::Innovations
+            | Self::Range => State::Bad,
         }
     }
 
@@ -77,6 +92,7 @@ impl Reason {
             Self::Anchor => "anchor",
             Self::Height => "height",
             Self::Innovations => "innovations",
+            Self::Range => "range",
         }
     }
 }
@@ -101,11 +117,10 @@ impl Health {
 
     /// As people read it.
     pub fn in_words(&self) -> String {
-        let state = match self.state {
-            State::Good => return "good".to_owned(),
-            State::Degraded => "degraded",
-            State::Bad => "bad",
-        };
+        let state = self.state.word();
+        if self.reasons.is_empty() {
+            return state.to_owned();
+        }
         let reasons: Vec<_> = self.reasons.iter().map(|reason| reason.words()).collect();
         format!("{state}: {}", reasons.join(", "))
     }

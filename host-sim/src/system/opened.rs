@@ -7,6 +7,7 @@ use super::account::{Account, Answer, Table};
 use super::face::{Detail, System};
 use super::files::Source;
 use super::finding::Finding;
+use super::health::Reason;
 use super::idle::{Idle, refuse};
 use super::setting::Setting;
 use super::settings::Settings;
@@ -145,9 +146,12 @@ impl<S: System> Opened for Open<S> {
         let views = settings.table().iter().any(|it| it.is_view && settings.is_given(it.name));
         let detail = if wanted.any() || views { Detail::Every } else { Detail::Result };
         let trace = self.trace(settings, detail)?;
-        let (account, _) = self.account(settings, &trace)?;
+        let (account, findings) = self.account(settings, &trace)?;
+        let faults = findings.iter().filter_map(|finding| finding.reason);
+        let of_all = faults.map(Reason::state).max().unwrap_or_default();
         for (output, path) in &wanted.tables {
-            write(path, &S::table(output, &self.recording, settings, &trace))?;
+            let table = S::table(output, &self.recording, settings, &trace);
+            write(path, &table.with_health(of_all))?;
         }
         if let Some(path) = &wanted.mcap {
             mcap::write(path, &S::streams(&self.recording, settings, &trace))?;
@@ -186,7 +190,7 @@ impl<S: System> Opened for Open<S> {
     }
 }
 
-fn write(path: &std::path::Path, Table { header, rows }: &Table) -> Result<(), Error> {
+fn write(path: &std::path::Path, Table { header, rows, .. }: &Table) -> Result<(), Error> {
     output::write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
         table.write_record(header)?;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
 use host_sim::systems::pedestrian::recording::truth::Footprint;
@@ -82,9 +82,10 @@ fn the_track_has_a_row_for_every_sample() {
     {
         let report = json(&host_sim(&[&arguments[..], extra].concat()));
         assert_eq!(report["samples"], expected);
-        let written = fs::read_to_string(&track).expect("the track is written");
-        assert_eq!(written.lines().next(), Some("t,x,y,z"));
-        assert_eq!(written.lines().count(), 1 + expected);
+        let (header, rows) = rows_of::<7>(&track);
+        assert_eq!(header, "t,x,y,z,sx,sy,sz,health");
+        assert_eq!(rows.len(), expected);
+        assert!(rows.iter().all(|(numbers, health)| health == "good" && numbers[4] > 0.0));
     }
     assert_eq!(fs::read_dir(desk.path(".")).expect("the folder is there").count(), 2);
 }

@@ -79,7 +79,7 @@ fn a_flight_is_replayed() {
     assert!(report["sd_m"].as_f64().is_some_and(|sd| sd > 1.0));
     let written = fs::read_to_string(&track).expect("a track");
     assert_eq!(written.lines().count(), 31);
-    assert!(written.starts_with("t,x,y,sd\n0.500,"));
+    assert!(written.starts_with("t,x,y,sd,health\n0.500,"));
     let table = host_sim(&arguments);
     assert!(text(&table.stdout).contains("in the 90 % region"));
     let without = json(&host_sim(&["replay", "drone", "--log", &log, "--json"]));

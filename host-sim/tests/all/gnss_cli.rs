@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use crate::station::{self, BEGIN, Fault, INTERVAL, MARKER, satellites};
 use serde_json::Value;
 
@@ -69,9 +69,11 @@ fn a_receiver_is_found() {
     // Nothing is wrong but that the loading of the oceans is not known.
     assert!(matches!(&*warnings(&found), [one] if one.contains("--blq")), "{found}");
 
-    let track = fs::read_to_string(&track).expect("a track");
-    assert_eq!(track.lines().count(), 1 + EPOCHS as usize);
-    assert!(track.starts_with("t,x,y,z\n7200.000000,35821"), "{track}");
+    let (header, track) = rows_of::<7>(&track);
+    assert_eq!(header, "t,x,y,z,sde,sdn,sdu,health");
+    assert_eq!(track.len(), EPOCHS as usize);
+    assert!(track[0].0[0] == 7200.0 && (track[0].0[1] - 3_582_105.0).abs() < 50.0, "{track:?}");
+    assert!(track.iter().all(|(numbers, health)| health == "good" && numbers[6] > 0.0));
     let residuals = fs::read_to_string(&residuals).expect("residuals");
     let rows = found["observations"].as_u64().expect("a number") / 2;
     assert_eq!(residuals.lines().count() as u64, 1 + rows);

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-use crate::program::{Desk, host_sim, json, refusal};
+use crate::program::{Desk, host_sim, json, refusal, rows_of};
 use serde_json::Value;
 
 /// A station: its files, and where it is.
@@ -74,12 +74,8 @@ impl Station {
     fn track(&self, more: &[&str]) -> (Value, Vec<[f64; 4]>) {
         let track = self.desk.named("track.csv");
         let report = self.report(&[more, &["--truth", self.truth, "--track", &track]].concat());
-        let rows = fs::read_to_string(&track).expect("a track");
-        let row = |row: &str| -> [f64; 4] {
-            let numbers: Vec<f64> = row.split(',').map(|it| it.parse().unwrap()).collect();
-            numbers.try_into().expect("t,x,y,z")
-        };
-        (report, rows.lines().skip(1).map(row).collect())
+        let (_, rows) = rows_of::<4>(&track);
+        (report, rows.into_iter().map(|(numbers, _)| numbers).collect())
     }
 }
 

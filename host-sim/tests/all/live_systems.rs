@@ -1,9 +1,8 @@
 //! What is followed while it comes ends where a replay of the same log ends.
 
 use std::fmt::Write;
-use std::fs;
 
-use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use crate::sender::frames;
 use host_sim::random::stream;
 use host_sim::systems::drone::settings::choices::EnvironmentKind;
@@ -75,9 +74,8 @@ fn a_robot_ends_where_its_replay_ends() {
     assert_eq!(followed["counts"]["taken"], replayed["updates"]);
     assert_eq!(followed["counts"]["refused"], replayed["rejected"]);
     assert_eq!(followed["warnings"], Value::Array(vec![]));
-    let track = fs::read_to_string(track).unwrap();
-    let last: Vec<f64> =
-        track.lines().last().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+    let (_, rows) = rows_of::<4>(track);
+    let (last, _) = rows.last().unwrap();
     for axis in 0..3 {
         assert!((number(&followed["position"][axis]) - last[axis + 1]).abs() < 1e-5);
     }

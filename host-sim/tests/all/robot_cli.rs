@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use crate::room::{ANCHORS, Room, distance, line, place};
 use host_sim::random::{normal, stream};
 use serde_json::Value;
@@ -44,15 +44,14 @@ fn the_track_has_a_row_for_every_epoch() {
     let room = Room::clean();
     let track = room.desk.named("track.csv");
     assert!(host_sim(&room.replay(&["--height", "1", "--track", &track])).status.success());
-    let written = fs::read_to_string(&track).unwrap();
-    let mut lines = written.lines();
-    assert_eq!(lines.next(), Some("t,x,y,z"));
-    let rows: Vec<Vec<f64>> =
-        lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
+    let (header, rows) = rows_of::<6>(&track);
+    assert_eq!(header, "t,x,y,z,sx,sy,sz,health");
     assert_eq!(rows.len(), 400);
-    assert!((rows[399][0] - 39.9).abs() < 1e-9 && rows[399][3] == 1.0);
+    let ([t, found_x, found_y, z, sx, sy], health) = &rows[399];
+    assert!((t - 39.9).abs() < 1e-9 && *z == 1.0 && health == "good");
     let [x, y] = place(39.9);
-    assert!((rows[399][1] - x).hypot(rows[399][2] - y) < 0.15);
+    assert!((found_x - x).hypot(found_y - y) < 0.15);
+    assert!([sx, sy].iter().all(|sigma| (0.001..0.5).contains(*sigma)), "{sx} {sy}");
 }
 
 #[test]
@@ -385,14 +384,8 @@ fn walls_are_respected() {
             &track,
         ]);
         assert!(output.status.success(), "{}", text(&output.stderr));
-        let written = fs::read_to_string(&track).unwrap();
-        let last: Vec<f64> = written
-            .lines()
-            .last()
-            .unwrap()
-            .split(',')
-            .map(|field| field.parse().unwrap())
-            .collect();
+        let (_, rows) = rows_of::<4>(&track);
+        let (last, _) = rows.last().unwrap();
         assert!((last[2] - 3.0 * sign).abs() < 0.3, "{room}: {last:?}");
     }
 }

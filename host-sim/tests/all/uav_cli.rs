@@ -1,9 +1,8 @@
 //! The UAV from outside: exit status, standard output, standard error, files.
 
-use std::fs;
 use std::process::Command;
 
-use crate::program::{Desk, host_sim, json, messages, refusal, text};
+use crate::program::{Desk, host_sim, json, messages, refusal, rows_of, text};
 use host_sim::systems::uav::simulate::plant::Plant;
 use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
 use serde_json::Value;
@@ -144,9 +143,14 @@ fn a_flight_is_replayed() {
     for (found, limit) in late.iter().zip([8e-4, 1.1e-2, 0.11, 1.4e-3]) {
         assert!(*found < limit, "{late:?}");
     }
-    let written = fs::read_to_string(&track).expect("a track");
-    assert_eq!(written.lines().count(), 1001);
-    assert!(written.starts_with("t,alpha,q,V,theta\n0.000000,"));
+    let (header, rows) = rows_of::<9>(&track);
+    assert_eq!(header, "t,alpha,q,V,theta,s_alpha,s_q,s_V,s_theta,health");
+    assert_eq!((rows.len(), rows[0].0[0]), (1000, 0.0));
+    let (last, health) = &rows[999];
+    assert_eq!(health, "good");
+    for (sigma, error) in last[5..].iter().zip(&late) {
+        assert!((0.5..2.0).contains(&(sigma / error)), "{sigma} says the filter of {error}");
+    }
     let observer = |poles: &[&str]| {
         let more = [&["--estimator", "luenberger", "--json"], poles].concat();
         numbers(&json(&host_sim(&[&files[..], &more].concat()))["accuracy"]["late_rmse"])

@@ -44,6 +44,21 @@ pub(crate) fn messages(file: impl AsRef<Path>) -> BTreeMap<String, usize> {
     counts
 }
 
+/// Header and rows of a track: its first columns as numbers, and the last, which is the health.
+pub(crate) fn rows_of<const N: usize>(file: impl AsRef<Path>) -> (String, Vec<([f64; N], String)>) {
+    let written = fs::read_to_string(file).expect("a track");
+    let mut lines = written.lines();
+    let header = lines.next().expect("a header").to_owned();
+    let row = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!(fields.len(), header.split(',').count(), "{line}");
+        let number = |column: usize| fields[column].parse().expect("a number");
+        (std::array::from_fn(number), fields[fields.len() - 1].to_owned())
+    };
+    let rows = lines.map(row).collect();
+    (header, rows)
+}
+
 /// A folder with files, and their paths as text.
 pub(crate) struct Desk(TempDir);
 

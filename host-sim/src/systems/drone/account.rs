@@ -11,7 +11,7 @@ use super::settings::expected_loss_db;
 use super::track::trace::{Estimate, Track};
 use crate::Error;
 use crate::metrics::mean;
-use crate::system::{Account, Settings, System, Table};
+use crate::system::{Account, HealthState, Settings, System, Table};
 use crate::table::Found;
 
 /// What a replay prints.
@@ -138,5 +138,9 @@ pub(super) fn table(track: &Track) -> Table {
         let numbers = [track.stop(estimate).t, x, y, estimate.sd_m];
         numbers.map(|number| format!("{number:.3}")).to_vec()
     };
-    Table { rows: track.estimates.iter().map(row).collect(), ..Table::new(&["t", "x", "y", "sd"]) }
+    Table {
+        rows: track.estimates.iter().map(row).collect(),
+        health: vec![HealthState::Good; track.estimates.len()],
+        ..Table::new(&["t", "x", "y", "sd"])
+    }
 }

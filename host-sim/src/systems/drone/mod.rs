@@ -61,8 +61,10 @@ impl System for Drone {
         ("moving", "A user who walks a circle in 4000 m × 4000 m, followed by the drone"),
         ("staying", "A user who stays in 2000 m × 2000 m, measured from a circle or a grid"),
     ];
-    const OUTPUTS: &'static [OutputField] =
-        &[OutputField { name: "track", help: "Write t,x,y,sd of each measurement to this file" }];
+    const OUTPUTS: &'static [OutputField] = &[OutputField {
+        name: "track",
+        help: "Write t,x,y,sd and health of each measurement to this file",
+    }];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Losses];
 
     type Recording = Recording;

@@ -65,7 +65,7 @@ impl System for Gnss {
     const OUTPUTS: &'static [OutputField] = &[
         OutputField {
             name: "track",
-            help: "Write t,x,y,z (s, ECEF m) of each epoch with a solution to this file",
+            help: "Write t,x,y,z (s, ECEF m), standard deviations and health of each epoch with a solution to this file",
         },
         OutputField {
             name: "residuals",
@@ -127,7 +127,7 @@ impl System for Gnss {
 
     fn table(output: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
         match output {
-            "track" => account::tables::track(&track.main().fixes),
+            "track" => account::tables::track(track.main()),
             _ => account::tables::residuals(&track.main().residuals),
         }
     }

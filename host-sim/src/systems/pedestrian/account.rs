@@ -34,6 +34,9 @@ struct StrideReport {
     y: f64,
     z: f64,
     length_m: f64,
+    sx: f64,
+    sy: f64,
+    sz: f64,
 }
 
 /// What came of a walk.
@@ -41,7 +44,9 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     let log = &recording.log;
     let strides = walk.strides.iter().map(|stride| {
         let [x, y, z] = stride.position;
-        StrideReport { t: stride.time_us as f64 / 1e6, x, y, z, length_m: stride.length_m }
+        let [sx, sy, sz] = stride.sigma_m;
+        let t = stride.time_us as f64 / 1e6;
+        StrideReport { t, x, y, z, length_m: stride.length_m, sx, sy, sz }
     });
     let accuracy = Accuracy::of(recording, walk);
     let report = Report {
@@ -65,18 +70,26 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));
     account.fact("start to end", format!("{:.2} m", report.closure_m));
+    if let Some([x, y, z]) = walk.strides.last().map(|stride| stride.sigma_m) {
+        account.fact("standard deviations of the end", format!("{x:.2}, {y:.2}, {z:.2} m"));
+    }
     for (name, value) in accuracy.iter().flat_map(Accuracy::in_words) {
         account.fact(name, value);
     }
     Ok(account)
 }
 
-/// Time and position of every sample.
+/// Time, position and its standard deviations of every sample.
 pub(super) fn table(walk: &Walk) -> Table {
-    let row = |point: &TrackPoint| {
+    let row = |(point, sigma_m): (&TrackPoint, [f64; 3])| {
         let time = format!("{}.{:06}", point.time_us / 1_000_000, point.time_us % 1_000_000);
-        let [x, y, z] = point.position.map(|metres| format!("{metres:.6}"));
-        vec![time, x, y, z]
+        let position = point.position.map(|metres| format!("{metres:.6}"));
+        let sigma = sigma_m.map(|metres| format!("{metres:.4}"));
+        std::iter::once(time).chain(position).chain(sigma).collect()
     };
-    Table { rows: walk.track.iter().map(row).collect(), ..Table::new(&["t", "x", "y", "z"]) }
+    Table {
+        rows: walk.track.iter().zip(walk.sigmas_m()).map(row).collect(),
+        health: walk.healths().collect(),
+        ..Table::new(&["t", "x", "y", "z", "sx", "sy", "sz"])
+    }
 }

@@ -9,7 +9,8 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Magnitude, MovingVariance, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Config, Ekf, Estimate, ImuSample, Lite, Navigator, OfflineTracker, Tracker, Warnings,
+    Config, Ekf, Estimate, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty, Tracker,
+    Warnings,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::SVector;
@@ -22,7 +23,7 @@ use super::recording::position::TrackPoint;
 use super::settings::{DetectorKind, Options, TrackerKind};
 use crate::Error;
 use crate::metrics::STANDARD_GRAVITY;
-use crate::system::{Detail, Reason, ScalarKind};
+use crate::system::{Detail, HealthState, Reason, ScalarKind};
 
 /// What the tracker made of a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +81,12 @@ pub struct Walk {
     pub warnings: Vec<String>,
     /// Why it suffers.
     pub reasons: Vec<Reason>,
+    /// How far it can be relied upon, where that changes: from which entry of the track on.
+    pub health: Vec<(usize, HealthState)>,
+    /// No standstill came.
+    pub never_still: bool,
+    /// Standard deviations of the position before the first stride, m.
+    pub first_sigma_m: [f64; 3],
 }
 
 /// One stride of the foot, from stance to stance.
@@ -95,6 +102,8 @@ pub struct Stride {
     pub duration_s: f64,
     /// Turn with respect to the stride before, rad, anticlockwise.
     pub heading_change_rad: f64,
+    /// Standard deviations of the position, m.
+    pub sigma_m: [f64; 3],
 }
 
 /// Why a tracker makes no walk of a log.
@@ -242,8 +251,9 @@ fn causal<T: Scalar, N: Navigator<T>, D: StanceDetector<T>>(
             .update(sample)
             .map_err(|source| RunError::Sample { index: index + 1, source })?;
         walk.push(&estimate, see);
+        walk.doubt(tracker.warnings());
     }
-    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings());
+    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings(), config.sensor);
     Ok(walk)
 }
 
@@ -256,10 +266,11 @@ fn offline<T: Scalar, N: Navigator<T>>(
     let mut tracker = OfflineTracker::<T, N>::new(config, samples, &mut energy)
         .map_err(|(index, source)| RunError::Sample { index: index + 1, source })?;
     let mut walk = Walk::default();
-    for estimate in tracker.by_ref() {
+    while let Some(estimate) = tracker.next() {
         walk.push(&estimate, see);
+        walk.doubt(tracker.warnings());
     }
-    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings());
+    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings(), config.sensor);
     Ok(walk)
 }
 
@@ -271,13 +282,66 @@ impl Walk {
         self.strides.extend(estimate.stride.as_ref().map(Stride::from_estimate));
     }
 
+    /// From here on the walk is no better than its warnings say; that it began without a standstill is told at the
+    /// end, when none came.
+    fn doubt(&mut self, warnings: Warnings) {
+        let warnings = Warnings { never_still: false, ..warnings };
+        if warnings == Warnings::default() {
+            return;
+        }
+        let state = worst(&warning::reasons(warnings));
+        if self.health.last().is_none_or(|(_, last)| *last < state) {
+            self.health.push((self.track.len().saturating_sub(1), state));
+        }
+    }
+
+    /// How far each entry of the track can be relied upon.
+    pub fn healths(&self) -> impl Iterator<Item = HealthState> {
+        let from_the_start =
+            if self.never_still { Reason::NotObservable.state() } else { HealthState::Good };
+        let (mut changes, mut now) = (self.health.iter().peekable(), from_the_start);
+        (0..self.track.len()).map(move |index| {
+            while let Some((_, state)) = changes.next_if(|(from, _)| *from <= index) {
+                now = now.max(*state);
+            }
+            now
+        })
+    }
+
+    /// Standard deviation of the position in the plane at a time, µs: root of its variances' sum, m.
+    pub fn sigma_m(&self, time_us: u64) -> f64 {
+        let strides = self.strides.partition_point(|stride| stride.time_us <= time_us);
+        let last = strides.checked_sub(1).map(|last| self.strides[last].sigma_m);
+        let [x, y, _] = last.unwrap_or(self.first_sigma_m);
+        x.hypot(y)
+    }
+
+    /// Standard deviations of each entry of the track, m: of the stride before it.
+    pub fn sigmas_m(&self) -> impl Iterator<Item = [f64; 3]> {
+        let (mut strides, mut now) = (self.strides.iter().peekable(), self.first_sigma_m);
+        self.track.iter().map(move |point| {
+            while let Some(stride) = strides.next_if(|stride| stride.time_us <= point.time_us) {
+                now = stride.sigma_m;
+            }
+            now
+        })
+    }
+
     fn finish<T: Scalar>(
         &mut self,
         last: Option<kestirim_pedestrian::Stride<T>>,
         path_length: T,
         warnings: Warnings,
+        sensor: kestirim_pedestrian::SensorClass,
     ) {
+        self.never_still = warnings.never_still;
         self.strides.extend(last.as_ref().map(Stride::from_estimate));
+        let mut uncertainty = PathUncertainty::new(sensor);
+        self.first_sigma_m = uncertainty.standard_deviation().into();
+        for stride in &mut self.strides {
+            uncertainty.add(&stride.of_the_crate());
+            stride.sigma_m = uncertainty.standard_deviation().into();
+        }
         self.path_length_m = path_length.to_f64();
         if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
             self.closure_m = x.hypot(*y);
@@ -294,8 +358,24 @@ impl Stride {
             length_m: stride.length.to_f64(),
             duration_s: stride.duration.to_f64(),
             heading_change_rad: stride.heading_change.to_f64(),
+            sigma_m: [0.0; 3],
         }
     }
+
+    fn of_the_crate(&self) -> kestirim_pedestrian::Stride<f64> {
+        kestirim_pedestrian::Stride {
+            time_us: self.time_us,
+            position: self.position.into(),
+            length: self.length_m,
+            duration: self.duration_s,
+            heading_change: self.heading_change_rad,
+        }
+    }
+}
+
+/// How far a walk can be relied upon that suffers for these reasons.
+fn worst(reasons: &[Reason]) -> HealthState {
+    reasons.iter().map(|reason| reason.state()).max().unwrap_or_default()
 }
 
 pub(super) fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {

@@ -123,19 +123,25 @@ fn warnings(
     warnings
 }
 
-/// Time and position of every epoch, or the position at every point.
+/// Position and standard deviations, as far as they are known, at every epoch or at every point.
 pub(super) fn table(recording: &Recording, traces: &[Trace]) -> Table {
-    let row = |label: String, position: [f64; 3]| {
-        let [x, y, z] = position.map(|metres| format!("{metres:.6}"));
-        vec![label, x, y, z]
-    };
-    if let Some(points) = points(recording, traces) {
-        let rows = points.into_iter().map(|at| row(at.point, [at.x, at.y, at.z]));
-        return Table { rows: rows.collect(), ..Table::new(&["point", "x", "y", "z"]) };
+    let first = if recording.is_static() { "point" } else { "t" };
+    let mut table = Table::new(&[first, "x", "y", "z", "sx", "sy", "sz"]);
+    for (part, trace) in recording.parts.iter().zip(traces) {
+        let last = recording.is_static().then(|| trace.epochs.len().saturating_sub(1));
+        for epoch in &trace.epochs[last.unwrap_or_default()..] {
+            let Some(position) = epoch.position else { continue };
+            let label =
+                if recording.is_static() { part.name.clone() } else { seconds(epoch.time_us) };
+            let sigma =
+                |metres: Option<f64>| metres.map_or_else(String::new, |it| format!("{it:.4}"));
+            let numbers = position.map(|metres| format!("{metres:.6}")).into_iter();
+            let fields = numbers.chain(epoch.sigmas_m().map(sigma));
+            table.rows.push(std::iter::once(label).chain(fields).collect());
+            table.health.push(epoch.health);
+        }
     }
-    let known = traces.iter().flat_map(Trace::known);
-    let rows = known.map(|(time_us, position)| row(seconds(time_us), position));
-    Table { rows: rows.collect(), ..Table::new(&["t", "x", "y", "z"]) }
+    table
 }
 
 fn seconds(time_us: i64) -> String {

@@ -6,10 +6,12 @@ pub mod published;
 mod recursive;
 
 use self::follow::{Follow, Reception};
+use super::height::FoundHeight;
 use super::recording::Recording;
 use super::recording::event::{Event, Range};
 use super::settings::Setup;
 use crate::Error;
+use crate::system::{HealthState, Reason};
 
 /// What a tracker made of one part of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,9 +31,20 @@ pub struct Epoch {
     pub position: Option<[f64; 3]>,
     /// Variance of x, covariance and variance of y, m², from a tracker that knows them.
     pub spread: Option<[f64; 3]>,
+    /// Variance of z, m², from a tracker that estimates it, or of the height that was found.
+    pub height_variance: Option<f64>,
+    /// How far it can be relied upon.
+    pub health: HealthState,
 }
 
 impl Epoch {
+    /// Standard deviations of x, y and z, m, as far as they are known.
+    pub fn sigmas_m(&self) -> [Option<f64>; 3] {
+        let of = |variance: f64| variance.max(0.0).sqrt();
+        let [x, y] = self.spread.map_or([None; 2], |[xx, _, yy]| [xx, yy].map(|it| Some(of(it))));
+        [x, y, self.height_variance.map(of)]
+    }
+
     /// Standard deviation of the position in the plane, root of its variances' sum, m.
     pub fn sigma_m(&self) -> Option<f64> {
         self.spread.map(|[xx, _, yy]| (xx + yy).max(0.0).sqrt())
@@ -49,12 +62,16 @@ impl Trace {
         self.ranges.len() - self.taken()
     }
 
-    /// Adds what else is uncertain: a root mean square distance in the plane, m, in no direction more than in
-    /// another.
-    fn widen(&mut self, sigma_m: f64) {
-        for [xx, _, yy] in self.epochs.iter_mut().filter_map(|epoch| epoch.spread.as_mut()) {
-            *xx += 0.5 * sigma_m * sigma_m;
-            *yy += 0.5 * sigma_m * sigma_m;
+    /// Adds what a height that was found leaves uncertain: of itself, and a root mean square distance in the plane, in
+    /// no direction more than in another.
+    fn widen(&mut self, found: &FoundHeight) {
+        let half = 0.5 * found.position_sigma_m * found.position_sigma_m;
+        for epoch in &mut self.epochs {
+            epoch.height_variance = Some(found.sigma_m * found.sigma_m);
+            if let Some([xx, _, yy]) = epoch.spread.as_mut() {
+                *xx += half;
+                *yy += half;
+            }
         }
     }
 
@@ -75,10 +92,48 @@ impl Trace {
     }
 }
 
+/// The ranges of the last seconds.
+#[derive(Debug, Default)]
+struct Recent {
+    /// The first of them.
+    first: usize,
+    rejected: usize,
+    /// Beyond the last of them.
+    end: usize,
+}
+
+impl Recent {
+    /// As far back as is looked, µs.
+    const SPAN_US: i64 = 10_000_000;
+    /// Of fewer ranges no share is taken.
+    const FEWEST: usize = 20;
+
+    /// Less than good while more ranges are left out than taken in.
+    fn health(&mut self, now_us: i64, ranges: &[(Range, Reception)]) -> HealthState {
+        let is_rejected = |(_, reception): &(Range, Reception)| usize::from(!reception.taken);
+        self.rejected += ranges[self.end..].iter().map(is_rejected).sum::<usize>();
+        self.end = ranges.len();
+        while let Some(old) = ranges[self.first..].first() {
+            if old.0.time_us >= now_us - Self::SPAN_US {
+                break;
+            }
+            self.rejected -= is_rejected(old);
+            self.first += 1;
+        }
+        let count = self.end - self.first;
+        if count >= Self::FEWEST && 2 * self.rejected > count {
+            Reason::Rejected.state()
+        } else {
+            HealthState::Good
+        }
+    }
+}
+
 /// Feeds a tracker.
 pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
     let start_us = events.iter().map(Event::time_us).min().unwrap_or_default();
     let mut trace = Trace::default();
+    let mut recent = Recent::default();
     for event in events {
         let time_us = event.time_us();
         let reception = tracker.take(time_us.saturating_sub(start_us).max(0) as u64, event);
@@ -86,7 +141,9 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
             Event::Range(range) => trace.ranges.push((*range, reception)),
             Event::EpochEnd { .. } => {
                 let (position, spread) = (tracker.position(), tracker.spread());
-                trace.epochs.push(Epoch { time_us, position, spread });
+                let height_variance = tracker.height_variance();
+                let health = recent.health(time_us, &trace.ranges);
+                trace.epochs.push(Epoch { time_us, position, spread, height_variance, health });
             }
             _ => {}
         }
@@ -108,7 +165,7 @@ pub fn track(
         let mut tracker = build(&Setup { height_m, ..setup.clone() })?;
         let mut trace = follow(tracker.as_mut(), &part.events);
         if let Some(found) = &setup.found {
-            trace.widen(found.position_sigma_m);
+            trace.widen(found);
         }
         Ok(trace)
     });

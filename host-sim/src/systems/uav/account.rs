@@ -150,14 +150,21 @@ impl Report {
     }
 }
 
-/// Time and states of every line.
+/// Time, states and, of a filter that knows them, their standard deviations in every line.
 pub(super) fn table(Track { flight, followed }: &Track) -> Table {
     let row = |estimate: &Estimate| {
         let state = flight.absolute(estimate);
         let time = format!("{:.6}", estimate.t_us as f64 / 1e6);
-        std::iter::once(time).chain(state.iter().map(|number| format!("{number:.9}"))).collect()
+        let number = |number: f64| format!("{number:.9}");
+        let sigma = (0..4).map(|i| estimate.sigma.map_or_else(String::new, |it| number(it[i])));
+        std::iter::once(time).chain(state.iter().copied().map(number)).chain(sigma).collect()
     };
     let mut table = Table::new(&["t"]);
     table.header.extend(STATE_COLUMNS.map(str::to_owned));
-    Table { rows: followed.estimates.iter().map(row).collect(), ..table }
+    table.header.extend(STATE_COLUMNS.map(|name| format!("s_{name}")));
+    Table {
+        rows: followed.estimates.iter().map(row).collect(),
+        health: followed.healths(),
+        ..table
+    }
 }

@@ -67,8 +67,10 @@ impl System for Uav {
         ("constant", "Constant inputs, from a wrong start"),
         ("sine", "Sine inputs, from a wrong start"),
     ];
-    const OUTPUTS: &'static [OutputField] =
-        &[OutputField { name: "track", help: "Write t,alpha,q,V,theta of each line to this file" }];
+    const OUTPUTS: &'static [OutputField] = &[OutputField {
+        name: "track",
+        help: "Write t,alpha,q,V,theta, standard deviations and health of each line to this file",
+    }];
     const PANELS: &'static [Panel] = &[Panel::Angles, Panel::Airspeed];
 
     type Recording = Recording;

@@ -86,9 +86,12 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
         moments.iter().map(|moment| moment.sample.y[output] - moment.estimate[output]).collect()
     });
     let followed = Followed {
-        estimates: timed().map(|(t_us, it)| Estimate { t_us, state: it.estimate }).collect(),
+        estimates: timed()
+            .map(|(t_us, it)| Estimate { t_us, state: it.estimate, sigma: None })
+            .collect(),
         innovations: innovations.collect(),
         rejected: vec![0; outputs.len()],
+        tallies: vec![(outputs.len(), 0); moments.len()],
     };
     let truth = timed().map(|(t_us, it)| (t_us, <[f64; 4]>::from(it.sample.x).map(Some)));
     let samples = timed().map(sample).collect();

@@ -7,8 +7,8 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Magnitude, Motion, MovingVariance, Shoe, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, SensorClass, Step, Tracker,
-    ZeroVelocity,
+    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty, SensorClass,
+    Step, Stride, Tracker, ZeroVelocity,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -103,8 +103,19 @@ fn looks_back<T: Scalar, N: Navigator<T> + Debug>() {
     keep(OfflineTracker::warnings(&tracker));
 }
 
+fn doubts<T: Scalar>() {
+    let sensor = one_of([SensorClass::Industrial, SensorClass::Consumer]);
+    let mut uncertainty = any(PathUncertainty::<T>::new(sensor));
+    let (length, duration, heading_change) = (number(), number(), number());
+    let stride =
+        any(Stride { time_us: whole(), position: matrix(), length, duration, heading_change });
+    PathUncertainty::add(any(&mut uncertainty), &stride);
+    keep(PathUncertainty::standard_deviation(&uncertainty));
+}
+
 fn all_of<T: Scalar>() {
     call_each([
+        doubts::<T>,
         detectors::<T>,
         navigators::<T>,
         tracks::<T, Lite<T>>,

@@ -6,6 +6,7 @@ use kestirim_robust_kalman::{Decision, Reason};
 
 use super::accuracy::Fix;
 use crate::system::Table;
+use crate::systems::gnss::track::followed::Followed;
 
 const RESIDUAL_COLUMNS: [&str; 13] = [
     "t",
@@ -23,13 +24,18 @@ const RESIDUAL_COLUMNS: [&str; 13] = [
     "slip",
 ];
 
-/// `t,x,y,z`: a row for each position.
-pub(in crate::systems::gnss) fn track(fixes: &[Fix]) -> Table {
-    let row = |Fix { t, position }: &Fix| {
-        let [x, y, z] = <[f64; 3]>::from(*position).map(|metres| format!("{metres:.6}"));
-        vec![format!("{t:.6}"), x, y, z]
+/// A row for each position: time, ECEF, standard deviations to the east, north and up.
+pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
+    let row = |(Fix { t, position }, deviations): (&Fix, &[f64; 3])| {
+        let position = <[f64; 3]>::from(*position).map(|metres| format!("{metres:.6}"));
+        let deviations = deviations.map(|metres| format!("{metres:.6}"));
+        std::iter::once(format!("{t:.6}")).chain(position).chain(deviations).collect()
     };
-    Table { rows: fixes.iter().map(row).collect(), ..Table::new(&["t", "x", "y", "z"]) }
+    Table {
+        rows: followed.fixes.iter().zip(&followed.deviations).map(row).collect(),
+        health: followed.healths.clone(),
+        ..Table::new(&["t", "x", "y", "z", "sde", "sdn", "sdu"])
+    }
 }
 
 /// What became of each observation: a row for each satellite in each epoch.

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::metrics::{aligned_errors, polyline_length, relative_error_percent, rms};
+use crate::metrics::{
+    aligned_errors, error_over_sigma, polyline_length, ratio_in_words, relative_error_percent, rms,
+};
 use crate::systems::pedestrian::recording::Recording;
 use crate::systems::pedestrian::recording::position::{TrackPoint, position_at};
 use crate::systems::pedestrian::recording::truth::Footprint;
@@ -21,6 +23,9 @@ pub struct Accuracy {
     /// Error of the stance-to-stance path length in percent of the true one; positive is too long;
     /// none if truth stood still.
     pub path_length_error_percent: Option<f64>,
+    /// Root mean square error over root mean square standard deviation, at all true positions but the first; none
+    /// without them.
+    pub error_over_sigma: Option<f64>,
 }
 
 impl Accuracy {
@@ -36,7 +41,7 @@ impl Accuracy {
     }
 
     /// Names and values for people.
-    pub fn in_words(&self) -> [(&'static str, String); 4] {
+    pub fn in_words(&self) -> [(&'static str, String); 5] {
         let percent = |value: Option<f64>| match value {
             Some(value) => format!("{value:+.2} %"),
             None => "—".to_owned(),
@@ -46,6 +51,7 @@ impl Accuracy {
             ("error at the end", format!("{:.3} m", self.final_error_m)),
             ("  of the path", percent(self.final_error_percent)),
             ("path length error", percent(self.path_length_error_percent)),
+            ("error over standard deviation", ratio_in_words(self.error_over_sigma)),
         ]
     }
 }
@@ -54,9 +60,8 @@ impl Accuracy {
 /// through them.
 pub fn against_footprints(walk: &Walk, footprints: &[Footprint]) -> Accuracy {
     let truth: Vec<_> = footprints.iter().map(|footprint| footprint.position).collect();
-    let times = footprints.iter().map(|footprint| footprint.time_us);
-    let ours = horizontal_at(&walk.track, times);
-    compare(&ours, &truth, walk.path_length_m, polyline_length(&truth))
+    let times: Vec<_> = footprints.iter().map(|footprint| footprint.time_us).collect();
+    compare(walk, &times, &truth, polyline_length(&truth))
 }
 
 /// Compares with a truth that is known at every sample.
@@ -68,23 +73,27 @@ pub fn against_truth(walk: &Walk, truth: &[TrackPoint]) -> Accuracy {
     let start = truth.first().map(|point| point.time_us);
     let stances = start.into_iter().chain(walk.strides.iter().map(|stride| stride.time_us));
     let true_length_m = polyline_length(&horizontal_at(truth, stances));
-    let ours = horizontal_at(&walk.track, truth.iter().map(|point| point.time_us));
+    let times: Vec<_> = truth.iter().map(|point| point.time_us).collect();
     let truth: Vec<_> = truth.iter().map(TrackPoint::horizontal).collect();
-    compare(&ours, &truth, walk.path_length_m, true_length_m)
+    compare(walk, &times, &truth, true_length_m)
 }
 
 fn horizontal_at(track: &[TrackPoint], times_us: impl Iterator<Item = u64>) -> Vec<[f64; 2]> {
     times_us.filter_map(|time| position_at(track, time)).map(|[x, y, _]| [x, y]).collect()
 }
 
-fn compare(ours: &[[f64; 2]], truth: &[[f64; 2]], length_m: f64, true_length_m: f64) -> Accuracy {
-    let errors = aligned_errors(ours, truth);
+/// Compares with true positions at these times.
+fn compare(walk: &Walk, times_us: &[u64], truth: &[[f64; 2]], true_length_m: f64) -> Accuracy {
+    let ours = horizontal_at(&walk.track, times_us.iter().copied());
+    let errors = aligned_errors(&ours, truth);
     let final_error_m = errors.last().copied().unwrap_or_default();
+    let sigmas = times_us.iter().skip(1).map(|&time_us| walk.sigma_m(time_us));
     Accuracy {
         rmse_m: rms(&errors),
         final_error_m,
         final_error_percent: (true_length_m > 0.0).then(|| 100.0 * final_error_m / true_length_m),
-        path_length_error_percent: relative_error_percent(length_m, true_length_m),
+        path_length_error_percent: relative_error_percent(walk.path_length_m, true_length_m),
+        error_over_sigma: error_over_sigma(errors.iter().copied().skip(1).zip(sigmas)),
     }
 }
 
@@ -103,6 +112,7 @@ mod tests {
             length_m: stretch,
             duration_s: 1.0,
             heading_change_rad: 0.0,
+            sigma_m: [0.0; 3],
         };
         Walk {
             track: (0..=4)
@@ -113,6 +123,7 @@ mod tests {
             closure_m: 4.0 * stretch,
             warnings: vec![],
             reasons: vec![],
+            ..Walk::default()
         }
     }
 

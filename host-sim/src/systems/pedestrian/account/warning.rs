@@ -43,6 +43,11 @@ fn raised(warnings: Warnings) -> impl Iterator<Item = (Reason, &'static str)> {
         ),
         (warnings.gaps, Reason::Dropout, "samples are missing for more than 0.1 s"),
         (
+            warnings.out_of_range,
+            Reason::Range,
+            "the path is longer than the 2048 m of Q12.20, beyond which its length stands still: choose --scalar f32",
+        ),
+        (
             warnings.never_still,
             Reason::NotObservable,
             "no standstill of half a second was found: the gyro bias is unknown",

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::metrics::{distance, mean, median, percentile, rms};
+use crate::metrics::{distance, error_over_sigma, mean, median, percentile, ratio_in_words, rms};
 use crate::systems::robot::recording::points::Course;
 use crate::systems::robot::recording::{Recording, Truth};
 use crate::systems::robot::track::{Epoch, Trace};
@@ -24,21 +24,36 @@ pub struct Accuracy {
     pub p95_m: f64,
     /// Largest, m.
     pub max_m: f64,
+    /// Root mean square error over root mean square standard deviation; none of a tracker that knows none.
+    pub error_over_sigma: Option<f64>,
 }
 
 impl Accuracy {
     /// How far what came out is from the truth: at every epoch of a moving tag, at the last of each point; none if
     /// nobody knows it.
     pub fn of_recording(recording: &Recording, traces: &[Trace]) -> Option<Self> {
-        let mut pairs = Vec::new();
+        let mut points = Vec::new();
         for (part, trace) in recording.parts.iter().zip(traces) {
             match &part.truth {
                 Some(Truth::Course(course)) => return Self::of_track(&trace.epochs, course),
-                Some(Truth::Point(point)) => pairs.push((trace.last(), *point)),
+                Some(Truth::Point(point)) => points.push((trace.epochs.last(), *point)),
                 None => {}
             }
         }
-        Self::of(&pairs)
+        Self::of_epochs(&points)
+    }
+
+    /// Compares epochs, if there are any, with true positions.
+    fn of_epochs(points: &[(Option<&Epoch>, [f64; 2])]) -> Option<Self> {
+        let pairs: Vec<_> = points
+            .iter()
+            .map(|(epoch, point)| (epoch.and_then(|it| it.position), *point))
+            .collect();
+        let told = points.iter().filter_map(|(epoch, truth)| {
+            let [x, y, _] = epoch.as_ref()?.position?;
+            Some((distance([x, y], *truth), epoch.as_ref()?.sigma_m()?))
+        });
+        Some(Self { error_over_sigma: error_over_sigma(told), ..Self::of(&pairs)? })
     }
 
     /// Compares pairs of positions, ours and true; none if there is nothing to compare.
@@ -56,11 +71,12 @@ impl Accuracy {
             median_m: median(&errors),
             p95_m: percentile(&errors, 95.0),
             max_m: percentile(&errors, 100.0),
+            error_over_sigma: None,
         })
     }
 
     /// Names and values for people.
-    pub fn in_words(&self) -> [(&'static str, String); 5] {
+    pub fn in_words(&self) -> [(&'static str, String); 6] {
         let centimetres = |metres: f64| format!("{:.1} cm", 100.0 * metres);
         [
             ("positions compared", self.positions.to_string()),
@@ -68,15 +84,15 @@ impl Accuracy {
             ("mean error", centimetres(self.mean_m)),
             ("95 % below", centimetres(self.p95_m)),
             ("largest error", centimetres(self.max_m)),
+            ("error over standard deviation", ratio_in_words(self.error_over_sigma)),
         ]
     }
 
     /// Compares a track with a truth known over time, at every epoch within it.
     pub fn of_track(epochs: &[Epoch], truth: &Course<2>) -> Option<Self> {
-        let pairs: Vec<_> = epochs
-            .iter()
-            .filter_map(|epoch| Some((epoch.position, truth.within(epoch.time_us)?)))
-            .collect();
-        Self::of(&pairs)
+        let epochs = epochs.iter();
+        let points: Vec<_> =
+            epochs.filter_map(|epoch| Some((Some(epoch), truth.within(epoch.time_us)?))).collect();
+        Self::of_epochs(&points)
     }
 }

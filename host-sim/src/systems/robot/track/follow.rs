@@ -29,6 +29,11 @@ pub trait Follow: Debug {
     fn spread(&self) -> Option<[f64; 3]> {
         None
     }
+
+    /// Variance of z, m², of a tracker that estimates it.
+    fn height_variance(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// What became of a measurement.

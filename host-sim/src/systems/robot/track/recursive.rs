@@ -81,4 +81,9 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     fn spread(&self) -> Option<[f64; 3]> {
         self.tracker.estimate().and_then(|estimate| of_the_plane(&estimate.covariance))
     }
+
+    fn height_variance(&self) -> Option<f64> {
+        let covariance = &self.tracker.estimate().filter(|_| D == 3)?.covariance;
+        covariance.get(2, 2).map(T::to_f64)
+    }
 }

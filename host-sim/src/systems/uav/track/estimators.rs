@@ -5,7 +5,7 @@ use kestirim_uav_estimator::{self as uav, Error, FlightFilter, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
 use super::design::{Poles, discrete};
-use crate::system::ScalarKind;
+use crate::system::{HealthState, Reason, ScalarKind};
 use crate::systems::uav::recording::log::{Log, Sample};
 use crate::systems::uav::recording::model::{MOST_OUTPUTS, Model};
 use crate::systems::uav::settings::Options;
@@ -24,6 +24,8 @@ pub struct Estimate {
     pub t_us: i64,
     /// Deviations α, q, V, θ.
     pub state: SVector<f64, 4>,
+    /// Their standard deviations, of a filter that knows them.
+    pub sigma: Option<SVector<f64, 4>>,
 }
 
 /// Of a flight: estimates, and what the measurements said beyond what was expected of them.
@@ -35,7 +37,14 @@ pub struct Followed {
     pub innovations: Vec<Vec<f64>>,
     /// How many times each of them contradicted the estimate and was left out.
     pub rejected: Vec<u32>,
+    /// Of each line: how many outputs were measured, and how many of them left out.
+    pub tallies: Vec<(usize, u32)>,
 }
+
+/// Lines over which it is counted how many measurements were left out …
+const COUNTED: usize = 50;
+/// … and the share of them beyond which the estimate is worth less.
+const SHARE: f64 = 0.1;
 
 impl Followed {
     fn new(log: &Log) -> Self {
@@ -45,14 +54,35 @@ impl Followed {
 
     fn add(
         &mut self,
-        t_us: i64,
-        state: SVector<f64, 4>,
+        estimate: Estimate,
         innovations: impl IntoIterator<Item = Option<f64>>,
+        rejected: &[u32],
     ) {
+        let mut measured = 0;
         for (all, innovation) in self.innovations.iter_mut().zip(innovations) {
+            measured += usize::from(innovation.is_some());
             all.extend(innovation);
         }
-        self.estimates.push(Estimate { t_us, state });
+        let rejected = rejected[..self.rejected.len()].to_vec();
+        let before = std::mem::replace(&mut self.rejected, rejected);
+        let left_out = self.rejected.iter().sum::<u32>() - before.iter().sum::<u32>();
+        self.tallies.push((measured, left_out));
+        self.estimates.push(estimate);
+    }
+
+    /// How far each estimate can be relied upon: less while many measurements contradict it.
+    pub fn healths(&self) -> Vec<HealthState> {
+        let health = |last: usize| {
+            let counted = &self.tallies[(last + 1).saturating_sub(COUNTED)..=last];
+            let measured: usize = counted.iter().map(|(measured, _)| measured).sum();
+            let left_out: u32 = counted.iter().map(|(_, left_out)| left_out).sum();
+            if f64::from(left_out) > SHARE * measured as f64 {
+                Reason::Rejected.state()
+            } else {
+                HealthState::Good
+            }
+        };
+        (0..self.tallies.len()).map(health).collect()
     }
 }
 
@@ -122,9 +152,11 @@ fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<F
     for sample in &log.samples {
         let innovations = filter.take(&sized(sample))?;
         let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
-        followed.add(sample.t_us, filter.filter().estimate(), innovations);
+        let now = filter.filter();
+        let sigma = Some(now.sigma());
+        let estimate = Estimate { t_us: sample.t_us, state: now.estimate(), sigma };
+        followed.add(estimate, innovations, filter.rejected());
     }
-    followed.rejected = filter.rejected()[..log.outputs.len()].to_vec();
     Ok(followed)
 }
 
@@ -167,9 +199,10 @@ fn observer_of<T: Scalar, const P: usize>(
     let mut followed = Followed::new(log);
     for sample in &log.samples {
         let innovations = observer.take(&sized(sample))?;
-        followed.add(sample.t_us, observer.estimate(), innovations);
+        let (state, sigma) = (observer.estimate(), None);
+        let estimate = Estimate { t_us: sample.t_us, state, sigma };
+        followed.add(estimate, innovations, observer.rejected());
     }
-    followed.rejected = observer.rejected()[..log.outputs.len()].to_vec();
     Ok(followed)
 }
 

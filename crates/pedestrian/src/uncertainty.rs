@@ -1,0 +1,109 @@
+use crate::{SensorClass, Stride};
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+
+/// Standard deviation of the position that a tracker's strides lead to.
+///
+/// It stands beside the tracker: who does not ask for it does not pay for it. Three things make a walked path wrong,
+/// each by a constant of the sensor's class, fitted to walks with known truth
+/// ([the book](https://github.com/kestirim/kestirim/blob/main/docs/src/pedestrian.md) has the table):
+/// - a rate b at which the heading drifts: the error is b·Σ tₖ·J·Δpₖ, with J a quarter turn;
+/// - a scale s of all strides: s times the distance from the start;
+/// - an error of each stride by itself, of the footprint and of the height.
+///
+/// The heading at the start is the frame's, so it has no error. A fault of the sensor is no part of it: see
+/// [`Warnings`](crate::Warnings).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct PathUncertainty<T: Scalar> {
+    sensor: SensorClass,
+    /// Where the last stride ended (m, earth).
+    position: SVector<T, 3>,
+    /// Standard deviation of the heading (rad).
+    heading: T,
+    /// What a standard deviation of the heading's rate moves the position by (m, earth: x, y).
+    turned: SVector<T, 2>,
+    strides: u32,
+}
+
+impl<T: Scalar> PathUncertainty<T> {
+    /// Standard deviation of a footprint in the plane, each axis (m).
+    const FOOTPRINT: f64 = 0.035;
+    /// Standard deviation of the height gained in a stride (m).
+    const HEIGHT: f64 = 0.047;
+
+    /// At the start of a walk: nothing is uncertain but where the foot stands exactly.
+    pub fn new(sensor: SensorClass) -> Self {
+        let (position, turned) = (SVector::zeros(), SVector::zeros());
+        Self { sensor, position, heading: T::ZERO, turned, strides: 0 }
+    }
+
+    /// Takes the next stride.
+    pub fn add(&mut self, stride: &Stride<T>) {
+        let [dx, dy, _] = *(stride.position - self.position).as_array();
+        self.heading += T::from_f64(self.sensor.heading_rate()) * stride.duration;
+        self.turned += SVector::from([-dy * self.heading, dx * self.heading]);
+        self.position = stride.position;
+        self.strides = self.strides.saturating_add(1);
+    }
+
+    /// Standard deviations of x, y and z (m, earth), after the last stride and until the next.
+    pub fn standard_deviation(&self) -> SVector<T, 3> {
+        // A root of a sum by halves: the squares of hundreds of metres leave a fixed-point number's range.
+        let steps = T::from_f64(f64::from(self.strides.saturating_add(1))).sqrt();
+        let (own, height) = (T::from_f64(Self::FOOTPRINT), T::from_f64(Self::HEIGHT));
+        let scale = T::from_f64(self.sensor.stride_scale());
+        let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());
+        let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own * steps);
+        SVector::from([of_axis(x, along), of_axis(y, across), height * steps])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kestirim_scalar::Q12_20;
+
+    fn straight<T: Scalar>(strides: u32) -> SVector<f64, 3> {
+        let mut uncertainty = PathUncertainty::<T>::new(SensorClass::Industrial);
+        for k in 1..=strides {
+            let position = SVector::from([T::from_f64(f64::from(k)), T::ZERO, T::ZERO]);
+            let (length, duration) = (T::ONE, T::ONE);
+            uncertainty.add(&Stride {
+                time_us: u64::from(k) * 1_000_000,
+                position,
+                length,
+                duration,
+                heading_change: T::ZERO,
+            });
+        }
+        uncertainty.standard_deviation().map(T::to_f64)
+    }
+
+    #[test]
+    fn a_straight_path_goes_astray_to_the_side() {
+        let [x, y, z] = *straight::<f64>(100).as_array();
+        // The sum of k seconds of drift over k metres: half of 100 · 101 strides.
+        assert!((y - (0.0008_f64 * 5050.0).hypot(0.035 * 101_f64.sqrt())).abs() < 1e-9, "{y} m");
+        assert!((x - (0.006_f64 * 100.0).hypot(0.035 * 101_f64.sqrt())).abs() < 1e-9, "{x} m");
+        assert!((z - 0.047 * 101_f64.sqrt()).abs() < 1e-9, "{z} m");
+    }
+
+    #[test]
+    fn every_number_says_the_same() {
+        let double = straight::<f64>(500);
+        for other in [straight::<f32>(500), straight::<Q12_20>(500)] {
+            for (other, double) in other.iter().zip(double.iter()) {
+                assert!((other / double - 1.0).abs() < 0.01, "{other} or {double} m");
+            }
+        }
+    }
+}
