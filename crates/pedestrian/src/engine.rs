@@ -90,7 +90,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 navigator.propagate(&step, verdict.stance);
                 if verdict.stance {
                     if !self.was_stance {
-                        self.health.landing(&navigator.velocity());
+                        self.health.landing(&navigator.velocity(), self.config.sensor);
                     }
                     let velocity = velocity_of_rolling(
                         &navigator.orientation(),

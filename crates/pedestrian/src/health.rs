@@ -21,6 +21,9 @@ pub struct Warnings {
     /// Repeatedly strides end with a velocity of metres a second left over: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
     pub axes_inconsistent: bool,
+    /// Stride by stride too large a velocity is left over: the gyroscope is clipped, its scale or zero has changed, it
+    /// comes late, or the clock runs wrong.
+    pub landings_implausible: bool,
     /// Samples are missing (more than a tenth of a second).
     pub gaps: bool,
     /// The stream showed no standstill of half a second: the gyro bias is unknown.
@@ -37,6 +40,8 @@ pub(crate) struct Health<T: Scalar> {
     force: Repeats<T>,
     rate: Repeats<T>,
     bad_landings: u8,
+    /// Smoothed sizes of what is left of the velocity when a swing ends: horizontal and vertical (m/s, earth).
+    left_over: [T; 2],
 }
 
 /// Number of times in a row that each axis has shown the same value, and number of runs of three.
@@ -78,11 +83,16 @@ impl<T: Scalar> Health<T> {
     const LANDING: f64 = 2.0;
     /// … if it happens so often.
     const LANDINGS: u8 = 4;
+    /// Weight of a landing among those before.
+    const SHARE: f64 = 1.0 / 8.0;
+    /// So much of one landing counts at most (m/s): a stumble is no fault.
+    const MOST: [f64; 2] = [2.0, 0.5];
 
     pub(crate) fn new() -> Self {
         let nothing = Repeats { last: SVector::zeros(), counts: [0; 3], threes: 0 };
         let warnings = Warnings { never_still: true, ..Warnings::default() };
-        Self { warnings, force: nothing, rate: nothing, bad_landings: 0 }
+        let left_over = [T::ZERO; 2];
+        Self { warnings, force: nothing, rate: nothing, bad_landings: 0, left_over }
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
@@ -123,7 +133,15 @@ impl<T: Scalar> Health<T> {
     }
 
     /// A swing ended with this velocity (m/s, earth) where there should be none.
-    pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>) {
+    pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>, sensor: SensorClass) {
+        let [x, y, z] = velocity.as_array().map(T::abs);
+        let limits = sensor.landing();
+        for (index, size) in [x.max(y), z].into_iter().enumerate() {
+            let size = size.min(T::from_f64(Self::MOST[index]));
+            let smoothed = &mut self.left_over[index];
+            *smoothed += (size - *smoothed) * T::from_f64(Self::SHARE);
+            self.warnings.landings_implausible |= *smoothed > T::from_f64(limits[index]);
+        }
         let limit = T::from_f64(Self::LANDING);
         if velocity.as_array().iter().any(|component| component.abs() > limit) {
             self.bad_landings = self.bad_landings.saturating_add(1);

@@ -38,6 +38,16 @@ impl SensorClass {
         }
     }
 
+    /// What a healthy sensor leaves of the velocity when a swing ends, horizontal and vertical, on average over eight
+    /// strides at most (m/s). Of 30 walks with whole gyroscopes none left more than 0.57 and 0.09 (industrial), 0.40
+    /// and 0.17; a scale 5 % wrong leaves 0.16 to 0.22 upwards, a zero 3 °/s wrong 1.0 to 1.8 sideways.
+    pub(crate) fn landing(self) -> [f64; 2] {
+        match self {
+            Self::Industrial => [0.75, 0.12],
+            Self::Consumer => [0.5, 0.2],
+        }
+    }
+
     /// Standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
     pub(crate) fn heading_rate(self) -> f64 {
         match self {

@@ -8,6 +8,7 @@ mod drone_figures;
 mod drone_on_target;
 mod drone_recordings;
 mod drone_thesis;
+mod faults;
 mod firmware;
 mod functions_on_target;
 mod gnss_figures;

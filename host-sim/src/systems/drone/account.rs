@@ -1,6 +1,7 @@
 //! What came of a flight.
 
 mod accuracy;
+mod step;
 
 use serde::Serialize;
 
@@ -11,7 +12,7 @@ use super::settings::expected_loss_db;
 use super::track::trace::{Estimate, Track};
 use crate::Error;
 use crate::metrics::mean;
-use crate::system::{Account, HealthState, Settings, System, Table};
+use crate::system::{Account, HealthState, Reason, Settings, System, Table};
 use crate::table::Found;
 
 /// What a replay prints.
@@ -90,6 +91,12 @@ pub(super) fn account(
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
     match recording {
         Recording::Flight(recorded) => {
+            if let Some((t, by)) = step::step(&track.stops[..=shown.stop], shown.place) {
+                account.warn(format!(
+                    "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
+                ));
+                account.doubt(Reason::Innovations);
+            }
             account.about = Some(recorded.log.clone());
             if let Some(level) = shown.level_db {
                 let is_open = super::settings::built(settings).is_none();

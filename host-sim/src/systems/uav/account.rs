@@ -11,7 +11,8 @@ use super::recording::Recording;
 use super::recording::model::STATE_COLUMNS;
 use super::settings::EstimatorKind;
 use super::track::Track;
-use super::track::estimators::Estimate;
+use super::track::estimators::{Estimate, Followed};
+use super::track::tally::{doubts, healths};
 use crate::Error;
 use crate::metrics::rms;
 use crate::system::{Account, Reason, System, Table};
@@ -116,14 +117,37 @@ pub(super) fn account(
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.understood(&report.import);
-    if report.innovations.iter().any(|residual| residual.warning().is_some()) {
-        account.doubt(Reason::Rejected);
+    for (reason, sentence) in doubted(followed) {
+        account.warn(sentence);
+        account.doubt(reason);
     }
     if let Recording::Logged(logged) = recording {
         account.about = Some(logged.path.clone());
     }
     report.tell(&mut account);
     Ok(account)
+}
+
+/// When the estimate is to be doubted, and why: a sentence each.
+fn doubted(followed: &Followed) -> impl Iterator<Item = (Reason, String)> {
+    let doubts = doubts(&followed.tallies);
+    let sentences = [
+        (
+            Reason::Innovations,
+            "model and measurements disagree by far more than noise explains: another aircraft, a unit, a sign, or a sensor with an offset",
+        ),
+        (
+            Reason::Rejected,
+            "more than a tenth of the measurements contradict the estimate and are left out",
+        ),
+    ];
+    sentences.into_iter().filter_map(move |(reason, sentence)| {
+        let place = doubts.iter().position(|doubt| *doubt == Some(reason))?;
+        let count = doubts.iter().filter(|doubt| **doubt == Some(reason)).count();
+        let share = 100.0 * count as f64 / doubts.len() as f64;
+        let first = followed.estimates.get(place)?.t_us as f64 / 1e6;
+        Some((reason, format!("{sentence}; first at {first:.2} s, in {share:.0} % of the lines")))
+    })
 }
 
 impl Report {
@@ -164,7 +188,7 @@ pub(super) fn table(Track { flight, followed }: &Track) -> Table {
     table.header.extend(STATE_COLUMNS.map(|name| format!("s_{name}")));
     Table {
         rows: followed.estimates.iter().map(row).collect(),
-        health: followed.healths(),
+        health: healths(&followed.tallies),
         ..table
     }
 }

@@ -3,9 +3,11 @@
 pub mod design;
 pub mod deviations;
 pub mod estimators;
+pub mod tally;
 
 use self::deviations::Deviations;
 use self::estimators::{Estimate, Followed};
+use self::tally::Tally;
 use super::recording::log::{Log, Sample};
 use super::recording::model::Model;
 use super::recording::{Logged, Recording};
@@ -91,7 +93,7 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
             .collect(),
         innovations: innovations.collect(),
         rejected: vec![0; outputs.len()],
-        tallies: vec![(outputs.len(), 0); moments.len()],
+        tallies: vec![Tally::default(); moments.len()],
     };
     let truth = timed().map(|(t_us, it)| (t_us, <[f64; 4]>::from(it.sample.x).map(Some)));
     let samples = timed().map(sample).collect();

@@ -7,8 +7,8 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Magnitude, Motion, MovingVariance, Shoe, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty, SensorClass,
-    Step, Stride, Tracker, ZeroVelocity,
+    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty,
+    SensorClass, Step, Stride, Tracker, ZeroVelocity,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 

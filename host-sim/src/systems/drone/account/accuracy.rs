@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::metrics::error_over_sigma;
 use crate::systems::drone::track::trace::{Estimate, Track};
 
 /// Errors are told after each of these, s.
@@ -16,6 +17,8 @@ pub(super) struct Accuracy {
     error_after_s: Vec<ErrorAfter>,
     /// Whether the last 90 % region holds the truth.
     in_90_percent_region: Option<bool>,
+    /// The last error over the standard deviation that was told with it.
+    error_over_sigma: Option<f64>,
 }
 
 /// An error at a time.
@@ -43,6 +46,7 @@ impl Accuracy {
             error_m: track.error_m(last)?,
             error_after_s: error_after_s.collect(),
             in_90_percent_region: last.covered,
+            error_over_sigma: error_over_sigma([(track.error_m(last)?, last.sd_m)]),
         })
     }
 

@@ -4,7 +4,7 @@ use kestirim_gnss_ppp::Geodetic;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use crate::metrics::rms;
+use crate::metrics::{error_over_sigma, rms};
 
 /// Errors before this are those of the beginning, s since the first epoch.
 pub const BEGINNING: f64 = 3600.0;
@@ -37,6 +37,8 @@ pub struct Accuracy {
     pub final_enu_m: [f64; 3],
     /// As `rms_3d_m`, to the east, north and up.
     pub rms_enu_m: Option<[f64; 3]>,
+    /// Root mean square distance over root mean square standard deviation, as `rms_3d_m`.
+    pub error_over_sigma: Option<f64>,
 }
 
 impl Accuracy {
@@ -56,7 +58,23 @@ impl Accuracy {
             convergence_min: convergence(&errors).map(|seconds| seconds / 60.0),
             final_enu_m: (*last).into(),
             rms_enu_m: rms_enu,
+            error_over_sigma: None,
         })
+    }
+
+    /// With what the filter said of its own errors: a standard deviation to the east, north and up for each position, m.
+    pub fn with_deviations(
+        self,
+        fixes: &[Fix],
+        deviations: &[[f64; 3]],
+        begin: f64,
+        truth: &Vector3<f64>,
+    ) -> Self {
+        let late = fixes.iter().zip(deviations).filter(|(fix, _)| fix.t - begin >= BEGINNING);
+        let told = late.map(|(fix, deviations)| {
+            ((fix.position - truth).norm(), Vector3::from(*deviations).norm())
+        });
+        Self { error_over_sigma: error_over_sigma(told), ..self }
     }
 }
 

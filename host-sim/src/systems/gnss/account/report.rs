@@ -117,7 +117,11 @@ impl Report {
             most_rejected: most_rejected(followed),
             unused: followed.unused,
             warnings,
-            accuracy: truth.and_then(|truth| Accuracy::of(&followed.fixes, begin, &truth)),
+            accuracy: truth.and_then(|truth| {
+                let Followed { fixes, deviations, .. } = followed;
+                let accuracy = Accuracy::of(fixes, begin, &truth)?;
+                Some(accuracy.with_deviations(fixes, deviations, begin, &truth))
+            }),
         })
     }
 }

@@ -41,6 +41,12 @@ fn raised(warnings: Warnings) -> impl Iterator<Item = (Reason, &'static str)> {
             Reason::Axes,
             "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
         ),
+        (
+            warnings.landings_implausible,
+            Reason::Innovations,
+            "stride by stride too large a velocity is left over: the gyroscope is clipped, late, or its scale or zero is \
+             wrong (calibrate pedestrian), or the clock runs wrong",
+        ),
         (warnings.gaps, Reason::Dropout, "samples are missing for more than 0.1 s"),
         (
             warnings.out_of_range,

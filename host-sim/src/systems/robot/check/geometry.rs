@@ -23,6 +23,10 @@ const UNEXPLAINED_SHARE: f64 = 0.02;
 const EXPLAINS: f64 = 3.0;
 /// … and no more than this, m.
 const EXPLAINED_M: f64 = 0.35;
+/// Where walls and people might do as much, a unit or two exchanged anchors are told from here on, m, …
+const SUSPICION_M: f64 = 0.15;
+/// … if they leave so much less: three anchors have but one range to spare, and noise alone leaves less than that.
+const CLEARLY: f64 = 6.0;
 /// The standard deviation that all anchors' common bias may have, m.
 const COMMON_BIAS_M: f64 = 0.5;
 /// Heights that are tried against the one that was said, m.
@@ -48,14 +52,16 @@ pub(super) fn check(
         recording.anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
     let tried = Tried { moments: &moments, anchors: &anchors, height };
     let left = tried.left(Moment::clone, &anchors, height)?;
-    if left < CONTRADICTION_M {
-        let found = format!("ranges and anchors agree within {left:.2} m");
-        return Some(Finding::note("geometry", found));
+    let agree =
+        || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
+    if left < SUSPICION_M {
+        return Some(agree());
     }
+    let explains = if left < CONTRADICTION_M { CLEARLY } else { EXPLAINS };
     let name = |anchor: usize| recording.anchors.names[anchor].as_str();
     let found = format!("ranges and anchors disagree by {left:.1} m");
     let explained =
-        |with: Option<f64>| with.filter(|with| *with < EXPLAINED_M && *with * EXPLAINS < left);
+        |with: Option<f64>| with.filter(|with| *with < EXPLAINED_M && *with * explains < left);
     let consequence = "positions may be wrong by as much";
     if let Some(with) = explained(tried.scaled(FOOT)) {
         let remedy = format!("in feet they would agree within {with:.2} m: --units range=ft");
@@ -67,6 +73,9 @@ pub(super) fn check(
         let remedy =
             format!("with {} and {} swapped they would agree within {with:.2} m", name(a), name(b));
         return Some(Finding::fault("geometry", Reason::Anchor, found, consequence, remedy));
+    }
+    if left < CONTRADICTION_M {
+        return Some(agree());
     }
     if let Some((with, by)) =
         tried.higher().filter(|(with, _)| is_given && explained(Some(*with)).is_some())

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::metrics::rms;
+use crate::metrics::{error_over_sigma, rms};
 use crate::systems::uav::track::Track;
 
 /// How good the estimates are.
@@ -14,6 +14,8 @@ pub struct Accuracy {
     pub rmse: [Option<f64>; 4],
     /// The same over the second half of the log.
     pub late_rmse: [Option<f64>; 4],
+    /// Those of the second half over the root mean square standard deviations; none of an observer, which knows none.
+    pub error_over_sigma: [Option<f64>; 4],
 }
 
 impl Accuracy {
@@ -30,6 +32,19 @@ impl Accuracy {
                 (!errors.is_empty()).then(|| rms(&errors))
             })
         };
-        Some(Self { samples: errors.len(), rmse: since(i64::MIN), late_rmse: since(middle) })
+        let sigmas: Vec<_> = estimates.iter().filter_map(|it| Some((it.t_us, it.sigma?))).collect();
+        let ratio = |column: usize| {
+            let late = errors.iter().filter(|(t_us, _)| *t_us >= middle);
+            error_over_sigma(late.filter_map(|(t_us, errors)| {
+                let place = sigmas.binary_search_by_key(t_us, |(t_us, _)| *t_us).ok()?;
+                Some((errors[column]?, sigmas[place].1[column]))
+            }))
+        };
+        Some(Self {
+            samples: errors.len(),
+            rmse: since(i64::MIN),
+            late_rmse: since(middle),
+            error_over_sigma: std::array::from_fn(ratio),
+        })
     }
 }

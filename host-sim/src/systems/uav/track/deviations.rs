@@ -4,6 +4,7 @@ use nalgebra::SVector;
 
 use super::estimators::{self, Assumed, Estimate, Followed};
 use crate::Error;
+use crate::system::ScalarKind;
 use crate::systems::uav::recording::log::{Log, Truth};
 use crate::systems::uav::recording::model::Model;
 use crate::systems::uav::settings::{EstimatorKind, Options};
@@ -70,13 +71,21 @@ impl Deviations {
     /// # Errors
     /// In words: why it cannot.
     pub fn follow(&self, options: &Options) -> Result<Followed, String> {
+        let assumed = Assumed::of(&self.model, &self.log.outputs, options);
+        let kalman = |scalar| estimators::kalman(&self.model, &self.log, &assumed, scalar);
         match options.estimator {
-            EstimatorKind::Kalman => {
-                let assumed = Assumed::of(&self.model, &self.log.outputs, options);
-                estimators::kalman(&self.model, &self.log, &assumed, options.scalar)
-            }
+            EstimatorKind::Kalman => kalman(options.scalar),
             EstimatorKind::Luenberger => {
-                estimators::observer(&self.model, &self.log, options.poles, options.scalar)
+                let (poles, scalar) = (options.poles, options.scalar);
+                let mut followed = estimators::observer(&self.model, &self.log, poles, scalar)?;
+                // An observer does not know how large innovations may be. Whether model and measurements agree does
+                // not depend on it: the filter beside it tells.
+                if let Ok(judge) = kalman(ScalarKind::F64) {
+                    for (tally, judged) in followed.tallies.iter_mut().zip(&judge.tallies) {
+                        tally.nis = judged.nis;
+                    }
+                }
+                Ok(followed)
             }
         }
     }

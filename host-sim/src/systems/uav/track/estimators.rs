@@ -5,7 +5,8 @@ use kestirim_uav_estimator::{self as uav, Error, FlightFilter, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
 use super::design::{Poles, discrete};
-use crate::system::{HealthState, Reason, ScalarKind};
+use super::tally::Tally;
+use crate::system::ScalarKind;
 use crate::systems::uav::recording::log::{Log, Sample};
 use crate::systems::uav::recording::model::{MOST_OUTPUTS, Model};
 use crate::systems::uav::settings::Options;
@@ -37,14 +38,9 @@ pub struct Followed {
     pub innovations: Vec<Vec<f64>>,
     /// How many times each of them contradicted the estimate and was left out.
     pub rejected: Vec<u32>,
-    /// Of each line: how many outputs were measured, and how many of them left out.
-    pub tallies: Vec<(usize, u32)>,
+    /// Of each line: what tells how far its estimate can be relied upon.
+    pub tallies: Vec<Tally>,
 }
-
-/// Lines over which it is counted how many measurements were left out …
-const COUNTED: usize = 50;
-/// … and the share of them beyond which the estimate is worth less.
-const SHARE: f64 = 0.1;
 
 impl Followed {
     fn new(log: &Log) -> Self {
@@ -57,6 +53,7 @@ impl Followed {
         estimate: Estimate,
         innovations: impl IntoIterator<Item = Option<f64>>,
         rejected: &[u32],
+        nis: f64,
     ) {
         let mut measured = 0;
         for (all, innovation) in self.innovations.iter_mut().zip(innovations) {
@@ -66,23 +63,8 @@ impl Followed {
         let rejected = rejected[..self.rejected.len()].to_vec();
         let before = std::mem::replace(&mut self.rejected, rejected);
         let left_out = self.rejected.iter().sum::<u32>() - before.iter().sum::<u32>();
-        self.tallies.push((measured, left_out));
+        self.tallies.push(Tally { measured, left_out, nis });
         self.estimates.push(estimate);
-    }
-
-    /// How far each estimate can be relied upon: less while many measurements contradict it.
-    pub fn healths(&self) -> Vec<HealthState> {
-        let health = |last: usize| {
-            let counted = &self.tallies[(last + 1).saturating_sub(COUNTED)..=last];
-            let measured: usize = counted.iter().map(|(measured, _)| measured).sum();
-            let left_out: u32 = counted.iter().map(|(_, left_out)| left_out).sum();
-            if f64::from(left_out) > SHARE * measured as f64 {
-                Reason::Rejected.state()
-            } else {
-                HealthState::Good
-            }
-        };
-        (0..self.tallies.len()).map(health).collect()
     }
 }
 
@@ -151,11 +133,12 @@ fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<F
     let mut followed = Followed::new(log);
     for sample in &log.samples {
         let innovations = filter.take(&sized(sample))?;
+        let nis = innovations.iter().flatten().map(|it| it.nis.min(Tally::MOST)).sum();
         let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
         let now = filter.filter();
         let sigma = Some(now.sigma());
         let estimate = Estimate { t_us: sample.t_us, state: now.estimate(), sigma };
-        followed.add(estimate, innovations, filter.rejected());
+        followed.add(estimate, innovations, filter.rejected(), nis);
     }
     Ok(followed)
 }
@@ -201,7 +184,7 @@ fn observer_of<T: Scalar, const P: usize>(
         let innovations = observer.take(&sized(sample))?;
         let (state, sigma) = (observer.estimate(), None);
         let estimate = Estimate { t_us: sample.t_us, state, sigma };
-        followed.add(estimate, innovations, observer.rejected());
+        followed.add(estimate, innovations, observer.rejected(), 0.0);
     }
     Ok(followed)
 }

@@ -1,0 +1,254 @@
+//! Faults of a GPS receiver and of the products it is solved with: ESBC, a whole day, on the ground and in motion.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use flate2::read::GzDecoder;
+use host_sim::systems::gnss::Gnss;
+use kestirim_tests::recordings::folder_of;
+use rayon::prelude::*;
+use serde_json::Value;
+
+use super::{Answer, Case, desk, judge, run};
+
+const TRUTH: &str = "3582104.7645,532590.1790,5232755.1455";
+/// Up to here there are orbits, s of the day.
+const UNTIL: f64 = 85_500.0;
+/// From here on faults act, s of the day.
+const NOON: f64 = 43_200.0;
+
+/// A satellite's four observations, m and cycles: C1, L1, C2, L2.
+type Observed = (String, [Option<f64>; 4]);
+
+/// An epoch: seconds of the day, and what was observed.
+#[derive(Clone)]
+struct Epoch {
+    second: f64,
+    observed: Vec<Observed>,
+}
+
+/// What a solution is made of.
+#[derive(Clone)]
+struct Day {
+    header: String,
+    epochs: Vec<Epoch>,
+    orbits: Vec<String>,
+    antennas: String,
+}
+
+type Fault = (&'static str, fn(&mut Day));
+
+fn text(path: &Path) -> Result<String> {
+    let mut text = String::new();
+    let file = fs::File::open(path).with_context(|| path.display().to_string())?;
+    GzDecoder::new(file).read_to_string(&mut text)?;
+    Ok(text)
+}
+
+impl Day {
+    fn read(folder: &Path) -> Result<Self> {
+        let file = |name: &str| text(&folder.join("esbc2020177").join(name));
+        let observations = file("esbc_gps.rnx.gz")?;
+        let (header, body) = observations.split_once("END OF HEADER\n").context("a header")?;
+        let mut epochs: Vec<Epoch> = Vec::new();
+        for line in body.lines() {
+            if let Some(time) = line.strip_prefix("> ") {
+                let fields: Vec<f64> =
+                    time.split_whitespace().filter_map(|it| it.parse().ok()).collect();
+                let second = fields[3] * 3600.0 + fields[4] * 60.0 + fields[5];
+                epochs.push(Epoch { second, observed: Vec::new() });
+            } else if let Some(epoch) = epochs.last_mut() {
+                let field = |k: usize| line.get(3 + 16 * k..17 + 16 * k)?.trim().parse().ok();
+                epoch.observed.push((line[..3].to_owned(), std::array::from_fn(field)));
+            }
+        }
+        epochs.retain(|epoch| epoch.second <= UNTIL);
+        Ok(Self {
+            header: header.to_owned() + "END OF HEADER\n",
+            epochs,
+            orbits: vec![file("grg176_gps.sp3.gz")?, file("grg177_gps.sp3.gz")?],
+            antennas: file("esbc.atx.gz")?,
+        })
+    }
+
+    fn write(&self, folder: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
+        let mut text = self.header.clone().into_bytes();
+        for Epoch { second, observed } in &self.epochs {
+            let (hour, minute) = ((second / 3600.0) as u32, (second / 60.0) as u32 % 60);
+            let rest = second - f64::from(hour * 3600 + minute * 60);
+            writeln!(
+                text,
+                "> 2020 06 25 {hour:02} {minute:02} {rest:10.7}  0 {:2}",
+                observed.len()
+            )?;
+            for (satellite, values) in observed {
+                let field = |value: &Option<f64>| match value {
+                    Some(value) => format!("{value:14.3}  "),
+                    None => " ".repeat(16),
+                };
+                let fields: String = values.iter().map(field).collect();
+                writeln!(text, "{satellite}{}", fields.trim_end())?;
+            }
+        }
+        let mut files = vec![("obs", folder.join("day.rnx"))];
+        fs::write(&files[0].1, text)?;
+        for (k, orbits) in self.orbits.iter().enumerate() {
+            files.push(("sp3", folder.join(format!("{k}.sp3"))));
+            fs::write(&files[1 + k].1, orbits)?;
+        }
+        files.push(("antex", folder.join("antennas.atx")));
+        fs::write(&files[files.len() - 1].1, &self.antennas)?;
+        Ok(files)
+    }
+
+    /// Changes what was observed from noon on.
+    fn from_noon(&mut self, mut with: impl FnMut(f64, &mut Observed)) {
+        for epoch in self.epochs.iter_mut().filter(|epoch| epoch.second >= NOON) {
+            for observed in &mut epoch.observed {
+                with(epoch.second, observed);
+            }
+        }
+    }
+
+    /// Adds to one of the four, from noon on, in metres or cycles.
+    fn add(&mut self, kind: usize, with: impl Fn(f64, &str) -> f64) {
+        self.from_noon(|second, (satellite, values)| {
+            values[kind] = values[kind].map(|value| value + with(second, satellite));
+        });
+    }
+}
+
+/// Whether it is one in so many satellites and epochs, without a pattern.
+fn one_in(many: u64, second: f64, satellite: &str) -> bool {
+    let number: u64 = satellite[1..].trim().parse().unwrap_or(0);
+    let mixed = (second as u64 * 64 + number).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 24;
+    mixed.is_multiple_of(many)
+}
+
+/// Wavelengths of L1 and L2, m.
+const LAMBDA: [f64; 2] = [0.190_293_673, 0.244_210_213];
+/// A millisecond of light, m.
+const MILLISECOND: f64 = 299_792.458;
+
+const FAULTS: &[Fault] = &[
+    ("epochs 18 s late", |it| it.epochs.iter_mut().for_each(|epoch| epoch.second += 18.0)),
+    ("epochs 1 s late", |it| it.epochs.iter_mut().for_each(|epoch| epoch.second += 1.0)),
+    ("C1 stuck", |it| {
+        let mut stuck = std::collections::BTreeMap::new();
+        it.from_noon(|_, (satellite, values)| {
+            let stuck = stuck.entry(satellite.clone()).or_insert(values[0]);
+            values[0] = *stuck;
+        });
+    }),
+    ("C1 and C2 swapped", |it| it.from_noon(|_, (_, values)| values.swap(0, 2))),
+    ("L1 and L2 swapped", |it| it.from_noon(|_, (_, values)| values.swap(1, 3))),
+    ("codes 100 m long in 1 %", |it| {
+        it.add(0, |t, satellite| if one_in(100, t, satellite) { 100.0 } else { 0.0 });
+    }),
+    ("codes 30 m long in 20 %", |it| {
+        it.add(0, |t, satellite| if one_in(5, t, satellite) { 30.0 } else { 0.0 });
+    }),
+    ("one satellite 30 m long", |it| {
+        it.add(0, |_, satellite| if satellite == "G05" { 30.0 } else { 0.0 })
+    }),
+    ("phases slip in 1 %", |it| {
+        it.add(1, |t, satellite| if one_in(100, t, satellite) { 5.0 } else { 0.0 });
+    }),
+    ("all phases slip once", |it| it.add(1, |_, satellite| satellite[1..].parse().unwrap_or(3.0))),
+    ("a cycle slips on one satellite", |it| {
+        it.add(1, |_, satellite| if satellite == "G07" { 1.0 } else { 0.0 })
+    }),
+    ("the clock jumps by 1 ms", |it| {
+        it.add(0, |_, _| MILLISECOND);
+        it.add(2, |_, _| MILLISECOND);
+        it.add(1, |_, _| MILLISECOND / LAMBDA[0]);
+        it.add(3, |_, _| MILLISECOND / LAMBDA[1]);
+    }),
+    ("the codes' clock jumps by 1 ms", |it| {
+        it.add(0, |_, _| MILLISECOND);
+        it.add(2, |_, _| MILLISECOND);
+    }),
+    ("the phases jump by 1 ms", |it| {
+        it.add(1, |_, _| MILLISECOND / LAMBDA[0]);
+        it.add(3, |_, _| MILLISECOND / LAMBDA[1]);
+    }),
+    ("no L2", |it| it.from_noon(|_, (_, values)| (values[2], values[3]) = (None, None))),
+    ("five satellites left", |it| {
+        for epoch in it.epochs.iter_mut().filter(|epoch| epoch.second >= NOON) {
+            epoch.observed.truncate(5);
+        }
+    }),
+    ("three satellites left", |it| {
+        for epoch in it.epochs.iter_mut().filter(|epoch| epoch.second >= NOON) {
+            epoch.observed.truncate(3);
+        }
+    }),
+    ("dropout of an hour", |it| {
+        it.epochs.retain(|epoch| !(NOON..NOON + 3600.0).contains(&epoch.second))
+    }),
+    ("epochs twice", |it| {
+        it.epochs = it.epochs.iter().flat_map(|it| [it.clone(), it.clone()]).collect()
+    }),
+    ("neighbours reordered", |it| it.epochs.chunks_exact_mut(2).for_each(<[_]>::reverse)),
+    ("satellites' names turned round", |it| {
+        it.from_noon(|_, (satellite, _)| {
+            let number: u32 = satellite[1..].trim().parse().unwrap_or(1);
+            *satellite = format!("G{:02}", 33 - number);
+        });
+    }),
+    ("orbits of the day before alone", |it| it.orbits.truncate(1)),
+    ("orbits cut at column 40", |it| {
+        let cut = |line: &str| line.get(..40).unwrap_or(line).to_owned() + "\n";
+        it.orbits[1] = it.orbits[1].lines().map(cut).collect();
+    }),
+    ("orbits cut in the middle of a line", |it| {
+        let half = it.orbits[1].len() / 2;
+        it.orbits[1].truncate(half);
+    }),
+    ("orbits a kilometre off", |it| {
+        let moved = |line: &str| match line.get(4..18).and_then(|x| x.trim().parse::<f64>().ok()) {
+            Some(x) if line.starts_with('P') => {
+                format!("{}{:14.6}{}\n", &line[..4], x + 1.0, &line[18..])
+            }
+            _ => line.to_owned() + "\n",
+        };
+        it.orbits[1] = it.orbits[1].lines().map(moved).collect();
+    }),
+    ("antenna not in the file", |it| {
+        it.antennas = it.antennas.replace("ASH701945E_M", "ASH700000X_M")
+    }),
+];
+
+fn measure(report: &Value) -> Option<f64> {
+    report["accuracy"]["rms_3d_m"].as_f64()
+}
+
+fn replay(day: &Day, clocks: &Path, mode: &str) -> Result<Answer> {
+    let desk = desk()?;
+    let mut files = day.write(desk.path())?;
+    files.push(("clk", clocks.to_owned()));
+    let files: Vec<_> = files.iter().map(|(field, path)| (*field, path.as_path())).collect();
+    let settings = [("mode", mode), ("truth", TRUTH)];
+    run(&Gnss, &files, &settings, measure)
+}
+
+#[test]
+fn a_receiver() -> Result<()> {
+    let Some(folder) = folder_of("gnss") else { return Ok(()) };
+    let day = Day::read(&folder)?;
+    let clocks = folder.join("esbc2020177/grg177_gps.clk.gz");
+    let mut cases = Vec::new();
+    for mode in ["static", "kinematic"] {
+        let clean = replay(&day, &clocks, mode)?;
+        let case = |(fault, harm): &Fault| {
+            let mut day = day.clone();
+            harm(&mut day);
+            let faulty = replay(&day, &clocks, mode)?;
+            Ok(Case { recording: mode.to_owned(), fault, clean: clean.clone(), faulty })
+        };
+        cases.extend(FAULTS.par_iter().map(case).collect::<Result<Vec<_>>>()?);
+    }
+    judge(&cases)
+}

@@ -1,0 +1,149 @@
+//! The fault matrix: faults put into recordings, what became of the answer, and whether the user was told.
+//!
+//! A case is silent and wrong if its error is more than three times the clean one and more than three times the
+//! standard deviation that was told, and neither health nor a warning nor a refusal says so. Each such case stands in
+//! [`UNSEEN`] with the reason; a new one fails, and so does one of the list that is told by now. With `--nocapture` the
+//! whole table is printed as the book has it.
+
+mod drone;
+mod gnss;
+mod pedestrian;
+mod robot;
+mod table;
+mod uav;
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use host_sim::system::{AnySystem, Files, Settings, Source, Wanted};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// What no estimator can see, or ours does not yet: recording and fault begin so, and why.
+const UNSEEN: &[(&str, &str, &str)] =
+    &[("", "room mirrored", "a mirrored room has the same ranges")];
+
+/// One run of a system: its error, m (UAV: rad), and what the user was told.
+#[derive(Debug, Clone)]
+struct Answer {
+    /// `None`: refused.
+    error: Option<f64>,
+    over_sigma: Option<f64>,
+    /// State and reasons of the health, or the refusal.
+    told: String,
+    /// Whether it was told: it was refused, the health is not good, or there is a warning that the clean recording has not.
+    warnings: Vec<String>,
+    is_good: bool,
+}
+
+/// A recording with a fault in it.
+struct Case {
+    recording: String,
+    fault: &'static str,
+    clean: Answer,
+    faulty: Answer,
+}
+
+impl Case {
+    fn is_told(&self) -> bool {
+        let is_new = |warning: &String| !self.clean.warnings.contains(warning);
+        self.faulty.error.is_none()
+            || !self.faulty.is_good
+            || self.faulty.warnings.iter().any(is_new)
+    }
+
+    fn is_harmed(&self) -> bool {
+        let errors = self.faulty.error.zip(self.clean.error);
+        errors.is_some_and(|(faulty, clean)| faulty > 2.0 * clean)
+    }
+
+    fn is_silent_and_wrong(&self) -> bool {
+        let errors = self.faulty.error.zip(self.clean.error);
+        let is_wrong = errors.is_some_and(|(faulty, clean)| faulty > 3.0 * clean);
+        is_wrong && !self.is_told() && self.faulty.over_sigma.is_none_or(|ratio| ratio > 3.0)
+    }
+
+    fn row(&self) -> String {
+        let number =
+            |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |it| format!("{it:.3}"));
+        let [clean, faulty] = [&self.clean, &self.faulty].map(|answer| number(answer.error));
+        let ratio = number(self.faulty.over_sigma);
+        let told = if self.is_told() { self.faulty.told.as_str() } else { "no" };
+        let verdict = match (self.is_silent_and_wrong(), self.is_harmed(), self.is_told()) {
+            (true, ..) => "SILENT",
+            (_, true, true) => "told",
+            (_, true, false) => "within σ or 3 ×",
+            _ => "unharmed",
+        };
+        format!(
+            "| {} | {} | {clean} | {faulty} | {ratio} | {told} | {verdict} |",
+            self.recording, self.fault
+        )
+    }
+}
+
+/// Runs a system on files with these settings.
+fn run(
+    system: &dyn AnySystem,
+    files: &[(&str, &Path)],
+    settings: &[(&str, &str)],
+    measure: fn(&Value) -> Option<f64>,
+) -> Result<Answer> {
+    let mut given = Settings::new(system.settings());
+    for (name, value) in settings {
+        given.set(name, value)?;
+    }
+    let mut read = Files::default();
+    for (field, path) in files {
+        read.add(*field, *path);
+    }
+    let account = system
+        .open(Source::Files(read), &given)
+        .and_then(|opened| opened.replay(&given, &Wanted::default()));
+    Ok(match account {
+        Err(error) => {
+            let told =
+                format!("refused: {}", error.to_string().rsplit('/').next().unwrap_or_default());
+            Answer { error: None, over_sigma: None, told, warnings: Vec::new(), is_good: false }
+        }
+        Ok(account) => {
+            let over_sigma = &account.report["accuracy"]["error_over_sigma"];
+            let over_sigma = over_sigma.as_f64().or_else(|| over_sigma[0].as_f64());
+            let in_words = account.health.in_words();
+            let is_good = in_words == "good";
+            let told = if is_good { "a warning".to_owned() } else { in_words };
+            let error = measure(&account.report).or(Some(f64::INFINITY));
+            Answer { error, over_sigma, told, warnings: account.warnings, is_good }
+        }
+    })
+}
+
+/// Looks at all cases of a system at once.
+fn judge(cases: &[Case]) -> Result<()> {
+    println!(
+        "| recording | fault | error clean | faulty | error/σ | told | |\n|---|---|---|---|---|---|---|"
+    );
+    for case in cases {
+        println!("{}", case.row());
+    }
+    let told = cases.iter().filter(|case| case.is_told()).count();
+    let harmed = cases.iter().filter(|case| case.is_harmed());
+    println!("{} cases, {} harmed, {told} told", cases.len(), harmed.count());
+    for case in cases {
+        assert!(case.clean.error.is_some(), "{} is refused without a fault", case.recording);
+        assert!(case.clean.is_good, "false alarm for {}: {:?}", case.recording, case.clean);
+    }
+    let is_known = |case: &Case, (recording, fault, _): &(&str, &str, &str)| {
+        case.recording.starts_with(recording) && case.fault == *fault
+    };
+    let silent = cases.iter().filter(|case| case.is_silent_and_wrong());
+    let new: Vec<_> =
+        silent.filter(|case| !UNSEEN.iter().any(|it| is_known(case, it))).map(Case::row).collect();
+    assert!(new.is_empty(), "silent and wrong:\n{}", new.join("\n"));
+    Ok(())
+}
+
+/// A folder for faulty files.
+fn desk() -> Result<TempDir> {
+    tempfile::tempdir().context("a folder")
+}
