@@ -21,6 +21,10 @@ pub struct Config<T> {
     pub decay_time: Option<T>,
     /// Standard deviation of the bias common to all ranges, m, for trackers that estimate it.
     pub common_bias_sigma: T,
+    /// Standard deviation of the constant error that each anchor's ranges keep, m. It is considered, not estimated
+    /// (Schmidt 1966): the filter takes ranges' errors for noise, which an average makes small, so
+    /// [`Health::position_sigma`](crate::Health::position_sigma) adds what these do to the position.
+    pub bias_sigma: T,
     /// Height of the tag in two dimensions, m.
     pub height: T,
     /// Bounds of the position.
@@ -51,6 +55,7 @@ impl<T: Scalar> Config<T> {
             acceleration_density: T::from_f64(0.1),
             decay_time: None,
             common_bias_sigma: T::from_f64(0.3),
+            bias_sigma: T::ZERO,
             height,
             room: None,
         }
@@ -68,6 +73,7 @@ impl<T: Scalar> Config<T> {
             huber: Some(Huber { long: T::HALF, short: number(2.5) }),
             gate: Some(number(25.0)),
             decay_time: Some(T::TWO),
+            bias_sigma: number(least_sigma),
             ..Self::plain(height)
         }
     }

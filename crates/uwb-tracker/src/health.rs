@@ -34,8 +34,11 @@ pub struct Health<T> {
     pub heard: u8,
     /// Dilution of precision of those anchors; none if they do not determine a position.
     pub dilution: Option<T>,
-    /// Standard deviation of the position, root of its variances' sum, m; none without one.
+    /// Standard deviation of the position, root of its variances' sum, m: the filter's own, and that of the anchors'
+    /// constant errors; none without a position.
     pub position_sigma: Option<T>,
+    /// The latter alone, m: [`Config::bias_sigma`](crate::Config::bias_sigma) times the dilution of the anchors heard.
+    pub bias_sigma: T,
     /// Whether the tag stands still, as far as IMU or wheels tell.
     pub still: bool,
 }

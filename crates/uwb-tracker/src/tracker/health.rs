@@ -10,9 +10,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     pub fn health(&self, time_us: u64) -> Health<T> {
         let counters = &self.counters;
         let heard = self.count_heard(time_us);
+        let dilution = self.dilution(time_us);
+        let bias_sigma = dilution.map_or(T::ZERO, |dilution| dilution * self.config.bias_sigma);
         let position_sigma = self.estimate.as_ref().map(|estimate| {
             let variances = estimate.covariance.variances();
-            variances.iter().take(D).fold(T::ZERO, |sum, &variance| sum + variance).sqrt()
+            let sum = variances.iter().take(D).fold(T::ZERO, |sum, &variance| sum + variance);
+            sum.sqrt().hypot(bias_sigma)
         });
         Health {
             state: match (&self.estimate, counters.starts) {
@@ -26,8 +29,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             rejected: counters.rejected,
             restarts: counters.starts.saturating_sub(1),
             heard,
-            dilution: self.dilution(time_us),
+            dilution,
             position_sigma,
+            bias_sigma,
             still: self.is_still(time_us),
         }
     }

@@ -28,6 +28,7 @@ fn config<T: Scalar>() -> Config<T> {
         acceleration_density: number(),
         decay_time: option(),
         common_bias_sigma: number(),
+        bias_sigma: number(),
         room: maybe(Room { low: numbers(), high: numbers() }),
         ..config
     })

@@ -15,6 +15,8 @@ use crate::systems::robot::settings::{Setup, TrackerKind};
 #[derive(Debug)]
 pub(super) struct Recursive<T: Scalar, const D: usize, const N: usize> {
     tracker: Tracker<T, D, N, MOST>,
+    /// Time of the last event, µs.
+    now_us: u64,
     height_m: f64,
     /// Whether the prediction is driven by the IMU, as the paper's is.
     pushed: bool,
@@ -29,7 +31,12 @@ impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
         let config = Config { room: setup.room(), ..config };
         let tracker = Tracker::new(config, &anchors(setup)).map_err(refused)?;
         let pushed = matches!(setup.tracker, TrackerKind::Ekf | TrackerKind::Aekf);
-        Ok(Self { tracker, height_m: setup.height_m, pushed })
+        Ok(Self { tracker, now_us: 0, height_m: setup.height_m, pushed })
+    }
+
+    /// Variance of each axis that the anchors' constant errors add, m²: in no direction more than in another.
+    fn bias_variance(&self) -> f64 {
+        self.tracker.health(self.now_us).bias_sigma.to_f64().powi(2) / D as f64
     }
 
     fn range(&mut self, time_us: u64, range: &Range) -> Reception {
@@ -47,6 +54,7 @@ impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
 impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         let number = T::from_f64;
+        self.now_us = time_us;
         let taken = match *event {
             Event::Range(range) => return self.range(time_us, &range),
             Event::Inertial(Inertial { acceleration, push, .. }) => {
@@ -79,11 +87,13 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     }
 
     fn spread(&self) -> Option<[f64; 3]> {
-        self.tracker.estimate().and_then(|estimate| of_the_plane(&estimate.covariance))
+        let [xx, xy, yy] = of_the_plane(&self.tracker.estimate()?.covariance)?;
+        let bias = self.bias_variance();
+        Some([xx + bias, xy, yy + bias])
     }
 
     fn height_variance(&self) -> Option<f64> {
         let covariance = &self.tracker.estimate().filter(|_| D == 3)?.covariance;
-        covariance.get(2, 2).map(T::to_f64)
+        Some(covariance.get(2, 2)?.to_f64() + self.bias_variance())
     }
 }
