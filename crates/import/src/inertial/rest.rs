@@ -51,6 +51,11 @@ pub(crate) struct Rest {
 impl Rest {
     /// Looks for rest in samples whose median spacing is `step` seconds; none if there is not any.
     pub(crate) fn find(raw: &[Raw], step: f64) -> Option<Self> {
+        Self::near(raw, step, NORM)
+    }
+
+    /// The same, where the norm is within another share of that at rest.
+    pub(crate) fn near(raw: &[Raw], step: f64, share: f64) -> Option<Self> {
         let length = (WINDOW / step).round().clamp(SAMPLES.0, SAMPLES.1) as usize;
         let mut windows: Vec<_> = raw
             .chunks_exact(length)
@@ -75,7 +80,7 @@ impl Rest {
         let limit = (limit * AS_STILL).max(STILL).max(often).min(MOST_CHANGE);
         for window in &mut windows {
             let off = (length_of(window.force) - norm).abs();
-            window.is_still = window.change <= limit && off <= NORM * norm;
+            window.is_still = window.change <= limit && off <= share * norm;
         }
         Some(Self { windows, norm, bias })
     }
