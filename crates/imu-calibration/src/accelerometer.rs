@@ -112,7 +112,7 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         if residual > T::from_f64(MOST_LEFT) {
             return Err(Error::Inconsistent);
         }
-        let unknowns = T::from_f64(f64::from(model.unknowns()));
+        let unknowns = T::from_binary(i32::from(model.unknowns()), 0);
         let sigma = noise(given / gravity, left, count, unknowns);
         let [ox, oy, oz, x, y, z, xy, xz, yz] = gains.map(|gain| gain * sigma);
         let beside = |sigma: T| (model == AccelerometerModel::Full).then_some(sigma);
@@ -231,7 +231,7 @@ impl<T: Scalar> Parameters<T> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        let [least, most] = SCALES.map(T::from_f64);
+        let (least, most) = (T::from_f64(SCALES[0]), T::from_f64(SCALES[1]));
         let farthest = T::from_f64(FARTHEST);
         let is_near = |x: &T| x.abs() <= farthest;
         let usual = self.scale.iter().all(|scale| *scale >= least && *scale <= most)

@@ -52,11 +52,15 @@ pub(crate) fn rotation<T: Scalar>([x, y, z]: [T; 3]) -> Square<T> {
     // sin a/a and (1 − cos a)/a²: by their series below a tenth of a radian, where they are exact to the last bit of an
     // `f32` and to 10⁻¹³ of an `f64`.
     let (s, c) = if square < T::from_f64(0.01) {
-        let term = |by: f64| square * T::from_f64(by);
-        let s =
-            T::ONE - term(1.0 / 6.0) * (T::ONE - term(1.0 / 20.0) * (T::ONE - term(1.0 / 42.0)));
-        let c =
-            T::ONE - term(1.0 / 12.0) * (T::ONE - term(1.0 / 30.0) * (T::ONE - term(1.0 / 56.0)));
+        let term = |by: T| square * by;
+        let s = T::ONE
+            - term(T::from_f64(1.0 / 6.0))
+                * (T::ONE
+                    - term(T::from_f64(1.0 / 20.0)) * (T::ONE - term(T::from_f64(1.0 / 42.0))));
+        let c = T::ONE
+            - term(T::from_f64(1.0 / 12.0))
+                * (T::ONE
+                    - term(T::from_f64(1.0 / 30.0)) * (T::ONE - term(T::from_f64(1.0 / 56.0))));
         (s, c * T::HALF)
     } else {
         let angle = x.hypot(y).hypot(z);
