@@ -170,7 +170,8 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         let by = gravity.divisor();
         for pose in &self.poses {
             let measured = pose.specific_force.as_array().map(|force| force.divided_by(by));
-            let [x, y, z] = [0, 1, 2].map(|axis| measured[axis] - at.offset[axis]);
+            let ([x, y, z], [ox, oy, oz]) = (measured, at.offset);
+            let [x, y, z] = [x - ox, y - oy, z - oz];
             let corrected = times(&at.columns(), &[x, y, z]);
             let norm = T::norm(&corrected);
             let [ux, uy, uz] = corrected.map(|force| force / norm);

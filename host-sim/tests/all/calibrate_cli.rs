@@ -10,6 +10,7 @@ use host_sim::systems::pedestrian::Sample;
 use host_sim::systems::pedestrian::simulate::gait::Pose;
 use host_sim::systems::pedestrian::simulate::kinematics::ideal_imu;
 use host_sim::systems::pedestrian::simulate::scenario::Scenario;
+use host_sim::systems::pedestrian::simulate::sensor::razor_text;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde_json::Value;
 
@@ -123,6 +124,44 @@ fn true_parameters() -> Vec<f64> {
     truth().into_iter().flat_map(of).collect()
 }
 
+/// The largest σ of parameters whose names begin so.
+fn largest(report: &Value, begin: &str) -> f64 {
+    let found = parameters(report);
+    let of = found.iter().filter(|(name, ..)| name.starts_with(begin));
+    of.filter_map(|(_, _, sigma)| *sigma).fold(0.0, f64::max)
+}
+
+#[test]
+fn more_positions_tell_more() {
+    let desk = Desk::new();
+    let out = desk.named("calibration.csv");
+    let mut before = f64::INFINITY;
+    for (count, said) in [
+        (6, "offset and scale"),
+        (9, "offset, scale and misalignment"),
+        (12, "offset, scale and misalignment"),
+    ] {
+        let log = desk.file("log.csv", log(&positions(&UPS[..count]), Some(truth())));
+        let report = json(&host_sim(&[&calibrate(&log, &out)[..], &["--json"]].concat()));
+        assert_eq!(
+            (report["poses"].as_u64(), &report["accelerometer"]),
+            (Some(count as u64), &said.into())
+        );
+        let offset = largest(&report, "acc_offset");
+        let entry = ["acc_x", "acc_y", "acc_z"].map(|begin| largest(&report, begin));
+        let (entry, bias) = (entry.into_iter().fold(0.0, f64::max), largest(&report, "gyro_bias"));
+        let turned = ["gyro_x", "gyro_y", "gyro_z"].map(|begin| largest(&report, begin));
+        let turned = turned.into_iter().fold(0.0, f64::max);
+        println!(
+            "{count} positions: offset ± {offset:.4} m/s², accelerometer's matrix ± {entry:.5}, \
+             bias ± {bias:.5} rad/s, gyroscope's matrix ± {turned:.5} ({})",
+            report["gyroscope"]
+        );
+        assert!(bias < before, "{bias}");
+        before = bias;
+    }
+}
+
 #[test]
 fn twelve_positions_tell_what_is_wrong_and_a_walk_comes_out_right() {
     let desk = Desk::new();
@@ -202,6 +241,35 @@ fn six_sides_tell_offset_and_scale_and_what_is_missing() {
         let (value, sigma) = (found[place].1, found[place].2.expect("a σ"));
         let truth = true_parameters()[place];
         assert!((value - truth).abs() < 3.0 * sigma, "{name}: {value} ± {sigma}, {truth}");
+    }
+}
+
+#[test]
+fn a_log_of_two_digits_serves_as_well() {
+    let desk = Desk::new();
+    let mut rng = stream(3, 0);
+    let [(matrix, offset), _] = truth();
+    let mut samples = positions(&UPS);
+    for sample in &mut samples {
+        let force = matrix.try_inverse().expect("a sensor") * Vector3::from(sample.specific_force);
+        let force = force + offset + Vector3::from(normal3(&mut rng, NOISE[0]));
+        sample.specific_force = force.into();
+    }
+    let positions = desk.file("razor.txt", razor_text(&samples));
+    let report =
+        json(&host_sim(&[&calibrate(&positions, &desk.named("c.csv"))[..], &["--json"]].concat()));
+    assert_eq!(
+        (report["poses"].as_u64(), report["turns"].as_u64()),
+        (Some(12), Some(11)),
+        "{report}"
+    );
+    for ((name, value, sigma), truth) in parameters(&report).iter().zip(true_parameters()).take(12)
+    {
+        let sigma = sigma.unwrap_or(1e-9);
+        assert!(
+            (value - truth).abs() < 3.0 * sigma.max(1e-9),
+            "{name}: {value} ± {sigma}, {truth}"
+        );
     }
 }
 

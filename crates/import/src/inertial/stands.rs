@@ -28,7 +28,7 @@ pub struct Stand {
 pub fn stands(samples: &[Sample], shortest: f64) -> Vec<Stand> {
     let raw = raw_of(samples);
     let Some(usual) = usual_step(&raw) else { return Vec::new() };
-    let Some(rest) = Rest::near(&raw, usual, NORM) else { return Vec::new() };
+    let Some(rest) = Rest::put_down(&raw, usual, NORM) else { return Vec::new() };
     let mut stands = Vec::new();
     let mut first = 0;
     for end in 1..=rest.windows.len() {
