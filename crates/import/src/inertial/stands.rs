@@ -9,7 +9,7 @@ use super::turns::{raw_of, usual_step};
 /// Between two windows of one stand, and within it, gravity turns by no more, rad: a hand that creeps does, and the sensor's
 /// noise in a window does not.
 const SAME: f64 = 0.02;
-/// Nor does the mean rate differ by more, rad/s.
+/// Nor is the mean rate farther from that at rest, rad/s: of a turn about the vertical the force shows nothing.
 const STILL_RATE: f64 = 0.05;
 /// An accelerometer that is off by a quarter shows gravity so differently on its sides.
 const NORM: f64 = 0.25;
@@ -28,7 +28,10 @@ pub struct Stand {
 pub fn stands(samples: &[Sample], shortest: f64) -> Vec<Stand> {
     let raw = raw_of(samples);
     let Some(usual) = usual_step(&raw) else { return Vec::new() };
-    let Some(rest) = Rest::put_down(&raw, usual, NORM) else { return Vec::new() };
+    let Some(mut rest) = Rest::put_down(&raw, usual, NORM) else { return Vec::new() };
+    for window in &mut rest.windows {
+        window.is_still &= apart(window.rate, rest.bias) < STILL_RATE;
+    }
     let mut stands = Vec::new();
     let mut first = 0;
     for end in 1..=rest.windows.len() {
@@ -45,12 +48,14 @@ pub fn stands(samples: &[Sample], shortest: f64) -> Vec<Stand> {
 }
 
 fn continues(first: &Window, last: &Window, next: &Window) -> bool {
-    let apart = |a: [f64; 3], b: [f64; 3]| length_of(std::array::from_fn(|i| a[i] - b[i]));
     first.is_still
         && next.is_still
         && angle(first.force, next.force) < SAME
         && angle(last.force, next.force) < SAME
-        && apart(first.rate, next.rate) < STILL_RATE
+}
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    length_of(std::array::from_fn(|axis| a[axis] - b[axis]))
 }
 
 fn stand(raw: &[Raw], windows: &[Window], shortest: f64) -> Option<Stand> {
@@ -95,6 +100,19 @@ mod tests {
             assert!((1.5..2.0).contains(&stand.seconds), "{stand:?}");
         }
         assert_eq!(stands(&samples, 2.5), []);
+    }
+
+    #[test]
+    fn a_turn_about_the_vertical_is_no_stand() {
+        let mut samples = held(6);
+        for sample in &mut samples {
+            sample.specific_force = [0.1, 0.2, 9.8];
+            let turns = sample.angular_rate[0] > 1.0;
+            sample.angular_rate = [0.03, 0.0, if turns { 1.2 } else { 0.0 }];
+        }
+        let found = stands(&samples, 0.5);
+        assert_eq!(found.len(), 6);
+        assert!(found.iter().all(|stand| stand.samples.end % 300 <= 200), "{found:?}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use self::found::{Found, HOLD_S, Refusal, SHORTEST_S};
 use super::recording::calibration::{self, Parameter};
 use super::recording::log;
 use super::{Pedestrian, check};
-use crate::system::{Calibration, Reading, System};
+use crate::system::{Calibration, Finding, Reading, System};
 use crate::{Error, output};
 
 /// The command.
@@ -52,7 +52,7 @@ impl Calibration for Calibrate {
             .map_err(|refusal| Error::File { path: from.clone(), problem: sentence(&refusal) })?;
         let parameters = calibration::parameters(&found.calibration, found.sigmas);
         calibration::write(to, &parameters)?;
-        let faults = check::check(&log.samples).into_iter().filter(|finding| finding.is_fault());
+        let faults = check::check(&log.samples).into_iter().filter(Finding::is_fault);
         let mut warnings = log.warnings;
         warnings.extend(faults.map(|finding| finding.sentence()));
         output::warn_of(from, &warnings);
