@@ -37,10 +37,12 @@ mod order;
 mod raw;
 mod rest;
 mod rows;
+mod stands;
 mod turns;
 mod units;
 
 pub use conclusion::{Conclusion, Source};
+pub use stands::{Stand, stands};
 pub use turns::{Turns, turns};
 
 use columns::Columns;

@@ -1,4 +1,4 @@
-//! `host-sim calibrate`: what a system's sensors measure wrong, from a log with known truth.
+//! `host-sim calibrate`: what a system's sensors measure wrong, from a log made for it.
 
 use clap::{ArgMatches, Command};
 
@@ -7,7 +7,7 @@ use crate::Error;
 use crate::systems::ALL;
 
 pub(super) fn command() -> Command {
-    let about = "Find what a system's sensors measure wrong, from a log with known truth";
+    let about = "Find what a system's sensors measure wrong, from a log made for it";
     let calibrations = ALL.iter().filter_map(|system| {
         let command = system.calibration()?.command();
         Some(command.name(system.name()))

@@ -4,6 +4,7 @@
 //! Apart stand `page`, which alone needs a browser's protocol, and `live_flood`, which measures what is lost when
 //! nothing else keeps the machine busy.
 
+mod calibrate_cli;
 mod check_cli;
 mod cli;
 mod design_cli;

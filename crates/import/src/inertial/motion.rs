@@ -219,7 +219,7 @@ fn unit(vector: [f64; 3]) -> [f64; 3] {
 }
 
 /// The angle between two directions, rad.
-fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
     let (a, b) = (unit(a), unit(b));
     let cosine: f64 = (0..3).map(|i| a[i] * b[i]).sum();
     cosine.clamp(-1.0, 1.0).acos()

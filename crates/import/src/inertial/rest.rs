@@ -51,6 +51,21 @@ pub(crate) struct Rest {
 impl Rest {
     /// Looks for rest in samples whose median spacing is `step` seconds; none if there is not any.
     pub(crate) fn find(raw: &[Raw], step: f64) -> Option<Self> {
+        Self::within(raw, step, NORM, leave_out_repeated)
+    }
+
+    /// The same of a sensor that is put down on purpose: its norm is within another share of that at rest, and a log of few
+    /// digits shows the same again and again.
+    pub(crate) fn put_down(raw: &[Raw], step: f64, share: f64) -> Option<Self> {
+        Self::within(raw, step, share, |_| ())
+    }
+
+    fn within(
+        raw: &[Raw],
+        step: f64,
+        share: f64,
+        leave_out: impl Fn(&mut [Window]),
+    ) -> Option<Self> {
         let length = (WINDOW / step).round().clamp(SAMPLES.0, SAMPLES.1) as usize;
         let mut windows: Vec<_> = raw
             .chunks_exact(length)
@@ -60,7 +75,7 @@ impl Rest {
         if windows.len() < FEWEST_WINDOWS {
             return None;
         }
-        leave_out_repeated(&mut windows);
+        leave_out(&mut windows);
         let stillest = least(&windows, STILLEST);
         let limit = windows[*stillest.last()?].change;
         if limit >= MOST_CHANGE {
@@ -75,7 +90,7 @@ impl Rest {
         let limit = (limit * AS_STILL).max(STILL).max(often).min(MOST_CHANGE);
         for window in &mut windows {
             let off = (length_of(window.force) - norm).abs();
-            window.is_still = window.change <= limit && off <= NORM * norm;
+            window.is_still = window.change <= limit && off <= share * norm;
         }
         Some(Self { windows, norm, bias })
     }

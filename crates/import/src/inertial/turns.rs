@@ -28,20 +28,8 @@ pub struct Turns {
 /// Compares turns and gravity between moments of rest. A factor far from one means a gyroscope of another scale, or times
 /// that run too fast or too slow. None if there is too little rest or motion.
 pub fn turns(samples: &[Sample]) -> Option<Turns> {
-    let seconds = |sample: &Sample| sample.time_us as f64 * 1e-6;
-    let raw: Vec<_> = samples
-        .iter()
-        .map(|sample| Raw {
-            time: seconds(sample),
-            force: sample.specific_force,
-            rate: sample.angular_rate,
-        })
-        .collect();
-    let steps = raw.windows(2).map(|pair| pair[1].time - pair[0].time);
-    let usual = median(steps.filter(|step| *step > 0.0).collect());
-    if usual.is_nan() {
-        return None;
-    }
+    let raw = raw_of(samples);
+    let usual = usual_step(&raw)?;
     let motion = Motion::find(&raw, &Rest::find(&raw, usual)?, usual, usual);
     let stretches = motion.count();
     if stretches < FEWEST_STRETCHES {
@@ -51,4 +39,21 @@ pub fn turns(samples: &[Sample]) -> Option<Turns> {
     let tried = (-STEPS..=STEPS).map(|i| FARTHEST.powf(f64::from(i) / f64::from(STEPS)));
     let best = tried.map(|factor| (factor, error(factor))).min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Turns { factor: best.0, error: best.1, error_as_measured: error(1.0), stretches })
+}
+
+/// The samples, with times in s.
+pub(super) fn raw_of(samples: &[Sample]) -> Vec<Raw> {
+    let raw = |sample: &Sample| Raw {
+        time: sample.time_us as f64 * 1e-6,
+        force: sample.specific_force,
+        rate: sample.angular_rate,
+    };
+    samples.iter().map(raw).collect()
+}
+
+/// The median spacing of samples; none of less than two moments.
+pub(super) fn usual_step(raw: &[Raw]) -> Option<f64> {
+    let steps = raw.windows(2).map(|pair| pair[1].time - pair[0].time);
+    let usual = median(steps.filter(|step| *step > 0.0).collect());
+    (!usual.is_nan()).then_some(usual)
 }

@@ -3,7 +3,6 @@
 use kestirim_import::inertial::turns;
 
 use super::Sample;
-use super::recording::log::Log;
 use crate::metrics::median;
 use crate::system::{Finding, Reason};
 
@@ -26,8 +25,7 @@ const BETTER: f64 = 1.5;
 const WELL: f64 = 0.12;
 
 /// What the log shows.
-pub(super) fn check(log: &Log) -> Vec<Finding> {
-    let samples = &log.samples;
+pub(super) fn check(samples: &[Sample]) -> Vec<Finding> {
     let steps: Vec<f64> = samples
         .windows(2)
         .map(|pair| (pair[1].time_us - pair[0].time_us) as f64 * 1e-6)

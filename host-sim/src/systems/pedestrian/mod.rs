@@ -1,11 +1,13 @@
 //! A foot-mounted IMU and zero-velocity updates.
 //!
-//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes, and
+//! `calibrate` finds what the IMU measures wrong.
 //!
 //! Frames: *body* is the sensor's own, as mounted on the foot; *room* is right-handed with z up, its
 //! origin at the start of the walk.
 
 pub mod account;
+mod calibrate;
 mod check;
 pub mod figures;
 mod online;
@@ -19,17 +21,18 @@ use std::sync::Arc;
 
 pub use kestirim_import::inertial::Sample;
 
+use self::calibrate::Calibrate;
 use self::figures::streams;
 use self::paper::experiment;
-use self::recording::{Recording, Walked};
+use self::recording::{Recording, Walked, calibration};
 use self::settings::Options;
 use self::track::Track;
 use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
-    Setting, Settings, System, Table,
+    Account, Answer, Calibration, Detail, FileField, Files, Finding, Idle, OutputField, Panel,
+    Plan, RunOptions, Setting, Settings, System, Table,
 };
 
 /// The system.
@@ -51,6 +54,11 @@ impl System for Pedestrian {
             "truth",
             "Measured footprints: CSV t,x,y (s, m); replaces a truth that the log carries",
         ),
+        FileField::optional(
+            "calibration",
+            "What the IMU measures wrong: CSV parameter,value, as calibrate pedestrian writes it",
+        )
+        .live(),
     ];
     const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
         ("route-50", "The paper's route of 12.60 m, 50 Hz"),
@@ -76,7 +84,13 @@ impl System for Pedestrian {
     }
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
-        Recording::read(files.required("log")?, files.one("truth"), files.reading.options())
+        let calibration = files.one("calibration").map(calibration::read).transpose()?;
+        let recording =
+            Recording::read(files.required("log")?, files.one("truth"), files.reading.options())?;
+        Ok(match calibration {
+            Some(calibration) => recording.calibrated(calibration),
+            None => recording,
+        })
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {
@@ -90,7 +104,7 @@ impl System for Pedestrian {
     }
 
     fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
-        check::check(&recording.log)
+        check::check(recording.measured())
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {
@@ -120,8 +134,12 @@ impl System for Pedestrian {
         streams::streams(&recording.log.samples, &track.trace, &recording.truth())
     }
 
-    fn firmware(_: Option<&Recording>, settings: &Settings) -> String {
-        Options::of(settings).firmware()
+    fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
+        let firmware = Options::of(settings).firmware();
+        match recording.and_then(Recording::calibration) {
+            Some(known) => format!("{firmware}\n\n{}", calibration::firmware(known)),
+            None => firmware,
+        }
     }
 
     fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
@@ -132,8 +150,13 @@ impl System for Pedestrian {
         paper::chapter::chapter(experiment)
     }
 
-    fn online(settings: &Settings, _: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
-        Ok(Some(Arc::new(online::Walking { options: Options::of(settings) })))
+    fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        let calibration = files.one("calibration").map(calibration::read).transpose()?;
+        Ok(Some(Arc::new(online::Walking { options: Options::of(settings), calibration })))
+    }
+
+    fn calibration() -> Option<Box<dyn Calibration>> {
+        Some(Box::new(Calibrate))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
+use kestirim_imu_calibration::Calibration;
 use kestirim_pedestrian::detector::StanceDetector;
 use kestirim_pedestrian::{Ekf, Estimate, Lite, Navigator, Tracker};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -10,6 +11,7 @@ use kestirim_telemetry::{Imu, Message};
 
 use super::Sample;
 use super::account::warning;
+use super::recording::calibration;
 use super::settings::{Options, TrackerKind};
 use super::track::{WithDetector, config, double, imu_sample, with_detector};
 use crate::Error;
@@ -19,6 +21,8 @@ use crate::system::{Online, Outcome, Plan, ScalarKind};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Walking {
     pub(super) options: Options,
+    /// What the IMU measures wrong, if that is known.
+    pub(super) calibration: Option<Calibration<f64>>,
 }
 
 impl Plan for Walking {
@@ -35,21 +39,22 @@ impl Walking {
     fn with_scalar<T: Scalar + 'static>(&self) -> Box<dyn Online> {
         let options = &self.options;
         match options.tracker {
-            TrackerKind::Lite => with_detector(options, Built::<Lite<T>>(options, PhantomData)),
-            TrackerKind::Ekf => with_detector(options, Built::<Ekf<T>>(options, PhantomData)),
+            TrackerKind::Lite => with_detector(options, Built::<Lite<T>>(self, PhantomData)),
+            TrackerKind::Ekf => with_detector(options, Built::<Ekf<T>>(self, PhantomData)),
         }
     }
 }
 
 /// Builds a tracker around a detector.
-struct Built<'a, N>(&'a Options, PhantomData<N>);
+struct Built<'a, N>(&'a Walking, PhantomData<N>);
 
 impl<T: Scalar + 'static, N: Navigator<T> + Debug + 'static> WithDetector<T> for Built<'_, N> {
     type Output = Box<dyn Online>;
 
     fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Box<dyn Online> {
-        let tracker = Tracker::<T, N, D>::with_detector(config(self.0), detector);
-        Box::new(Walker { tracker, last: None, strides: 0 })
+        let tracker = Tracker::<T, N, D>::with_detector(config(&self.0.options), detector);
+        let calibration = self.0.calibration.as_ref().map(calibration::cast);
+        Box::new(Walker { tracker, calibration, last: None, strides: 0 })
     }
 }
 
@@ -57,6 +62,7 @@ impl<T: Scalar + 'static, N: Navigator<T> + Debug + 'static> WithDetector<T> for
 #[derive(Debug)]
 struct Walker<T: Scalar, N, D> {
     tracker: Tracker<T, N, D>,
+    calibration: Option<Calibration<T>>,
     last: Option<Estimate<T>>,
     strides: u32,
 }
@@ -68,7 +74,11 @@ impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online fo
         };
         let [specific_force, angular_rate] =
             [specific_force, angular_rate].map(|axes| axes.map(f64::from));
-        let sample = imu_sample(&Sample { time_us, specific_force, angular_rate });
+        let mut sample = imu_sample(&Sample { time_us, specific_force, angular_rate });
+        if let Some(calibration) = &self.calibration {
+            (sample.specific_force, sample.angular_rate) =
+                calibration.apply(&sample.specific_force, &sample.angular_rate);
+        }
         let Ok(estimate) = self.tracker.update(&sample) else { return Outcome::Refused };
         self.strides += u32::from(estimate.stride.is_some());
         self.last = Some(estimate);

@@ -1,5 +1,6 @@
 //! A walk as it was recorded, with its truth where that is known: from files or synthetic.
 
+pub mod calibration;
 pub mod log;
 pub mod position;
 pub mod resample;
@@ -8,10 +9,12 @@ pub mod truth;
 use std::path::{Path, PathBuf};
 
 use kestirim_import::{Format, Options};
+use kestirim_imu_calibration::Calibration;
 
 use self::log::Log;
 use self::position::TrackPoint;
 use self::truth::Footprint;
+use super::Sample;
 use super::simulate::scenario::Scenario;
 use super::simulate::sensor;
 use crate::Error;
@@ -22,10 +25,12 @@ use crate::random::stream;
 pub struct Recording {
     /// Where it was read.
     pub path: PathBuf,
-    /// What the sensor said.
+    /// What the sensor said, corrected if that is known.
     pub log: Log,
     /// Where the foot stood; empty if nobody measured it.
     pub footprints: Vec<Footprint>,
+    /// What the sensor measured wrong, and what it said before that was corrected; none if nobody knows.
+    calibrated: Option<(Calibration<f64>, Vec<Sample>)>,
 }
 
 /// Where a synthetic walk leads.
@@ -45,7 +50,28 @@ impl Recording {
     pub fn read(path: &Path, footprints: Option<&Path>, options: &Options) -> Result<Self, Error> {
         let log = log::read(path, options)?;
         let footprints = footprints.map(|path| truth::read(path, &log)).transpose()?;
-        Ok(Self { path: path.to_path_buf(), log, footprints: footprints.unwrap_or_default() })
+        let footprints = footprints.unwrap_or_default();
+        Ok(Self { path: path.to_path_buf(), log, footprints, calibrated: None })
+    }
+
+    /// With what the sensor measured wrong corrected.
+    #[must_use]
+    pub fn calibrated(mut self, calibration: Calibration<f64>) -> Self {
+        let correct = |sample: &Sample| calibration::corrected(&calibration, sample);
+        let corrected = self.log.samples.iter().map(correct).collect();
+        let measured = std::mem::replace(&mut self.log.samples, corrected);
+        self.calibrated = Some((calibration, measured));
+        self
+    }
+
+    /// What the sensor measured wrong, if that is known.
+    pub fn calibration(&self) -> Option<&Calibration<f64>> {
+        self.calibrated.as_ref().map(|(calibration, _)| calibration)
+    }
+
+    /// What the sensor said, as it said it: the ends of its range are where they were.
+    pub fn measured(&self) -> &[Sample] {
+        self.calibrated.as_ref().map_or(&self.log.samples, |(_, measured)| measured)
     }
 
     /// Walk number `index` of a seed, logged at `rate_hz`: that of the paper's route in the paper's text format,
@@ -66,7 +92,7 @@ impl Recording {
             }
             Walked::Rounds(_) => Log { samples: measured, ..Log::default() },
         };
-        Ok(Self { path, log, footprints: scenario.footprints() })
+        Ok(Self { path, log, footprints: scenario.footprints(), calibrated: None })
     }
 
     /// The rates to which it can be averaged down, Hz: least, most, and from one to the next.
@@ -81,7 +107,8 @@ impl Recording {
     /// As [`resample::average_down`].
     pub fn at_rate(&self, rate_hz: f64) -> Result<Self, Error> {
         let log = resample::average_down(&self.log, rate_hz)?;
-        Ok(Self { log, path: self.path.clone(), footprints: self.footprints.clone() })
+        let footprints = self.footprints.clone();
+        Ok(Self { log, path: self.path.clone(), footprints, calibrated: None })
     }
 
     /// Where the foot or the sensor truly was, as far as anybody knows: measured footprints replace what the

@@ -1,0 +1,159 @@
+//! What the positions and turns of a log show of the sensor.
+
+use std::ops::Range;
+
+use kestirim_import::inertial::{Stand, stands};
+use kestirim_imu_calibration::{
+    AccelerometerFit, AccelerometerModel, Calibration, Error, Gyroscope, GyroscopeFit,
+    GyroscopeModel, Pose, Poses, Side, Triad, Turn,
+};
+use nalgebra::SVector;
+
+use crate::metrics::STANDARD_GRAVITY;
+use crate::systems::pedestrian::Sample;
+use crate::systems::pedestrian::recording::calibration::Sigmas;
+
+/// A position is held still for so long at least, s, without the moments in which a hand lets go.
+pub(super) const SHORTEST_S: f64 = 1.0;
+/// So long a person is asked to hold it, s.
+pub(super) const HOLD_S: f64 = 2.0;
+/// Longer turns are left out, s: meanwhile the bias wanders.
+const LONGEST_TURN_S: f64 = 20.0;
+/// Positions that are looked at; others are left out.
+const MOST_POSES: usize = 256;
+/// What a consumer accelerometer's mean is off by from one position to another, m/s²: a mg.
+const POSE_NOISE: f64 = 0.01;
+/// The same of a gyroscope's, rad/s: 0.03 °/s.
+const RATE_NOISE: f64 = 0.0005;
+/// What a turn is off by beside scale and misalignment, rad: 0.2°.
+const TURN_NOISE: f64 = 0.003;
+/// How often the turns are integrated: each time a hundredth is left of what was wrong.
+const PASSES: usize = 4;
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub(super) calibration: Calibration<f64>,
+    pub(super) sigmas: [Sigmas; 2],
+    pub(super) poses: usize,
+    pub(super) turns: usize,
+    pub(super) accelerometer: AccelerometerModel,
+    /// None if the turns tell nothing but the bias.
+    pub(super) gyroscope: Option<GyroscopeModel>,
+    /// How far corrected positions are from gravity, m/s².
+    pub(super) residual: f64,
+    /// How far corrected turns carry gravity astray, rad.
+    pub(super) astray: Option<f64>,
+    /// Sides that were not shown.
+    pub(super) missing: Vec<Side>,
+}
+
+/// Why nothing was found, and the sides that were not shown.
+#[derive(Debug, Clone)]
+pub(super) struct Refusal {
+    pub(super) error: Error,
+    pub(super) poses: usize,
+    pub(super) missing: Vec<Side>,
+}
+
+/// Looks for positions and turns, and for what they tell.
+pub(super) fn find(samples: &[Sample]) -> Result<Found, Refusal> {
+    let stands = stands(samples, SHORTEST_S);
+    let mut poses = Poses::<f64, MOST_POSES>::new();
+    for stand in stands.iter().take(MOST_POSES) {
+        // What was measured is finite, and shows gravity.
+        let _ = pose(&samples[stand.samples.clone()]).and_then(|pose| poses.add(pose));
+    }
+    let missing: Vec<_> = poses.missing().collect();
+    let count = poses.count();
+    let refused = |error| Refusal { error, poses: count, missing: missing.clone() };
+    let accelerometer = poses.accelerometer(STANDARD_GRAVITY, POSE_NOISE).map_err(&refused)?;
+    let bias = poses.gyroscope_bias(RATE_NOISE).map_err(&refused)?;
+    let start = Triad { offset: bias.bias, ..Triad::identity() };
+    let (turned, turns) = turned(samples, &stands, &accelerometer, start);
+    let of_gyroscope = Sigmas {
+        offset: bias.sigma.map(Some),
+        matrix: turned.as_ref().map(|fit| fit.matrix_sigma).unwrap_or_default(),
+    };
+    let of_accelerometer =
+        Sigmas { offset: accelerometer.offset_sigma.map(Some), matrix: accelerometer.matrix_sigma };
+    Ok(Found {
+        calibration: Calibration {
+            accelerometer: accelerometer.triad,
+            gyroscope: turned.as_ref().map_or(start, |fit| fit.triad),
+        },
+        sigmas: [of_accelerometer, of_gyroscope],
+        poses: poses.count(),
+        turns,
+        accelerometer: accelerometer.model,
+        gyroscope: turned.as_ref().map(|fit| fit.model),
+        residual: accelerometer.residual,
+        astray: turned.as_ref().map(|fit| fit.residual),
+        missing: poses.missing().collect(),
+    })
+}
+
+fn pose(samples: &[Sample]) -> Result<Pose<f64>, Error> {
+    let mut pose = Pose::new();
+    for sample in samples {
+        pose.push(&SVector::from(sample.specific_force), &SVector::from(sample.angular_rate))?;
+    }
+    Ok(pose)
+}
+
+/// The gyroscope, if the turns tell it, and how many of them there are.
+fn turned(
+    samples: &[Sample],
+    stands: &[Stand],
+    accelerometer: &AccelerometerFit<f64>,
+    start: Triad<f64>,
+) -> (Option<GyroscopeFit<f64>>, usize) {
+    let mut triad = start;
+    let mut result = (None, 0);
+    for _ in 0..PASSES {
+        let Ok(mut gyroscope) = Gyroscope::new(triad) else { break };
+        let mut turns = 0;
+        for pair in stands.windows(2) {
+            turns +=
+                usize::from(add(&mut gyroscope, triad, samples, pair, accelerometer).is_some());
+        }
+        result.1 = turns;
+        match gyroscope.solve(TURN_NOISE) {
+            Ok(fit) => (triad, result.0) = (fit.triad, Some(fit)),
+            Err(_) => return (None, turns),
+        }
+    }
+    result
+}
+
+/// Adds the turn between two stands, if it was seen whole.
+fn add(
+    gyroscope: &mut Gyroscope<f64>,
+    triad: Triad<f64>,
+    samples: &[Sample],
+    stands: &[Stand],
+    accelerometer: &AccelerometerFit<f64>,
+) -> Option<()> {
+    let [from, to] = stands else { return None };
+    let force = |range: &Range<usize>| {
+        let pose = pose(samples.get(range.clone())?).ok()?;
+        Some(accelerometer.triad.apply(&pose.specific_force))
+    };
+    let between = samples.get(middle(&from.samples)..=middle(&to.samples))?;
+    let moving = samples.get(from.samples.end)?.time_us..samples.get(to.samples.start)?.time_us;
+    if (moving.end.checked_sub(moving.start)?) as f64 * 1e-6 > LONGEST_TURN_S {
+        return None;
+    }
+    let mut turn = Turn::new(triad).ok()?;
+    for pair in between.windows(2) {
+        let rate = SVector::from(pair[0].angular_rate) + SVector::from(pair[1].angular_rate);
+        let interval = pair[1].time_us.checked_sub(pair[0].time_us)? as f64 * 1e-6;
+        turn.push(&(rate * 0.5), interval).ok()?;
+    }
+    gyroscope.add(&turn, &force(&from.samples)?, &force(&to.samples)?).ok()
+}
+
+/// From middle to middle: a hand that settles within a stand is seen by both sensors.
+fn middle(range: &Range<usize>) -> usize {
+    range.start.midpoint(range.end)
+}
