@@ -104,7 +104,7 @@ impl Day {
     }
 
     /// Changes what was observed from noon on.
-    fn from_noon(&mut self, mut with: impl FnMut(f64, &mut Observed)) {
+    fn at_noon(&mut self, mut with: impl FnMut(f64, &mut Observed)) {
         for epoch in self.epochs.iter_mut().filter(|epoch| epoch.second >= NOON) {
             for observed in &mut epoch.observed {
                 with(epoch.second, observed);
@@ -114,7 +114,7 @@ impl Day {
 
     /// Adds to one of the four, from noon on, in metres or cycles.
     fn add(&mut self, kind: usize, with: impl Fn(f64, &str) -> f64) {
-        self.from_noon(|second, (satellite, values)| {
+        self.at_noon(|second, (satellite, values)| {
             values[kind] = values[kind].map(|value| value + with(second, satellite));
         });
     }
@@ -137,13 +137,13 @@ const FAULTS: &[Fault] = &[
     ("epochs 1 s late", |it| it.epochs.iter_mut().for_each(|epoch| epoch.second += 1.0)),
     ("C1 stuck", |it| {
         let mut stuck = std::collections::BTreeMap::new();
-        it.from_noon(|_, (satellite, values)| {
+        it.at_noon(|_, (satellite, values)| {
             let stuck = stuck.entry(satellite.clone()).or_insert(values[0]);
             values[0] = *stuck;
         });
     }),
-    ("C1 and C2 swapped", |it| it.from_noon(|_, (_, values)| values.swap(0, 2))),
-    ("L1 and L2 swapped", |it| it.from_noon(|_, (_, values)| values.swap(1, 3))),
+    ("C1 and C2 swapped", |it| it.at_noon(|_, (_, values)| values.swap(0, 2))),
+    ("L1 and L2 swapped", |it| it.at_noon(|_, (_, values)| values.swap(1, 3))),
     ("codes 100 m long in 1 %", |it| {
         it.add(0, |t, satellite| if one_in(100, t, satellite) { 100.0 } else { 0.0 });
     }),
@@ -151,14 +151,14 @@ const FAULTS: &[Fault] = &[
         it.add(0, |t, satellite| if one_in(5, t, satellite) { 30.0 } else { 0.0 });
     }),
     ("one satellite 30 m long", |it| {
-        it.add(0, |_, satellite| if satellite == "G05" { 30.0 } else { 0.0 })
+        it.add(0, |_, satellite| if satellite == "G05" { 30.0 } else { 0.0 });
     }),
     ("phases slip in 1 %", |it| {
         it.add(1, |t, satellite| if one_in(100, t, satellite) { 5.0 } else { 0.0 });
     }),
     ("all phases slip once", |it| it.add(1, |_, satellite| satellite[1..].parse().unwrap_or(3.0))),
     ("a cycle slips on one satellite", |it| {
-        it.add(1, |_, satellite| if satellite == "G07" { 1.0 } else { 0.0 })
+        it.add(1, |_, satellite| if satellite == "G07" { 1.0 } else { 0.0 });
     }),
     ("the clock jumps by 1 ms", |it| {
         it.add(0, |_, _| MILLISECOND);
@@ -174,7 +174,7 @@ const FAULTS: &[Fault] = &[
         it.add(1, |_, _| MILLISECOND / LAMBDA[0]);
         it.add(3, |_, _| MILLISECOND / LAMBDA[1]);
     }),
-    ("no L2", |it| it.from_noon(|_, (_, values)| (values[2], values[3]) = (None, None))),
+    ("no L2", |it| it.at_noon(|_, (_, values)| (values[2], values[3]) = (None, None))),
     ("five satellites left", |it| {
         for epoch in it.epochs.iter_mut().filter(|epoch| epoch.second >= NOON) {
             epoch.observed.truncate(5);
@@ -186,14 +186,14 @@ const FAULTS: &[Fault] = &[
         }
     }),
     ("dropout of an hour", |it| {
-        it.epochs.retain(|epoch| !(NOON..NOON + 3600.0).contains(&epoch.second))
+        it.epochs.retain(|epoch| !(NOON..NOON + 3600.0).contains(&epoch.second));
     }),
     ("epochs twice", |it| {
-        it.epochs = it.epochs.iter().flat_map(|it| [it.clone(), it.clone()]).collect()
+        it.epochs = it.epochs.iter().flat_map(|it| [it.clone(), it.clone()]).collect();
     }),
     ("neighbours reordered", |it| it.epochs.chunks_exact_mut(2).for_each(<[_]>::reverse)),
     ("satellites' names turned round", |it| {
-        it.from_noon(|_, (satellite, _)| {
+        it.at_noon(|_, (satellite, _)| {
             let number: u32 = satellite[1..].trim().parse().unwrap_or(1);
             *satellite = format!("G{:02}", 33 - number);
         });
@@ -217,7 +217,7 @@ const FAULTS: &[Fault] = &[
         it.orbits[1] = it.orbits[1].lines().map(moved).collect();
     }),
     ("antenna not in the file", |it| {
-        it.antennas = it.antennas.replace("ASH701945E_M", "ASH700000X_M")
+        it.antennas = it.antennas.replace("ASH701945E_M", "ASH700000X_M");
     }),
 ];
 

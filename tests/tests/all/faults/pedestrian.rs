@@ -29,7 +29,8 @@ fn stick(table: &mut Table, length: f64) {
         if is_stuck(table, row) {
             for name in ALL {
                 let column = table.column(name);
-                table.rows[row][column] = table.rows[row - 1][column].clone();
+                let before = table.rows[row - 1][column].clone();
+                table.rows[row][column] = before;
             }
         }
     }
@@ -41,7 +42,7 @@ fn zero(table: &mut Table, length: f64) {
         if is_zero(table, row) {
             for name in ALL {
                 let column = table.column(name);
-                table.rows[row][column] = "0".to_owned();
+                "0".clone_into(&mut table.rows[row][column]);
             }
         }
     }
@@ -62,7 +63,7 @@ fn shift_rates(table: &mut Table, rows: usize) {
     for row in rows..table.rows.len() {
         for name in RATE {
             let column = table.column(name);
-            table.rows[row][column] = before.rows[row - rows][column].clone();
+            table.rows[row][column].clone_from(&before.rows[row - rows][column]);
         }
     }
 }

@@ -63,10 +63,10 @@ impl Room {
 const FAULTS: &[Fault] = &[
     ("two anchors swapped", Room::swap_anchors),
     ("an anchor moved by 2 m", |it| {
-        it.anchors.map(&["x"], |row, x| if row == 1 { x + 2.0 } else { x })
+        it.anchors.map(&["x"], |row, x| if row == 1 { x + 2.0 } else { x });
     }),
     ("an anchor moved by 0.5 m", |it| {
-        it.anchors.map(&["y"], |row, y| if row == 0 { y + 0.5 } else { y })
+        it.anchors.map(&["y"], |row, y| if row == 0 { y + 0.5 } else { y });
     }),
     ("anchors in feet", |it| it.anchors.map(&["x", "y", "z"], |_, v| v / 0.3048)),
     ("ranges in feet", |it| it.ranges(None, |_, v| v / 0.3048)),

@@ -21,7 +21,7 @@ fn empty(table: &mut Table, name: &str, length: f64) {
     let (column, is_lost) = (table.column(name), table.after_the_middle(length));
     for row in 0..table.rows.len() {
         if is_lost(table, row) {
-            table.rows[row][column] = String::new();
+            table.rows[row][column].clear();
         }
     }
 }
@@ -31,7 +31,7 @@ fn late(table: &mut Table, columns: &[&str], rows: usize) {
     for row in rows..table.rows.len() {
         for name in columns {
             let column = table.column(name);
-            table.rows[row][column] = before.rows[row - rows][column].clone();
+            table.rows[row][column].clone_from(&before.rows[row - rows][column]);
         }
     }
 }
