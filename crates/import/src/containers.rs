@@ -9,6 +9,7 @@ mod ardupilot;
 mod ardupilot_text;
 mod bytes;
 mod chunks;
+mod dataflash;
 mod gather;
 mod imu_message;
 mod join;
@@ -20,8 +21,10 @@ mod phyphox;
 mod px4;
 mod rosbag;
 mod sensor_logger;
+mod signals;
 mod topics;
 mod ulog;
+mod ulog_reader;
 mod unpack;
 mod walk;
 mod zipped;
@@ -32,6 +35,7 @@ pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
 pub(crate) use rosbag::ROS1;
 pub(crate) use sensor_logger::SENSOR_LOGGER;
+pub(crate) use signals::{Signals, autopilot, signals};
 
 use phones::Phone;
 
@@ -65,9 +69,9 @@ fn too_large() -> Error {
 /// # Errors
 /// What was expected and what was found.
 pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error> {
-    let (format, decoded) = if ardupilot::is_it(bytes) {
+    let (format, decoded) = if dataflash::is_it(bytes) {
         (Format::ArduPilot, ardupilot::read(bytes, options))
-    } else if px4::is_it(bytes) {
+    } else if ulog_reader::is_it(bytes) {
         (Format::Px4, px4::read(bytes, options))
     } else if mcap::is_it(bytes) {
         (Format::Mcap, mcap::read(bytes, options))
@@ -77,7 +81,7 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         let mut phone = Phone::open(bytes, options)?;
         (phone.format(), phone.read(options))
     } else if ardupilot_text::is_it(bytes) {
-        (Format::ArduPilot, ardupilot_text::read(bytes, options))
+        (Format::ArduPilot, ardupilot::read_text(bytes, options))
     } else {
         return open_text(bytes, options);
     };
