@@ -10,6 +10,7 @@ mod ardupilot_text;
 mod bytes;
 mod chunks;
 mod dataflash;
+mod definition;
 mod gather;
 mod imu_message;
 mod join;
@@ -19,6 +20,8 @@ mod numbered;
 mod phones;
 mod phyphox;
 mod px4;
+mod range_message;
+mod range_topics;
 mod rosbag;
 mod sensor_logger;
 mod signals;
@@ -33,6 +36,8 @@ pub(crate) use ardupilot::ARDUPILOT;
 pub(crate) use mcap::MCAP;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
+pub(crate) use range_message::Label;
+pub(crate) use range_topics::RangeTopics;
 pub(crate) use rosbag::ROS1;
 pub(crate) use sensor_logger::SENSOR_LOGGER;
 pub(crate) use signals::{Signals, autopilot, signals};
@@ -90,6 +95,24 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
     }
     let Decoded { table, notes } = decoded?;
     Ok(Opened { table, text: None, format: Some(format), notes })
+}
+
+/// What holds ranges in a bag of ROS 1 or an MCAP file; none if the file is another.
+///
+/// # Errors
+/// If it cannot be read, or unpacks to too much.
+pub(crate) fn ranges<'o>(
+    bytes: &[u8],
+    options: &'o Options,
+) -> Result<Option<(Format, RangeTopics<'o>)>, Error> {
+    let read = if mcap::is_it(bytes) {
+        mcap::ranges(bytes, options).map(|read| (Format::Mcap, read))
+    } else if rosbag::is_it(bytes) {
+        rosbag::ranges(bytes, options).map(|read| (Format::Ros1, read))
+    } else {
+        return Ok(None);
+    };
+    read.map(Some)
 }
 
 /// What a reader makes of a file.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Decoded;
+use super::chunks::{Announced, Messages};
 use super::gather::{Losses, Stream};
 use super::imu_message::Encoding;
 use crate::damage::Fault;
@@ -59,55 +60,10 @@ pub(super) struct Topics {
     by_name: BTreeMap<String, usize>,
     /// The others, each with its type.
     others: Vec<String>,
-    pub(super) losses: Losses,
+    losses: Losses,
 }
 
 impl Topics {
-    /// Takes a topic: its place if it is an inertial sensor's that can be read.
-    pub(super) fn add(
-        &mut self,
-        name: &str,
-        kind: &str,
-        encoding: Option<Encoding>,
-    ) -> Option<usize> {
-        let is_inertial = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
-        if !is_inertial || encoding.is_none() {
-            let other = format!("{name} ({kind})");
-            // More are not told of.
-            if self.others.len() < 100 && !self.others.contains(&other) {
-                self.others.push(other);
-            }
-            return None;
-        }
-        if let Some(&place) = self.by_name.get(name) {
-            return Some(place);
-        }
-        let place = self.inertial.len();
-        let (stream, receipts) = (Stream::default(), Vec::new());
-        self.inertial.push(Topic { name: name.to_owned(), stream, receipts });
-        self.by_name.insert(name.to_owned(), place);
-        Some(place)
-    }
-
-    /// Takes a message of a topic, received at a time in ns since 1970.
-    pub(super) fn message(
-        &mut self,
-        place: usize,
-        encoding: Encoding,
-        record: usize,
-        receipt: u64,
-        message: &[u8],
-    ) {
-        match (encoding.read(message), self.inertial.get_mut(place)) {
-            (Some(row), Some(topic)) => {
-                topic.stream.push(record, row);
-                topic.receipts.push(receipt as f64 / 1e3);
-            }
-            // Its bytes were read, but it is none.
-            _ => self.losses.add(Fault::Torn, record, 0),
-        }
-    }
-
     /// The table of the one that is wanted.
     ///
     /// # Errors
@@ -174,5 +130,50 @@ impl Topics {
         Error::log(format!(
             "expected a topic of sensor_msgs/Imu in ROS 1's encoding or CDR, found {found}"
         ))
+    }
+}
+
+impl Messages for Topics {
+    fn topic(&mut self, topic: &Announced<'_>) -> Option<usize> {
+        let Announced { name, kind, encoding, .. } = *topic;
+        let is_inertial = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
+        if !is_inertial || encoding.is_none() {
+            let other = format!("{name} ({kind})");
+            // More are not told of.
+            if self.others.len() < 100 && !self.others.contains(&other) {
+                self.others.push(other);
+            }
+            return None;
+        }
+        if let Some(&place) = self.by_name.get(name) {
+            return Some(place);
+        }
+        let place = self.inertial.len();
+        let (stream, receipts) = (Stream::default(), Vec::new());
+        self.inertial.push(Topic { name: name.to_owned(), stream, receipts });
+        self.by_name.insert(name.to_owned(), place);
+        Some(place)
+    }
+
+    fn message(
+        &mut self,
+        place: usize,
+        encoding: Encoding,
+        record: usize,
+        receipt: u64,
+        message: &[u8],
+    ) {
+        match (encoding.read(message), self.inertial.get_mut(place)) {
+            (Some(row), Some(topic)) => {
+                topic.stream.push(record, row);
+                topic.receipts.push(receipt as f64 / 1e3);
+            }
+            // Its bytes were read, but it is none.
+            _ => self.losses.add(Fault::Torn, record, 0),
+        }
+    }
+
+    fn losses(&mut self) -> &mut Losses {
+        &mut self.losses
     }
 }

@@ -13,9 +13,9 @@ use super::{
 };
 use crate::walk;
 
-type File = Writer<Cursor<Vec<u8>>>;
+pub(super) type File = Writer<Cursor<Vec<u8>>>;
 
-fn file(chunks: bool) -> File {
+pub(super) fn file(chunks: bool) -> File {
     let options = WriteOptions::new().compression(None).use_chunks(chunks).chunk_size(Some(20_000));
     options.create(Cursor::new(Vec::new())).unwrap()
 }
@@ -25,12 +25,12 @@ fn channel(file: &mut File, topic: &str, kind: &str, encoding: &str) -> u16 {
     file.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap()
 }
 
-fn write(file: &mut File, channel_id: u16, time: u64, message: &[u8]) {
+pub(super) fn write(file: &mut File, channel_id: u16, time: u64, message: &[u8]) {
     let header = MessageHeader { channel_id, sequence: 0, log_time: time, publish_time: time };
     file.write_to_known_channel(&header, message).unwrap();
 }
 
-fn bytes(mut file: File) -> Vec<u8> {
+pub(super) fn bytes(mut file: File) -> Vec<u8> {
     file.finish().unwrap();
     file.into_inner().into_inner()
 }

@@ -7,6 +7,7 @@ mod imu;
 mod mcap;
 mod phones;
 mod px4;
+mod ranges;
 mod rosbag;
 
 use kestirim_import::inertial::{self, Inertial, Sample};
