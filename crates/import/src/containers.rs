@@ -17,6 +17,7 @@ mod join;
 mod mcap;
 mod member;
 mod numbered;
+mod own_message;
 mod phones;
 mod phyphox;
 mod px4;

@@ -140,6 +140,7 @@ impl Definition {
                 [_, 1, _, _] => (true, false),
                 _ => return None,
             },
+            Encoding::Protobuf => return None,
         };
         let whole = bytes.0.len();
         let steps = MOST_STEPS + whole;

@@ -52,7 +52,7 @@ pub(super) fn ranges<'o>(bytes: &[u8], options: &'o Options) -> Result<RangeTopi
     chunks::read(records, Mcap::default(), RangeTopics::new(options))
 }
 
-/// What a schema tells: the name of a type, and its definition if that is a text of ROS.
+/// What a schema tells: the name of a type, and its definition if that is a text of ROS or a description of protobuf.
 #[derive(Debug)]
 struct Schema {
     name: String,
@@ -71,8 +71,8 @@ impl Mcap {
         let mut bytes = Bytes(body);
         let (id, name) = (bytes.u16()?, bytes.counted()?);
         let (encoding, definition) = (bytes.counted(), bytes.counted());
-        let is_text = matches!(encoding, Some(b"ros1msg" | b"ros2msg"));
-        let definition = definition.filter(|_| is_text).unwrap_or_default().to_vec();
+        let is_known_form = matches!(encoding, Some(b"ros1msg" | b"ros2msg" | b"protobuf"));
+        let definition = definition.filter(|_| is_known_form).unwrap_or_default().to_vec();
         let name = String::from_utf8_lossy(name).into_owned();
         self.schemas.entry(id).or_insert(Schema { name, definition });
         Some(())
@@ -86,6 +86,7 @@ impl Mcap {
         let encoding = match encoding {
             b"cdr" => Some(Encoding::Cdr),
             b"ros1" => Some(Encoding::Ros1),
+            b"protobuf" => Some(Encoding::Protobuf),
             _ => None,
         };
         let schema = self.schemas.get(&schema);

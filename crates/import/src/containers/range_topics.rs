@@ -127,9 +127,9 @@ impl Messages for RangeTopics<'_> {
         if let Some(&place) = self.places.get(&key) {
             return Some(place);
         }
-        let message = topic
-            .encoding
-            .and_then(|_| RangeMessage::of(topic.kind, topic.definition, self.options));
+        let encoding = topic.encoding.filter(|encoding| *encoding != Encoding::Protobuf);
+        let message =
+            encoding.and_then(|_| RangeMessage::of(topic.kind, topic.definition, self.options));
         let Some(message) = message else {
             if self.others.len() < MOST_NAMES {
                 self.others.insert(format!("{} ({})", topic.name, topic.kind));

@@ -6,6 +6,7 @@ use super::Decoded;
 use super::chunks::{Announced, Messages};
 use super::gather::{Losses, Stream};
 use super::imu_message::Encoding;
+use super::own_message::OwnImu;
 use crate::damage::Fault;
 use crate::error::{Error, listed};
 use crate::formats::{Description, Format};
@@ -50,6 +51,8 @@ struct Topic {
     stream: Stream,
     /// When each message was received, µs.
     receipts: Vec<f64>,
+    /// How its messages are written, if `host-sim` wrote them.
+    own: Option<OwnImu>,
 }
 
 /// What topics there are.
@@ -74,7 +77,7 @@ impl Topics {
         options: &Options,
     ) -> Result<Decoded, Error> {
         let place = self.wanted(options)?;
-        let Topic { name, mut stream, receipts } = self.inertial.swap_remove(place);
+        let Topic { name, mut stream, receipts, .. } = self.inertial.swap_remove(place);
         let name: String =
             name.chars().map(|c| if c.is_control() { '?' } else { c }).take(80).collect();
         let mut notes = vec![format!("topic {name}")];
@@ -123,7 +126,7 @@ impl Topics {
         let is_own = |other: &String| other.contains("(kestirim.") || other.contains("(foxglove.");
         if !self.others.is_empty() && self.others.iter().all(is_own) {
             return Error::log(
-                "expected a recording of sensors, found results of host-sim, which hold no sensor's samples",
+                "expected a recording of sensors, found results of host-sim, which hold no inertial sensor's samples",
             );
         }
         let found = listed(self.others.iter().map(String::as_str));
@@ -136,8 +139,14 @@ impl Topics {
 impl Messages for Topics {
     fn topic(&mut self, topic: &Announced<'_>) -> Option<usize> {
         let Announced { name, kind, encoding, .. } = *topic;
-        let is_inertial = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
-        if !is_inertial || encoding.is_none() {
+        let is_of_ros = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
+        let own = OwnImu::of(kind, topic.definition);
+        let is_inertial = match encoding {
+            Some(Encoding::Protobuf) => own.is_some(),
+            Some(_) => is_of_ros,
+            None => false,
+        };
+        if !is_inertial {
             let other = format!("{name} ({kind})");
             // More are not told of.
             if self.others.len() < 100 && !self.others.contains(&other) {
@@ -150,7 +159,7 @@ impl Messages for Topics {
         }
         let place = self.inertial.len();
         let (stream, receipts) = (Stream::default(), Vec::new());
-        self.inertial.push(Topic { name: name.to_owned(), stream, receipts });
+        self.inertial.push(Topic { name: name.to_owned(), stream, receipts, own });
         self.by_name.insert(name.to_owned(), place);
         Some(place)
     }
@@ -163,10 +172,19 @@ impl Messages for Topics {
         receipt: u64,
         message: &[u8],
     ) {
-        match (encoding.read(message), self.inertial.get_mut(place)) {
+        let receipt = receipt as f64 / 1e3;
+        let topic = self.inertial.get_mut(place);
+        let own = topic.as_ref().and_then(|topic| topic.own);
+        let row = match (encoding, own) {
+            (Encoding::Protobuf, Some(own)) => {
+                own.read(message).map(|[ax, ay, az, gx, gy, gz]| [receipt, ax, ay, az, gx, gy, gz])
+            }
+            _ => encoding.read(message),
+        };
+        match (row, topic) {
             (Some(row), Some(topic)) => {
                 topic.stream.push(record, row);
-                topic.receipts.push(receipt as f64 / 1e3);
+                topic.receipts.push(receipt);
             }
             // Its bytes were read, but it is none.
             _ => self.losses.add(Fault::Torn, record, 0),

@@ -72,13 +72,16 @@ impl Pen {
     }
 }
 
+/// A topic's number and a message on it.
+type OnTopic = (usize, Vec<u8>);
+
 /// A type with its definition, and a message of a time and ranges on a topic.
 struct Kind {
     name: &'static str,
     definition: &'static str,
     topic: fn(usize) -> String,
-    /// The messages of a moment: on the topic of this number.
-    messages: fn(f64, [f64; 3], bool) -> Vec<(usize, Vec<u8>)>,
+    /// The messages of a moment, of ROS 1 or in CDR.
+    messages: fn(f64, [f64; 3], bool) -> Vec<OnTopic>,
     units: Option<&'static str>,
 }
 
