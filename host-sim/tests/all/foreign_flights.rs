@@ -1,5 +1,7 @@
 //! The same flight as autopilots log it: the same estimate and innovations, or a refusal that says what helps.
 
+use std::fmt::Write;
+
 use host_sim::systems::uav::simulate::plant::Plant;
 use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
 use serde_json::Value;
@@ -77,8 +79,8 @@ fn ardupilot_text(samples: &[Sample]) -> String {
         .to_owned();
     for (us, Sample { u, y, .. }) in timed(samples) {
         let (elevator, throttle) = (-100.0 * u[0].to_degrees(), 100.0 * u[1]);
-        text += &format!("AETR, {us}, {elevator}, {throttle}\nIMU, {us}, 0, {}\n", y[1]);
-        text += &format!("ARSP, {us}, 0, {}\nATT, {us}, {}\n", y[2], y[3].to_degrees());
+        let _ = writeln!(text, "AETR, {us}, {elevator}, {throttle}\nIMU, {us}, 0, {}", y[1]);
+        let _ = writeln!(text, "ARSP, {us}, 0, {}\nATT, {us}, {}", y[2], y[3].to_degrees());
     }
     text
 }
