@@ -9,19 +9,26 @@ mod ardupilot;
 mod ardupilot_text;
 mod bytes;
 mod chunks;
+mod dataflash;
+mod definition;
 mod gather;
 mod imu_message;
 mod join;
 mod mcap;
 mod member;
 mod numbered;
+mod own_message;
 mod phones;
 mod phyphox;
 mod px4;
+mod range_message;
+mod range_topics;
 mod rosbag;
 mod sensor_logger;
+mod signals;
 mod topics;
 mod ulog;
+mod ulog_reader;
 mod unpack;
 mod walk;
 mod zipped;
@@ -30,8 +37,11 @@ pub(crate) use ardupilot::ARDUPILOT;
 pub(crate) use mcap::MCAP;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
+pub(crate) use range_message::Label;
+pub(crate) use range_topics::RangeTopics;
 pub(crate) use rosbag::ROS1;
 pub(crate) use sensor_logger::SENSOR_LOGGER;
+pub(crate) use signals::{Signals, autopilot, signals};
 
 use phones::Phone;
 
@@ -65,9 +75,9 @@ fn too_large() -> Error {
 /// # Errors
 /// What was expected and what was found.
 pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error> {
-    let (format, decoded) = if ardupilot::is_it(bytes) {
+    let (format, decoded) = if dataflash::is_it(bytes) {
         (Format::ArduPilot, ardupilot::read(bytes, options))
-    } else if px4::is_it(bytes) {
+    } else if ulog_reader::is_it(bytes) {
         (Format::Px4, px4::read(bytes, options))
     } else if mcap::is_it(bytes) {
         (Format::Mcap, mcap::read(bytes, options))
@@ -77,7 +87,7 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         let mut phone = Phone::open(bytes, options)?;
         (phone.format(), phone.read(options))
     } else if ardupilot_text::is_it(bytes) {
-        (Format::ArduPilot, ardupilot_text::read(bytes, options))
+        (Format::ArduPilot, ardupilot::read_text(bytes, options))
     } else {
         return open_text(bytes, options);
     };
@@ -86,6 +96,24 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
     }
     let Decoded { table, notes } = decoded?;
     Ok(Opened { table, text: None, format: Some(format), notes })
+}
+
+/// What holds ranges in a bag of ROS 1 or an MCAP file; none if the file is another.
+///
+/// # Errors
+/// If it cannot be read, or unpacks to too much.
+pub(crate) fn ranges<'o>(
+    bytes: &[u8],
+    options: &'o Options,
+) -> Result<Option<(Format, RangeTopics<'o>)>, Error> {
+    let read = if mcap::is_it(bytes) {
+        mcap::ranges(bytes, options).map(|read| (Format::Mcap, read))
+    } else if rosbag::is_it(bytes) {
+        rosbag::ranges(bytes, options).map(|read| (Format::Ros1, read))
+    } else {
+        return Ok(None);
+    };
+    read.map(Some)
 }
 
 /// What a reader makes of a file.

@@ -60,6 +60,13 @@ const KNOWN: &[Known] = &[
         &["vright", "vr", "right", "rightspeed", "speedright", "rightvelocity", "velocityright"],
     ),
     of(Quantity::Length, "track", &["track", "trackwidth", "wheeltrack", "axletrack"]),
+    // Of flights by these names alone: a pitch without a unit may well be in degrees.
+    of(Quantity::Inclination, "alpha", &[]),
+    of(Quantity::Rate, "q", &[]),
+    of(Quantity::Speed, "V", &[]),
+    of(Quantity::Inclination, "theta", &[]),
+    of(Quantity::Inclination, "delta_e", &[]),
+    of(Quantity::Share, "delta_t", &[]),
 ];
 
 /// The names that options may give columns and units to, beside time and the axes.

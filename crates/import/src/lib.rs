@@ -5,6 +5,7 @@ mod containers;
 mod damage;
 mod dialect;
 mod error;
+pub mod flight;
 mod formats;
 mod heading;
 pub mod inertial;

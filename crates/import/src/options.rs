@@ -35,6 +35,25 @@ impl Options {
     }
 }
 
+impl Options {
+    /// Refuses what is said about other columns than these, and the form of the log.
+    pub(crate) fn refuse_beside(&self, names: &[&str]) -> Result<(), Error> {
+        let roles = ROLES.iter().zip(&self.columns.picks).filter(|(_, pick)| pick.is_some());
+        let columns = roles.map(|(role, _)| *role);
+        let columns = columns.chain(self.columns.others.iter().map(|(name, _)| *name));
+        let Units { acceleration, rate, time, others } = &self.units;
+        let units =
+            [("acc", acceleration.is_some()), ("gyro", rate.is_some()), ("t", time.is_some())];
+        let units = units.into_iter().filter_map(|(name, is_said)| is_said.then_some(name));
+        let units = units.chain(others.iter().map(|(name, _)| *name));
+        let mut said = columns.chain(units);
+        said.find(|name| !names.contains(name)).map_or(Ok(()), |name| {
+            let names = names.join(", ");
+            Err(Error::options(format!("expected options of {names} alone, found one of {name}")))
+        })
+    }
+}
+
 /// The names of what a log must hold.
 pub(crate) const ROLES: [&str; 7] = ["t", "ax", "ay", "az", "gx", "gy", "gz"];
 

@@ -12,6 +12,7 @@
 //! none.
 
 mod lines;
+mod topics;
 mod wide;
 
 use std::collections::BTreeMap;
@@ -78,10 +79,9 @@ impl Found {
 /// # Errors
 /// What was expected and what was found, and which option decides where the log does not tell.
 pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Option<Ranging>, Error> {
-    let text = Text::new(bytes)?;
-    let read = match lines::read(&text, options)? {
+    let read = match topics::read(bytes, anchors, options)? {
         Some(read) => Some(read),
-        None => wide::read(&text, anchors, options)?,
+        None => of_text(&Text::new(bytes)?, anchors, options)?,
     };
     let Some((found, conclusion, damage)) = read else { return Ok(None) };
     if found.ranges.iter().any(|(time_us, ..)| time_us.unsigned_abs() > LATEST_US) {
@@ -110,6 +110,17 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
     });
     let ranges = ranges.collect();
     Ok(Some(Ranging { ranges, unlisted, conclusion, damage }))
+}
+
+fn of_text(
+    text: &Text<'_>,
+    anchors: &[String],
+    options: &Options,
+) -> Result<Option<(Found, String, Damage)>, Error> {
+    match lines::read(text, options)? {
+        Some(read) => Ok(Some(read)),
+        None => wide::read(text, anchors, options),
+    }
 }
 
 /// Which anchor a label means: the one of that name, or the one whose name ends with the same number, if only one does.

@@ -23,6 +23,10 @@ pub enum Quantity {
     Level,
     /// Latitude or longitude, in degrees.
     Angle,
+    /// Attitude, incidence or deflection, in rad.
+    Inclination,
+    /// Part of a whole, 0 to 1.
+    Share,
 }
 
 /// A unit of one [`Quantity`].
@@ -117,6 +121,14 @@ const ANGLE: [Known; 3] = [
     (&["1e7", "e7", "dege7", "1e-7deg"], 1e-7, "10⁻⁷ °"),
 ];
 
+const INCLINATION: [Known; 3] = [
+    (&["rad", "radian", "radians"], 1.0, "rad"),
+    (&["deg", "degs", "degree", "degrees"], PI / 180.0, "°"),
+    (&["cdeg", "centidegree", "centidegrees"], PI / 18_000.0, "10⁻² °"),
+];
+
+const SHARE: [Known; 2] = [(&["1", "share"], 1.0, "parts of 1"), (&["%", "percent"], 1e-2, "%")];
+
 const LEVEL: [Known; 1] = [(&["db", "dbm"], 1.0, "dB")];
 
 impl Unit {
@@ -176,6 +188,8 @@ fn table(quantity: Quantity) -> &'static [Known] {
         Quantity::Speed => &SPEED,
         Quantity::Level => &LEVEL,
         Quantity::Angle => &ANGLE,
+        Quantity::Inclination => &INCLINATION,
+        Quantity::Share => &SHARE,
     }
 }
 

@@ -4,12 +4,9 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use super::Decoded;
-use super::ardupilot::{Gathered, Imu};
+use super::dataflash::Gather;
 use crate::damage::Fault;
 use crate::error::Error;
-use crate::options::Options;
-use crate::part::Part;
 use crate::text::Text;
 
 /// How far from the beginning the first line `FMT` may be.
@@ -25,19 +22,18 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
     lines.any(|line| line.starts_with(b"FMT, ") || line.starts_with(b"FMT,1"))
 }
 
-/// Reads a log of text.
+/// Reads all messages.
 ///
 /// # Errors
-/// If it holds no inertial sensor, or not the one that is wanted.
-pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
+/// If there is no text.
+pub(super) fn read<G: Gather>(bytes: &[u8], gather: &mut G) -> Result<(), Error> {
     let text = Text::new(bytes)?;
-    let mut gathered = Gathered::new(options)?;
-    // How many fields, and whose, by name.
-    let mut known: BTreeMap<Vec<u8>, (usize, Option<Imu>)> = BTreeMap::new();
+    // How many fields, and where they hold what, by name.
+    let mut known: BTreeMap<Vec<u8>, (usize, Option<G::Layout>)> = BTreeMap::new();
     let mut torn: Option<(usize, usize)> = None;
     for line in text.lines() {
         if let Some((number, bytes)) = torn.take() {
-            gathered.losses.add(Fault::Torn, number, bytes);
+            gather.losses().add(Fault::Torn, number, bytes);
         }
         let fields: Vec<_> = line
             .bytes
@@ -46,31 +42,32 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
             .take(MOST_FIELDS)
             .collect();
         let name = fields.first().copied().unwrap_or_default();
-        if let [b"FMT", _, _, name, _, labels @ ..] = &fields[..] {
+        let is_read = if let [b"FMT", _, _, name, _, labels @ ..] = &fields[..] {
             let words: Vec<_> =
                 labels.iter().map(|label| std::str::from_utf8(label).unwrap_or("")).collect();
             if let Entry::Vacant(slot) = known.entry(name.to_vec()) {
-                let name = String::from_utf8_lossy(name);
-                let imu = Imu::of(&name, &words);
-                gathered.define(&name, imu.as_ref());
-                slot.insert((1 + labels.len(), imu));
+                let layout = gather.define(&String::from_utf8_lossy(name), &words);
+                slot.insert((1 + labels.len(), layout));
             }
-        } else if let Some((width, imu)) = known.get(name) {
+            true
+        } else if let Some((width, layout)) = known.get(name) {
             let field = |place: usize| fast_float2::parse(fields.get(place + 1)?).ok();
-            match imu.as_ref().map(|imu| imu.row(field).filter(|_| fields.len() == *width)) {
-                Some(Some((sensor, row))) => gathered.sensor.push(sensor, line.number, row),
-                Some(None) => torn = Some((line.number, line.bytes.len())),
-                None => {}
-            }
-        } else if !known.is_empty() {
+            let take = |layout| {
+                let is_whole = fields.len() == *width;
+                is_whole && gather.take(layout, line.number, &field).is_some()
+            };
+            layout.as_ref().is_none_or(take)
+        } else {
+            known.is_empty()
+        };
+        if is_read {
+            gather.losses().read += line.bytes.len();
+        } else {
             torn = Some((line.number, line.bytes.len()));
-        }
-        if torn.is_none() {
-            gathered.losses.read += line.bytes.len();
         }
     }
     if let Some((number, bytes)) = torn {
-        gathered.losses.add(Fault::Cut, number, bytes);
+        gather.losses().add(Fault::Cut, number, bytes);
     }
-    gathered.decoded(Part::Line)
+    Ok(())
 }

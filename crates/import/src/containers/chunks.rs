@@ -2,7 +2,8 @@
 //!
 //! A chunk that is not sound is skipped; of one that was cut off what remains is read.
 
-use super::topics::Topics;
+use super::gather::Losses;
+use super::imu_message::Encoding;
 use super::unpack::{Budget, Compression};
 use super::walk::{Framing, Step, Walk};
 use crate::damage::Fault;
@@ -22,13 +23,43 @@ pub(super) struct Chunk<'a> {
     pub(super) packed: &'a [u8],
 }
 
+/// What a file tells of a topic.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Announced<'a> {
+    pub(super) name: &'a str,
+    pub(super) kind: &'a str,
+    /// None if it is not known.
+    pub(super) encoding: Option<Encoding>,
+    /// The text that defines its messages, if it is there.
+    pub(super) definition: &'a [u8],
+}
+
+/// What is gathered from messages.
+pub(super) trait Messages {
+    /// Takes a topic: its place, if its messages are wanted.
+    fn topic(&mut self, topic: &Announced<'_>) -> Option<usize>;
+
+    /// Takes a message of a topic, received at a time in ns since 1970.
+    fn message(
+        &mut self,
+        place: usize,
+        encoding: Encoding,
+        record: usize,
+        receipt: u64,
+        message: &[u8],
+    );
+
+    /// What could and could not be read.
+    fn losses(&mut self) -> &mut Losses;
+}
+
 /// A format of such records.
 pub(super) trait Records: Framing {
     /// The chunk that a record is, if it is one; the record's end may be missing.
     fn chunk(record: &[u8]) -> Option<Chunk<'_>>;
 
     /// Takes a record of that number that is no chunk.
-    fn record(&mut self, record: &[u8], number: usize, topics: &mut Topics);
+    fn record<M: Messages>(&mut self, record: &[u8], number: usize, messages: &mut M);
 }
 
 /// Whether bytes begin with a chunk whose end is missing, so that no other record begins in them.
@@ -50,22 +81,25 @@ enum Level {
 ///
 /// # Errors
 /// If they unpack to too much.
-pub(super) fn read<R: Records>(bytes: &[u8], records: R) -> Result<Topics, Error> {
-    let mut reader =
-        Reader { records, topics: Topics::default(), budget: Budget::default(), number: 0 };
+pub(super) fn read<R: Records, M: Messages>(
+    bytes: &[u8],
+    records: R,
+    messages: M,
+) -> Result<M, Error> {
+    let mut reader = Reader { records, messages, budget: Budget::default(), number: 0 };
     reader.walk(bytes, Level::File)?;
-    Ok(reader.topics)
+    Ok(reader.messages)
 }
 
-struct Reader<R> {
+struct Reader<R, M> {
     records: R,
-    topics: Topics,
+    messages: M,
     budget: Budget,
     /// How many records there were.
     number: usize,
 }
 
-impl<R: Records> Reader<R> {
+impl<R: Records, M: Messages> Reader<R, M> {
     fn walk(&mut self, bytes: &[u8], level: Level) -> Result<(), Error> {
         let mut walk = Walk::new(bytes, self.number);
         while let Some(step) = walk.next(&self.records) {
@@ -76,20 +110,20 @@ impl<R: Records> Reader<R> {
                     if let Some(chunk) = chunk(record) {
                         self.chunk(&chunk, record.len())?;
                     } else {
-                        self.topics.losses.read += record.len();
-                        self.records.record(record, self.number, &mut self.topics);
+                        self.messages.losses().read += record.len();
+                        self.records.record(record, self.number, &mut self.messages);
                     }
                 }
                 Step::Lost(Fault::Cut, lost) => match chunk(lost) {
                     Some(chunk) => {
-                        self.topics.losses.add(Fault::Cut, self.number, 0);
+                        self.messages.losses().add(Fault::Cut, self.number, 0);
                         self.cut_chunk(&chunk)?;
                     }
                     None if level == Level::CutChunk => {}
-                    None => self.topics.losses.add(Fault::Cut, self.number, lost.len()),
+                    None => self.messages.losses().add(Fault::Cut, self.number, lost.len()),
                 },
                 Step::Lost(fault, lost) => {
-                    self.topics.losses.add(fault, self.number, lost.len());
+                    self.messages.losses().add(fault, self.number, lost.len());
                 }
             }
             walk.number = self.number;
@@ -101,7 +135,7 @@ impl<R: Records> Reader<R> {
     fn chunk(&mut self, chunk: &Chunk<'_>, length: usize) -> Result<(), Error> {
         let Some((compression, packed)) = chunk.compression.zip(chunk.packed.get(..chunk.length))
         else {
-            self.topics.losses.add(Fault::Torn, self.number, length);
+            self.messages.losses().add(Fault::Torn, self.number, length);
             return Ok(());
         };
         let records = self.budget.unpack(compression, packed, chunk.size)?;
@@ -110,7 +144,7 @@ impl<R: Records> Reader<R> {
         if is_sound {
             return self.walk(&records, Level::Chunk);
         }
-        self.topics.losses.add(Fault::Torn, self.number, records.len().max(length));
+        self.messages.losses().add(Fault::Torn, self.number, records.len().max(length));
         Ok(())
     }
 

@@ -53,7 +53,7 @@ impl Stream {
 
 /// What a file holds beside a sensor's rows.
 #[derive(Debug, Default)]
-pub(super) struct Losses {
+pub(crate) struct Losses {
     /// How many bytes could be read.
     pub(super) read: usize,
     stretches: Vec<(Fault, usize, usize)>,
@@ -67,7 +67,7 @@ impl Losses {
 
     /// As damage of a sensor with so many rows: each stretch counts as many of them as it would have held, and at least
     /// one.
-    fn damage(&self, part: Part, rows: usize) -> Damage {
+    pub(crate) fn damage(&self, part: Part, rows: usize) -> Damage {
         let mut damage = Damage::of(part);
         let density = rows as f64 / self.read.max(1) as f64;
         for &(fault, record, bytes) in &self.stretches {

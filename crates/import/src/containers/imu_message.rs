@@ -15,6 +15,8 @@ pub(super) enum Encoding {
     Ros1,
     /// CDR of DDS, of either order, each number at a multiple of its size.
     Cdr,
+    /// Protobuf, in which `host-sim` writes.
+    Protobuf,
 }
 
 impl Encoding {
@@ -23,6 +25,7 @@ impl Encoding {
         match self {
             Self::Ros1 => ros1(message),
             Self::Cdr => cdr(message),
+            Self::Protobuf => None,
         }
     }
 }

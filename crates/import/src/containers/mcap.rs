@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use super::Decoded;
 use super::bytes::Bytes;
-use super::chunks::{self, Chunk, Records, is_cut_chunk};
+use super::chunks::{self, Announced, Chunk, Messages, Records, is_cut_chunk};
 use super::imu_message::Encoding;
+use super::range_topics::RangeTopics;
 use super::topics::{self, Topics};
 use super::unpack::Compression;
 use super::walk::Framing;
@@ -39,13 +40,29 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// If it holds no inertial sensor, or several and nobody says which, or unpacks to too much.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     let records = bytes.get(MAGIC.len()..).unwrap_or_default();
-    chunks::read(records, Mcap::default())?.decoded(&MCAP, options)
+    chunks::read(records, Mcap::default(), Topics::default())?.decoded(&MCAP, options)
+}
+
+/// Reads the ranges of a file.
+///
+/// # Errors
+/// If it unpacks to too much.
+pub(super) fn ranges<'o>(bytes: &[u8], options: &'o Options) -> Result<RangeTopics<'o>, Error> {
+    let records = bytes.get(MAGIC.len()..).unwrap_or_default();
+    chunks::read(records, Mcap::default(), RangeTopics::new(options))
+}
+
+/// What a schema tells: the name of a type, and its definition if that is a text of ROS or a description of protobuf.
+#[derive(Debug)]
+struct Schema {
+    name: String,
+    definition: Vec<u8>,
 }
 
 /// What is told of schemas and channels.
 #[derive(Debug, Default)]
 struct Mcap {
-    schemas: BTreeMap<u16, String>,
+    schemas: BTreeMap<u16, Schema>,
     channels: BTreeMap<u16, (usize, Encoding)>,
 }
 
@@ -53,12 +70,15 @@ impl Mcap {
     fn schema(&mut self, body: &[u8]) -> Option<()> {
         let mut bytes = Bytes(body);
         let (id, name) = (bytes.u16()?, bytes.counted()?);
+        let (encoding, definition) = (bytes.counted(), bytes.counted());
+        let is_known_form = matches!(encoding, Some(b"ros1msg" | b"ros2msg" | b"protobuf"));
+        let definition = definition.filter(|_| is_known_form).unwrap_or_default().to_vec();
         let name = String::from_utf8_lossy(name).into_owned();
-        self.schemas.entry(id).or_insert(name);
+        self.schemas.entry(id).or_insert(Schema { name, definition });
         Some(())
     }
 
-    fn channel(&mut self, body: &[u8], topics: &mut Topics) -> Option<()> {
+    fn channel(&mut self, body: &[u8], messages: &mut impl Messages) -> Option<()> {
         let mut bytes = Bytes(body);
         let (id, schema) = (bytes.u16()?, bytes.u16()?);
         let (topic, encoding) = (bytes.counted()?, bytes.counted()?);
@@ -66,21 +86,25 @@ impl Mcap {
         let encoding = match encoding {
             b"cdr" => Some(Encoding::Cdr),
             b"ros1" => Some(Encoding::Ros1),
+            b"protobuf" => Some(Encoding::Protobuf),
             _ => None,
         };
-        let kind = self.schemas.get(&schema).map_or("no type", String::as_str);
-        if let (Some(place), Some(encoding)) = (topics.add(&topic, kind, encoding), encoding) {
+        let schema = self.schemas.get(&schema);
+        let kind = schema.map_or("no type", |schema| schema.name.as_str());
+        let definition = schema.map_or(&[][..], |schema| &schema.definition);
+        let announced = Announced { name: &topic, kind, encoding, definition };
+        if let (Some(place), Some(encoding)) = (messages.topic(&announced), encoding) {
             self.channels.entry(id).or_insert((place, encoding));
         }
         Some(())
     }
 
-    fn message(&self, body: &[u8], number: usize, topics: &mut Topics) -> Option<()> {
+    fn message(&self, body: &[u8], number: usize, messages: &mut impl Messages) -> Option<()> {
         let mut bytes = Bytes(body);
         let (id, _sequence, logged, _published) =
             (bytes.u16()?, bytes.u32()?, bytes.u64()?, bytes.u64()?);
         let &(place, encoding) = self.channels.get(&id)?;
-        topics.message(place, encoding, number, logged, bytes.0);
+        messages.message(place, encoding, number, logged, bytes.0);
         Some(())
     }
 }
@@ -101,12 +125,12 @@ impl Records for Mcap {
         Some(chunk().unwrap_or_default())
     }
 
-    fn record(&mut self, record: &[u8], number: usize, topics: &mut Topics) {
+    fn record<M: Messages>(&mut self, record: &[u8], number: usize, messages: &mut M) {
         let Some((kind, body)) = record.first().zip(record.get(HEADER..)) else { return };
         match *kind {
             SCHEMA => drop(self.schema(body)),
-            CHANNEL => drop(self.channel(body, topics)),
-            MESSAGE => drop(self.message(body, number, topics)),
+            CHANNEL => drop(self.channel(body, messages)),
+            MESSAGE => drop(self.message(body, number, messages)),
             _ => {}
         }
     }

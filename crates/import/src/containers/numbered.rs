@@ -6,6 +6,18 @@ use super::gather::{Row, Stream};
 use crate::error::{Error, listed, quoted};
 use crate::options::Options;
 
+/// The number that `--topic` says.
+///
+/// # Errors
+/// If it says no number.
+pub(super) fn wanted(options: &Options) -> Result<Option<u32>, Error> {
+    let Some(said) = &options.topic else { return Ok(None) };
+    said.trim().parse().map(Some).map_err(|_| {
+        let found = quoted(said);
+        Error::options(format!("expected a sensor's number for --topic, found {found}"))
+    })
+}
+
 /// The rows of the sensor with the wanted number, and which others there are.
 #[derive(Debug, Default)]
 pub(super) struct Numbered {
@@ -21,12 +33,8 @@ impl Numbered {
     /// # Errors
     /// If `--topic` says no number.
     pub(super) fn new(options: &Options) -> Result<Self, Error> {
-        let Some(said) = &options.topic else { return Ok(Self::default()) };
-        let wanted = said.trim().parse().map_err(|_| {
-            let found = quoted(said);
-            Error::options(format!("expected a sensor's number for --topic, found {found}"))
-        })?;
-        Ok(Self { wanted, is_said: true, ..Self::default() })
+        let said = wanted(options)?;
+        Ok(Self { wanted: said.unwrap_or(0), is_said: said.is_some(), ..Self::default() })
     }
 
     /// Keeps a row if it is the wanted sensor's.

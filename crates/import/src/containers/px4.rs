@@ -11,15 +11,12 @@
 //! Weighed: the crate `px4-ulog` 0.6 (MIT) ends at the first record that is damaged, needs a path for data that were
 //! appended, holds assertions about what it was fed, and flattens types that hold each other without a bound.
 
-use std::collections::BTreeMap;
-
 use super::Decoded;
-use super::bytes::Bytes;
-use super::gather::{Losses, Row};
+use super::gather::Row;
 use super::join::join;
 use super::numbered::Numbered;
 use super::ulog::{Formats, Place};
-use super::walk::{Step, Walk};
+use super::ulog_reader::{self, Gather, Reading};
 use crate::error::{Error, listed};
 use crate::formats::{Description, Format};
 use crate::options::Options;
@@ -44,20 +41,12 @@ pub(crate) const PX4: Description = Description {
     is_a_guess: false,
 };
 
-const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
-/// Magic, version and time.
-const HEADER: usize = 16;
 /// What stands instead of the accelerometer's time if it said nothing yet.
 const INVALID: f64 = i32::MAX as f64;
 /// A second in the unit of times.
 const SECOND: f64 = 1e6;
 /// Names of the topics, in the order in which they are preferred.
 const TOPICS: [&str; 4] = ["sensor_combined", "vehicle_imu", "sensor_gyro", "sensor_accel"];
-
-/// Whether a file begins as `ULog` does.
-pub(super) fn is_it(bytes: &[u8]) -> bool {
-    bytes.starts_with(&MAGIC)
-}
 
 /// Where a topic's records hold what: places of time, of two sensors, and of one or two other numbers.
 #[derive(Debug)]
@@ -115,112 +104,38 @@ impl Layout {
     }
 }
 
+/// The rows of each topic.
+struct Sensors([Numbered; 4]);
+
+impl Gather for Sensors {
+    type Layout = Layout;
+
+    fn define(&mut self, formats: &mut Formats, topic: &str, instance: u8) -> Option<Layout> {
+        Layout::of(formats, topic, instance)
+    }
+
+    fn take(&mut self, layout: &Layout, record: usize, data: &[u8]) -> Option<()> {
+        let row = layout.row(data)?;
+        self.0.get_mut(layout.topic)?.push(layout.instance, record, row);
+        Some(())
+    }
+}
+
 /// Reads a log.
 ///
 /// # Errors
 /// If it holds no inertial sensor, or not the one that is wanted, or data that need a newer reader.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     let sensor = || Numbered::new(options);
-    let mut reader = Reader {
-        formats: Formats::default(),
-        layouts: BTreeMap::new(),
-        losses: Losses::default(),
-        sensors: [sensor()?, sensor()?, sensor()?, sensor()?],
-        dropouts: (0, 0),
-    };
-    let mut number = 0;
-    for section in sections(bytes)? {
-        number = reader.section(section, number);
-    }
-    reader.decoded()
+    let mut sensors = Sensors([sensor()?, sensor()?, sensor()?, sensor()?]);
+    let reading = ulog_reader::read(bytes, &mut sensors)?;
+    sensors.decoded(&reading)
 }
 
-/// The main section, and those that were appended.
-fn sections(bytes: &[u8]) -> Result<Vec<&[u8]>, Error> {
-    let whole = bytes.get(HEADER..).unwrap_or_default();
-    let flags = match whole {
-        [_, _, b'B', flags @ ..] => Bytes(flags).take::<40>(),
-        _ => None,
-    };
-    let Some(flags) = flags else { return Ok(vec![whole]) };
-    let (incompatible, mut offsets) = (&flags[8..16], Bytes(&flags[16..]));
-    let is_known = matches!(incompatible, [0 | 1, rest @ ..] if rest.iter().all(|&byte| byte == 0));
-    if !is_known {
-        return Err(Error::log("expected a ULog of version 1, found flags of a newer one"));
-    }
-    let mut sections = Vec::new();
-    let mut from = HEADER;
-    while let Some(offset) = offsets.take().map(u64::from_le_bytes)
-        && let Ok(offset) = usize::try_from(offset)
-        && incompatible[0] == 1
-        && let Some(section) = bytes.get(from..offset)
-    {
-        sections.push(section);
-        from = offset;
-    }
-    sections.push(bytes.get(from..).unwrap_or_default());
-    Ok(sections)
-}
-
-/// What is gathered on the way.
-struct Reader {
-    formats: Formats,
-    layouts: BTreeMap<u16, Layout>,
-    losses: Losses,
-    sensors: [Numbered; 4],
-    /// How many, and ms.
-    dropouts: (u32, u32),
-}
-
-impl Reader {
-    /// Reads a section behind so many records: how many there are then.
-    fn section(&mut self, bytes: &[u8], number: usize) -> usize {
-        let mut walk = Walk::new(bytes, number);
-        while let Some(step) = walk.next(&self.formats) {
-            match step {
-                Step::Record(record) => {
-                    self.losses.read += record.len();
-                    self.record(record, walk.number);
-                }
-                Step::Lost(fault, lost) => self.losses.add(fault, walk.number, lost.len()),
-            }
-        }
-        walk.number
-    }
-
-    fn record(&mut self, record: &[u8], number: usize) {
-        let [_, _, kind, body @ ..] = record else { return };
-        match kind {
-            b'F' => drop(self.formats.define(body)),
-            b'A' => {
-                let topic = self.formats.subscribe(body);
-                let topic = topic.map(|(id, topic)| (id, topic.name.clone(), topic.instance));
-                if let Some((id, name, instance)) = topic
-                    && let Some(layout) = Layout::of(&mut self.formats, &name, instance)
-                {
-                    self.layouts.insert(id, layout);
-                }
-            }
-            b'D' => {
-                if let Some((id, data)) = self.formats.data(body)
-                    && let Some(layout) = self.layouts.get(&id)
-                    && let Some(row) = layout.row(data)
-                {
-                    self.sensors[layout.topic].push(layout.instance, number, row);
-                }
-            }
-            b'O' => {
-                let duration = Bytes(body).u16().unwrap_or(0);
-                let (count, sum) = self.dropouts;
-                self.dropouts = (count + 1, sum.saturating_add(u32::from(duration)));
-            }
-            _ => {}
-        }
-    }
-
-    fn decoded(self) -> Result<Decoded, Error> {
+impl Sensors {
+    fn decoded(self, reading: &Reading) -> Result<Decoded, Error> {
         let mut notes = Vec::new();
-        let [combined, imu, gyroscope, accelerometer] = self.sensors;
+        let [combined, imu, gyroscope, accelerometer] = self.0;
         let is_pair = gyroscope.is_seen() && accelerometer.is_seen();
         let has_rows = |sensor: &Numbered| sensor.stream.len() > 0;
         let mut single = [(combined, TOPICS[0]), (imu, TOPICS[1])].into_iter();
@@ -244,12 +159,10 @@ impl Reader {
         } else {
             // Another one of a topic is there, or none at all.
             other.transpose()?;
-            return Err(none(&self.formats));
+            return Err(none(&reading.formats));
         };
-        if let (count @ 1.., sum) = self.dropouts {
-            notes.push(format!("dropouts of the logger: {count}, {sum} ms in all"));
-        }
-        let table = stream.table(&PX4, "timestamp", &self.losses, Part::Record);
+        notes.extend(reading.pauses());
+        let table = stream.table(&PX4, "timestamp", &reading.losses, Part::Record);
         Ok(Decoded { table, notes })
     }
 }

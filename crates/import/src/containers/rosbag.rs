@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use super::Decoded;
 use super::bytes::Bytes;
-use super::chunks::{self, Chunk, Records, is_cut_chunk};
+use super::chunks::{self, Announced, Chunk, Messages, Records, is_cut_chunk};
 use super::imu_message::Encoding;
+use super::range_topics::RangeTopics;
 use super::topics::{self, Topics};
 use super::unpack::Compression;
 use super::walk::Framing;
@@ -37,12 +38,24 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// # Errors
 /// If it is of another version, holds no inertial sensor, or several and nobody says which, or unpacks to too much.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
-    let Some(records) = bytes.strip_prefix(MAGIC) else {
+    chunks::read(contents(bytes)?, Bag::default(), Topics::default())?.decoded(&ROS1, options)
+}
+
+/// Reads the ranges of a bag.
+///
+/// # Errors
+/// If it is of another version, or unpacks to too much.
+pub(super) fn ranges<'o>(bytes: &[u8], options: &'o Options) -> Result<RangeTopics<'o>, Error> {
+    chunks::read(contents(bytes)?, Bag::default(), RangeTopics::new(options))
+}
+
+/// The records behind the first line.
+fn contents(bytes: &[u8]) -> Result<&[u8], Error> {
+    bytes.strip_prefix(MAGIC).ok_or_else(|| {
         let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let found = quoted(&String::from_utf8_lossy(line));
-        return Err(Error::log(format!("expected #ROSBAG V2.0, found {found}")));
-    };
-    chunks::read(records, Bag::default())?.decoded(&ROS1, options)
+        Error::log(format!("expected #ROSBAG V2.0, found {found}"))
+    })
 }
 
 /// What is told of connections.
@@ -94,22 +107,31 @@ fn field<'a>(header: &'a [u8], name: &[u8]) -> Option<&'a [u8]> {
 }
 
 impl Bag {
-    fn connection(&mut self, record: &Record<'_>, topics: &mut Topics) -> Option<()> {
+    fn connection(&mut self, record: &Record<'_>, messages: &mut impl Messages) -> Option<()> {
         let (id, topic) = (record.number(b"conn")?, field(record.header, b"topic")?);
         let kind = field(record.data, b"type")?;
         let [topic, kind] = [topic, kind].map(String::from_utf8_lossy);
-        if let Some(place) = topics.add(&topic, &kind, Some(Encoding::Ros1)) {
+        let (encoding, definition) =
+            (Some(Encoding::Ros1), field(record.data, b"message_definition"));
+        let definition = definition.unwrap_or_default();
+        let announced = Announced { name: &topic, kind: &kind, encoding, definition };
+        if let Some(place) = messages.topic(&announced) {
             self.topics.entry(id).or_insert(place);
         }
         Some(())
     }
 
-    fn message(&self, record: &Record<'_>, number: usize, topics: &mut Topics) -> Option<()> {
+    fn message(
+        &self,
+        record: &Record<'_>,
+        number: usize,
+        messages: &mut impl Messages,
+    ) -> Option<()> {
         let &place = self.topics.get(&record.number(b"conn")?)?;
         let mut time = Bytes(field(record.header, b"time")?);
         let (seconds, nanoseconds) = (u64::from(time.u32()?), u64::from(time.u32()?));
         let receipt = seconds * 1_000_000_000 + nanoseconds;
-        topics.message(place, Encoding::Ros1, number, receipt, record.data);
+        messages.message(place, Encoding::Ros1, number, receipt, record.data);
         Some(())
     }
 }
@@ -122,11 +144,11 @@ impl Records for Bag {
         Some(Chunk { compression, size, checksum: 0, length: record.length, packed: record.data })
     }
 
-    fn record(&mut self, record: &[u8], number: usize, topics: &mut Topics) {
+    fn record<M: Messages>(&mut self, record: &[u8], number: usize, messages: &mut M) {
         let Some(record) = Record::of(record) else { return };
         match record.kind {
-            CONNECTION => drop(self.connection(&record, topics)),
-            MESSAGE => drop(self.message(&record, number, topics)),
+            CONNECTION => drop(self.connection(&record, messages)),
+            MESSAGE => drop(self.message(&record, number, messages)),
             _ => {}
         }
     }

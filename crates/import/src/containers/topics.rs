@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::Decoded;
+use super::chunks::{Announced, Messages};
 use super::gather::{Losses, Stream};
 use super::imu_message::Encoding;
+use super::own_message::OwnImu;
 use crate::damage::Fault;
 use crate::error::{Error, listed};
 use crate::formats::{Description, Format};
@@ -49,6 +51,8 @@ struct Topic {
     stream: Stream,
     /// When each message was received, µs.
     receipts: Vec<f64>,
+    /// How its messages are written, if `host-sim` wrote them.
+    own: Option<OwnImu>,
 }
 
 /// What topics there are.
@@ -59,55 +63,10 @@ pub(super) struct Topics {
     by_name: BTreeMap<String, usize>,
     /// The others, each with its type.
     others: Vec<String>,
-    pub(super) losses: Losses,
+    losses: Losses,
 }
 
 impl Topics {
-    /// Takes a topic: its place if it is an inertial sensor's that can be read.
-    pub(super) fn add(
-        &mut self,
-        name: &str,
-        kind: &str,
-        encoding: Option<Encoding>,
-    ) -> Option<usize> {
-        let is_inertial = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
-        if !is_inertial || encoding.is_none() {
-            let other = format!("{name} ({kind})");
-            // More are not told of.
-            if self.others.len() < 100 && !self.others.contains(&other) {
-                self.others.push(other);
-            }
-            return None;
-        }
-        if let Some(&place) = self.by_name.get(name) {
-            return Some(place);
-        }
-        let place = self.inertial.len();
-        let (stream, receipts) = (Stream::default(), Vec::new());
-        self.inertial.push(Topic { name: name.to_owned(), stream, receipts });
-        self.by_name.insert(name.to_owned(), place);
-        Some(place)
-    }
-
-    /// Takes a message of a topic, received at a time in ns since 1970.
-    pub(super) fn message(
-        &mut self,
-        place: usize,
-        encoding: Encoding,
-        record: usize,
-        receipt: u64,
-        message: &[u8],
-    ) {
-        match (encoding.read(message), self.inertial.get_mut(place)) {
-            (Some(row), Some(topic)) => {
-                topic.stream.push(record, row);
-                topic.receipts.push(receipt as f64 / 1e3);
-            }
-            // Its bytes were read, but it is none.
-            _ => self.losses.add(Fault::Torn, record, 0),
-        }
-    }
-
     /// The table of the one that is wanted.
     ///
     /// # Errors
@@ -118,7 +77,7 @@ impl Topics {
         options: &Options,
     ) -> Result<Decoded, Error> {
         let place = self.wanted(options)?;
-        let Topic { name, mut stream, receipts } = self.inertial.swap_remove(place);
+        let Topic { name, mut stream, receipts, .. } = self.inertial.swap_remove(place);
         let name: String =
             name.chars().map(|c| if c.is_control() { '?' } else { c }).take(80).collect();
         let mut notes = vec![format!("topic {name}")];
@@ -167,12 +126,72 @@ impl Topics {
         let is_own = |other: &String| other.contains("(kestirim.") || other.contains("(foxglove.");
         if !self.others.is_empty() && self.others.iter().all(is_own) {
             return Error::log(
-                "expected a recording of sensors, found results of host-sim, which hold no sensor's samples",
+                "expected a recording of sensors, found results of host-sim, which hold no inertial sensor's samples",
             );
         }
         let found = listed(self.others.iter().map(String::as_str));
         Error::log(format!(
             "expected a topic of sensor_msgs/Imu in ROS 1's encoding or CDR, found {found}"
         ))
+    }
+}
+
+impl Messages for Topics {
+    fn topic(&mut self, topic: &Announced<'_>) -> Option<usize> {
+        let Announced { name, kind, encoding, .. } = *topic;
+        let is_of_ros = matches!(kind, "sensor_msgs/Imu" | "sensor_msgs/msg/Imu");
+        let own = OwnImu::of(kind, topic.definition);
+        let is_inertial = match encoding {
+            Some(Encoding::Protobuf) => own.is_some(),
+            Some(_) => is_of_ros,
+            None => false,
+        };
+        if !is_inertial {
+            let other = format!("{name} ({kind})");
+            // More are not told of.
+            if self.others.len() < 100 && !self.others.contains(&other) {
+                self.others.push(other);
+            }
+            return None;
+        }
+        if let Some(&place) = self.by_name.get(name) {
+            return Some(place);
+        }
+        let place = self.inertial.len();
+        let (stream, receipts) = (Stream::default(), Vec::new());
+        self.inertial.push(Topic { name: name.to_owned(), stream, receipts, own });
+        self.by_name.insert(name.to_owned(), place);
+        Some(place)
+    }
+
+    fn message(
+        &mut self,
+        place: usize,
+        encoding: Encoding,
+        record: usize,
+        receipt: u64,
+        message: &[u8],
+    ) {
+        let receipt = receipt as f64 / 1e3;
+        let topic = self.inertial.get_mut(place);
+        let own = topic.as_ref().and_then(|topic| topic.own);
+        let row = match (encoding, own) {
+            (Encoding::Protobuf, Some(own)) => {
+                own.read(message).map(|[ax, ay, az, gx, gy, gz]| [receipt, ax, ay, az, gx, gy, gz])
+            }
+            _ => encoding.read(message),
+        };
+        match (row, topic) {
+            (Some(row), Some(topic)) => {
+                topic.stream.push(record, row);
+                topic.receipts.push(receipt);
+            }
+            // Its bytes were read, but it is none.
+            _ => self.losses.add(Fault::Torn, record, 0),
+        }
+    }
+
+    fn losses(&mut self) -> &mut Losses {
+        &mut self.losses
     }
 }

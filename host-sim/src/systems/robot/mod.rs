@@ -49,7 +49,7 @@ impl System for Robot {
         FileField::required(
             "log",
             "Ranges: CSV t,anchor,range (s, m) of a moving tag, or with --points point,k,anchor,range (m) of a tag \
-             put down, epochs k 0.1 s apart",
+             put down, epochs k 0.1 s apart; or a ROS 1 bag or MCAP file with messages of ranges",
         )
         .imported(),
         FileField::optional(

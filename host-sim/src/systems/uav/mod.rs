@@ -49,7 +49,7 @@ impl System for Uav {
         FileField::required(
             "log",
             "Flight: CSV with columns t,delta_e,delta_t and some of alpha,q,V,theta (s, rad, rad/s, m/s); an empty \
-             field was not measured",
+             field was not measured; or the log of ArduPilot or PX4, with --units delta_e=",
         )
         .imported(),
         FileField::optional(

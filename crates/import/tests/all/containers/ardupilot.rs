@@ -8,11 +8,11 @@ use super::{
 };
 use crate::walk;
 
-const LABELS: &str = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T,GH,AH,GHz,AHz";
-const FORMAT: &str = "QBffffffIIfBBHH";
+pub(super) const LABELS: &str = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T,GH,AH,GHz,AHz";
+pub(super) const FORMAT: &str = "QBffffffIIfBBHH";
 
 /// A message `FMT`.
-fn fmt(kind: u8, name: &str, format: &str, labels: &str, length: u8) -> Vec<u8> {
+pub(super) fn fmt(kind: u8, name: &str, format: &str, labels: &str, length: u8) -> Vec<u8> {
     let mut message = vec![0xa3, 0x95, 128, kind, length];
     for (text, size) in [(name, 4), (format, 16), (labels, 64)] {
         let mut field = text.as_bytes().to_vec();
@@ -23,7 +23,7 @@ fn fmt(kind: u8, name: &str, format: &str, labels: &str, length: u8) -> Vec<u8> 
 }
 
 /// A message of an inertial sensor, as new programs write it.
-fn imu(number: u8, [t, ax, ay, az, gx, gy, gz]: [f64; 7]) -> Vec<u8> {
+pub(super) fn imu(number: u8, [t, ax, ay, az, gx, gy, gz]: [f64; 7]) -> Vec<u8> {
     let mut message = vec![0xa3, 0x95, 130];
     message.extend(((t * 1e6).round() as u64 + 5_000_000).to_le_bytes());
     message.push(number);
@@ -38,7 +38,7 @@ fn imu(number: u8, [t, ax, ay, az, gx, gy, gz]: [f64; 7]) -> Vec<u8> {
 }
 
 /// A log with three sensors, of which the last are turned, and other messages.
-fn log(rows: &[[f64; 7]]) -> Vec<u8> {
+pub(super) fn log(rows: &[[f64; 7]]) -> Vec<u8> {
     let mut log = fmt(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns", 89);
     log.extend(fmt(130, "IMU", FORMAT, LABELS, 54));
     log.extend(fmt(131, "MODE", "QMBB", "TimeUS,Mode,ModeNum,Rsn", 14));

@@ -13,9 +13,9 @@ use super::{
 };
 use crate::walk;
 
-type File = Writer<Cursor<Vec<u8>>>;
+pub(super) type File = Writer<Cursor<Vec<u8>>>;
 
-fn file(chunks: bool) -> File {
+pub(super) fn file(chunks: bool) -> File {
     let options = WriteOptions::new().compression(None).use_chunks(chunks).chunk_size(Some(20_000));
     options.create(Cursor::new(Vec::new())).unwrap()
 }
@@ -25,12 +25,12 @@ fn channel(file: &mut File, topic: &str, kind: &str, encoding: &str) -> u16 {
     file.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap()
 }
 
-fn write(file: &mut File, channel_id: u16, time: u64, message: &[u8]) {
+pub(super) fn write(file: &mut File, channel_id: u16, time: u64, message: &[u8]) {
     let header = MessageHeader { channel_id, sequence: 0, log_time: time, publish_time: time };
     file.write_to_known_channel(&header, message).unwrap();
 }
 
-fn bytes(mut file: File) -> Vec<u8> {
+pub(super) fn bytes(mut file: File) -> Vec<u8> {
     file.finish().unwrap();
     file.into_inner().into_inner()
 }
@@ -169,7 +169,7 @@ fn results_are_not_sensors() {
     }
     assert_eq!(
         refusal(&bytes(file)),
-        "expected a recording of sensors, found results of host-sim, which hold no sensor's samples"
+        "expected a recording of sensors, found results of host-sim, which hold no inertial sensor's samples"
     );
     let mut other = self::file(true);
     channel(&mut other, "/imu", "sensor_msgs/msg/Imu", "json");
@@ -178,6 +178,54 @@ fn results_are_not_sensors() {
         refusal(&bytes(other)),
         "expected a topic of sensor_msgs/Imu in ROS 1's encoding or CDR, found /imu (sensor_msgs/msg/Imu), /odom (nav_msgs/msg/Odometry)"
     );
+}
+
+/// A field of protobuf that is a text or a message, with its number.
+fn part(number: u8, value: &[u8]) -> Vec<u8> {
+    let length = value.len();
+    // A length of more than 127 takes two bytes.
+    let length = match length {
+        0..128 => vec![length as u8],
+        _ => vec![(length & 0x7f | 0x80) as u8, (length >> 7) as u8],
+    };
+    [&[number << 3 | 2][..], &length, value].concat()
+}
+
+/// What `host-sim --mcap` writes of a walk: `FileDescriptorSet` and messages of doubles, beside its results.
+fn own(rows: &[[f64; 7]], columns: &[&str]) -> Vec<u8> {
+    let field = |(number, name): (u8, &&str)| {
+        let numbers = vec![3 << 3, number, 4 << 3, 1, 5 << 3, 1];
+        part(2, &[part(1, name.as_bytes()), numbers].concat())
+    };
+    let fields: Vec<u8> = (1..).zip(columns).flat_map(field).collect();
+    let message = [part(1, b"pedestrian_imu"), fields].concat();
+    let schema = part(1, &[part(1, b"a.proto"), part(2, b"kestirim"), part(4, &message)].concat());
+    let mut file = file(true);
+    let id = file.add_schema("kestirim.pedestrian_imu", "protobuf", &schema).unwrap();
+    let imu = file.add_channel(id, "/pedestrian/imu", "protobuf", &BTreeMap::new()).unwrap();
+    let other =
+        channel(&mut file, "/pedestrian/estimate", "kestirim.pedestrian_estimate", "protobuf");
+    for &[t, ax, ay, az, gx, gy, gz] in rows {
+        let number =
+            |(number, value): (u8, f64)| [&[number << 3 | 1][..], &value.to_le_bytes()].concat();
+        let message: Vec<u8> = (1..).zip([ax, ay, az, gx, gy, gz]).flat_map(number).collect();
+        write(&mut file, imu, (t * 1e9).round() as u64, &message);
+        write(&mut file, other, (t * 1e9).round() as u64, &[9]);
+    }
+    bytes(file)
+}
+
+const OWN: [&str; 6] = ["ax_m_s2", "ay_m_s2", "az_m_s2", "gx_rad_s", "gy_rad_s", "gz_rad_s"];
+
+#[test]
+fn what_host_sim_writes_is_the_walk() {
+    let rows = walk::rows(super::STRIDES);
+    let log = read(&own(&rows, &OWN)).unwrap();
+    assert_same(&log, &plain(&rows), 0.0);
+    assert!(told(&log).ends_with("topic /pedestrian/imu: MCAP"), "{}", told(&log));
+    let [first, .., last] = OWN;
+    assert!(refusal(&own(&rows, &[first, last])).contains("results of host-sim"));
+    survives(&own(&short(), &OWN), 0..SEEDS / 3);
 }
 
 #[test]

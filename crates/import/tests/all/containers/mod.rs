@@ -2,10 +2,12 @@
 //! ambiguous is told or refused.
 
 mod ardupilot;
+mod flights;
 mod imu;
 mod mcap;
 mod phones;
 mod px4;
+mod ranges;
 mod rosbag;
 
 use kestirim_import::inertial::{self, Inertial, Sample};
@@ -57,6 +59,11 @@ fn assert_same(log: &Inertial, expected: &[Sample], tolerance: f64) {
 
 /// Damages a file by so many seeds: nothing panics or hangs, and what is read is in order.
 fn survives(file: &[u8], seeds: std::ops::Range<u64>) {
+    survives_reading(file, seeds, mutations::read);
+}
+
+/// The same by another reader.
+fn survives_reading(file: &[u8], seeds: std::ops::Range<u64>, read: fn(&[u8], u64)) {
     const LENGTHS: [&[u8]; 4] =
         [b"\xff\xff\xff\xff", b"\xff\xff\xff\x7f\0\0\0\0", b"\0\0\0\0", b"\xff"];
     for seed in seeds {
@@ -80,7 +87,7 @@ fn survives(file: &[u8], seeds: std::ops::Range<u64>) {
             let rest = if part.len() + 100 < end { Vec::new() } else { log[end..].to_vec() };
             log = [part, rest].concat();
         }
-        mutations::read(&log, seed);
+        read(&log, seed);
     }
 }
 

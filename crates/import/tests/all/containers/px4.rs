@@ -18,12 +18,12 @@ const OTHER: &str = "esc_status:uint64_t timestamp;esc_report[2] esc;";
 const NESTED: &str =
     "esc_report:uint64_t timestamp;int32_t rpm;uint8_t state;uint8_t[3] _padding0;";
 
-fn record(kind: u8, body: &[u8]) -> Vec<u8> {
+pub(super) fn record(kind: u8, body: &[u8]) -> Vec<u8> {
     let size = u16::try_from(body.len()).unwrap().to_le_bytes();
     [&size, &[kind][..], body].concat()
 }
 
-fn header(types: &[&str]) -> Vec<u8> {
+pub(super) fn header(types: &[&str]) -> Vec<u8> {
     let mut log = b"ULog\x01\x12\x35\x01".to_vec();
     log.extend(1_000_000_u64.to_le_bytes());
     log.extend(record(b'B', &[0; 40]));
@@ -32,19 +32,19 @@ fn header(types: &[&str]) -> Vec<u8> {
     log
 }
 
-fn topic(id: u16, instance: u8, name: &str) -> Vec<u8> {
+pub(super) fn topic(id: u16, instance: u8, name: &str) -> Vec<u8> {
     record(b'A', &[&[instance][..], &id.to_le_bytes(), name.as_bytes()].concat())
 }
 
-fn data(id: u16, parts: &[&[u8]]) -> Vec<u8> {
+pub(super) fn data(id: u16, parts: &[&[u8]]) -> Vec<u8> {
     record(b'D', &[&id.to_le_bytes()[..], &parts.concat()].concat())
 }
 
-fn singles(values: [f64; 3]) -> Vec<u8> {
+pub(super) fn singles(values: [f64; 3]) -> Vec<u8> {
     values.map(|value| (value as f32).to_le_bytes()).concat()
 }
 
-fn micros(t: f64) -> [u8; 8] {
+pub(super) fn micros(t: f64) -> [u8; 8] {
     ((t * 1e6).round() as u64 + 7_000_000).to_le_bytes()
 }
 

@@ -17,7 +17,7 @@ fn fields(fields: &[(&str, &[u8])]) -> Vec<u8> {
     fields.iter().flat_map(field).collect()
 }
 
-fn record(header: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
+pub(super) fn record(header: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
     let header = fields(header);
     let counted = |bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat();
     [counted(&header), counted(data)].concat()
@@ -33,7 +33,7 @@ fn connection(id: u32, topic: &str, kind: &str) -> Vec<u8> {
     record(&[("conn", &id.to_le_bytes()), ("topic", topic.as_bytes()), ("op", &[7])], &data)
 }
 
-fn message(id: u32, t: f64, data: &[u8]) -> Vec<u8> {
+pub(super) fn message(id: u32, t: f64, data: &[u8]) -> Vec<u8> {
     let received = receipt(t + 0.0007);
     let time = [(received / 1_000_000_000) as u32, (received % 1_000_000_000) as u32];
     let time = time.map(u32::to_le_bytes).concat();
@@ -41,7 +41,7 @@ fn message(id: u32, t: f64, data: &[u8]) -> Vec<u8> {
 }
 
 /// Records in chunks of so many messages, packed, with the index that a player wants.
-fn bag(records: &[Vec<u8>], name: &str, pack: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+pub(super) fn bag(records: &[Vec<u8>], name: &str, pack: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let mut bag = b"#ROSBAG V2.0\n".to_vec();
     let header = [
         ("op", &[3][..]),
@@ -83,7 +83,7 @@ fn records(rows: &[[f64; 7]]) -> Vec<Vec<u8>> {
     records
 }
 
-fn lz4(bytes: &[u8]) -> Vec<u8> {
+pub(super) fn lz4(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
     encoder.write_all(bytes).unwrap();
     encoder.finish().unwrap()

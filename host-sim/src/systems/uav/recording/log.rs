@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use kestirim_import::Options;
+use kestirim_import::flight::{self, Flight};
 
 use crate::Error;
 use crate::systems::uav::recording::model::STATE_COLUMNS;
 use crate::table::{self, Column, Found, Header, Log as Logged};
+use crate::text;
 
 /// Intervals that differ by less than this share from the usual one are jitter.
 const JITTER: f64 = 0.1;
@@ -43,15 +45,66 @@ pub struct Log {
     pub gaps: usize,
 }
 
-/// Reads columns `t`, `delta_e`, `delta_t` and those of the model's outputs that there are.
+/// Reads what an autopilot logged, or columns `t`, `delta_e`, `delta_t` and those of the model's outputs that there are.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
 pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Found), Error> {
+    let bytes = text::bytes(path)?;
+    let flight = flight::read(&bytes, options).map_err(|error| table::refused(path, &error))?;
+    let (outputs, samples, found) = match flight {
+        Some(flight) => of_autopilot(path, names, flight)?,
+        None => of_table(path, &bytes, names, options)?,
+    };
+    if samples.iter().flat_map(|sample| &sample.measured).all(Option::is_none) {
+        let problem = "expected measurements, found none in any line".to_owned();
+        return Err(Error::File { path: path.to_path_buf(), problem });
+    }
+    let (interval_s, gaps) = regular(path, &samples)?;
+    Ok((Log { outputs, samples, interval_s, gaps }, found))
+}
+
+/// Which outputs there are, the samples, and how they were read.
+type Contents = (Vec<usize>, Vec<Sample>, Found);
+
+/// The model's outputs that are states which an autopilot logs.
+fn of_autopilot(path: &Path, names: &[&str], flight: Flight) -> Result<Contents, Error> {
+    let state = |name: &str| STATE_COLUMNS.iter().position(|state| *state == name);
+    let columns: Vec<_> = names
+        .iter()
+        .enumerate()
+        .filter_map(|(output, name)| Some((output, state(name).filter(|&it| flight.has[it])?)))
+        .collect();
+    let has: Vec<_> = (0..4).filter(|&it| flight.has[it]).map(|it| STATE_COLUMNS[it]).collect();
+    if columns.is_empty() {
+        let (names, has) = (names.join(", "), has.join(", "));
+        let problem = format!("expected at least one of {names}, found {has}");
+        return Err(Error::File { path: path.to_path_buf(), problem });
+    }
+    let is_small = |value: &f64| value.abs() <= LARGEST;
+    let sample = |row: &flight::Row| Sample {
+        t_us: row.time_us,
+        input: row.input,
+        measured: columns.iter().map(|&(_, state)| row.state[state].filter(is_small)).collect(),
+    };
+    let rows = flight.rows.iter().filter(|row| row.input.iter().all(is_small));
+    let samples = rows.map(sample).collect();
+    let outputs = columns.iter().map(|(output, _)| *output).collect();
+    let found = Found { import: flight.conclusions, warnings: flight.damage.sentences() };
+    Ok((outputs, samples, found))
+}
+
+fn of_table(
+    path: &Path,
+    bytes: &[u8],
+    names: &[&str],
+    options: &Options,
+) -> Result<Contents, Error> {
     let mut samples: Vec<Sample> = Vec::new();
     let mut outputs = Vec::new();
-    let found = table::read_log(
+    let found = table::parse(
         path,
+        bytes,
         &Logged { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         |header| {
             let inputs = header.require(["t", "delta_e", "delta_t"])?;
@@ -89,12 +142,7 @@ pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Foun
             Ok(())
         },
     )?;
-    if samples.iter().flat_map(|sample| &sample.measured).all(Option::is_none) {
-        let problem = "expected measurements, found none in any line".to_owned();
-        return Err(Error::File { path: path.to_path_buf(), problem });
-    }
-    let (interval_s, gaps) = regular(path, &samples)?;
-    Ok((Log { outputs, samples, interval_s, gaps }, found))
+    Ok((outputs, samples, found))
 }
 
 fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, Column)>, Error> {

@@ -1,0 +1,172 @@
+//! Topics of ROS in a file that hold ranges.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::chunks::{Announced, Messages};
+use super::gather::Losses;
+use super::imu_message::Encoding;
+use super::range_message::{Heard, RangeMessage};
+use crate::damage::Fault;
+use crate::error::{Error, listed};
+use crate::options::Options;
+
+/// More topics are not told of.
+const MOST_NAMES: usize = 100;
+
+/// A topic that may hold ranges.
+#[derive(Debug)]
+pub(crate) struct Topic {
+    pub(crate) name: String,
+    message: RangeMessage,
+    is_heard: bool,
+}
+
+/// A message's range.
+#[derive(Debug)]
+pub(crate) struct Entry {
+    /// Its topic's place.
+    pub(crate) topic: usize,
+    /// When it was sent and received, µs since 1970.
+    pub(crate) stamp: Option<f64>,
+    pub(crate) receipt: f64,
+    pub(crate) heard: Heard,
+}
+
+/// What topics there are, and what they say.
+pub(crate) struct RangeTopics<'o> {
+    options: &'o Options,
+    pub(crate) topics: Vec<Topic>,
+    pub(crate) entries: Vec<Entry>,
+    /// Places of topics by name and type.
+    places: BTreeMap<(String, String), usize>,
+    others: BTreeSet<String>,
+    pub(crate) losses: Losses,
+}
+
+impl<'o> RangeTopics<'o> {
+    pub(super) fn new(options: &'o Options) -> Self {
+        Self {
+            options,
+            topics: Vec::new(),
+            entries: Vec::new(),
+            places: BTreeMap::new(),
+            others: BTreeSet::new(),
+            losses: Losses::default(),
+        }
+    }
+
+    /// The topics that are wanted: the one or those below the one that is said, all that hold `sensor_msgs/Range`, or the
+    /// only other one.
+    ///
+    /// # Errors
+    /// If there is none, or several and nobody says which.
+    pub(crate) fn wanted(&self) -> Result<Vec<usize>, Error> {
+        let bare = |name: &str| name.trim().trim_matches('/').to_owned();
+        let heard: Vec<_> = (0..self.topics.len()).filter(|&it| self.topics[it].is_heard).collect();
+        let names =
+            |places: &[usize]| listed(places.iter().map(|&it| self.topics[it].name.as_str()));
+        if let Some(said) = &self.options.topic {
+            let (own, below) = (bare(said), bare(said) + "/");
+            let is_said = |place: &usize| {
+                let name = bare(&self.topics[*place].name);
+                name == own || name.starts_with(&below)
+            };
+            let found: Vec<_> = heard.iter().copied().filter(is_said).collect();
+            if found.is_empty() {
+                let (said, found) = (listed([said.as_str()]), names(&heard));
+                let problem =
+                    format!("expected ranges on topic {said}, found them on {found} (--topic)");
+                return Err(Error::options(problem));
+            }
+            return self.alike(found);
+        }
+        if heard.is_empty() {
+            let others = listed(self.others.iter().map(String::as_str));
+            let silent = listed(self.topics.iter().map(|topic| topic.name.as_str()));
+            return Err(Error::log(if self.topics.is_empty() {
+                format!(
+                    "expected a topic of ranges, such as sensor_msgs/Range, whose definition is in the file, found {others}"
+                )
+            } else {
+                format!("expected messages of ranges, found none on {silent}")
+            }));
+        }
+        self.alike(heard)
+    }
+
+    /// One topic, or several that each are of an anchor.
+    fn alike(&self, places: Vec<usize>) -> Result<Vec<usize>, Error> {
+        let names_anchors = |place: &usize| self.topics[*place].message.names_anchors();
+        if places.len() == 1 || !places.iter().any(names_anchors) {
+            return Ok(places);
+        }
+        let names = listed(places.iter().map(|&it| self.topics[it].name.as_str()));
+        let first = listed(places.first().map(|&it| self.topics[it].name.as_str()));
+        let problem = format!("expected one topic of ranges, found {names}");
+        Err(Error::undecided(problem, format!("--topic {first}")))
+    }
+
+    /// How much a topic's numbers are in m, and what is told of it.
+    ///
+    /// # Errors
+    /// If nobody says the unit.
+    pub(crate) fn scale(&self, place: usize) -> Result<(f64, String), Error> {
+        let message = &self.topics[place].message;
+        let said = self.options.units.of("range");
+        let unit = said.or_else(|| message.unit.clone()).ok_or_else(|| {
+            let problem = format!("expected a unit of {}, found whole numbers", message.field);
+            Error::undecided(problem, "--units range=mm")
+        })?;
+        Ok((unit.scale, format!("{} in {unit}", message.field)))
+    }
+}
+
+impl Messages for RangeTopics<'_> {
+    fn topic(&mut self, topic: &Announced<'_>) -> Option<usize> {
+        let key = (topic.name.to_owned(), topic.kind.to_owned());
+        if let Some(&place) = self.places.get(&key) {
+            return Some(place);
+        }
+        let encoding = topic.encoding.filter(|encoding| *encoding != Encoding::Protobuf);
+        let message =
+            encoding.and_then(|_| RangeMessage::of(topic.kind, topic.definition, self.options));
+        let Some(message) = message else {
+            if self.others.len() < MOST_NAMES {
+                self.others.insert(format!("{} ({})", topic.name, topic.kind));
+            }
+            return None;
+        };
+        let place = self.topics.len();
+        self.topics.push(Topic { name: topic.name.to_owned(), message, is_heard: false });
+        self.places.insert(key, place);
+        Some(place)
+    }
+
+    fn message(
+        &mut self,
+        place: usize,
+        encoding: Encoding,
+        record: usize,
+        receipt: u64,
+        message: &[u8],
+    ) {
+        let read = self.topics.get_mut(place).and_then(|topic| {
+            let read = topic.message.read(encoding, message)?;
+            topic.is_heard = true;
+            Some(read)
+        });
+        let Some(read) = read else {
+            // Its bytes were read, but it is none.
+            self.losses.add(Fault::Torn, record, 0);
+            return;
+        };
+        let receipt = receipt as f64 / 1e3;
+        let entries = read.heard.into_iter();
+        let entry = |heard| Entry { topic: place, stamp: read.stamp, receipt, heard };
+        self.entries.extend(entries.map(entry));
+    }
+
+    fn losses(&mut self) -> &mut Losses {
+        &mut self.losses
+    }
+}

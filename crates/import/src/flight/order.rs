@@ -1,0 +1,45 @@
+//! Times that only grow.
+
+/// Beyond any clock, µs: three centuries.
+const LATEST: f64 = 1e16;
+
+/// The places of the longest sequence of times that grows from one to the next; what is no time has no place.
+pub(super) fn growing(times: &[f64]) -> Vec<usize> {
+    let is_time = |time: &f64| time.abs() <= LATEST;
+    if times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(is_time) {
+        return (0..times.len()).collect();
+    }
+    // The last place of the best sequence of each length, and what stands before each place.
+    let mut ends: Vec<usize> = Vec::new();
+    let mut before = vec![None; times.len()];
+    for (place, time) in times.iter().enumerate().filter(|(_, time)| is_time(time)) {
+        let length = ends.partition_point(|&end| times[end] < *time);
+        before[place] = length.checked_sub(1).map(|shorter| ends[shorter]);
+        match ends.get_mut(length) {
+            // Of the same time the first is kept.
+            Some(end) if times[*end] == *time => {}
+            Some(end) => *end = place,
+            None => ends.push(place),
+        }
+    }
+    let mut kept = Vec::with_capacity(ends.len());
+    let mut place = ends.last().copied();
+    while let Some(at) = place {
+        kept.push(at);
+        place = before[at];
+    }
+    kept.reverse();
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::growing;
+
+    #[test]
+    fn the_fewest_are_left_out() {
+        assert_eq!(growing(&[1.0, 2.0, 3.0]), [0, 1, 2]);
+        assert_eq!(growing(&[1.0, 9e9, 2.0, f64::NAN, 1e19, 0.5, 3.0, 3.0, 4.0]), [0, 2, 6, 8]);
+        assert_eq!(growing(&[]), [0; 0]);
+    }
+}

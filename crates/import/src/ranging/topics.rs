@@ -1,0 +1,100 @@
+//! Topics of ROS: which anchor each range is to.
+
+use std::collections::BTreeSet;
+
+use super::{Found, place};
+use crate::containers::{self, Label, RangeTopics};
+use crate::damage::Damage;
+use crate::error::{Error, listed};
+use crate::options::Options;
+use crate::part::Part;
+
+/// Reads a bag of ROS 1 or an MCAP file; none if it is none.
+pub(super) fn read(
+    bytes: &[u8],
+    anchors: &[String],
+    options: &Options,
+) -> Result<Option<(Found, String, Damage)>, Error> {
+    let Some((format, topics)) = containers::ranges(bytes, options)? else { return Ok(None) };
+    options.refuse_beside(&["range", "anchor"])?;
+    let wanted = topics.wanted()?;
+    let scales = wanted.iter().map(|&it| topics.scale(it)).collect::<Result<Vec<_>, _>>()?;
+    let mut told: Vec<_> = scales.iter().map(|(_, told)| told.clone()).collect();
+    told.dedup();
+    let is_wanted = |topic: &usize| wanted.iter().position(|it| it == topic);
+    let entries = topics.entries.iter().filter_map(|it| Some((is_wanted(&it.topic)?, it)));
+    let entries: Vec<_> = entries.collect();
+    let has_stamps = entries.iter().any(|(_, it)| it.stamp.is_some_and(|stamp| stamp != 0.0));
+    let by_topic = names_by_topic(&topics, &wanted, anchors)?;
+    let (mut found, mut tags) = (Found::default(), BTreeSet::new());
+    for &(own, entry) in &entries {
+        let time = if has_stamps { entry.stamp.unwrap_or(entry.receipt) } else { entry.receipt };
+        let metres = entry.heard.range * scales[own].0;
+        let label = match (&entry.heard.label, &by_topic) {
+            (Label::Said(label), _) => label,
+            (Label::Frame(_), Some(names)) => &names[own],
+            (Label::Frame(frame), None) => frame,
+        };
+        if metres.is_finite() {
+            found.add(time.round() as i64, label, metres);
+            tags.extend(entry.heard.tag.clone());
+        }
+    }
+    let names = listed(wanted.iter().map(|&it| topics.topics[it].name.as_str()));
+    let noun = if wanted.len() == 1 { "topic" } else { "topics" };
+    let times = if has_stamps { "" } else { ", times of receipt, as there are no stamps" };
+    let tags = match tags.len() {
+        0 | 1 => String::new(),
+        count => format!(", of {count} tags ({})", listed(tags.iter().map(String::as_str))),
+    };
+    let conclusion = format!("{}{tags}: {noun} {names}{times}: {format}", told.join(", "));
+    let damage = topics.losses.damage(Part::Record, entries.len());
+    damage.accept(entries.len() + damage.count(), options.strict)?;
+    Ok(Some((found, conclusion, damage)))
+}
+
+/// The name of an anchor in each topic's name, if that tells more anchors apart than the frames of the messages; none if those
+/// do, or messages name the anchors.
+///
+/// # Errors
+/// If both name as many anchors, but others.
+fn names_by_topic(
+    topics: &RangeTopics<'_>,
+    wanted: &[usize],
+    anchors: &[String],
+) -> Result<Option<Vec<String>>, Error> {
+    let mut frames: Vec<BTreeSet<&str>> = vec![BTreeSet::new(); wanted.len()];
+    for entry in &topics.entries {
+        if let (Label::Frame(frame), Some(own)) =
+            (&entry.heard.label, wanted.iter().position(|&it| it == entry.topic))
+        {
+            frames[own].insert(frame);
+        }
+    }
+    if frames.iter().all(BTreeSet::is_empty) {
+        return Ok(None);
+    }
+    let segment = |&topic: &usize| {
+        let name = topics.topics[topic].name.as_str();
+        let parts = name.rsplit('/');
+        let own = parts.clone().find(|part| place(part, anchors).is_some());
+        own.unwrap_or(name).to_owned()
+    };
+    let names: Vec<_> = wanted.iter().map(segment).collect();
+    let anchor_of = |name: &str| place(name, anchors);
+    let of_topics: BTreeSet<_> = names.iter().filter_map(|name| anchor_of(name)).collect();
+    let of_frames: BTreeSet<_> =
+        frames.iter().flatten().filter_map(|frame| anchor_of(frame)).collect();
+    let is_same = frames
+        .iter()
+        .zip(&names)
+        .all(|(frames, name)| frames.iter().all(|frame| anchor_of(frame) == anchor_of(name)));
+    if of_topics.len() == of_frames.len() && !is_same {
+        return Err(Error::log(format!(
+            "expected anchors by the names of topics or of frames, found topics {} with frames {}",
+            listed(names.iter().map(String::as_str)),
+            listed(frames.iter().flatten().copied()),
+        )));
+    }
+    Ok((of_topics.len() >= of_frames.len()).then_some(names))
+}

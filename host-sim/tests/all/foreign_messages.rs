@@ -1,0 +1,138 @@
+//! Messages of ROS and of this program itself: the same answer as from plain text.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Cursor;
+
+use host_sim::systems::pedestrian::Sample;
+use host_sim::systems::pedestrian::recording::{Recording, Walked};
+use mcap::records::MessageHeader;
+use mcap::{WriteOptions, Writer};
+use serde_json::Value;
+
+use crate::program::{Desk, host_sim, json, refusal};
+use crate::room::Room;
+
+/// Time in ns, anchor and range in m of each line of a log.
+fn rows(log: &str) -> Vec<(u64, u8, f64)> {
+    let text = fs::read_to_string(log).expect("a log");
+    let row = |line: &str| {
+        let fields: Vec<_> = line.split(',').collect();
+        let t: f64 = fields[0].parse().expect("a time");
+        let anchor = fields[1].trim_start_matches('A').parse().expect("a number");
+        ((t * 1e9).round() as u64, anchor, fields[2].parse().expect("a range"))
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+fn stamp(ns: u64) -> Vec<u8> {
+    [ns / 1_000_000_000, ns % 1_000_000_000].map(|it| (it as u32).to_le_bytes()).concat()
+}
+
+/// A bag of ROS 1 (<https://wiki.ros.org/Bags/Format/2.0>) with a topic of `sensor_msgs/Range` for each anchor.
+fn bag(rows: &[(u64, u8, f64)]) -> Vec<u8> {
+    let counted = |bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat();
+    let field = |name: &str, value: &[u8]| counted(&[name.as_bytes(), b"=", value].concat());
+    let record =
+        |header: &[Vec<u8>], data: &[u8]| [counted(&header.concat()), counted(data)].concat();
+    let id = |anchor: u8| field("conn", &u32::from(anchor).to_le_bytes());
+    let mut bag = b"#ROSBAG V2.0\n".to_vec();
+    for anchor in 0..4 {
+        let topic = field("topic", format!("/uwb/a{anchor}/range").as_bytes());
+        let definition =
+            b"Header header\nuint8 radiation_type\nfloat32 field_of_view\nfloat32 min_range\n\
+            float32 max_range\nfloat32 range\n";
+        let data = [
+            topic.clone(),
+            field("type", b"sensor_msgs/Range"),
+            field("message_definition", definition),
+        ];
+        bag.extend(record(&[id(anchor), topic, field("op", &[7])], &data.concat()));
+    }
+    for &(ns, anchor, range) in rows {
+        let numbers = [0.1, 0.0, 100.0, range as f32].map(f32::to_le_bytes).concat();
+        let message = [&[0; 4][..], &stamp(ns), &[3, 0, 0, 0], b"tag", &[0], &numbers].concat();
+        let header = [id(anchor), field("op", &[2]), field("time", &stamp(ns + 3_000_000))];
+        bag.extend(record(&header, &message));
+    }
+    bag
+}
+
+/// MCAP of ROS 2 with messages as `uwb_driver/UwbRange` has them, shortened.
+fn ros2(rows: &[(u64, u8, f64)]) -> Vec<u8> {
+    let options = WriteOptions::new().compression(None);
+    let mut file = Writer::with_options(Cursor::new(Vec::new()), options).expect("a file");
+    let definition = b"std_msgs/Header header\nuint8 requester_id\nuint8 responder_id\nfloat32 distance\nfloat32 distance_err\n";
+    let schema =
+        file.add_schema("uwb_driver/msg/UwbRange", "ros2msg", definition).expect("a schema");
+    let channel_id = file.add_channel(schema, "/uwb", "cdr", &BTreeMap::new()).expect("a channel");
+    for &(ns, anchor, range) in rows {
+        let numbers = [range as f32, 0.03].map(f32::to_le_bytes).concat();
+        // The numbers stand at a multiple of four bytes behind the first four.
+        let message =
+            [&[0, 1, 0, 0][..], &stamp(ns), &[2, 0, 0, 0], b"u\0", &[9, anchor], &numbers].concat();
+        let header = MessageHeader { channel_id, sequence: 0, log_time: ns, publish_time: ns };
+        file.write_to_known_channel(&header, &message).expect("a message");
+    }
+    file.finish().expect("an end");
+    file.into_inner().into_inner()
+}
+
+#[test]
+fn ranges_of_ros_give_the_same_path() {
+    let room = Room::clean();
+    let replay = |log: &str| {
+        let files = ["replay", "robot", "--anchors", &room.anchors, "--log", log, "--json"];
+        json(&host_sim(&[&files[..], &["--truth", &room.truth, "--height", "1"]].concat()))
+    };
+    let plain = replay(&room.log);
+    let rmse = |report: &Value| report["accuracy"]["rmse_m"].as_f64().expect("a number");
+    let rows = rows(&room.log);
+    for (name, file, told) in [
+        ("log.bag", bag(&rows), "topics /uwb/a0/range, /uwb/a1/range"),
+        ("log.mcap", ros2(&rows), "distance in m: topic /uwb: MCAP"),
+    ] {
+        let found = replay(&room.desk.file(name, file));
+        assert_eq!(found["updates"], plain["updates"], "{name}");
+        assert_eq!(found["warnings"], plain["warnings"], "{name}");
+        assert!(found["import"][0].as_str().is_some_and(|it| it.contains(told)), "{name}: {found}");
+        let off_mm = 1e3 * (rmse(&found) - rmse(&plain)).abs();
+        assert!(off_mm < 0.1, "{name}: {off_mm} mm");
+    }
+    let other = room.desk.file("other.mcap", ros2(&[]));
+    let sentence = refusal(&["replay", "robot", "--anchors", &room.anchors, "--log", &other]);
+    assert!(sentence.contains("expected messages of ranges, found none on /uwb"), "{sentence}");
+}
+
+#[test]
+fn what_is_written_of_a_walk_is_the_same_walk() {
+    let desk = Desk::new();
+    let walk = Recording::synthetic(Walked::Route, 100.0, 1, 0).expect("a walk");
+    let row = |sample: &Sample| {
+        let [ax, ay, az] = sample.specific_force;
+        let [gx, gy, gz] = sample.angular_rate;
+        format!("{},{ax},{ay},{az},{gx},{gy},{gz}\n", sample.time_us as f64 * 1e-6)
+    };
+    let rows: String = walk.log.samples.iter().map(row).collect();
+    let plain = desk.file("walk.csv", format!("t,ax,ay,az,gx,gy,gz\n{rows}"));
+    let own = desk.named("own.mcap");
+    let replay = |log: &str, more: &[&str]| {
+        json(&host_sim(&[&["replay", "pedestrian", "--json", "--log", log][..], more].concat()))
+    };
+    let (expected, found) = (replay(&plain, &["--mcap", &own]), replay(&own, &[]));
+    assert_eq!(
+        (&found["samples"], &found["warnings"]),
+        (&expected["samples"], &expected["warnings"])
+    );
+    let strides = |report: &Value| report["strides"].as_array().expect("strides").clone();
+    let (found, expected) = (strides(&found), strides(&expected));
+    assert_eq!(found.len(), expected.len());
+    assert!(found.len() >= 8, "{}", found.len());
+    for (found, expected) in found.iter().zip(&expected) {
+        for axis in ["x", "y", "z", "length_m"] {
+            let number = |stride: &Value| stride[axis].as_f64().expect("a number");
+            let off = (number(found) - number(expected)).abs();
+            assert!(off < 1e-3, "{axis}: {off} m");
+        }
+    }
+}
