@@ -47,6 +47,8 @@ pub struct Group {
     pub path_errors: Vec<f64>,
     /// Footprint RMSE of each, m.
     pub rmse_m: Vec<f64>,
+    /// The same over the root mean square standard deviation of each.
+    pub over_sigma: Vec<f64>,
 }
 
 impl Group {
@@ -59,7 +61,8 @@ impl Group {
         rate_hz: Option<f64>,
         options: &Options,
     ) -> Self {
-        let mut group = Self { path_errors: Vec::new(), rmse_m: Vec::new() };
+        let mut group =
+            Self { path_errors: Vec::new(), rmse_m: Vec::new(), over_sigma: Vec::new() };
         for (log_file, truth_file) in walks {
             let mut log =
                 log::read(&log_file, &log::Options::default()).expect("a recording can be read");
@@ -74,6 +77,7 @@ impl Group {
             println!("{name}: path {error:+.2} %, RMSE {:.3} m", accuracy.rmse_m);
             group.path_errors.push(error.abs());
             group.rmse_m.push(accuracy.rmse_m);
+            group.over_sigma.push(accuracy.error_over_sigma.expect("a standard deviation"));
         }
         group
     }

@@ -75,3 +75,21 @@ fn loops_of_a_bare_chip_close() {
     }
     assert_eq!(logs, 4);
 }
+
+/// Error over standard deviation, of all walks together and of each.
+#[test]
+fn standard_deviations_are_honest() {
+    let Some(folder) = recordings::folder() else { return };
+    let walks = [gcp(&folder, &GCP), gcp(&folder, &GCP_FAST), vicon(&folder)].concat();
+    for causal in [false, true] {
+        let group = Group::track(walks.clone(), None, &industrial(causal));
+        let squares = group.rmse_m.iter().zip(&group.over_sigma);
+        let [errors, sigmas] = squares.fold([0.0, 0.0], |[errors, sigmas], (rmse, over_sigma)| {
+            [errors + rmse * rmse, sigmas + (rmse / over_sigma).powi(2)]
+        });
+        let together = (errors / sigmas).sqrt();
+        println!("together {together:.2}, each {:.2?}", group.over_sigma);
+        assert!((0.7..1.5).contains(&together), "{together}");
+        assert!(group.over_sigma.iter().all(|ratio| *ratio < 2.5), "{:?}", group.over_sigma);
+    }
+}

@@ -250,5 +250,6 @@ fn a_receiver() -> Result<()> {
         };
         cases.extend(FAULTS.par_iter().map(case).collect::<Result<Vec<_>>>()?);
     }
-    judge(&cases)
+    judge(&cases);
+    Ok(())
 }

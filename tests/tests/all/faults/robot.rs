@@ -131,5 +131,6 @@ fn a_tag() -> Result<()> {
         };
         cases.extend(FAULTS.par_iter().map(case).collect::<Result<Vec<_>>>()?);
     }
-    judge(&cases)
+    judge(&cases);
+    Ok(())
 }

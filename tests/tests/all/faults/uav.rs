@@ -144,5 +144,6 @@ fn an_aircraft() -> Result<()> {
             });
         }
     }
-    judge(&cases)
+    judge(&cases);
+    Ok(())
 }
