@@ -65,6 +65,15 @@ impl<T: Scalar> Orientation<T> {
         Self::shortest_to_up(x, y, z)
     }
 
+    /// This orientation with its tilt as a specific force measured at rest (body, any unit) shows it, by the
+    /// shortest turn: a heading that was right stays so.
+    ///
+    /// `None` where the force is zero or not finite and so has no direction.
+    pub fn levelled(&self, force: &SVector<T, 3>) -> Option<Self> {
+        let upright = Self::from_specific_force(&self.to_earth(force))?;
+        Some(upright.then_body(self).renormalised())
+    }
+
     /// The shortest turn of the unit vector (x, y, z), z ≥ 0, to (0, 0, 1).
     fn shortest_to_up(x: T, y: T, z: T) -> Option<Self> {
         Self::from_quaternion([T::ONE + z, y, -x, T::ZERO])

@@ -116,3 +116,23 @@ fn a_million_small_turns_keep_the_norm_if_it_is_brought_back_now_and_then() {
     let norm: f32 = orientation.quaternion().iter().map(|q| q * q).sum();
     assert!((norm - 1.0).abs() < 1e-5);
 }
+
+proptest! {
+    /// What a tilt was wrong by is gone, and a heading that was right is still.
+    #[test]
+    fn a_levelled_orientation_keeps_its_heading(
+        heading in -3.0..3.0f64,
+        mounted in proptest::array::uniform3(-1.5..1.5f64),
+        tilt in proptest::array::uniform2(-0.8..0.8f64),
+        v in proptest::array::uniform3(-10.0..10.0f64),
+    ) {
+        let truth = Orientation::<f64>::identity()
+            .turned_in_earth(&cast(mounted))
+            .turned_in_earth(&cast([0.0, 0.0, heading]));
+        let wrong = truth.turned_in_earth(&cast([tilt[0], tilt[1], 0.0]));
+        let levelled = wrong.levelled(&truth.to_body(&cast([0.0, 0.0, 9.8]))).unwrap();
+        let expected = truth.to_earth(&cast(v));
+        prop_assert!(distance(&levelled.to_earth(&cast(v)), expected) < 1e-3);
+        prop_assert!(wrong.levelled(&cast([0.0; 3])).is_none());
+    }
+}

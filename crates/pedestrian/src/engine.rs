@@ -20,9 +20,14 @@ pub(crate) struct Engine<T: Scalar, N> {
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
+    /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
+    is_tilted: bool,
 }
 
 impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
+    /// Below this SHOE statistic, (rad/s)², a stance shows where gravity is.
+    const CALM: f64 = 0.1;
+
     pub(crate) fn new(config: Config<T>) -> Self {
         Self {
             config,
@@ -32,6 +37,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             strides: Strides::new(),
             health: Health::new(),
             was_stance: false,
+            is_tilted: false,
         }
     }
 
@@ -89,8 +95,17 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 };
                 navigator.propagate(&step, verdict.stance);
                 if verdict.stance {
-                    if !self.was_stance {
-                        self.health.landing(&navigator.velocity(), self.config.sensor);
+                    let landing = !self.was_stance;
+                    if landing {
+                        self.is_tilted |=
+                            self.health.landing(&navigator.velocity(), self.config.sensor);
+                    }
+                    if self.is_tilted {
+                        let levelled = navigator.orientation().levelled(&sample.specific_force);
+                        if let Some(orientation) = levelled {
+                            navigator.restart(self.config.sensor, orientation);
+                        }
+                        self.is_tilted = verdict.statistic > T::from_f64(Self::CALM);
                     }
                     let velocity = velocity_of_rolling(
                         &navigator.orientation(),
@@ -101,7 +116,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         velocity,
                         statistic: verdict.statistic,
                         interval,
-                        landing: !self.was_stance,
+                        landing,
                     });
                 }
             }

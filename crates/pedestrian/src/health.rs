@@ -132,8 +132,9 @@ impl<T: Scalar> Health<T> {
         self.warnings.gravity_implausible |= (gravity - T::ONE).abs() > T::from_f64(tolerance);
     }
 
-    /// A swing ended with this velocity (m/s, earth) where there should be none.
-    pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>, sensor: SensorClass) {
+    /// A swing ended with this velocity (m/s, earth) where there should be none. Whether it is so large that the tilt
+    /// must be lost.
+    pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>, sensor: SensorClass) -> bool {
         let [x, y, z] = velocity.as_array().map(T::abs);
         let limits = sensor.landing();
         for (index, size) in [x.max(y), z].into_iter().enumerate() {
@@ -143,9 +144,11 @@ impl<T: Scalar> Health<T> {
             self.warnings.landings_implausible |= *smoothed > T::from_f64(limits[index]);
         }
         let limit = T::from_f64(Self::LANDING);
-        if velocity.as_array().iter().any(|component| component.abs() > limit) {
+        let is_bad = x.max(y).max(z) > limit;
+        if is_bad {
             self.bad_landings = self.bad_landings.saturating_add(1);
         }
         self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;
+        is_bad
     }
 }

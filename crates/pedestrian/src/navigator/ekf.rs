@@ -124,6 +124,12 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         self.swing = T::ZERO;
     }
 
+    fn restart(&mut self, sensor: SensorClass, orientation: Orientation<T>) {
+        let position = self.strapdown.position - self.strapdown.velocity * (self.swing * T::HALF);
+        *self = Self::start(sensor, orientation);
+        self.strapdown.position = position;
+    }
+
     fn position(&self) -> SVector<T, 3> {
         self.strapdown.position
     }

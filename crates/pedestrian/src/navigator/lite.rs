@@ -70,6 +70,12 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         self.drifted = T::ZERO;
     }
 
+    fn restart(&mut self, sensor: SensorClass, orientation: Orientation<T>) {
+        let position = self.strapdown.position - self.strapdown.velocity * (self.drifted * T::HALF);
+        *self = Self::start(sensor, orientation);
+        self.strapdown.position = position;
+    }
+
     fn position(&self) -> SVector<T, 3> {
         self.strapdown.position
     }

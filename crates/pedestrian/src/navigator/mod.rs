@@ -49,6 +49,9 @@ pub trait Navigator<T: Scalar> {
     fn propagate(&mut self, step: &Step<T>, stance: bool);
     /// The foot stands at the end of this step.
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>);
+    /// The tilt was lost: begins anew at rest with this orientation, where the swing led with the drift of its velocity
+    /// taken back.
+    fn restart(&mut self, sensor: SensorClass, orientation: Orientation<T>);
     /// Position of the sensor (m, earth, from the start).
     fn position(&self) -> SVector<T, 3>;
     /// Velocity of the sensor (m/s, earth).

@@ -17,6 +17,7 @@ fn orientations<T: Scalar>() {
     keep(Orientation::up_in_body(&orientation));
     keep(Orientation::heading(&orientation));
     keep(Orientation::renormalised(&orientation));
+    keep(Orientation::levelled(&orientation, &matrix()));
 }
 
 fn references<T: Scalar>() {

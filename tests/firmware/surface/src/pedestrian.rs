@@ -58,6 +58,8 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
         let (velocity, landing) = (matrix(), yes_or_no());
         let zero = any(ZeroVelocity { velocity, statistic: number(), interval: number(), landing });
         Navigator::zero_velocity(any(&mut navigator), &zero);
+        let sensor = one_of([SensorClass::Industrial, SensorClass::Consumer]);
+        Navigator::restart(any(&mut navigator), sensor, any(Orientation::identity()));
     }
     keep(Navigator::position(&navigator));
     keep(Navigator::velocity(&navigator));
