@@ -5,7 +5,9 @@
 //! is printed.
 
 use host_sim::metrics::{mean, median};
+use host_sim::system::ScalarKind;
 use host_sim::systems::pedestrian::recording::log;
+use host_sim::systems::pedestrian::recording::position::TrackPoint;
 use host_sim::systems::pedestrian::settings::{Options, SensorClass};
 use host_sim::systems::pedestrian::track::{Walk, walk};
 use kestirim_tests::recordings::{self, GCP, GCP_FAST, Group, gcp, vicon};
@@ -91,5 +93,51 @@ fn standard_deviations_are_honest() {
         println!("together {together:.2}, each {:.2?}", group.over_sigma);
         assert!((0.7..1.5).contains(&together), "{together}");
         assert!(group.over_sigma.iter().all(|ratio| *ratio < 2.5), "{:?}", group.over_sigma);
+    }
+}
+
+/// A stalled bus delivers zeros, a full queue nothing: the path before and after is as without it.
+#[test]
+fn a_walk_goes_on_after_stalls_and_gaps() {
+    let Some(folder) = recordings::folder() else { return };
+    for (log_file, _) in gcp(&folder, &GCP) {
+        let samples = log::read(&log_file, &log::Options::default()).expect("a log").samples;
+        let [first, last] = [0, samples.len() - 1].map(|index| samples[index].time_us);
+        let middle = u64::midpoint(first, last);
+        for (causal, scalar) in [
+            (false, ScalarKind::F32),
+            (false, ScalarKind::F64),
+            (true, ScalarKind::F32),
+            (true, ScalarKind::Fixed),
+        ] {
+            let options = Options { scalar, ..industrial(causal) };
+            let clean = walk(&samples, &options).expect("a walk");
+            for (seconds, is_gap) in [(0.1, false), (0.6, false), (10.0, false), (1.0, true)] {
+                let end = middle + (seconds * 1e6) as u64;
+                let mut faulty = samples.clone();
+                if is_gap {
+                    faulty.retain(|sample| !(middle..end).contains(&sample.time_us));
+                }
+                for sample in &mut faulty {
+                    if (middle..end).contains(&sample.time_us) {
+                        (sample.specific_force, sample.angular_rate) = ([0.0; 3], [0.0; 3]);
+                    }
+                }
+                let faulty = walk(&faulty, &options).expect("a walk");
+                let finite = |point: &TrackPoint| point.position.iter().all(|it| it.is_finite());
+                assert!(faulty.track.iter().all(finite));
+                // Three strides to notice and to level.
+                let path = |walk: &Walk, from: u64, to: u64| -> f64 {
+                    let inside = walk.strides.iter().filter(|it| (from..to).contains(&it.time_us));
+                    inside.map(|stride| stride.length_m).sum()
+                };
+                let what = format!("{} {seconds} s, {options:?}", log_file.display());
+                for (from, to) in [(0, middle - 1_000_000), (end + 3_000_000, u64::MAX)] {
+                    let (with, without) = (path(&faulty, from, to), path(&clean, from, to));
+                    let close = (with - without).abs() <= 0.02 * without + 0.01;
+                    assert!(close, "{what}: {with} or {without} m");
+                }
+            }
+        }
     }
 }

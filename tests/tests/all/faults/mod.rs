@@ -23,7 +23,7 @@ use tempfile::TempDir;
 const UNSEEN: &[(&str, &str, &str)] =
     &[("", "room mirrored", "a mirrored room has the same ranges")];
 
-/// One run of a system: its error, m (UAV: rad), and what the user was told.
+/// One run of a system: its error, m (UAV: mrad), and what the user was told.
 #[derive(Debug, Clone)]
 struct Answer {
     /// `None`: refused.
@@ -118,14 +118,39 @@ fn run(
     })
 }
 
+/// The table as the book has it: a row a fault, two columns a recording.
+fn print(cases: &[Case]) {
+    let number = |error: Option<f64>| match error {
+        None => "refused".to_owned(),
+        Some(error) if error.is_infinite() => "none".to_owned(),
+        Some(error) if error < 10.0 => format!("{error:.3}"),
+        Some(error) => format!("{error:.0}"),
+    };
+    let first = cases.first().map_or("", |case| case.fault);
+    let cleans = cases.iter().filter(|case| case.fault == first);
+    let columns =
+        cleans.map(|case| format!("{}: {} | told", case.recording, number(case.clean.error)));
+    let columns: Vec<_> = columns.collect();
+    println!("| fault | {} |\n|---{}|", columns.join(" | "), "|---|---".repeat(columns.len()));
+    let one = cases.iter().take_while(|case| case.recording == cases[0].recording);
+    for Case { fault, .. } in one {
+        let same = cases.iter().filter(|case| case.fault == *fault);
+        let columns = same.map(|case| {
+            let told = match (case.is_silent_and_wrong(), case.is_told()) {
+                _ if case.faulty.error.is_none() => "",
+                (true, _) => "**no**",
+                (_, true) => &case.faulty.told,
+                _ => "–",
+            };
+            format!("{} | {told}", number(case.faulty.error))
+        });
+        println!("| {fault} | {} |", columns.collect::<Vec<_>>().join(" | "));
+    }
+}
+
 /// Looks at all cases of a system at once.
 fn judge(cases: &[Case]) {
-    println!(
-        "| recording | fault | error clean | faulty | error/σ | told | |\n|---|---|---|---|---|---|---|"
-    );
-    for case in cases {
-        println!("{}", case.row());
-    }
+    print(cases);
     let told = cases.iter().filter(|case| case.is_told()).count();
     let harmed = cases.iter().filter(|case| case.is_harmed());
     println!("{} cases, {} harmed, {told} told", cases.len(), harmed.count());

@@ -107,8 +107,9 @@ fn flight(inputs: Inputs) -> (Table, Table) {
     (log, Table { header: header("t,alpha"), rows: true_rows.collect() })
 }
 
+/// The error of α in the second half, mrad.
 fn measure(report: &Value) -> Option<f64> {
-    report["accuracy"]["late_rmse"][0].as_f64()
+    Some(1e3 * report["accuracy"]["late_rmse"][0].as_f64()?)
 }
 
 fn replay(
