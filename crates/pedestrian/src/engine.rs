@@ -5,7 +5,7 @@ use crate::health::Health;
 use crate::navigator::{Navigator, Step, ZeroVelocity, velocity_of_rolling};
 use crate::sample::Size;
 use crate::stride::Strides;
-use crate::{Alignment, Config, Error, Estimate, ImuSample, Stride, Warnings};
+use crate::{Alignment, Config, Error, Estimate, ImuSample, SensorClass, Stride, Warnings};
 use kestirim_attitude::Orientation;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -100,11 +100,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         self.is_tilted |=
                             self.health.landing(&navigator.velocity(), self.config.sensor);
                     }
-                    if self.is_tilted {
-                        let levelled = navigator.orientation().levelled(&sample.specific_force);
-                        if let Some(orientation) = levelled {
-                            navigator.restart(self.config.sensor, orientation);
-                        }
+                    if self.is_tilted && self.config.levels {
+                        level(navigator, &sample.specific_force, self.config.sensor);
                         self.is_tilted = verdict.statistic > T::from_f64(Self::CALM);
                     }
                     let velocity = velocity_of_rolling(
@@ -160,5 +157,18 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         // Fixed point stays at its largest value, and the path length only grows.
         let out_of_range = self.strides.path_length() == T::MAX;
         Warnings { out_of_range, ..self.health.warnings() }
+    }
+}
+
+/// Levels a foot as its stance shows gravity, with the heading that it has.
+#[cold]
+#[inline(never)] // It is seldom called: its locals stay off every sample's stack.
+fn level<T: Scalar, N: Navigator<T>>(
+    navigator: &mut N,
+    force: &SVector<T, 3>,
+    sensor: SensorClass,
+) {
+    if let Some(orientation) = navigator.orientation().levelled(force) {
+        navigator.restart(sensor, orientation);
     }
 }

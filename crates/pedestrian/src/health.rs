@@ -83,10 +83,10 @@ impl<T: Scalar> Health<T> {
     const LANDING: f64 = 2.0;
     /// … if it happens so often.
     const LANDINGS: u8 = 4;
-    /// Weight of a landing among those before.
-    const SHARE: f64 = 1.0 / 8.0;
     /// So much of one landing counts at most (m/s): a stumble is no fault.
-    const MOST: [f64; 2] = [2.0, 0.5];
+    const MOST_SIDEWAYS: f64 = 2.0;
+    /// The same upwards.
+    const MOST_UPWARDS: f64 = 0.5;
 
     pub(crate) fn new() -> Self {
         let nothing = Repeats { last: SVector::zeros(), counts: [0; 3], threes: 0 };
@@ -136,13 +136,11 @@ impl<T: Scalar> Health<T> {
     /// must be lost.
     pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>, sensor: SensorClass) -> bool {
         let [x, y, z] = velocity.as_array().map(T::abs);
-        let limits = sensor.landing();
-        for (index, size) in [x.max(y), z].into_iter().enumerate() {
-            let size = size.min(T::from_f64(Self::MOST[index]));
-            let smoothed = &mut self.left_over[index];
-            *smoothed += (size - *smoothed) * T::from_f64(Self::SHARE);
-            self.warnings.landings_implausible |= *smoothed > T::from_f64(limits[index]);
-        }
+        let [sideways, upwards] = sensor.landing::<T>();
+        let [horizontal, vertical] = &mut self.left_over;
+        let horizontal = smoothed(horizontal, x.max(y).min(T::from_f64(Self::MOST_SIDEWAYS)));
+        let vertical = smoothed(vertical, z.min(T::from_f64(Self::MOST_UPWARDS)));
+        self.warnings.landings_implausible |= horizontal > sideways || vertical > upwards;
         let limit = T::from_f64(Self::LANDING);
         let is_bad = x.max(y).max(z) > limit;
         if is_bad {
@@ -151,4 +149,11 @@ impl<T: Scalar> Health<T> {
         self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;
         is_bad
     }
+}
+
+/// Brings an average over eight landings up to date.
+#[inline]
+fn smoothed<T: Scalar>(average: &mut T, size: T) -> T {
+    *average += (size - *average) * T::from_f64(1.0 / 8.0);
+    *average
 }

@@ -41,10 +41,11 @@ impl SensorClass {
     /// What a healthy sensor leaves of the velocity when a swing ends, horizontal and vertical, on average over eight
     /// strides at most (m/s). Of 30 walks with whole gyroscopes none left more than 0.57 and 0.09 (industrial), 0.40
     /// and 0.17; a scale 5 % wrong leaves 0.16 to 0.22 upwards, a zero 3 °/s wrong 1.0 to 1.8 sideways.
-    pub(crate) fn landing(self) -> [f64; 2] {
+    #[inline] // So that the constants fold: without that, double precision is linked.
+    pub(crate) fn landing<T: Scalar>(self) -> [T; 2] {
         match self {
-            Self::Industrial => [0.75, 0.12],
-            Self::Consumer => [0.5, 0.2],
+            Self::Industrial => [T::from_f64(0.75), T::from_f64(0.12)],
+            Self::Consumer => [T::from_f64(0.5), T::from_f64(0.2)],
         }
     }
 

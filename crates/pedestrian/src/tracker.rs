@@ -17,12 +17,15 @@ pub struct Config<T> {
     /// Height of the sensor above the ball of the foot, about which the foot rolls in stance (m). Zero
     /// takes the foot for motionless.
     pub contact_height: T,
+    /// Whether a foot whose tilt was lost is levelled at the next calm stance. A detector with a threshold of its own takes
+    /// a moving foot for standing so often that this may do harm.
+    pub levels: bool,
 }
 
 impl<T: Scalar> Default for Config<T> {
     /// A consumer IMU on the instep, 7 cm up.
     fn default() -> Self {
-        Self { sensor: SensorClass::default(), contact_height: T::from_f64(0.07) }
+        Self { sensor: SensorClass::default(), contact_height: T::from_f64(0.07), levels: true }
     }
 }
 

@@ -19,6 +19,7 @@ struct Report {
     system: &'static str,
     samples: usize,
     duration_s: f64,
+    sensor: String,
     path_length_m: f64,
     closure_m: f64,
     strides: Vec<StrideReport>,
@@ -53,6 +54,7 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         system: Pedestrian::NAME,
         samples: log.samples.len(),
         duration_s: log.duration_s(),
+        sensor: format!("{:?}", walk.sensor).to_lowercase(),
         path_length_m: walk.path_length_m,
         closure_m: walk.closure_m,
         strides: strides.collect(),
@@ -67,6 +69,7 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         account.doubt(*reason);
     }
     account.fact("samples", format!("{} in {:.1} s", report.samples, report.duration_s));
+    account.fact("class of the sensor", report.sensor.clone());
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));
     account.fact("start to end", format!("{:.2} m", report.closure_m));

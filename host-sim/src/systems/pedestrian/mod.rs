@@ -27,6 +27,7 @@ use self::paper::experiment;
 use self::recording::{Recording, Walked, calibration};
 use self::settings::Options;
 use self::track::Track;
+use self::track::sensor::class_of;
 use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
@@ -135,7 +136,12 @@ impl System for Pedestrian {
     }
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
-        let firmware = Options::of(settings).firmware();
+        let options = Options::of(settings);
+        let options = match recording {
+            Some(recording) => options.with_sensor(|| class_of(&recording.log.samples)),
+            None => options,
+        };
+        let firmware = options.firmware();
         match recording.and_then(Recording::calibration) {
             Some(known) => format!("{firmware}\n\n{}", calibration::firmware(known)),
             None => firmware,

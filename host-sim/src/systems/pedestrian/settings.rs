@@ -36,7 +36,7 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
             1.0,
         )
         .live(),
-        Setting::one_of("sensor", "Class of the sensor", &SensorClass::default()).live(),
+        Setting::one_of("sensor", "Class of the sensor", &SensorClass::Found).live(),
         Setting::number(
             "contact-height",
             "Height of the sensor above the ball of the foot, about which the foot rolls in stance; 0 takes it for \
@@ -151,6 +151,19 @@ impl Options {
         }
     }
 
+    /// With the class that is found, unless it is said.
+    #[must_use]
+    pub(super) fn with_sensor(
+        &self,
+        found: impl FnOnce() -> kestirim_pedestrian::SensorClass,
+    ) -> Self {
+        let sensor = match self.sensor {
+            SensorClass::Found => SensorClass::from(found()),
+            said => said,
+        };
+        Self { sensor, ..*self }
+    }
+
     /// The same in firmware.
     pub(super) fn firmware(&self) -> String {
         let (scalar, number) =
@@ -159,10 +172,13 @@ impl Options {
         let mut literal =
             Literal::new("kestirim_pedestrian::Config", self.scalar, &config, "Config::default()")
                 .number_field("contact_height", self.contact_height_m());
-        if self.sensor != SensorClass::default() {
+        if self.sensor == SensorClass::Industrial {
             literal = literal
                 .import("kestirim_pedestrian::SensorClass")
                 .field("sensor", format!("SensorClass::{:?}", self.sensor));
+        }
+        if self.detector != DetectorKind::Adaptive {
+            literal = literal.field("levels", "false".to_owned());
         }
         let detector = match self.detector {
             DetectorKind::Adaptive => None,
@@ -217,6 +233,8 @@ pub enum TrackerKind {
 /// Class of an IMU: how large its bias and noise are before anything is known.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum SensorClass {
+    /// From what the gyroscope shows at rest; of a stream that is followed while it comes: consumer
+    Found,
     /// Bare chips (MPU-6050, MPU-9250, the Razor): gyro bias about 0.1 rad/s
     #[default]
     Consumer,
@@ -228,7 +246,16 @@ impl From<SensorClass> for kestirim_pedestrian::SensorClass {
     fn from(class: SensorClass) -> Self {
         match class {
             SensorClass::Industrial => Self::Industrial,
-            SensorClass::Consumer => Self::Consumer,
+            SensorClass::Consumer | SensorClass::Found => Self::Consumer,
+        }
+    }
+}
+
+impl From<kestirim_pedestrian::SensorClass> for SensorClass {
+    fn from(class: kestirim_pedestrian::SensorClass) -> Self {
+        match class {
+            kestirim_pedestrian::SensorClass::Industrial => Self::Industrial,
+            kestirim_pedestrian::SensorClass::Consumer => Self::Consumer,
         }
     }
 }
@@ -336,8 +363,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_set_is_the_default() {
-        assert_eq!(Options::of(&Settings::new(table(None))), Options::default());
+    fn nothing_set_is_the_default_but_for_the_sensor_which_is_found() {
+        let options = Options::of(&Settings::new(table(None)));
+        assert_eq!(options.sensor, SensorClass::Found);
+        let consumer = options.with_sensor(|| kestirim_pedestrian::SensorClass::Consumer);
+        assert_eq!(consumer, Options::default());
     }
 
     #[test]

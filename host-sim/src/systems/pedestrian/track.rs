@@ -1,5 +1,6 @@
 //! Feeds a walk to the tracker, in the number type, mode and shape that were chosen.
 
+pub(super) mod sensor;
 pub mod trace;
 
 use std::fmt::Debug;
@@ -20,7 +21,7 @@ use super::Sample;
 use super::account::warning;
 use super::recording::Recording;
 use super::recording::position::TrackPoint;
-use super::settings::{DetectorKind, Options, TrackerKind};
+use super::settings::{DetectorKind, Options, SensorClass, TrackerKind};
 use crate::Error;
 use crate::metrics::STANDARD_GRAVITY;
 use crate::system::{Detail, HealthState, Reason, ScalarKind};
@@ -79,6 +80,8 @@ pub struct Walk {
     pub closure_m: f64,
     /// What is suspicious about the sensor or the walk.
     pub warnings: Vec<String>,
+    /// The class of sensor that it was tracked for.
+    pub sensor: SensorClass,
     /// Why it suffers.
     pub reasons: Vec<Reason>,
     /// How far it can be relied upon, where that changes: from which entry of the track on.
@@ -146,6 +149,7 @@ fn watched(
     if samples.len() < 2 {
         return Err(RunError::TooShort { found: samples.len(), needed: 2 });
     }
+    let options = &options.with_sensor(|| sensor::class_of(samples));
     match options.scalar {
         ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
         ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),
@@ -187,7 +191,8 @@ fn with_navigator<T: Scalar, N: Navigator<T>>(
 
 /// What a tracker is built from.
 pub(super) fn config<T: Scalar>(options: &Options) -> Config<T> {
-    let config = Config { sensor: options.sensor.into(), ..Config::default() };
+    let levels = options.detector == DetectorKind::Adaptive;
+    let config = Config { sensor: options.sensor.into(), levels, ..Config::default() };
     match options.contact_height_m() {
         Some(height) => Config { contact_height: T::from_f64(height), ..config },
         None => config,
@@ -335,6 +340,7 @@ impl Walk {
         sensor: kestirim_pedestrian::SensorClass,
     ) {
         self.never_still = warnings.never_still;
+        self.sensor = sensor.into();
         self.strides.extend(last.as_ref().map(Stride::from_estimate));
         let mut uncertainty = PathUncertainty::new(sensor);
         self.first_sigma_m = uncertainty.standard_deviation().into();
