@@ -21,6 +21,9 @@ pub struct Warnings {
     /// Repeatedly strides end with a velocity of metres a second left over: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
     pub axes_inconsistent: bool,
+    /// A swing ended with metres a second left over: the tilt was lost, by samples that are missing or wrong. It is levelled
+    /// again ([`Config::levels`](crate::Config::levels)), but the turn of that moment is not known.
+    pub tilt_lost: bool,
     /// Stride by stride too large a velocity is left over: the gyroscope is clipped, its scale or zero has changed, it
     /// comes late, or the clock runs wrong.
     pub landings_implausible: bool,
@@ -146,6 +149,7 @@ impl<T: Scalar> Health<T> {
         if is_bad {
             self.bad_landings = self.bad_landings.saturating_add(1);
         }
+        self.warnings.tilt_lost |= is_bad;
         self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;
         is_bad
     }

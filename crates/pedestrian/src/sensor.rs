@@ -52,7 +52,7 @@ impl SensorClass {
     /// Standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
     pub(crate) fn heading_rate(self) -> f64 {
         match self {
-            Self::Industrial => 0.0008,
+            Self::Industrial => 0.0006,
             Self::Consumer => 0.002,
         }
     }
@@ -60,7 +60,7 @@ impl SensorClass {
     /// Standard deviation of the scale of all strides of a walk.
     pub(crate) fn stride_scale(self) -> f64 {
         match self {
-            Self::Industrial => 0.006,
+            Self::Industrial => 0.005,
             Self::Consumer => 0.01,
         }
     }

@@ -36,7 +36,7 @@ pub struct PathUncertainty<T: Scalar> {
 
 impl<T: Scalar> PathUncertainty<T> {
     /// Standard deviation of a footprint in the plane, each axis (m).
-    const FOOTPRINT: f64 = 0.035;
+    const FOOTPRINT: f64 = 0.028;
     /// Standard deviation of the height gained in a stride (m).
     const HEIGHT: f64 = 0.047;
 
@@ -92,8 +92,8 @@ mod tests {
     fn a_straight_path_goes_astray_to_the_side() {
         let [x, y, z] = *straight::<f64>(100).as_array();
         // The sum of k seconds of drift over k metres: half of 100 · 101 strides.
-        assert!((y - (0.0008_f64 * 5050.0).hypot(0.035 * 101_f64.sqrt())).abs() < 1e-9, "{y} m");
-        assert!((x - (0.006_f64 * 100.0).hypot(0.035 * 101_f64.sqrt())).abs() < 1e-9, "{x} m");
+        assert!((y - (0.0006_f64 * 5050.0).hypot(0.028 * 101_f64.sqrt())).abs() < 1e-9, "{y} m");
+        assert!((x - (0.005_f64 * 100.0).hypot(0.028 * 101_f64.sqrt())).abs() < 1e-9, "{x} m");
         assert!((z - 0.047 * 101_f64.sqrt()).abs() < 1e-9, "{z} m");
     }
 

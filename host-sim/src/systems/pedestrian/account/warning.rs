@@ -42,6 +42,11 @@ fn raised(warnings: Warnings) -> impl Iterator<Item = (Reason, &'static str)> {
             "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
         ),
         (
+            warnings.tilt_lost,
+            Reason::Dropout,
+            "the tilt was lost and found again: samples are missing or wrong, and what the foot turned meanwhile is not known",
+        ),
+        (
             warnings.landings_implausible,
             Reason::Innovations,
             "stride by stride too large a velocity is left over: the gyroscope is clipped, late, or its scale or zero is \
