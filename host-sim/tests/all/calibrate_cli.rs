@@ -14,7 +14,7 @@ use host_sim::systems::pedestrian::simulate::sensor::razor_text;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde_json::Value;
 
-use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 
 const RATE_HZ: f64 = 100.0;
 /// How long a position is held, and how long it takes to turn to the next, s.
@@ -203,10 +203,8 @@ fn twelve_positions_tell_what_is_wrong_and_a_walk_comes_out_right() {
         let replay = ["replay", "pedestrian", "--log", log, "--track", &track];
         let output = host_sim(&[&replay[..], more].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
-        let rows = fs::read_to_string(&track).expect("a track");
-        let number = |field: &str| field.parse::<f64>().expect("a number");
-        let place = |row: &str| row.split(',').skip(1).map(number).collect::<Vec<_>>();
-        rows.lines().skip(1).map(place).collect::<Vec<_>>()
+        let (_, rows) = rows_of::<4>(&track);
+        rows.into_iter().map(|([_, x, y, z], _)| vec![x, y, z]).collect::<Vec<_>>()
     };
     let plain = track(&plain, &[]);
     let apart = |other: &[Vec<f64>]| {

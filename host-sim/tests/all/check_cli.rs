@@ -63,7 +63,9 @@ fn the_faults_of_a_walk_are_told_with_what_to_do() {
     let log = desk.named("stuck.txt");
     let replay = parsed(&host_sim(&["replay", "pedestrian", "--json", "--log", &log]));
     assert!(replay["warnings"].to_string().contains("repeated itself"), "{replay}");
-    assert_eq!(replay["health"], json!({ "state": "degraded", "reasons": ["stuck"] }));
+    // The foot was in a swing: what it turned meanwhile is lost, too.
+    assert_eq!(replay["health"]["state"], "bad");
+    assert_eq!(replay["health"]["reasons"][0], "stuck");
     let table = host_sim(&["check", "pedestrian", "--log", &desk.named("clean.txt")]);
     assert!(text(&table.stdout).contains("at rest, gravity 9."), "{}", text(&table.stdout));
 }

@@ -192,8 +192,8 @@ mod tests {
         );
         for (from, to, expected) in [
             ("acc_xx,0.98", "acc_xx,9.8", "line 5: expected 1 ± 1, found 9.8"),
-            ("acc_xx", "acc_qq", "line 5: expected another parameter, found acc_qq"),
-            ("acc_xy", "acc_xx", "line 6: expected another parameter, found acc_xx"),
+            ("acc_xx", "acc_qq", "line 5: expected another parameter, found \"acc_qq\""),
+            ("acc_xy", "acc_xx", "line 6: expected another parameter, found \"acc_xx\""),
             ("acc_offset_x,0.3", "acc_offset_x,300.3", "line 2: expected 0 ± 20 m/s², found"),
             ("gyro_zz,1.0000000,,\n", "", "expected a parameter gyro_zz, found none"),
             ("acc_zz,1.01", "acc_zz,up1.01", "line 13: expected a finite number"),
