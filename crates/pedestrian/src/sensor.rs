@@ -50,18 +50,20 @@ impl SensorClass {
     }
 
     /// Standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
-    pub(crate) fn heading_rate(self) -> f64 {
+    #[inline] // As above.
+    pub(crate) fn heading_rate<T: Scalar>(self) -> T {
         match self {
-            Self::Industrial => 0.0006,
-            Self::Consumer => 0.002,
+            Self::Industrial => T::from_f64(0.00065),
+            Self::Consumer => T::from_f64(0.002),
         }
     }
 
     /// Standard deviation of the scale of all strides of a walk.
-    pub(crate) fn stride_scale(self) -> f64 {
+    #[inline] // As above.
+    pub(crate) fn stride_scale<T: Scalar>(self) -> T {
         match self {
-            Self::Industrial => 0.005,
-            Self::Consumer => 0.01,
+            Self::Industrial => T::from_f64(0.005),
+            Self::Consumer => T::from_f64(0.01),
         }
     }
 
