@@ -54,7 +54,8 @@ pub(super) fn check(
     let left = tried.left(Moment::clone, &anchors, height)?;
     let agree =
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
-    if left < SUSPICION_M {
+    // A height that was found from the ranges may be wrong by as much.
+    if left < SUSPICION_M || (left < CONTRADICTION_M && !is_given) {
         return Some(agree());
     }
     let explains = if left < CONTRADICTION_M { CLEARLY } else { EXPLAINS };
