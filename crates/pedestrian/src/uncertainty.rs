@@ -6,7 +6,7 @@ use nalgebra::SVector;
 ///
 /// It stands beside the tracker: who does not ask for it does not pay for it. Three things make a walked path wrong,
 /// each by a constant of the sensor's class, fitted to walks with known truth
-/// ([the book](https://github.com/kestirim/kestirim/blob/main/docs/src/pedestrian.md) has the table):
+/// ([the book](https://github.com/kestirim/kestirim/blob/main/docs/src/reliability.md) has the table):
 /// - a rate b at which the heading drifts: the error is b·Σ tₖ·J·Δpₖ, with J a quarter turn;
 /// - a scale s of all strides: s times the distance from the start;
 /// - an error of each stride by itself, of the footprint and of the height.

@@ -90,8 +90,9 @@ pub(super) fn table(walk: &Walk) -> Table {
         let sigma = sigma_m.map(|metres| format!("{metres:.4}"));
         std::iter::once(time).chain(position).chain(sigma).collect()
     };
+    let sigmas_m = walk.sigmas_m(walk.track.iter().map(|point| point.time_us));
     Table {
-        rows: walk.track.iter().zip(walk.sigmas_m()).map(row).collect(),
+        rows: walk.track.iter().zip(sigmas_m).map(row).collect(),
         health: walk.healths().collect(),
         ..Table::new(&["t", "x", "y", "z", "sx", "sy", "sz"])
     }

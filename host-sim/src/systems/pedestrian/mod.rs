@@ -123,7 +123,8 @@ impl System for Pedestrian {
         answer: &mut Answer,
     ) -> Result<(), Error> {
         let recording = track.tracked(recording);
-        figures::draw(recording, &Options::of(settings), &track.trace, answer)
+        let options = Options::of(settings).with_sensor(|| class_of(recording));
+        figures::draw(recording, &options, &track.trace, answer)
     }
 
     fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
@@ -137,10 +138,7 @@ impl System for Pedestrian {
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
         let options = Options::of(settings);
-        let options = match recording {
-            Some(recording) => options.with_sensor(|| class_of(&recording.log.samples)),
-            None => options,
-        };
+        let options = recording.map_or(options, |it| options.with_sensor(|| class_of(it)));
         let firmware = options.firmware();
         match recording.and_then(Recording::calibration) {
             Some(known) => format!("{firmware}\n\n{}", calibration::firmware(known)),

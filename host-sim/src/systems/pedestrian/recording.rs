@@ -7,9 +7,11 @@ pub mod resample;
 pub mod truth;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use kestirim_import::{Format, Options};
 use kestirim_imu_calibration::Calibration;
+use kestirim_pedestrian::SensorClass;
 
 use self::log::Log;
 use self::position::TrackPoint;
@@ -21,7 +23,7 @@ use crate::Error;
 use crate::random::stream;
 
 /// A walk as it was recorded.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recording {
     /// Where it was read.
     pub path: PathBuf,
@@ -31,6 +33,8 @@ pub struct Recording {
     pub footprints: Vec<Footprint>,
     /// What the sensor measured wrong, and what it said before that was corrected; none if nobody knows.
     calibrated: Option<(Calibration<f64>, Vec<Sample>)>,
+    /// The class of the sensor, once it was looked for.
+    pub(super) class: OnceLock<SensorClass>,
 }
 
 /// Where a synthetic walk leads.
@@ -51,7 +55,7 @@ impl Recording {
         let log = log::read(path, options)?;
         let footprints = footprints.map(|path| truth::read(path, &log)).transpose()?;
         let footprints = footprints.unwrap_or_default();
-        Ok(Self { path: path.to_path_buf(), log, footprints, calibrated: None })
+        Ok(Self { path: path.to_path_buf(), log, footprints, ..Self::default() })
     }
 
     /// With what the sensor measured wrong corrected.
@@ -60,8 +64,7 @@ impl Recording {
         let correct = |sample: &Sample| calibration::corrected(&calibration, sample);
         let corrected = self.log.samples.iter().map(correct).collect();
         let measured = std::mem::replace(&mut self.log.samples, corrected);
-        self.calibrated = Some((calibration, measured));
-        self
+        Self { calibrated: Some((calibration, measured)), class: OnceLock::new(), ..self }
     }
 
     /// What the sensor measured wrong, if that is known.
@@ -92,7 +95,7 @@ impl Recording {
             }
             Walked::Rounds(_) => Log { samples: measured, ..Log::default() },
         };
-        Ok(Self { path, log, footprints: scenario.footprints(), calibrated: None })
+        Ok(Self { path, log, footprints: scenario.footprints(), ..Self::default() })
     }
 
     /// The rates to which it can be averaged down, Hz: least, most, and from one to the next.
@@ -108,7 +111,7 @@ impl Recording {
     pub fn at_rate(&self, rate_hz: f64) -> Result<Self, Error> {
         let log = resample::average_down(&self.log, rate_hz)?;
         let footprints = self.footprints.clone();
-        Ok(Self { log, path: self.path.clone(), footprints, calibrated: None })
+        Ok(Self { log, path: self.path.clone(), footprints, ..Self::default() })
     }
 
     /// Where the foot or the sensor truly was, as far as anybody knows: measured footprints replace what the

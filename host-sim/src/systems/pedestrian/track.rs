@@ -47,10 +47,14 @@ impl Track {
         detail: Detail,
     ) -> Result<Self, Error> {
         let averaged = rate_hz.map(|rate_hz| recording.at_rate(rate_hz)).transpose()?;
-        let samples = &averaged.as_ref().unwrap_or(recording).log.samples;
+        let tracked = averaged.as_ref().unwrap_or(recording);
+        let (samples, options) =
+            (&tracked.log.samples, options.with_sensor(|| sensor::class_of(tracked)));
         let tracked = match detail {
-            Detail::Result => walk(samples, options).map(|walk| Trace { walk, ..Trace::default() }),
-            Detail::Every => trace::trace(samples, options),
+            Detail::Result => {
+                walk(samples, &options).map(|walk| Trace { walk, ..Trace::default() })
+            }
+            Detail::Every => trace::trace(samples, &options),
         };
         let trace = tracked.map_err(|error| refused(recording, &error))?;
         Ok(Self { averaged, trace })
@@ -86,10 +90,6 @@ pub struct Walk {
     pub reasons: Vec<Reason>,
     /// How far it can be relied upon, where that changes: from which entry of the track on.
     pub health: Vec<(usize, HealthState)>,
-    /// No standstill came.
-    pub never_still: bool,
-    /// Standard deviations of the position before the first stride, m.
-    pub first_sigma_m: [f64; 3],
 }
 
 /// One stride of the foot, from stance to stance.
@@ -149,7 +149,6 @@ fn watched(
     if samples.len() < 2 {
         return Err(RunError::TooShort { found: samples.len(), needed: 2 });
     }
-    let options = &options.with_sensor(|| sensor::class_of(samples));
     match options.scalar {
         ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
         ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),
@@ -290,20 +289,17 @@ impl Walk {
     /// From here on the walk is no better than its warnings say; that it began without a standstill is told at the
     /// end, when none came.
     fn doubt(&mut self, warnings: Warnings) {
-        let warnings = Warnings { never_still: false, ..warnings };
-        if warnings == Warnings::default() {
-            return;
-        }
-        let state = worst(&warning::reasons(warnings));
-        if self.health.last().is_none_or(|(_, last)| *last < state) {
+        let state = warning::state(Warnings { never_still: false, ..warnings });
+        let before = self.health.last().map_or(HealthState::Good, |(_, before)| *before);
+        if before < state {
             self.health.push((self.track.len().saturating_sub(1), state));
         }
     }
 
     /// How far each entry of the track can be relied upon.
     pub fn healths(&self) -> impl Iterator<Item = HealthState> {
-        let from_the_start =
-            if self.never_still { Reason::NotObservable.state() } else { HealthState::Good };
+        let never_still = self.reasons.iter().find(|reason| **reason == Reason::NotObservable);
+        let from_the_start = never_still.map_or(HealthState::Good, |reason| reason.state());
         let (mut changes, mut now) = (self.health.iter().peekable(), from_the_start);
         (0..self.track.len()).map(move |index| {
             while let Some((_, state)) = changes.next_if(|(from, _)| *from <= index) {
@@ -313,19 +309,13 @@ impl Walk {
         })
     }
 
-    /// Standard deviation of the position in the plane at a time, µs: root of its variances' sum, m.
-    pub fn sigma_m(&self, time_us: u64) -> f64 {
-        let strides = self.strides.partition_point(|stride| stride.time_us <= time_us);
-        let last = strides.checked_sub(1).map(|last| self.strides[last].sigma_m);
-        let [x, y, _] = last.unwrap_or(self.first_sigma_m);
-        x.hypot(y)
-    }
-
-    /// Standard deviations of each entry of the track, m: of the stride before it.
-    pub fn sigmas_m(&self) -> impl Iterator<Item = [f64; 3]> {
-        let (mut strides, mut now) = (self.strides.iter().peekable(), self.first_sigma_m);
-        self.track.iter().map(move |point| {
-            while let Some(stride) = strides.next_if(|stride| stride.time_us <= point.time_us) {
+    /// Standard deviations of the position at times that ascend, µs: those of the stride before, m.
+    pub fn sigmas_m(&self, times_us: impl Iterator<Item = u64>) -> impl Iterator<Item = [f64; 3]> {
+        let before_the_first = PathUncertainty::<f64>::new(self.sensor.into());
+        let mut now = before_the_first.standard_deviation().into();
+        let mut strides = self.strides.iter().peekable();
+        times_us.map(move |time_us| {
+            while let Some(stride) = strides.next_if(|stride| stride.time_us <= time_us) {
                 now = stride.sigma_m;
             }
             now
@@ -339,11 +329,9 @@ impl Walk {
         warnings: Warnings,
         sensor: kestirim_pedestrian::SensorClass,
     ) {
-        self.never_still = warnings.never_still;
         self.sensor = sensor.into();
         self.strides.extend(last.as_ref().map(Stride::from_estimate));
         let mut uncertainty = PathUncertainty::new(sensor);
-        self.first_sigma_m = uncertainty.standard_deviation().into();
         for stride in &mut self.strides {
             uncertainty.add(&stride.of_the_crate());
             stride.sigma_m = uncertainty.standard_deviation().into();
@@ -377,11 +365,6 @@ impl Stride {
             heading_change: self.heading_change_rad,
         }
     }
-}
-
-/// How far a walk can be relied upon that suffers for these reasons.
-fn worst(reasons: &[Reason]) -> HealthState {
-    reasons.iter().map(|reason| reason.state()).max().unwrap_or_default()
 }
 
 pub(super) fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {

@@ -58,16 +58,6 @@ fn spikes(table: &mut Table, many: usize) {
     table.map(&RATE, |row, value| if one_in(many, row) { -30.0 } else { value });
 }
 
-fn shift_rates(table: &mut Table, rows: usize) {
-    let before = table.clone();
-    for row in rows..table.rows.len() {
-        for name in RATE {
-            let column = table.column(name);
-            table.rows[row][column].clone_from(&before.rows[row - rows][column]);
-        }
-    }
-}
-
 const FAULTS: &[Fault] = &[
     ("zeros 0.1 s", |it| zero(it, 0.1), same),
     ("zeros 0.6 s", |it| zero(it, 0.6), same),
@@ -112,7 +102,7 @@ const FAULTS: &[Fault] = &[
     ("acceleration 5 % large", |it| it.map(&FORCE, |_, v| v * 1.05), same),
     ("rates 5 % large", |it| it.map(&RATE, |_, v| v * 1.05), same),
     ("rates 20 % large", |it| it.map(&RATE, |_, v| v * 1.2), same),
-    ("rates 50 ms late", |it| shift_rates(it, 10), same),
+    ("rates 50 ms late", |it| it.late(&RATE, 10), same),
 ];
 
 fn measure(report: &Value) -> Option<f64> {

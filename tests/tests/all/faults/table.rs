@@ -90,6 +90,17 @@ impl Table {
         self.rows = kept.map(|row| before.rows[row].clone()).collect();
     }
 
+    /// What these columns say comes so many rows late.
+    pub(super) fn late(&mut self, columns: &[&str], rows: usize) {
+        let before = self.clone();
+        for name in columns {
+            let column = self.column(name);
+            for row in rows..self.rows.len() {
+                self.rows[row][column].clone_from(&before.rows[row - rows][column]);
+            }
+        }
+    }
+
     /// Every row twice.
     pub(super) fn duplicate(&mut self) {
         self.rows = self.rows.iter().flat_map(|row| [row.clone(), row.clone()]).collect();

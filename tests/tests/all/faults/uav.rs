@@ -26,16 +26,6 @@ fn empty(table: &mut Table, name: &str, length: f64) {
     }
 }
 
-fn late(table: &mut Table, columns: &[&str], rows: usize) {
-    let before = table.clone();
-    for row in rows..table.rows.len() {
-        for name in columns {
-            let column = table.column(name);
-            table.rows[row][column].clone_from(&before.rows[row - rows][column]);
-        }
-    }
-}
-
 const FAULTS: &[Fault] = &[
     (
         "spikes 1 %",
@@ -81,8 +71,8 @@ const FAULTS: &[Fault] = &[
     ("dropout 0.2 s", |it| it.drop_out(0.2), "P2"),
     ("dropout 1 s", |it| it.drop_out(1.0), "P2"),
     ("V not measured for 3 s", |it| empty(it, "V", 3.0), "P2"),
-    ("outputs 50 ms late", |it| late(it, &OUTPUTS, 5), "P2"),
-    ("inputs 100 ms late", |it| late(it, &["delta_e", "delta_t"], 10), "P2"),
+    ("outputs 50 ms late", |it| it.late(&OUTPUTS, 5), "P2"),
+    ("inputs 100 ms late", |it| it.late(&["delta_e", "delta_t"], 10), "P2"),
     ("another aircraft", |_| (), "P1"),
     ("rows twice", Table::duplicate, "P2"),
     ("neighbours reordered", Table::reorder, "P2"),

@@ -22,19 +22,22 @@ pub(super) fn step(stops: &[Stop], place: [f64; 2]) -> Option<(f64, f64)> {
         -stop.loss + 20.0 * x.hypot(y).hypot(stop.height).max(1.0).log10()
     };
     let residuals: Vec<f64> = stops.iter().map(residual).collect();
-    let squares = |of: &[f64]| {
-        let mean = mean(of);
-        of.iter().map(|it| (it - mean).powi(2)).sum::<f64>()
-    };
-    let margin = FEWEST.max((SHARE * residuals.len() as f64) as usize);
-    let last = residuals.len().checked_sub(margin)?;
-    let split = (margin..=last).min_by(|&a, &b| {
-        let left = |at: usize| squares(&residuals[..at]) + squares(&residuals[at..]);
-        left(a).total_cmp(&left(b))
-    })?;
-    let (before, after) = residuals.split_at(split);
-    let by = mean(after) - mean(before);
-    let is_step = squares(before) + squares(after) < LEFT * squares(&residuals);
+    let (count, mean) = (residuals.len(), mean(&residuals));
+    let squares: f64 = residuals.iter().map(|it| (it - mean).powi(2)).sum();
+    let margin = FEWEST.max((SHARE * count as f64) as usize);
+    let last = count.checked_sub(margin)?;
+    let mut sum = 0.0;
+    // Of each place: by how much the means before and after differ, and how much of the squares that explains.
+    let splits = residuals.iter().enumerate().map(|(at, residual)| {
+        let (before, after) = (at as f64, (count - at) as f64);
+        // The residuals without their mean sum up to nothing.
+        let by = -sum / after - sum / before;
+        sum += residual - mean;
+        (at, by, by * by * before * after / count as f64)
+    });
+    let inside = splits.filter(|(at, ..)| (margin..=last).contains(at));
+    let (split, by, explained) = inside.max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let is_step = squares - explained < LEFT * squares;
     (is_step && by.abs() > LEAST_DB).then(|| (stops[split].t, by))
 }
 

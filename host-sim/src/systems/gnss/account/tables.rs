@@ -5,7 +5,7 @@ use kestirim_ppp_filter::{SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 
 use super::accuracy::Fix;
-use crate::system::Table;
+use crate::system::{HealthState, Reason as Doubt, Table};
 use crate::systems::gnss::track::followed::Followed;
 
 const RESIDUAL_COLUMNS: [&str; 13] = [
@@ -31,9 +31,15 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
         let deviations = deviations.map(|metres| format!("{metres:.6}"));
         std::iter::once(format!("{t:.6}")).chain(position).chain(deviations).collect()
     };
+    // In the order of the fixes.
+    let mut contradicted = followed.contradicted.iter().peekable();
+    let health = |fix: &Fix| match contradicted.next_if_eq(&&fix.t) {
+        Some(_) => Doubt::Innovations.state(),
+        None => HealthState::Good,
+    };
     Table {
         rows: followed.fixes.iter().zip(&followed.deviations).map(row).collect(),
-        health: followed.healths.clone(),
+        health: followed.fixes.iter().map(health).collect(),
         ..Table::new(&["t", "x", "y", "z", "sde", "sdn", "sdu"])
     }
 }

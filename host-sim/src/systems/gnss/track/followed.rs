@@ -11,7 +11,6 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::outage::{Outage, Outages, Unused};
-use crate::system::{HealthState, Reason as Doubt};
 use crate::systems::gnss::account::accuracy::Fix;
 use crate::systems::gnss::recording::Recording;
 use crate::systems::gnss::recording::model::Epoch;
@@ -104,8 +103,6 @@ pub struct Followed {
     pub fixes: Vec<Fix>,
     /// Their standard deviations to the east, north and up, m.
     pub deviations: Vec<[f64; 3]>,
-    /// How far each of them can be relied upon.
-    pub healths: Vec<HealthState>,
     /// The last of them.
     pub last: Option<Last>,
     /// When the observations contradicted the solution, s.
@@ -222,13 +219,7 @@ impl Followed {
         let sd_enu = solution.deviations_enu();
         self.deviations.push(sd_enu);
         self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
-        let contradicted = solution.health == Health::Contradicted;
-        self.healths.push(if contradicted {
-            Doubt::Innovations.state()
-        } else {
-            HealthState::Good
-        });
-        if contradicted {
+        if solution.health == Health::Contradicted {
             self.contradicted.push(t);
         }
         if solution.health == Health::Converged {

@@ -87,13 +87,13 @@ fn compare(walk: &Walk, times_us: &[u64], truth: &[[f64; 2]], true_length_m: f64
     let ours = horizontal_at(&walk.track, times_us.iter().copied());
     let errors = aligned_errors(&ours, truth);
     let final_error_m = errors.last().copied().unwrap_or_default();
-    let sigmas = times_us.iter().skip(1).map(|&time_us| walk.sigma_m(time_us));
+    let sigmas = walk.sigmas_m(times_us.iter().copied()).map(|[x, y, _]| x.hypot(y));
     Accuracy {
         rmse_m: rms(&errors),
         final_error_m,
         final_error_percent: (true_length_m > 0.0).then(|| 100.0 * final_error_m / true_length_m),
         path_length_error_percent: relative_error_percent(walk.path_length_m, true_length_m),
-        error_over_sigma: error_over_sigma(errors.iter().copied().skip(1).zip(sigmas)),
+        error_over_sigma: error_over_sigma(errors.iter().copied().zip(sigmas).skip(1)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use kestirim_pedestrian::Warnings;
 
-use crate::system::Reason;
+use crate::system::{HealthState, Reason};
 
 /// A sentence for each warning that was raised.
 pub(crate) fn sentences(warnings: Warnings) -> Vec<String> {
@@ -12,6 +12,11 @@ pub(crate) fn sentences(warnings: Warnings) -> Vec<String> {
 /// Why the path suffers, for each warning that was raised.
 pub(crate) fn reasons(warnings: Warnings) -> Vec<Reason> {
     raised(warnings).map(|(reason, _)| reason).collect()
+}
+
+/// How far the path can be relied upon for all that.
+pub(crate) fn state(warnings: Warnings) -> HealthState {
+    raised(warnings).map(|(reason, _)| reason.state()).max().unwrap_or_default()
 }
 
 fn raised(warnings: Warnings) -> impl Iterator<Item = (Reason, &'static str)> {

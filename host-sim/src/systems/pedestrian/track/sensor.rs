@@ -4,13 +4,18 @@ use kestirim_pedestrian::{Config, LiteTracker, SensorClass};
 
 use super::imu_sample;
 use crate::systems::pedestrian::Sample;
+use crate::systems::pedestrian::recording::Recording;
 
 /// A calibrated unit's gyroscope is off by less, rad/s. At rest those of the walks in the book were off by 1 to
 /// 9 mrad/s, bare chips by 15 to 21.
 const CALIBRATED: f64 = 0.012;
 
-/// The class of the sensor that took these samples; that of bare chips if it never stood still. Truth is not asked.
-pub(in crate::systems::pedestrian) fn class_of(samples: &[Sample]) -> SensorClass {
+/// The class of a recording's sensor, looked for once; that of bare chips if it never stood still. Truth is not asked.
+pub(in crate::systems::pedestrian) fn class_of(recording: &Recording) -> SensorClass {
+    *recording.class.get_or_init(|| of_samples(&recording.log.samples))
+}
+
+fn of_samples(samples: &[Sample]) -> SensorClass {
     // The tracker learns the bias at each standstill.
     let mut tracker = LiteTracker::<f64>::new(Config::default());
     for sample in samples {
@@ -39,8 +44,8 @@ mod tests {
             };
             (0..300).map(sample).collect::<Vec<_>>()
         };
-        assert_eq!(class_of(&still(0.004)), SensorClass::Industrial);
-        assert_eq!(class_of(&still(0.02)), SensorClass::Consumer);
-        assert_eq!(class_of(&[]), SensorClass::Consumer);
+        assert_eq!(of_samples(&still(0.004)), SensorClass::Industrial);
+        assert_eq!(of_samples(&still(0.02)), SensorClass::Consumer);
+        assert_eq!(of_samples(&[]), SensorClass::Consumer);
     }
 }

@@ -60,9 +60,11 @@ impl Followed {
             measured += usize::from(innovation.is_some());
             all.extend(innovation);
         }
-        let rejected = rejected[..self.rejected.len()].to_vec();
-        let before = std::mem::replace(&mut self.rejected, rejected);
-        let left_out = self.rejected.iter().sum::<u32>() - before.iter().sum::<u32>();
+        let before: u32 = self.rejected.iter().sum();
+        for (all, rejected) in self.rejected.iter_mut().zip(rejected) {
+            *all = *rejected;
+        }
+        let left_out = self.rejected.iter().sum::<u32>() - before;
         self.tallies.push(Tally { measured, left_out, nis });
         self.estimates.push(estimate);
     }
