@@ -5,6 +5,7 @@ mod error;
 mod frame;
 mod message;
 mod receiver;
+mod sequence;
 #[cfg(feature = "embedded-io")]
 mod transmitter;
 
@@ -14,5 +15,6 @@ pub use message::{
     Flight, Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range, State,
 };
 pub use receiver::{Counts, Frame, Frames, Receiver};
+pub use sequence::{Order, RESUMED_AFTER};
 #[cfg(feature = "embedded-io")]
 pub use transmitter::Transmitter;

@@ -2,6 +2,7 @@ use cobs::{DecodeResult, DecoderState};
 
 use crate::Message;
 use crate::frame::{CHECKSUM, CONTENT, CRC, VERSION};
+use crate::sequence::{Order, RESUMED_AFTER, Sequence};
 
 /// A message that arrived.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,8 @@ use crate::frame::{CHECKSUM, CONTENT, CRC, VERSION};
 pub struct Frame {
     /// The sender's count of frames.
     pub sequence: u16,
+    /// Where that number stands among those before.
+    pub order: Order,
     /// Content of the frame.
     pub message: Message,
 }
@@ -25,8 +28,11 @@ pub struct Counts {
     pub corrupt: u32,
     /// Frames of another version, or with a message that this receiver does not know.
     pub unknown: u32,
-    /// Sequence numbers that are missing between those of the good frames: torn, corrupt or never arrived.
+    /// Sequence numbers that are missing between those of the good frames: torn, corrupt or never arrived. One that
+    /// comes late, up to 127 numbers, is not lost.
     pub lost: u32,
+    /// Good frames whose numbers came before, or do not follow: frames that came twice, or of another sender.
+    pub foreign: u32,
 }
 
 /// Reads frames from a stream of bytes in pieces of any length, and counts what was lost.
@@ -36,7 +42,7 @@ pub struct Receiver {
     /// May exceed the capacity: then the frame is too long.
     length: usize,
     state: DecoderState,
-    last: Option<u16>,
+    sequence: Sequence,
     counts: Counts,
 }
 
@@ -53,8 +59,8 @@ impl Receiver {
             content: [0; CONTENT],
             length: 0,
             state: DecoderState::Idle,
-            last: None,
-            counts: Counts { received: 0, torn: 0, corrupt: 0, unknown: 0, lost: 0 },
+            sequence: Sequence::new(),
+            counts: Counts { received: 0, torn: 0, corrupt: 0, unknown: 0, lost: 0, foreign: 0 },
         }
     }
 
@@ -104,31 +110,40 @@ impl Receiver {
             count(&mut self.counts.corrupt);
             return None;
         }
-        let Some(frame) = read(checked) else {
+        let Some((sequence, message)) = read(checked) else {
             count(&mut self.counts.unknown);
             return None;
         };
         count(&mut self.counts.received);
-        if let Some(last) = self.last {
-            let missing = frame.sequence.wrapping_sub(last).wrapping_sub(1);
-            // A step back is a sender that began anew.
-            if missing < u16::MAX / 2 {
-                self.counts.lost = self.counts.lost.saturating_add(missing.into());
+        let order = self.sequence.take(sequence);
+        self.counts.place(order);
+        Some(Frame { sequence, order, message })
+    }
+}
+
+impl Counts {
+    fn place(&mut self, order: Order) {
+        match order {
+            Order::Newest { missing } => self.lost = self.lost.saturating_add(missing.into()),
+            Order::Late { .. } => self.lost = self.lost.saturating_sub(1),
+            Order::Foreign => count(&mut self.foreign),
+            Order::Resumed { missing } => {
+                self.lost = self.lost.saturating_add(missing.into());
+                // Those before in a row were this sender's, too.
+                self.foreign = self.foreign.saturating_sub(u32::from(RESUMED_AFTER) - 1);
             }
         }
-        self.last = Some(frame.sequence);
-        Some(frame)
     }
 }
 
 /// Reads a frame whose checksum is right, if this version understands it to the last byte.
-fn read(checked: &[u8]) -> Option<Frame> {
+fn read(checked: &[u8]) -> Option<(u16, Message)> {
     let (&[version, low, high], message) = checked.split_first_chunk()?;
     if version != VERSION {
         return None;
     }
     let (message, rest) = postcard::take_from_bytes(message).ok()?;
-    rest.is_empty().then_some(Frame { sequence: u16::from_le_bytes([low, high]), message })
+    rest.is_empty().then_some((u16::from_le_bytes([low, high]), message))
 }
 
 fn count(counter: &mut u32) {

@@ -10,6 +10,7 @@ use kestirim_telemetry::Receiver;
 
 use super::Stopper;
 use super::feed::Feed;
+use super::order::Sorter;
 use super::state::State;
 use super::tape::{Piece, Reel};
 use crate::Error;
@@ -48,6 +49,7 @@ impl Follower {
         // An estimator stays with its thread.
         let mut decoder = Decoder {
             receiver: Receiver::new(),
+            sorter: Sorter::default(),
             feed: Feed::new(self.plan.clone())?,
             state: Arc::clone(&self.state),
             most: self.most.unwrap_or(u32::MAX),
@@ -60,7 +62,7 @@ impl Follower {
             let piece = read.map_err(|source| self.failed(source))?;
             let more = match piece {
                 Piece::Some(bytes) => decoder.take(bytes)?,
-                Piece::Pause => true,
+                Piece::Pause => decoder.pause().map(|()| true)?,
                 Piece::End => false,
             };
             is_dirty |= piece != Piece::Pause;
@@ -83,6 +85,7 @@ impl Follower {
 #[derive(Debug)]
 struct Decoder {
     receiver: Receiver,
+    sorter: Sorter,
     feed: Feed,
     state: Arc<Mutex<State>>,
     most: u32,
@@ -102,7 +105,22 @@ impl Decoder {
     fn finish(&mut self) -> Result<(), Error> {
         // A frame that only lacks its end is whole; any other piece of one is torn.
         self.decode(&[0])?;
+        {
+            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+            self.sorter.finish(|message| self.feed.take(message, &mut state))?;
+        }
         self.feed.finish();
+        self.show(0);
+        Ok(())
+    }
+
+    /// Nothing comes for now.
+    fn pause(&mut self) -> Result<(), Error> {
+        {
+            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+            self.sorter.release_all(|message| self.feed.take(message, &mut state))?;
+        }
+        self.feed.settle();
         self.show(0);
         Ok(())
     }
@@ -112,14 +130,14 @@ impl Decoder {
         // Those beyond are not even asked for.
         let wanted = self.most.saturating_sub(self.receiver.counts().received);
         for frame in self.receiver.frames(bytes).take(wanted as usize) {
-            self.feed.take(&frame.message, &mut state)?;
+            self.sorter.take(frame, |message| self.feed.take(message, &mut state))?;
         }
         Ok(self.receiver.counts().received < self.most)
     }
 
     fn show(&mut self, bytes: usize) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.count(bytes, self.receiver.counts());
+        state.count(bytes, self.receiver.counts(), self.sorter.left_out());
         self.feed.show(&mut state);
     }
 }

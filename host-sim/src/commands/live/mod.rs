@@ -1,6 +1,6 @@
 //! `host-sim live`: telemetry of a sender that is switched on, followed while it comes.
 //!
-//! `source` → `recorder` → file → `tape` → `follower` → `feed` → [`Online`](crate::system::Online) → `state` →
+//! `source` → `recorder` → file → `tape` → `follower` → `order` → `feed` → [`Online`](crate::system::Online) → `state` →
 //! `picture`.
 //!
 //! One thread waits for bytes and does nothing but write them to the recording; the other reads them there,
@@ -13,9 +13,11 @@ mod feed;
 mod follower;
 mod listener;
 pub mod options;
+mod order;
 mod picture;
 mod recorder;
 mod report;
+mod senders;
 mod source;
 mod state;
 mod tape;
@@ -25,7 +27,7 @@ mod window;
 use std::net::SocketAddr;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -124,8 +126,10 @@ impl Live {
     /// Whatever is wrong with options, files, address and device; then no recording has been begun.
     pub fn start(options: &Stream, following: &Following) -> Result<Self, Error> {
         let stop = Stopper::default();
+        let state = State::new(following);
+        let ignored = Arc::clone(&state.ignored);
         let mut live = Self {
-            state: Arc::new(Mutex::new(State::new(following))),
+            state: Arc::new(Mutex::new(state)),
             stop: stop.clone(),
             listener: None,
             follower: None,
@@ -143,7 +147,7 @@ impl Live {
                 let reel = Reel::complete(path);
                 (reel.map_err(|source| Error::Read { path: path.clone(), source })?, None)
             }
-            None => live.listen(options)?,
+            None => live.listen(options, ignored)?,
         };
         let (state, most) = (Arc::clone(&live.state), options.frames);
         let path = live.recording.clone();
@@ -153,10 +157,14 @@ impl Live {
     }
 
     /// Begins to listen and to record; where to read the recording, and what to have written to the disk.
-    fn listen(&mut self, options: &Stream) -> Result<(Reel, Option<std::fs::File>), Error> {
+    fn listen(
+        &mut self,
+        options: &Stream,
+        ignored: Arc<AtomicU64>,
+    ) -> Result<(Reel, Option<std::fs::File>), Error> {
         let source = match &options.serial {
             Some(device) => Source::serial(device, options.baud)?,
-            None => Source::udp(options.address())?,
+            None => Source::udp(options.address(), ignored)?,
         };
         let recorder = Recorder::create(options.record.as_deref())?;
         self.address = source.address();

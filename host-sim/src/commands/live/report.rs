@@ -23,6 +23,8 @@ pub struct Counts {
     pub unknown: u32,
     /// Numbers that are missing between those of the good frames.
     pub lost: u32,
+    /// Good frames that came twice, too late, or from a second sender.
+    pub left_out: u64,
     /// Measurements that the estimator took in.
     pub taken: u64,
     /// What arrived whole and cannot be true, or is older than what came before.
@@ -63,6 +65,7 @@ impl fmt::Display for Report {
         row("recording", format!("{}, {} bytes", printable_path(&self.recording), counts.bytes));
         row("frames received", counts.received.to_string());
         row("  lost on the way", counts.lost.to_string());
+        row("  left out", counts.left_out.to_string());
         let Counts { torn, corrupt, unknown, .. } = counts;
         row("torn, corrupt, unknown", format!("{torn}, {corrupt}, {unknown}"));
         row("measurements taken in", counts.taken.to_string());

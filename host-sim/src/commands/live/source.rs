@@ -3,11 +3,14 @@
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use serial2::SerialPort;
 use socket2::{Domain, Protocol, Socket, Type};
 
+use super::senders::Senders;
 use crate::Error;
 use crate::text::printable;
 
@@ -21,21 +24,22 @@ pub(super) const LONGEST: usize = 1 << 16;
 /// A line that is listened to.
 #[derive(Debug)]
 pub(super) enum Source {
-    /// Datagrams, in each of which there are frames or pieces of some.
-    Udp(UdpSocket),
+    /// Datagrams, in each of which there are frames or pieces of some; and how many of other senders were ignored.
+    Udp(UdpSocket, Senders, Arc<AtomicU64>),
     /// A serial port.
     Serial(SerialPort, PathBuf),
 }
 
 impl Source {
-    /// Listens to datagrams for this address.
-    pub(super) fn udp(address: &str) -> Result<Self, Error> {
+    /// Listens to datagrams for this address; those of a second sender are counted in `ignored`.
+    pub(super) fn udp(address: &str, ignored: Arc<AtomicU64>) -> Result<Self, Error> {
         let failed =
             |error: &io::Error| Error::Usage(format!("--udp {}: {error}", printable(address)));
         let mut addresses = address.to_socket_addrs().map_err(|error| failed(&error))?;
         let nobody = || io::Error::new(ErrorKind::NotFound, "nobody has this address");
         let resolved = addresses.next().ok_or_else(nobody).map_err(|error| failed(&error))?;
-        bound(resolved).map(Self::Udp).map_err(|error| failed(&error))
+        let socket = bound(resolved).map_err(|error| failed(&error))?;
+        Ok(Self::Udp(socket, Senders::default(), ignored))
     }
 
     /// Listens to a serial port.
@@ -52,16 +56,20 @@ impl Source {
     /// At which address it can be sent to, if it is one of a network.
     pub(super) fn address(&self) -> Option<SocketAddr> {
         match self {
-            Self::Udp(socket) => socket.local_addr().ok(),
+            Self::Udp(socket, ..) => socket.local_addr().ok(),
             Self::Serial(..) => None,
         }
     }
 
     /// Waits a little for bytes. None is the end of the line; no bytes are none for now.
-    pub(super) fn read<'a>(&self, buffer: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> {
+    pub(super) fn read<'a>(&mut self, buffer: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> {
         let read = match self {
             // An empty datagram is no end.
-            Self::Udp(socket) => socket.recv(buffer).map(Some),
+            Self::Udp(socket, senders, ignored) => socket.recv_from(buffer).map(|(count, from)| {
+                let taken = senders.takes(from, Instant::now());
+                ignored.fetch_add(u64::from(!taken), Ordering::Relaxed);
+                Some(if taken { count } else { 0 })
+            }),
             Self::Serial(port, _) => port.read(buffer).map(|count| (count > 0).then_some(count)),
         };
         match read {
@@ -81,7 +89,7 @@ impl Source {
     /// What a person calls it.
     pub(super) fn name(&self) -> String {
         match self {
-            Self::Udp(_) => match self.address() {
+            Self::Udp(..) => match self.address() {
                 Some(address) => format!("UDP {address}"),
                 None => "UDP".to_owned(),
             },
@@ -105,7 +113,7 @@ mod tests {
 
     #[test]
     fn datagrams_arrive_and_silence_is_no_end() -> Result<(), Error> {
-        let source = Source::udp("localhost:0")?;
+        let mut source = Source::udp("localhost:0", Arc::default())?;
         let address = source.address().unwrap();
         assert!(address.ip().is_loopback());
         let mut buffer = [0; 100];
@@ -119,7 +127,7 @@ mod tests {
     #[test]
     fn what_cannot_be_listened_to_is_a_sentence() {
         for address in ["", "127.0.0.1", "127.0.0.1:99999", "192.0.2.1:5775", "\n:1"] {
-            let refusal = Source::udp(address).unwrap_err().to_string();
+            let refusal = Source::udp(address, Arc::default()).unwrap_err().to_string();
             assert!(refusal.starts_with("--udp ") && !refusal.contains('\n'), "{refusal}");
         }
         let refusal = Source::serial(Path::new("/no/such/device"), 115_200).unwrap_err();

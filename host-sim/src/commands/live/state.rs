@@ -1,6 +1,8 @@
 //! What there is to see, in bounded memory however long the stream.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use kestirim_gnss_ppp::Geodetic;
 use kestirim_telemetry::{
@@ -28,6 +30,8 @@ pub(super) struct State {
     pub(super) system: &'static str,
     pub(super) panels: &'static [Panel],
     pub(super) counts: Counts,
+    /// Datagrams of a second sender, which nobody looked at.
+    pub(super) ignored: Arc<AtomicU64>,
     /// The last time of the sender's clock, µs.
     pub(super) time_us: Option<u64>,
     pub(super) health: Option<Health>,
@@ -72,6 +76,7 @@ impl State {
             system: following.name,
             panels: following.panels,
             counts: Counts::default(),
+            ignored: Arc::default(),
             time_us: None,
             health: None,
             position: None,
@@ -93,11 +98,17 @@ impl State {
         }
     }
 
-    /// So many more bytes were decoded; all together they came to this.
-    pub(super) fn count(&mut self, bytes: usize, frames: kestirim_telemetry::Counts) {
-        let kestirim_telemetry::Counts { received, torn, corrupt, unknown, lost } = frames;
+    /// So many more bytes were decoded; all frames together came to this, of which so many were left out.
+    pub(super) fn count(
+        &mut self,
+        bytes: usize,
+        frames: kestirim_telemetry::Counts,
+        left_out: u64,
+    ) {
+        let kestirim_telemetry::Counts { received, torn, corrupt, unknown, lost, .. } = frames;
         let bytes = self.counts.bytes + bytes as u64;
-        self.counts = Counts { bytes, received, torn, corrupt, unknown, lost, ..self.counts };
+        self.counts =
+            Counts { bytes, received, torn, corrupt, unknown, lost, left_out, ..self.counts };
     }
 
     /// The sender has begun anew: what was drawn is no more.
@@ -216,7 +227,17 @@ impl State {
         let anew = (restarts > 0).then(|| {
             format!("the sender's clock began anew ({restarts} times), and the estimator with it")
         });
-        self.assumptions.iter().chain(&self.suspicions).cloned().chain(anew).collect()
+        let Counts { left_out, .. } = self.counts;
+        let left_out = (left_out > 0).then(|| {
+            format!("{left_out} frames were left out: they came twice, too late, or from a second sender; a line is \
+                     for one sender")
+        });
+        let ignored = self.ignored.load(Ordering::Relaxed);
+        let ignored = (ignored > 0).then(|| {
+            format!("{ignored} datagrams of a second sender were ignored: a port is for one sender (--udp)")
+        });
+        let told = [anew, left_out, ignored].into_iter().flatten();
+        self.assumptions.iter().chain(&self.suspicions).cloned().chain(told).collect()
     }
 
     /// Facts, warnings and figures.

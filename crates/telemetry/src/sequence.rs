@@ -1,0 +1,158 @@
+/// Numbers behind the newest that are remembered: so far may frames overtake each other on their way.
+const WINDOW: u16 = u128::BITS as u16;
+/// Foreign numbers in a row that follow each other, until they are followed.
+pub const RESUMED_AFTER: u16 = 8;
+
+/// Where the number of a frame stands among those before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Order {
+    /// Newer than all before.
+    Newest {
+        /// Numbers that did not come, so far, between the newest before and this one.
+        missing: u16,
+    },
+    /// A number that was missing.
+    Late {
+        /// How far it is behind the newest.
+        behind: u16,
+    },
+    /// A number that came before, or does not follow: of a frame that came twice, of another sender, or of the same
+    /// one that began anew.
+    Foreign,
+    /// The [eighth](RESUMED_AFTER) foreign number in a row, which follow each other: the sender began anew, or many frames are
+    /// missing. From here on these are followed.
+    Resumed {
+        /// Numbers that did not come between the newest before and the first of these; none if the sender
+        /// began anew.
+        missing: u16,
+    },
+}
+
+/// A sender's numbers: the newest, and which of those behind it came.
+#[derive(Clone, Copy, Debug)]
+struct Chain {
+    newest: u16,
+    /// Bit n: the number n behind the newest came.
+    came: u128,
+}
+
+impl Chain {
+    /// From this number on: those before are none of it.
+    const fn new(number: u16) -> Self {
+        Self { newest: number, came: u128::MAX }
+    }
+
+    /// Takes a number in if it is near the newest and did not come before.
+    fn take(&mut self, number: u16) -> Option<Order> {
+        let ahead = number.wrapping_sub(self.newest);
+        if (1..=WINDOW).contains(&ahead) {
+            self.newest = number;
+            self.came = self.came.checked_shl(ahead.into()).unwrap_or(0) | 1;
+            return Some(Order::Newest { missing: ahead - 1 });
+        }
+        let behind = self.newest.wrapping_sub(number);
+        let place = 1_u128.checked_shl(behind.into())?;
+        let is_new = self.came & place == 0;
+        self.came |= place;
+        is_new.then_some(Order::Late { behind })
+    }
+}
+
+/// Numbers that do not follow those of the sender that is followed.
+#[derive(Clone, Copy, Debug)]
+struct Rival {
+    chain: Chain,
+    /// How many came since one that is followed, and the first of them.
+    count: u16,
+    first: u16,
+}
+
+/// Follows the numbers of one sender, and tells those apart that are not its.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sequence {
+    followed: Option<Chain>,
+    rival: Option<Rival>,
+}
+
+impl Sequence {
+    pub(crate) const fn new() -> Self {
+        Self { followed: None, rival: None }
+    }
+
+    /// Where the next number stands.
+    pub(crate) fn take(&mut self, number: u16) -> Order {
+        let Some(followed) = &mut self.followed else {
+            self.followed = Some(Chain::new(number));
+            return Order::Newest { missing: 0 };
+        };
+        if let Some(order) = followed.take(number) {
+            if let Some(rival) = &mut self.rival {
+                rival.count = 0;
+            }
+            return order;
+        }
+        let newest = followed.newest;
+        let known = self.rival.take();
+        let fits = |rival: &mut Rival| rival.chain.take(number).is_some();
+        let mut rival = known
+            .and_then(|mut rival| fits(&mut rival).then_some(rival))
+            .unwrap_or(Rival { chain: Chain::new(number), count: 0, first: number });
+        if rival.count == 0 {
+            rival.first = number;
+        }
+        rival.count += 1;
+        if rival.count < RESUMED_AFTER {
+            self.rival = Some(rival);
+            return Order::Foreign;
+        }
+        (self.followed, self.rival) = (Some(rival.chain), None);
+        let missing = rival.first.wrapping_sub(newest).wrapping_sub(1);
+        // A step back is a sender that began anew.
+        Order::Resumed { missing: if missing < u16::MAX / 2 { missing } else { 0 } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Order::{Foreign, Late, Newest, Resumed};
+    use super::*;
+
+    const NEXT: Order = Newest { missing: 0 };
+
+    fn orders<const N: usize>(sequence: &mut Sequence, numbers: [u16; N]) -> [Order; N] {
+        numbers.map(|number| sequence.take(number))
+    }
+
+    #[test]
+    fn frames_that_overtake_each_other_are_late_and_not_missing() {
+        let mut sequence = Sequence::new();
+        let expected = [NEXT, Newest { missing: 2 }, Late { behind: 1 }, Late { behind: 2 }, NEXT];
+        assert_eq!(orders(&mut sequence, [65_534, 1, 0, 65_535, 2]), expected);
+    }
+
+    #[test]
+    fn another_senders_numbers_are_foreign_however_long_it_sends() {
+        let mut sequence = Sequence::new();
+        for step in 0..u16::MAX {
+            assert_eq!(sequence.take(step), NEXT);
+            assert_eq!(sequence.take(step.wrapping_add(20_000)), Foreign);
+            assert_eq!(sequence.take(step), Foreign, "it came before");
+        }
+    }
+
+    #[test]
+    fn a_sender_that_begins_anew_and_a_long_gap_are_followed_after_eight_frames() {
+        for (newest, first, missing) in [(5000, 0, 0), (20, 0, 0), (5000, 9000, 3999)] {
+            let mut sequence = Sequence::new();
+            for number in 0..=newest {
+                sequence.take(number);
+            }
+            for number in first..first + RESUMED_AFTER - 1 {
+                assert_eq!(sequence.take(number), Foreign);
+            }
+            assert_eq!(sequence.take(first + RESUMED_AFTER - 1), Resumed { missing });
+            assert_eq!(sequence.take(first + RESUMED_AFTER), NEXT);
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Frames in the order in which they were sent.
+//!
+//! Datagrams overtake each other on their way. What comes in order goes on at once; behind a gap frames wait for what
+//! is missing, as long as the sender itself takes for [`WINDOW_US`].
+
+use std::collections::BTreeMap;
+
+use kestirim_telemetry::{Frame, Message, Order, RESUMED_AFTER};
+
+/// So long, by the sender's clock, a gap is kept open.
+const WINDOW_US: u64 = 50_000;
+/// Frames that wait at most: those of senders without a clock.
+const MOST: usize = 256;
+
+/// Where frames wait for those before.
+#[derive(Debug)]
+pub(super) struct Sorter {
+    waiting: BTreeMap<u64, Message>,
+    /// Number of the newest frame and of the one that is due, counted on beyond 65535.
+    newest: u64,
+    due: u64,
+    /// The last foreign frames, until it is known whose they are.
+    foreign: Vec<Frame>,
+    left_out: u64,
+}
+
+impl Default for Sorter {
+    fn default() -> Self {
+        // Room for those that are late at the very beginning.
+        let first = u64::from(u16::MAX);
+        Self {
+            waiting: BTreeMap::new(),
+            newest: first,
+            due: first + 1,
+            foreign: Vec::new(),
+            left_out: 0,
+        }
+    }
+}
+
+impl Sorter {
+    /// Takes a frame in; what is due thereby goes to `sink`.
+    pub(super) fn take<E>(
+        &mut self,
+        frame: Frame,
+        mut sink: impl FnMut(&Message) -> Result<(), E>,
+    ) -> Result<(), E> {
+        match frame.order {
+            Order::Newest { missing } => {
+                self.leave_out();
+                self.newest += 1 + u64::from(missing);
+                self.waiting.insert(self.newest, frame.message);
+            }
+            Order::Late { behind } => {
+                self.leave_out();
+                self.put(self.newest - u64::from(behind), frame.message);
+            }
+            Order::Foreign => {
+                self.foreign.push(frame);
+                let surplus = self.foreign.len().saturating_sub(usize::from(RESUMED_AFTER) - 1);
+                self.left_out += self.foreign.drain(..surplus).count() as u64;
+            }
+            Order::Resumed { .. } => {
+                self.release_all(&mut sink)?;
+                self.resume(frame);
+            }
+        }
+        self.release(&mut sink)
+    }
+
+    /// Nothing comes for now: what waits is waited for no longer.
+    pub(super) fn release_all<E>(
+        &mut self,
+        mut sink: impl FnMut(&Message) -> Result<(), E>,
+    ) -> Result<(), E> {
+        while let Some((number, message)) = self.waiting.pop_first() {
+            self.due = number + 1;
+            sink(&message)?;
+        }
+        Ok(())
+    }
+
+    /// Nothing more will come: the last few frames of a sender that began anew are its own.
+    pub(super) fn finish<E>(
+        &mut self,
+        mut sink: impl FnMut(&Message) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.release_all(&mut sink)?;
+        if let Some(frame) = self.foreign.pop() {
+            self.resume(frame);
+        }
+        self.release_all(&mut sink)
+    }
+
+    /// Frames that were left out: they came twice, too late, or from another sender.
+    pub(super) const fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    fn put(&mut self, number: u64, message: Message) {
+        if number >= self.due {
+            self.waiting.insert(number, message);
+        } else {
+            self.left_out += 1;
+        }
+    }
+
+    /// The sender that is followed still sends: what does not follow is not its.
+    fn leave_out(&mut self) {
+        self.left_out += self.foreign.drain(..).count() as u64;
+    }
+
+    /// The foreign frames and this one are followed from here on.
+    fn resume(&mut self, last: Frame) {
+        self.newest = self.due + u64::from(u16::MAX);
+        let first = self.newest;
+        for frame in std::mem::take(&mut self.foreign).into_iter().chain([last]) {
+            let behind = last.sequence.wrapping_sub(frame.sequence);
+            self.waiting.insert(first.saturating_sub(behind.into()), frame.message);
+        }
+        self.due = self.waiting.first_key_value().map_or(self.due, |(&number, _)| number);
+    }
+
+    fn release<E>(&mut self, sink: &mut impl FnMut(&Message) -> Result<(), E>) -> Result<(), E> {
+        while let Some(entry) = self.waiting.first_entry() {
+            if *entry.key() != self.due && !self.is_given_up() {
+                return Ok(());
+            }
+            if let Some((number, message)) = self.waiting.pop_first() {
+                self.due = number + 1;
+                sink(&message)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether what is missing is waited for no longer.
+    fn is_given_up(&self) -> bool {
+        let mut times = self.waiting.values().filter_map(Message::measured_us);
+        let first = times.next();
+        let span = first.zip(times.next_back()).map(|(first, last)| last.saturating_sub(first));
+        self.waiting.len() >= MOST || span.is_some_and(|span| span >= WINDOW_US)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+    use kestirim_telemetry::{CAPACITY, Range, Receiver, encode};
+
+    /// What comes out of frames with these numbers, of which there is one a hundredth of a second.
+    fn sorted(numbers: impl IntoIterator<Item = u16>) -> (Vec<u64>, u64) {
+        let (mut receiver, mut sorter, mut out) = (Receiver::new(), Sorter::default(), Vec::new());
+        let mut sink = |message: &Message| {
+            out.push(message.measured_us().expect("a range") / 10_000);
+            Ok::<_, Infallible>(())
+        };
+        for number in numbers {
+            let message = Range { time_us: u64::from(number) * 10_000, anchor: 0, range: 1.0 };
+            let mut buffer = [0; CAPACITY];
+            let bytes = encode(&message.into(), number, &mut buffer).expect("it is long enough");
+            for frame in receiver.frames(bytes) {
+                sorter.take(frame, &mut sink).unwrap();
+            }
+        }
+        sorter.finish(&mut sink).unwrap();
+        (out, sorter.left_out())
+    }
+
+    #[test]
+    fn neighbours_that_changed_places_change_back() {
+        let swapped = (0..500).flat_map(|pair| [2 * pair + 2, 2 * pair + 1]);
+        assert_eq!(sorted([0].into_iter().chain(swapped)), ((0..=1000).collect(), 0));
+    }
+
+    #[test]
+    fn what_never_comes_is_waited_for_in_vain_and_what_comes_too_late_left_out() {
+        let numbers = (0..100).filter(|&number| number != 50);
+        let (out, left_out) = sorted(numbers.chain([50]));
+        assert_eq!(out, (0..100).filter(|&number| number != 50).collect::<Vec<_>>());
+        assert_eq!(left_out, 1);
+    }
+
+    #[test]
+    fn another_sender_is_left_out_and_one_that_began_anew_is_not() {
+        let both = (0..200).flat_map(|number| [number, number + 30_000]);
+        assert_eq!(sorted(both), ((0..200).collect(), 199), "the last of them may be a beginning");
+        let anew = (5000..5100).chain(0..5);
+        assert_eq!(sorted(anew), ((5000..5100).chain(0..5).collect(), 0));
+        let anew = (5000..5100).chain([1, 0]).chain(2..50);
+        let (out, _) = sorted(anew);
+        assert!(out.ends_with(&(2..50).collect::<Vec<_>>()));
+    }
+}
