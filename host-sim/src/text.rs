@@ -1,18 +1,39 @@
 //! Text files that are no tables, read so that every complaint names the file and the line; and text for people.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
 use crate::Error;
 
+/// Largest file that is read into memory, bytes.
+const LARGEST: u64 = 1 << 30;
+
 /// What a file holds.
 ///
 /// # Errors
-/// [`Error::Read`] if it cannot be read.
+/// [`Error::Read`] if it cannot be read, or is too large.
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    fs::read(path).map_err(|source| Error::Read { path: path.to_path_buf(), source })
+    let read = regular(path).and_then(|size| match size {
+        0..=LARGEST => fs::read(path),
+        _ => Err(io::Error::other("it is larger than 1 GiB, which no log of use is")),
+    });
+    read.map_err(|source| Error::Read { path: path.to_path_buf(), source })
+}
+
+/// How large a file is, in bytes. A pipe or a device may have no end, or never begin.
+///
+/// # Errors
+/// If there is no file of this name, or it is no regular one.
+pub fn regular(path: &Path) -> io::Result<u64> {
+    let file = fs::metadata(path)?;
+    if file.is_file() || file.is_dir() {
+        // What is wrong with a folder the operating system says.
+        return Ok(file.len());
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a pipe or a device, not a file"))
 }
 
 /// A text file in memory.

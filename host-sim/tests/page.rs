@@ -69,7 +69,7 @@ fn every_system_is_explored_at_both_widths() {
             assert_eq!(page.evaluate("document.getElementById('system').value"), system);
             assert_eq!(page.evaluate("document.getElementById('alert').textContent"), "");
             page.screenshot(&format!("explorer-{system}-{width}.png"));
-            assert_quiet(&page, server.address());
+            assert_quiet(&page, server.place());
         }
     }
 }
@@ -107,7 +107,7 @@ fn a_slider_moves_and_the_path_changes() {
     page.press("+");
     page.wait_for(&format!("{range} !== '{}'", before.as_str().expect("a range")));
     page.screenshot("explorer-slider.png");
-    assert_quiet(&page, server.address());
+    assert_quiet(&page, server.place());
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn a_stream_is_shown_while_it_comes() {
     ));
     page.wait_for(DRAWN);
     page.screenshot("live-1280.png");
-    assert_quiet(&page, server.address());
+    assert_quiet(&page, server.place());
 }
 
 /// How long a slider takes from its movement until everything is drawn, on a log of two minutes at 200 Hz.

@@ -1,6 +1,6 @@
 //! Files read into memory, and gzip unpacked.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
@@ -17,7 +17,14 @@ pub(crate) const LARGEST: usize = 1 << 30;
 /// [`Error::Read`] if it cannot be read, [`Error::File`] if it is too large.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| {
+    let open = || match fs::metadata(path)? {
+        // It may have no end, or never begin.
+        file if !(file.is_file() || file.is_dir()) => {
+            Err(io::Error::other("it is a pipe or a device, not a file"))
+        }
+        _ => File::open(path),
+    };
+    let read = open().and_then(|file| {
         bytes.reserve(file.metadata()?.len().min(LARGEST as u64) as usize);
         file.take(LARGEST as u64 + 1).read_to_end(&mut bytes)
     });

@@ -16,6 +16,7 @@ mod gnss_cli;
 mod gnss_recorded_cli;
 mod gnss_refusals_cli;
 mod live_cli;
+mod live_senders;
 mod live_systems;
 mod outputs_cli;
 #[path = "../program/mod.rs"]
@@ -24,5 +25,6 @@ mod robot_cli;
 mod room;
 #[path = "../sender/mod.rs"]
 mod sender;
+mod serve_cli;
 mod station;
 mod uav_cli;

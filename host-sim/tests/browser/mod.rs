@@ -75,7 +75,7 @@ impl Page {
         page.size(900);
         page.tab.navigate_to(address).expect("an address");
         // The tab's own waiting misses a page that is there at once.
-        let place = address.split('#').next().expect("the address");
+        let place = place(address);
         page.wait_for(&format!(
             "location.href.startsWith('{place}') && document.readyState === 'complete'"
         ));
@@ -221,15 +221,25 @@ impl Server {
         Self { program, page: page.expect("it was found"), datagrams }
     }
 
-    /// Where the page is.
+    /// Where the page is, with the key to it.
     pub(crate) fn address(&self) -> &str {
         &self.page
+    }
+
+    /// Where the page is once the key was handed over.
+    pub(crate) fn place(&self) -> &str {
+        place(&self.page)
     }
 
     /// Where it listens.
     pub(crate) fn datagrams(&self) -> SocketAddr {
         self.datagrams.expect("it listens")
     }
+}
+
+/// An address without the key and the name of a system.
+fn place(address: &str) -> &str {
+    address.split(['?', '#']).next().unwrap_or(address)
 }
 
 impl Drop for Server {

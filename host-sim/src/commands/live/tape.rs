@@ -9,6 +9,8 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use crate::text::regular;
+
 /// A reader looks up this often while nothing comes.
 const PATIENCE: Duration = Duration::from_millis(500);
 
@@ -87,6 +89,7 @@ impl Reel {
 
     /// Of a recording that was made before.
     pub(super) fn complete(path: &Path) -> io::Result<Self> {
+        regular(path)?;
         Ok(Self { file: File::open(path)?, tape: None, read: 0 })
     }
 

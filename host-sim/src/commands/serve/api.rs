@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -13,8 +12,8 @@ use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::Shared;
 use super::sessions::Recording;
+use super::{Shared, uploads};
 use crate::Error;
 use crate::figure::{View, plotly};
 use crate::system::{Answer, AnySystem, Files, Opened, Reading, Setting, Settings, Source};
@@ -23,7 +22,7 @@ use crate::system::{Answer, AnySystem, Files, Opened, Reading, Setting, Settings
 const MOST_POINTS: usize = 700;
 
 /// One plain sentence, as on the command line.
-pub(super) struct Refusal(StatusCode, String);
+pub(super) struct Refusal(pub(super) StatusCode, pub(super) String);
 
 impl Refusal {
     pub(super) fn of(problem: impl Display) -> Self {
@@ -84,7 +83,10 @@ pub(super) async fn open_files(
     mut upload: Multipart,
 ) -> Result<Response, Refusal> {
     let system = find(&shared, &name)?;
-    let folder = tempfile::tempdir().map_err(Refusal::of)?;
+    let Some(uploads) = &shared.uploads else {
+        return Err(Refusal::of("no files are opened here"));
+    };
+    let (_turn, folder) = uploads.begin()?;
     let mut files = Files::default();
     while let Some(part) = upload.next_field().await.map_err(Refusal::of)? {
         let field = part.name().unwrap_or_default().to_owned();
@@ -96,15 +98,7 @@ pub(super) async fn open_files(
         if !system.files().iter().any(|known| known.name == field) {
             return Err(Refusal::of(format!("{name} has no file {field:?}")));
         }
-        // The name alone: what a browser sends may hold a path, and it is told apart from others by its field.
-        let name = Path::new(part.file_name().unwrap_or_default()).file_name();
-        let name = name.map_or_else(|| field.clone().into(), ToOwned::to_owned);
-        let within = folder.path().join(&field);
-        fs::create_dir_all(&within).map_err(Refusal::of)?;
-        let path = within.join(name);
-        let bytes = part.bytes().await.map_err(Refusal::of)?;
-        fs::write(&path, bytes).map_err(Refusal::of)?;
-        files.add(field, path);
+        files.add(field, uploads::write(folder.path(), part).await?);
     }
     let place = folder.path().to_path_buf();
     let settings = Settings::new(system.settings());

@@ -4,11 +4,14 @@
 
 mod api;
 mod assets;
+mod connections;
 mod guard;
+mod key;
 mod sessions;
 mod socket;
+mod uploads;
 
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::Ipv4Addr;
 use std::sync::Arc;
 
 use axum::Router;
@@ -16,19 +19,21 @@ use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
+use tokio::sync::Notify;
 
+use self::guard::Guard;
+use self::key::Key;
+use self::sessions::Sessions;
+use self::uploads::{LARGEST, Uploads};
 use crate::system::{Answer, AnySystem};
 use crate::systems::ALL;
 use crate::{Error, output};
-use sessions::Sessions;
 
 /// What gives an answer whenever it is asked.
 pub type View = Arc<dyn Fn() -> Answer + Send + Sync>;
 
 /// The page's port unless told otherwise.
 pub const PORT: u16 = 8017;
-/// A day of satellites is some tens of megabytes.
-const LARGEST_UPLOAD: usize = 512 << 20;
 
 /// Options of the command.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -42,23 +47,25 @@ impl Serve {
     /// Serves the page until it is interrupted.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the port cannot be had.
+    /// [`Error::Usage`] if the port or a folder for uploads cannot be had.
     pub fn run(self) -> Result<(), Error> {
-        let shared = Arc::new(Shared { systems: &ALL, sessions: Sessions::default(), live: None });
+        let folder = tempfile::tempdir()
+            .map_err(|error| Error::Usage(format!("no folder for uploads: {error}")))?;
+        let uploads = Some(Uploads::to(folder.path()));
+        let shared = Shared { systems: &ALL, sessions: Sessions::default(), live: None, uploads };
+        let interrupted = Arc::new(Notify::new());
+        let interrupt = Arc::clone(&interrupted);
+        // Without it a signal ends the program at once, and the folder stays.
+        let _ = ctrlc::set_handler(move || interrupt.notify_one());
         let runtime = runtime()?;
         let ended = runtime.block_on(async {
-            let (listener, address) = bind(self.port).await?;
-            output::print(&format!("http://{address}/  (Ctrl-C ends)"))?;
-            let serving = axum::serve(listener, router(shared, address));
-            let interrupted = async {
-                // Without a signal handler the signal ends the program by itself.
-                let _ = tokio::signal::ctrl_c().await;
-            };
+            let (listener, guard) = bind(self.port).await?;
+            output::print(&format!("{}  (Ctrl-C ends)", guard.address()))?;
             tokio::select! {
-                result = serving => result
-                    .map_err(|error| Error::Usage(format!("the page cannot be served any longer: {error}"))),
-                () = interrupted => Ok(()),
+                () = connections::serve(listener, router(shared, guard)) => {}
+                () = interrupted.notified() => {}
             }
+            Ok(())
         });
         // Nobody waits for what is still being computed.
         runtime.shutdown_background();
@@ -71,7 +78,7 @@ impl Serve {
 pub struct Page {
     runtime: Runtime,
     listener: Option<TcpListener>,
-    address: SocketAddr,
+    guard: Guard,
 }
 
 impl Page {
@@ -81,21 +88,21 @@ impl Page {
     /// [`Error::Usage`] if it cannot be had.
     pub fn bind(port: u16) -> Result<Self, Error> {
         let runtime = runtime()?;
-        let (listener, address) = runtime.block_on(bind(port))?;
-        Ok(Self { runtime, listener: Some(listener), address })
+        let (listener, guard) = runtime.block_on(bind(port))?;
+        Ok(Self { runtime, listener: Some(listener), guard })
     }
 
     /// Shows what `live` says.
     pub fn show(&mut self, live: View) {
         let Some(listener) = self.listener.take() else { return };
-        let shared = Shared { systems: &[], sessions: Sessions::default(), live: Some(live) };
-        let router = router(Arc::new(shared), self.address);
-        self.runtime.spawn(axum::serve(listener, router).into_future());
+        let (systems, sessions) = (&[], Sessions::default());
+        let shared = Shared { systems, sessions, live: Some(live), uploads: None };
+        self.runtime.spawn(connections::serve(listener, router(shared, self.guard.clone())));
     }
 
-    /// Where it is.
+    /// Where it is, with the key to it.
     pub fn address(&self) -> String {
-        format!("http://{}/", self.address)
+        self.guard.address()
     }
 }
 
@@ -105,6 +112,8 @@ struct Shared {
     sessions: Sessions,
     /// Where there is a stream to show.
     live: Option<View>,
+    /// Where files can be opened.
+    uploads: Option<Uploads>,
 }
 
 fn runtime() -> Result<Runtime, Error> {
@@ -115,23 +124,25 @@ fn runtime() -> Result<Runtime, Error> {
         .map_err(|error| Error::Usage(format!("no threads: {error}")))
 }
 
-/// Listens where nobody but this machine can ask.
-async fn bind(port: u16) -> Result<(TcpListener, SocketAddr), Error> {
+/// Listens where nobody but this machine can ask, and nobody there who was not told the key.
+async fn bind(port: u16) -> Result<(TcpListener, Guard), Error> {
     let bound = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await;
-    bound
+    let (listener, address) = bound
         .and_then(|listener| listener.local_addr().map(|address| (listener, address)))
-        .map_err(|error| Error::Usage(format!("port {port} cannot be had: {error} (--port)")))
+        .map_err(|error| Error::Usage(format!("port {port} cannot be had: {error} (--port)")))?;
+    let key = Key::random().map_err(|error| Error::Usage(format!("no random numbers: {error}")))?;
+    Ok((listener, Guard { address, key }))
 }
 
-fn router(shared: Arc<Shared>, address: SocketAddr) -> Router {
+fn router(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .route("/api/sources", get(api::sources))
         .route("/api/open/{system}", post(api::open_files))
         .route("/api/open/{system}/{recording}", post(api::open_bundled))
         .route("/api/answer/{session}", post(api::answer))
         .route("/live", get(socket::open))
-        .layer(DefaultBodyLimit::max(LARGEST_UPLOAD))
-        .with_state(shared)
+        .layer(DefaultBodyLimit::max(LARGEST))
+        .with_state(Arc::new(shared))
         .merge(assets::router())
-        .layer(axum::middleware::from_fn_with_state(address, guard::only_this_machine))
+        .layer(axum::middleware::from_fn_with_state(guard, guard::only_with_key))
 }
