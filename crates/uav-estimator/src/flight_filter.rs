@@ -1,8 +1,10 @@
+use kestirim_health::Health;
 use kestirim_kalman::Innovation;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
 use crate::gate::Gate;
+use crate::monitor::Monitor;
 use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
@@ -27,6 +29,7 @@ pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     gates: [Gate; P],
     /// How many times each output was left out.
     rejected: [u32; P],
+    monitor: Monitor,
     transitions: Transitions<Transition<T>, L>,
     /// Time (µs) and input of the sample before.
     before: Option<(i64, SVector<f64, 2>)>,
@@ -48,7 +51,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
             KalmanFilter::new(c, &noise.outputs, &SVector::zeros(), &SVector::from(UNKNOWN))?;
         let transitions = Transitions::new(*dynamics, usual, noise.inputs);
         let gates = [Gate::default(); P];
-        Ok(Self { filter, gates, rejected: [0; P], transitions, before: None })
+        let monitor = Monitor::default();
+        Ok(Self { filter, gates, rejected: [0; P], monitor, transitions, before: None })
     }
 
     /// Says how long an interval usually is, s.
@@ -64,6 +68,13 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
     /// How many times each output was left out, because it contradicted the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
         &self.rejected
+    }
+
+    /// Whether the estimate can be relied upon: `innovations` if over about 200 samples the normalised innovations
+    /// squared are more than 2.25 on average, each counted for no more than 10; `rejected` if over about 50 more
+    /// than a tenth of the measurements were left out.
+    pub fn health(&self) -> Health {
+        self.monitor.health()
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
@@ -93,6 +104,9 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         for (rejected, is_left_out) in self.rejected.iter_mut().zip(judged.is_left_out) {
             *rejected = rejected.saturating_add(u32::from(is_left_out));
         }
+        let of = || judged.innovations.iter().flatten().map(|innovation| innovation.nis);
+        let left_out = judged.is_left_out.iter().filter(|is_left_out| **is_left_out).count();
+        self.monitor.count(of().count(), left_out, of());
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, transition)) = &moved {
             self.transitions.keep(*interval_us, transition);

@@ -1,9 +1,13 @@
+use core::iter;
+
+use kestirim_health::Health;
 use kestirim_luenberger::{CurrentGains, CurrentObserver, Plant};
 use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 use crate::innovation_gate::InnovationGate;
+use crate::monitor::Monitor;
 use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 
@@ -26,6 +30,7 @@ pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
     gates: [InnovationGate; P],
     /// How many times each output was left out.
     rejected: [u32; P],
+    monitor: Monitor,
     usual_us: i64,
     transitions: Transitions<Discrete<4, 2>, L>,
     /// Time (µs) and input of the sample before.
@@ -51,7 +56,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         let gains = CurrentGains::new(&Plant { a: plant.a, b: plant.b, c: *c }, &gain);
         let observer = CurrentObserver::new(&gains, &SVector::zeros())?;
         let gates = [InnovationGate::default(); P];
-        Ok(Self { observer, c: *c, gates, rejected: [0; P], usual_us, transitions, before: None })
+        let (rejected, monitor) = ([0; P], Monitor::default());
+        Ok(Self { observer, c: *c, gates, rejected, monitor, usual_us, transitions, before: None })
     }
 
     /// x̂: α (rad), q (rad/s), V (m/s), θ (rad) at the time of the last sample.
@@ -62,6 +68,13 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
     /// How many times each output was left out, because it contradicted the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
         &self.rejected
+    }
+
+    /// Whether the estimate can be relied upon: `rejected` if over about 50 samples more than a tenth of the
+    /// measurements were left out. An observer knows no variances: whether its innovations are too large, only a
+    /// [`FlightFilter`](crate::FlightFilter) beside it can tell.
+    pub fn health(&self) -> Health {
+        self.monitor.health()
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it, in its unit.
@@ -102,11 +115,14 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         if let Some((interval_us, step)) = &bridged {
             self.transitions.keep(*interval_us, step);
         }
+        let mut left_out = 0;
         let outputs = sample.measured.iter().zip(&admitted);
         for (rejected, (measured, admitted)) in self.rejected.iter_mut().zip(outputs) {
             let is_rejected = measured.is_some_and(|measured| measured != *admitted);
             *rejected = rejected.saturating_add(u32::from(is_rejected));
+            left_out += usize::from(is_rejected);
         }
+        self.monitor.count(sample.measured.iter().flatten().count(), left_out, iter::empty());
         Ok(innovations)
     }
 

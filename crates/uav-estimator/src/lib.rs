@@ -10,6 +10,7 @@ mod gain;
 mod gate;
 mod innovation_gate;
 mod kalman_filter;
+mod monitor;
 mod sample;
 mod transitions;
 
@@ -20,4 +21,5 @@ pub use flight_filter::FlightFilter;
 pub use flight_observer::FlightObserver;
 pub use gain::{current_gain, observer_gain};
 pub use kalman_filter::{KalmanFilter, Transition};
+pub use kestirim_health::{Health, Reason};
 pub use sample::{Noise, Sample};

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use kestirim_health::{Health, Reason, State};
 use serde::Serialize;
 use serde_json::Value;
 
 use super::finding::Finding;
-use super::health::{Health, Reason, State};
 use crate::Error;
 use crate::figure::Figure;
 
@@ -57,11 +57,11 @@ impl Account {
 
     /// The health is told where everybody looks.
     pub(super) fn tell_health(&mut self) {
-        let health = serde_json::to_value(&self.health);
+        let health = serde_json::to_value(self.health);
         if let (Some(report), Ok(health)) = (self.report.as_object_mut(), health) {
             report.insert("health".to_owned(), health);
         }
-        self.fact("health", self.health.in_words());
+        self.fact("health", self.health.to_string());
     }
 
     /// With what was concluded about the log.

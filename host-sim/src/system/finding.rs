@@ -1,8 +1,7 @@
 //! What a log shows before any estimator has seen it.
 
+use kestirim_health::Reason;
 use serde::Serialize;
-
-use super::health::Reason;
 
 /// Something that a log shows.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

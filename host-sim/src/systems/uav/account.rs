@@ -12,7 +12,6 @@ use super::recording::model::STATE_COLUMNS;
 use super::settings::EstimatorKind;
 use super::track::Track;
 use super::track::estimators::{Estimate, Followed};
-use super::track::tally::{doubts, healths};
 use crate::Error;
 use crate::metrics::rms;
 use crate::system::{Account, Reason, System, Table};
@@ -130,7 +129,7 @@ pub(super) fn account(
 
 /// When the estimate is to be doubted, and why: a sentence each.
 fn doubted(followed: &Followed) -> impl Iterator<Item = (Reason, String)> {
-    let doubts = doubts(&followed.tallies);
+    let healths = &followed.healths;
     let sentences = [
         (
             Reason::Innovations,
@@ -142,9 +141,9 @@ fn doubted(followed: &Followed) -> impl Iterator<Item = (Reason, String)> {
         ),
     ];
     sentences.into_iter().filter_map(move |(reason, sentence)| {
-        let place = doubts.iter().position(|doubt| *doubt == Some(reason))?;
-        let count = doubts.iter().filter(|doubt| **doubt == Some(reason)).count();
-        let share = 100.0 * count as f64 / doubts.len() as f64;
+        let place = healths.iter().position(|health| health.has(reason))?;
+        let count = healths.iter().filter(|health| health.has(reason)).count();
+        let share = 100.0 * count as f64 / healths.len() as f64;
         let first = followed.estimates.get(place)?.t_us as f64 / 1e6;
         Some((reason, format!("{sentence}; first at {first:.2} s, in {share:.0} % of the lines")))
     })
@@ -188,7 +187,7 @@ pub(super) fn table(Track { flight, followed }: &Track) -> Table {
     table.header.extend(STATE_COLUMNS.map(|name| format!("s_{name}")));
     Table {
         rows: followed.estimates.iter().map(row).collect(),
-        health: healths(&followed.tallies),
+        health: followed.healths.iter().map(|health| health.state()).collect(),
         ..table
     }
 }

@@ -3,11 +3,9 @@
 pub mod design;
 pub mod deviations;
 pub mod estimators;
-pub mod tally;
 
 use self::deviations::Deviations;
 use self::estimators::{Estimate, Followed};
-use self::tally::Tally;
 use super::recording::log::{Log, Sample};
 use super::recording::model::Model;
 use super::recording::{Logged, Recording};
@@ -16,7 +14,7 @@ use super::simulate::flight::{Flight, Moment};
 use super::simulate::plant::Plant;
 use super::simulate::scenario::INTERVAL_S;
 use crate::Error;
-use crate::system::Settings;
+use crate::system::{Health, Settings};
 
 /// What an estimator made of a flight.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,7 +91,7 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
             .collect(),
         innovations: innovations.collect(),
         rejected: vec![0; outputs.len()],
-        tallies: vec![Tally::default(); moments.len()],
+        healths: vec![Health::GOOD; moments.len()],
     };
     let truth = timed().map(|(t_us, it)| (t_us, <[f64; 4]>::from(it.sample.x).map(Some)));
     let samples = timed().map(sample).collect();

@@ -4,6 +4,7 @@ pub mod adaptive_kalman;
 pub mod air_to_ground;
 pub mod attitude;
 pub mod gnss_ppp;
+pub mod health;
 pub mod imu_calibration;
 pub mod kalman;
 pub mod luenberger;

@@ -93,6 +93,7 @@ fn flight_filters<T: Scalar, const P: usize>() {
     try_on(&mut filter, |filter| FlightFilter::take(filter, &sample(&mut time_us)));
     keep(FlightFilter::filter(&filter));
     keep(FlightFilter::rejected(&filter));
+    keep(FlightFilter::health(&filter));
 }
 
 fn flight_observers<T: Scalar, const P: usize>() {
@@ -104,6 +105,7 @@ fn flight_observers<T: Scalar, const P: usize>() {
     }
     keep(FlightObserver::estimate(&observer));
     keep(FlightObserver::rejected(&observer));
+    keep(FlightObserver::health(&observer));
 }
 
 fn all_of<T: Scalar>() {

@@ -117,7 +117,7 @@ fn run(
         Ok(account) => {
             let over_sigma = &account.report["accuracy"]["error_over_sigma"];
             let over_sigma = over_sigma.as_f64().or_else(|| over_sigma[0].as_f64());
-            let in_words = account.health.in_words();
+            let in_words = account.health.to_string();
             let is_good = in_words == "good";
             let told = if is_good { "a warning".to_owned() } else { in_words };
             let error = measure(&account.report).or(Some(f64::INFINITY));

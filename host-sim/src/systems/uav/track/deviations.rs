@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::estimators::{self, Assumed, Estimate, Followed};
 use crate::Error;
-use crate::system::ScalarKind;
+use crate::system::{Reason, ScalarKind};
 use crate::systems::uav::recording::log::{Log, Truth};
 use crate::systems::uav::recording::model::Model;
 use crate::systems::uav::settings::{EstimatorKind, Options};
@@ -81,8 +81,8 @@ impl Deviations {
                 // An observer does not know how large innovations may be. Whether model and measurements agree does
                 // not depend on it: the filter beside it tells.
                 if let Ok(judge) = kalman(ScalarKind::F64) {
-                    for (tally, judged) in followed.tallies.iter_mut().zip(&judge.tallies) {
-                        tally.nis = judged.nis;
+                    for (health, judged) in followed.healths.iter_mut().zip(&judge.healths) {
+                        *health = health.with(Reason::Innovations, judged.has(Reason::Innovations));
                     }
                 }
                 Ok(followed)

@@ -5,8 +5,7 @@ use kestirim_uav_estimator::{self as uav, Error, FlightFilter, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
 use super::design::{Poles, discrete};
-use super::tally::Tally;
-use crate::system::ScalarKind;
+use crate::system::{Health, ScalarKind};
 use crate::systems::uav::recording::log::{Log, Sample};
 use crate::systems::uav::recording::model::{MOST_OUTPUTS, Model};
 use crate::systems::uav::settings::Options;
@@ -38,8 +37,8 @@ pub struct Followed {
     pub innovations: Vec<Vec<f64>>,
     /// How many times each of them contradicted the estimate and was left out.
     pub rejected: Vec<u32>,
-    /// Of each line: what tells how far its estimate can be relied upon.
-    pub tallies: Vec<Tally>,
+    /// Of each line: how far its estimate can be relied upon.
+    pub healths: Vec<Health>,
 }
 
 impl Followed {
@@ -53,19 +52,15 @@ impl Followed {
         estimate: Estimate,
         innovations: impl IntoIterator<Item = Option<f64>>,
         rejected: &[u32],
-        nis: f64,
+        health: Health,
     ) {
-        let mut measured = 0;
         for (all, innovation) in self.innovations.iter_mut().zip(innovations) {
-            measured += usize::from(innovation.is_some());
             all.extend(innovation);
         }
-        let before: u32 = self.rejected.iter().sum();
         for (all, rejected) in self.rejected.iter_mut().zip(rejected) {
             *all = *rejected;
         }
-        let left_out = self.rejected.iter().sum::<u32>() - before;
-        self.tallies.push(Tally { measured, left_out, nis });
+        self.healths.push(health);
         self.estimates.push(estimate);
     }
 }
@@ -135,12 +130,11 @@ fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<F
     let mut followed = Followed::new(log);
     for sample in &log.samples {
         let innovations = filter.take(&sized(sample))?;
-        let nis = innovations.iter().flatten().map(|it| it.nis.min(Tally::MOST)).sum();
         let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
         let now = filter.filter();
         let sigma = Some(now.sigma());
         let estimate = Estimate { t_us: sample.t_us, state: now.estimate(), sigma };
-        followed.add(estimate, innovations, filter.rejected(), nis);
+        followed.add(estimate, innovations, filter.rejected(), filter.health());
     }
     Ok(followed)
 }
@@ -186,7 +180,7 @@ fn observer_of<T: Scalar, const P: usize>(
         let innovations = observer.take(&sized(sample))?;
         let (state, sigma) = (observer.estimate(), None);
         let estimate = Estimate { t_us: sample.t_us, state, sigma };
-        followed.add(estimate, innovations, observer.rejected(), 0.0);
+        followed.add(estimate, innovations, observer.rejected(), observer.health());
     }
     Ok(followed)
 }

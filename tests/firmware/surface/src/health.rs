@@ -1,0 +1,30 @@
+//! Everything of `kestirim-health`.
+
+use kestirim_health::{Health, Reason, State};
+
+use super::values::{any, call_each, keep, one_of, yes_or_no};
+
+fn reason() -> Reason {
+    one_of(Reason::ALL)
+}
+
+fn words() {
+    keep(State::word(one_of([State::Good, State::Degraded, State::Bad])));
+    keep(Reason::state(reason()));
+    keep(Reason::words(reason()));
+}
+
+fn healths() {
+    let mut health = any(Health::from(reason()));
+    Health::add(&mut health, reason());
+    let health = any(Health::with(health, reason(), yes_or_no()));
+    let both = any(Health::and(health, Health::from_iter([reason(), reason()])));
+    keep(Health::has(both, reason()));
+    keep(Health::state(both));
+    Health::reasons(both).for_each(keep);
+}
+
+/// Calls it all.
+pub fn run() {
+    call_each([words, healths]);
+}
