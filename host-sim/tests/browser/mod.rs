@@ -1,35 +1,28 @@
 //! A browser that notes down what goes wrong on a page.
 
-use std::ffi::OsStr;
+mod devtools;
+
+use std::cell::RefCell;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use headless_chrome::protocol::cdp::Page::CaptureScreenshotFormatOption;
-use headless_chrome::protocol::cdp::types::Event;
-use headless_chrome::protocol::cdp::{Emulation, Log, Network, Runtime};
-use headless_chrome::{Browser, LaunchOptions, Tab};
-use serde_json::Value;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+
+use devtools::Browser;
 
 /// A page is given up if it does not get there within this time.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A page in a browser without a window.
 pub(crate) struct Page {
-    tab: Arc<Tab>,
-    noted: Arc<Mutex<Noted>>,
+    browser: RefCell<Browser>,
     width: u32,
-    _browser: Browser,
-}
-
-#[derive(Default)]
-struct Noted {
-    complaints: Vec<String>,
-    requests: Vec<String>,
 }
 
 impl Page {
@@ -43,38 +36,12 @@ impl Page {
             eprintln!("SKIPPED: no chromium on this machine");
             return None;
         };
-        let options = LaunchOptions {
-            path: Some(program),
-            // The tests run as root where there are no user namespaces.
-            sandbox: false,
-            window_size: Some((width, 900)),
-            idle_browser_timeout: 10 * PATIENCE,
-            args: [OsStr::new("--disable-gpu"), OsStr::new("--hide-scrollbars")].to_vec(),
-            ..LaunchOptions::default()
-        };
-        let browser = Browser::new(options).expect("the browser starts");
-        let tab = browser.new_tab().expect("a tab");
-        tab.set_default_timeout(PATIENCE);
-        let noted = Arc::new(Mutex::new(Noted::default()));
-        let notes = Arc::clone(&noted);
-        tab.call_method(Runtime::Enable(None)).expect("the console is watched");
-        tab.call_method(Log::Enable(None)).expect("the log is watched");
-        let network = Network::Enable {
-            max_total_buffer_size: None,
-            max_resource_buffer_size: None,
-            max_post_data_size: None,
-            report_direct_socket_traffic: None,
-            enable_durable_messages: None,
-        };
-        tab.call_method(network).expect("requests are watched");
-        tab.add_event_listener(Arc::new(move |event: &Event| {
-            notes.lock().expect("the notes").take(event);
-        }))
-        .expect("a listener");
-        let page = Self { tab, noted, width, _browser: browser };
+        let page = Self { browser: RefCell::new(Browser::start(&program, width)), width };
+        for domain in ["Page", "Runtime", "Log", "Network", "DOM"] {
+            page.call(&format!("{domain}.enable"), json!({}));
+        }
         page.size(900);
-        page.tab.navigate_to(address).expect("an address");
-        // The tab's own waiting misses a page that is there at once.
+        page.call("Page.navigate", json!({ "url": address }));
         let place = place(address);
         page.wait_for(&format!(
             "location.href.startsWith('{place}') && document.readyState === 'complete'"
@@ -82,42 +49,35 @@ impl Page {
         Some(page)
     }
 
+    fn call(&self, method: &str, parameters: Value) -> Value {
+        self.browser.borrow_mut().call(method, parameters)
+    }
+
     /// Makes the page this high, and as narrow as no window can be.
     fn size(&self, height: u32) {
-        let metrics = Emulation::SetDeviceMetricsOverride {
-            width: self.width,
-            height,
-            device_scale_factor: 1.0,
-            mobile: self.width < 500,
-            scale: None,
-            screen_width: None,
-            screen_height: None,
-            position_x: None,
-            position_y: None,
-            dont_set_visible_size: None,
-            screen_orientation: None,
-            viewport: None,
-            display_feature: None,
-            device_posture: None,
-        };
-        self.tab.call_method(metrics).expect("a size");
+        let (width, mobile) = (self.width, self.width < 500);
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile });
+        self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
     /// What a piece of JavaScript says; promises are awaited.
     pub(crate) fn evaluate(&self, script: &str) -> Value {
-        let result = self.tab.evaluate(script, true).expect("the script runs");
-        result.value.unwrap_or(Value::Null)
+        let said = self.try_evaluate(script).expect("there is a page");
+        assert!(said["exceptionDetails"].is_null(), "{script}: {}", said["exceptionDetails"]);
+        said["result"]["value"].clone()
+    }
+
+    fn try_evaluate(&self, script: &str) -> Result<Value, Value> {
+        let script = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
+        self.browser.borrow_mut().try_call("Runtime.evaluate", script)
     }
 
     /// Waits until a piece of JavaScript is true.
     pub(crate) fn wait_for(&self, script: &str) {
         let begun = Instant::now();
         // There is nobody to ask while one page gives way to the next.
-        let came_true = || {
-            let result = self.tab.evaluate(script, true);
-            result.is_ok_and(|result| result.value == Some(Value::Bool(true)))
-        };
-        while !came_true() {
+        while !self.try_evaluate(script).is_ok_and(|said| said["result"]["value"] == true) {
             let complaints = self.complaints();
             assert!(begun.elapsed() < PATIENCE, "{script} never came true: {complaints:?}");
             std::thread::sleep(Duration::from_millis(20));
@@ -126,23 +86,53 @@ impl Page {
 
     /// Puts a file into a field of a form.
     pub(crate) fn choose_file(&self, field: &str, path: &str) {
-        let field = self.tab.find_element(field).expect("the field");
-        field.set_input_files(&[path]).expect("the file is taken");
+        let root = self.call("DOM.getDocument", json!({}))["root"]["nodeId"].clone();
+        let field = self.call("DOM.querySelector", json!({ "nodeId": root, "selector": field }));
+        let files = json!({ "nodeId": field["nodeId"], "files": [path] });
+        self.call("DOM.setFileInputFiles", files);
     }
 
     /// Presses a key where the focus is.
     pub(crate) fn press(&self, key: &str) {
-        self.tab.press_key(key).expect("a key");
+        let (code, text) = match key {
+            "ArrowRight" => (39, ""),
+            "Enter" => (13, "\r"),
+            "+" => (187, "+"),
+            _ => panic!("no test presses {key}"),
+        };
+        let down = if text.is_empty() { "rawKeyDown" } else { "keyDown" };
+        for kind in [down, "keyUp"] {
+            let text = if kind == "keyUp" { "" } else { text };
+            let event =
+                json!({ "type": kind, "key": key, "windowsVirtualKeyCode": code, "text": text });
+            self.call("Input.dispatchKeyEvent", event);
+        }
+    }
+
+    /// What came of these methods' events so far.
+    fn noted(&self, of: impl Fn(&str, &Value) -> Option<String>) -> Vec<String> {
+        // Whatever happened before is heard before this is answered.
+        let _ = self.try_evaluate("0");
+        let browser = self.browser.borrow();
+        browser.events.iter().filter_map(|(method, said)| of(method, said)).collect()
     }
 
     /// What the console and the log hold of errors and warnings.
     pub(crate) fn complaints(&self) -> Vec<String> {
-        self.noted.lock().expect("the notes").complaints.clone()
+        self.noted(|method, said| match method {
+            "Runtime.exceptionThrown" => Some(said["exceptionDetails"].to_string()),
+            "Runtime.consoleAPICalled" => Some(said["args"].to_string()),
+            "Log.entryAdded" => Some(said["entry"]["text"].to_string()),
+            _ => None,
+        })
     }
 
     /// Every address that the page asked for.
     pub(crate) fn requests(&self) -> Vec<String> {
-        self.noted.lock().expect("the notes").requests.clone()
+        self.noted(|method, said| {
+            let asked = (method == "Network.requestWillBeSent").then_some(said)?;
+            asked["request"]["url"].as_str().map(str::to_owned)
+        })
     }
 
     /// Keeps what the whole page looks like.
@@ -153,31 +143,11 @@ impl Page {
         self.size(height.map_or(900, |height| height as u32));
         // Figures that come into view are drawn now.
         std::thread::sleep(Duration::from_millis(500));
-        let png = CaptureScreenshotFormatOption::Png;
-        let image = self.tab.capture_screenshot(png, None, None, true).expect("a screenshot");
+        let image = self.call("Page.captureScreenshot", json!({ "format": "png" }));
+        let image = STANDARD.decode(image["data"].as_str().expect("an image")).expect("base64");
         let path = folder.join(name);
         fs::write(&path, image).expect("the folder can be written");
         path
-    }
-}
-
-impl Noted {
-    fn take(&mut self, event: &Event) {
-        match event {
-            Event::RuntimeExceptionThrown(thrown) => {
-                self.complaints.push(format!("{:?}", thrown.params.exception_details));
-            }
-            Event::RuntimeConsoleAPICalled(call) => {
-                self.complaints.push(format!("{:?}", call.params.args));
-            }
-            Event::LogEntryAdded(entry) => {
-                self.complaints.push(entry.params.entry.text.clone());
-            }
-            Event::NetworkRequestWillBeSent(request) => {
-                self.requests.push(request.params.request.url.clone());
-            }
-            _ => {}
-        }
     }
 }
 

@@ -1,0 +1,102 @@
+//! Chromium over its DevTools protocol: a WebSocket and a few of its methods.
+//!
+//! Weighed: `headless_chrome` is built by a program under the GPL, `chromiumoxide` brings the whole protocol as code.
+
+use std::ffi::OsStr;
+use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tungstenite::{Message, WebSocket};
+
+/// A browser that does not answer within this time is given up.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A browser without a window, with one page; it ends with this.
+pub(super) struct Browser {
+    program: Child,
+    socket: WebSocket<TcpStream>,
+    session: Option<String>,
+    calls: u64,
+    /// What happened that nobody has looked at: method and parameters.
+    pub(super) events: Vec<(String, Value)>,
+    _profile: TempDir,
+}
+
+impl Browser {
+    /// Starts the program with a window this wide.
+    pub(super) fn start(program: &Path, width: u32) -> Self {
+        let profile = tempfile::tempdir().expect("a folder for the browser");
+        let mut folder = OsStr::new("--user-data-dir=").to_owned();
+        folder.push(profile.path());
+        let mut program = Command::new(program)
+            .args(["--headless=new", "--remote-debugging-port=0", "--disable-gpu"])
+            // The tests run as root where there are no user namespaces.
+            .args(["--no-sandbox", "--hide-scrollbars", "--no-first-run", "--mute-audio"])
+            .args([format!("--window-size={width},900")])
+            .arg(folder)
+            .arg("about:blank")
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the browser starts");
+        let mut lines = BufReader::new(program.stderr.take().expect("a pipe")).lines();
+        let address = lines
+            .by_ref()
+            .map_while(Result::ok)
+            .find_map(|line| Some(line.split_once("DevTools listening on ")?.1.to_owned()))
+            .expect("it says where it listens");
+        // What it says later must find a reader, too.
+        std::thread::spawn(move || lines.for_each(drop));
+        let place = address.strip_prefix("ws://").and_then(|rest| rest.split('/').next());
+        let stream = TcpStream::connect(place.expect("an address")).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a limit");
+        let (socket, _) = tungstenite::client(address, stream).expect("a WebSocket");
+        let (session, events) = (None, Vec::new());
+        let mut browser = Self { program, socket, session, calls: 0, events, _profile: profile };
+        let page = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
+        let attach = json!({ "targetId": page["targetId"], "flatten": true });
+        let session = browser.call("Target.attachToTarget", attach)["sessionId"].clone();
+        browser.session = session.as_str().map(str::to_owned);
+        browser
+    }
+
+    /// What a method answers.
+    pub(super) fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.try_call(method, parameters).unwrap_or_else(|error| panic!("{method}: {error}"))
+    }
+
+    /// What a method answers, or its complaint.
+    pub(super) fn try_call(&mut self, method: &str, parameters: Value) -> Result<Value, Value> {
+        self.calls += 1;
+        let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
+        if let Some(session) = &self.session {
+            call["sessionId"] = session.as_str().into();
+        }
+        self.socket.send(Message::text(call.to_string())).expect("the browser takes a call");
+        loop {
+            let message = self.socket.read().expect("the browser answers");
+            let Message::Text(text) = message else { continue };
+            let mut said: Value = serde_json::from_str(&text).expect("JSON");
+            if said["id"] == self.calls {
+                let error = said["error"].take();
+                return if error.is_null() { Ok(said["result"].take()) } else { Err(error) };
+            }
+            if let Some(method) = said["method"].as_str().map(str::to_owned) {
+                self.events.push((method, said["params"].take()));
+            }
+        }
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
