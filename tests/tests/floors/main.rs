@@ -4,6 +4,7 @@
 //! A crate says in its `Cargo.toml` where it stands: `[package.metadata.kestirim]`, `floor = "estimator"`. What is not
 //! in `crates/` is a program, which may depend on anything and on which no crate may.
 
+mod licences;
 mod readmes;
 mod recipes;
 

@@ -1,0 +1,14 @@
+//! Any bytes as orbits, clocks, antennas and ocean loading.
+#![no_main]
+
+use kestirim_gnss_files::{Antennas, Clocks, Orbits, StationLoading, Text};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = Text::unpack("a", bytes.to_vec()) else { return };
+    let _ = Antennas::parse(&text, "TRM59800.00     SCIS");
+    let _ = StationLoading::parse(&text, "ESBC", None);
+    let texts = [text];
+    let _ = Orbits::parse(&texts);
+    let _ = Clocks::parse(&texts);
+});

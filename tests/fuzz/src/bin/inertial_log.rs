@@ -1,0 +1,11 @@
+//! Any bytes as a log: refused with a sentence, or read.
+#![no_main]
+
+use kestirim_import::{Options, inertial};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Err(refusal) = inertial::read(bytes, &Options::default()) {
+        assert!(!refusal.to_string().is_empty());
+    }
+});

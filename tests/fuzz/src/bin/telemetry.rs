@@ -1,0 +1,14 @@
+//! Any bytes to a receiver: as many frames as it counts, and a frame among them arrives.
+#![no_main]
+
+use kestirim_telemetry::{CAPACITY, Health, Receiver, encode};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let mut receiver = Receiver::new();
+    assert_eq!(receiver.frames(bytes).count(), receiver.counts().received as usize);
+    let sent = Health { time_us: 1, accepted: 2, rejected: 3, failed: 4 }.into();
+    let mut buffer = [0; CAPACITY];
+    let frame = encode(&sent, 7, &mut buffer).expect("it is long enough");
+    assert_eq!(receiver.frames(frame).last().map(|frame| frame.message), Some(sent));
+});

@@ -1,0 +1,27 @@
+//! What a fuzzer's bytes say to a tracker.
+
+use libfuzzer_sys::arbitrary::{Result, Unstructured};
+
+/// A number: mostly one that a sensor could say, sometimes any.
+///
+/// # Errors
+/// If no bytes are left.
+pub fn number(bytes: &mut Unstructured<'_>, scale: f64) -> Result<f64> {
+    if bytes.ratio(1, 32)? {
+        return bytes.arbitrary();
+    }
+    Ok(f64::from(bytes.arbitrary::<i16>()?) / f64::from(i16::MAX) * scale)
+}
+
+/// Microseconds from the last sample to this: mostly one step, sometimes any, also back.
+///
+/// # Errors
+/// If no bytes are left.
+pub fn later(bytes: &mut Unstructured<'_>, step_us: i64) -> Result<i64> {
+    match bytes.arbitrary::<u8>()? {
+        0 => bytes.arbitrary(),
+        1 => bytes.int_in_range(-20_000_000..=20_000_000),
+        2..8 => bytes.int_in_range(0..=3 * step_us),
+        _ => Ok(step_us),
+    }
+}
