@@ -1,7 +1,7 @@
 //! Cycle slips, as the combinations of one satellite's observations show them.
 
 use crate::GpsTime;
-use crate::signal::{geometry_free, melbourne_wuebbena};
+use crate::signal::{WIDE_LANE, geometry_free, melbourne_wuebbena};
 
 /// Reason of a cycle slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +15,10 @@ pub enum Slip {
     /// The geometry-free phase jumped.
     GeometryFree,
     /// The Melbourne–Wübbena combination jumped, and something else agrees with it: see
-    /// [`Arc::is_suspicious`].
+    /// [`Arc::is_suspicious`] and [`Arc::stays_away`].
     MelbourneWuebbena,
+    /// The phases of all satellites jumped against their codes at once.
+    Clock,
 }
 
 /// Thresholds of the slip detection.
@@ -64,6 +66,10 @@ pub struct Arc {
     count: u16,
     /// In how many epochs, up to the last one, the wide lane was off.
     off: u16,
+    /// Where it was in the last of them, beside its mean, cycles.
+    away: f64,
+    /// Whether it was there in the one before, too.
+    stays: bool,
 }
 
 /// The running mean forgets over this many epochs: multipath of the code wanders.
@@ -86,6 +92,8 @@ impl Arc {
             wide_lane_variance: WIDE_LANE_DEVIATION * WIDE_LANE_DEVIATION,
             count: 1,
             off: 0,
+            away: 0.0,
+            stays: false,
         }
     }
 
@@ -139,8 +147,11 @@ impl Arc {
         if jump.is_nan() {
             return;
         }
-        if jump.abs() <= spread.max(limits.melbourne_wuebbena) {
-            self.off = 0;
+        let spread = spread.max(limits.melbourne_wuebbena);
+        self.stays = self.off > 0 && (jump - self.away).abs() <= spread;
+        self.away = jump;
+        if jump.abs() <= spread {
+            (self.off, self.stays) = (0, false);
             self.wide_lane += share * jump;
             self.wide_lane_variance += share * (jump * jump - self.wide_lane_variance);
         } else if self.off < ACCUSTOMED {
@@ -154,6 +165,20 @@ impl Arc {
     /// such as a phase that does not fit, confirms the slip.
     pub const fn is_suspicious(&self) -> bool {
         self.off > 0
+    }
+
+    /// Whether the wide lane is not where it was, and stays there: seen in two epochs in a row, it is a slip. (An
+    /// outlier of the code is elsewhere in the next epoch; a bias of the code is taken for a slip, too.)
+    pub const fn stays_away(&self) -> bool {
+        self.stays
+    }
+
+    /// By how much the phases jumped against the codes, m: what the Melbourne–Wübbena combination of an epoch is away
+    /// from the mean of the arc. If that is the same for all satellites, it is the receiver's clock.
+    ///
+    /// `phase` in cycles, `code` in m.
+    pub const fn jump(&self, phase: [f64; 2], code: [f64; 2]) -> f64 {
+        WIDE_LANE * (melbourne_wuebbena(phase, code) - self.wide_lane)
     }
 
     /// Time of the last observation of the satellite.

@@ -16,6 +16,8 @@ pub(crate) struct Line {
     /// Index of the state that is its ambiguity.
     pub(crate) state: usize,
     pub(crate) slipped: Option<Slipped>,
+    /// Phases without the jumps of the receiver's clock, cycles.
+    phases: [f64; 2],
     pub(crate) expected: Expected,
     /// Observed less expected with no clock, no wet delay and no ambiguity, m.
     pub(crate) code: f64,
@@ -28,8 +30,10 @@ pub(crate) struct Line {
 }
 
 impl Line {
+    /// A line of which the `phases`, cycles, are those of the observation without the jumps of the receiver's clock.
     pub(crate) fn new(
         observation: &SatelliteObservation<'_>,
+        phases: [f64; 2],
         expected: Expected,
         state: usize,
         slipped: Option<Slipped>,
@@ -41,6 +45,7 @@ impl Line {
             satellite: observation.satellite,
             state,
             slipped,
+            phases,
             expected,
             code: 0.0,
             phase: 0.0,
@@ -75,7 +80,7 @@ impl Line {
     fn compare(&mut self, observation: &SatelliteObservation<'_>) {
         let Expected { range, wind_up, .. } = self.expected;
         self.code = ionosphere_free(observation.code) - range;
-        self.phase = ionosphere_free_phase(observation.phase) - range - wind_up;
+        self.phase = ionosphere_free_phase(self.phases) - range - wind_up;
     }
 
     /// The row of the phase; that of the code ends before the ambiguity.

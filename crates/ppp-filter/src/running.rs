@@ -1,15 +1,17 @@
 //! A filter that has a position.
 
 use crate::channel::Channel;
+use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::consistency::Consistency;
 use crate::line::{Line, Row};
 use crate::phase_monitor::{PhaseMonitor, is_judged};
+use crate::rest::Rest;
 use crate::start::CodePosition;
 use crate::states::{CLOCK, COMMON, WET};
 use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution};
 use heapless::Vec;
-use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
+use kestirim_gnss_ppp::{Arc, Expected, FREQUENCY, GpsTime, Receiver, Site, Slip};
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement};
 use kestirim_scalar::Components;
@@ -28,6 +30,8 @@ const WET_DELAY: f64 = 0.1;
 const LINEAR: f64 = 100.0;
 /// Largest number of relinearisations of an epoch.
 const RELINEARISATIONS: usize = 5;
+/// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
+const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
@@ -46,6 +50,11 @@ pub(crate) struct Running<const N: usize> {
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
     pub(crate) consistency: Consistency,
+    pub(crate) rest: Rest,
+    /// By how many milliseconds the phases are ahead of the codes since the beginning.
+    ahead: i32,
+    /// The jump of the present epoch.
+    pub(crate) jump: Option<ClockJump>,
 }
 
 impl<const N: usize> Running<N> {
@@ -66,8 +75,16 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        let consistency = Consistency::default();
-        Self { estimate, time, interval: None, channels: [None; N], consistency }
+        Self {
+            estimate,
+            time,
+            interval: None,
+            channels: [None; N],
+            consistency: Consistency::default(),
+            rest: Rest::default(),
+            ahead: 0,
+            jump: None,
+        }
     }
 
     /// Predicts to the time of an epoch.
@@ -95,6 +112,10 @@ impl<const N: usize> Running<N> {
         config: &Config,
     ) -> Result<Solution<N>, Error> {
         let mut site = Site::new(receiver, &self.position(), self.time);
+        self.jump = self.clock_jump(observations, config);
+        if let Some(ClockJump::Milliseconds(milliseconds)) = self.jump {
+            self.ahead = self.ahead.saturating_add(milliseconds);
+        }
         let mut lines = self.lines(&site, observations, config);
         if lines.len() < 4 {
             return Err(Error::TooFewSatellites);
@@ -105,6 +126,9 @@ impl<const N: usize> Running<N> {
             let ambiguity = line.phase - line.code;
             self.estimate.reset_at(line.state, ambiguity, AMBIGUITY_VARIANCE)?;
         }
+        let contradicted = |line: &&Line| line.slipped == Some(Slipped::Contradicted);
+        let anew = lines.iter().map(|(_, line)| line).filter(contradicted).count();
+        self.rest.restart(anew, lines.len());
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.monitor(&lines, &decisions, config);
@@ -124,12 +148,17 @@ impl<const N: usize> Running<N> {
     ) -> Result<(), Error> {
         let predicted = self.estimate;
         let expected = self.position();
+        let deviation = self.deviation();
         let mut linearised = expected;
         for _ in 0..RELINEARISATIONS {
             self.estimate = predicted;
             self.update(lines, &(expected - linearised), decisions, config)?;
             let found = self.position();
             if (found - linearised).norm() < LINEAR {
+                if !GROUND.contains(&found.norm()) {
+                    return Err(Error::Contradictory);
+                }
+                self.rest.follow(&expected, deviation, &found);
                 return Ok(());
             }
             *site = Site::new(receiver, &found, self.time);
@@ -208,7 +237,8 @@ impl<const N: usize> Running<N> {
             }
             let Some(state) = known.or_else(|| self.free(observations)) else { continue };
             let slipped = self.track(state, observation, &expected, config);
-            let mut line = Line::new(observation, expected, state, slipped, config);
+            let phase = self.repaired(observation.phase);
+            let mut line = Line::new(observation, phase, expected, state, slipped, config);
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
             {
@@ -229,7 +259,9 @@ impl<const N: usize> Running<N> {
         expected: &Expected,
         config: &Config,
     ) -> Option<Slipped> {
-        let SatelliteObservation { satellite, phase, code, lock_lost, .. } = *observation;
+        let SatelliteObservation { satellite, code, lock_lost, .. } = *observation;
+        let phase = self.repaired(observation.phase);
+        let clock = matches!(self.jump, Some(ClockJump::Other)).then_some(Slip::Clock);
         let time = self.time;
         let place = self.channels.get_mut(state)?;
         let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
@@ -243,6 +275,7 @@ impl<const N: usize> Running<N> {
         };
         channel.wind_up = expected.wind_up_cycles;
         let slip = channel.arc.observe(time, phase, code, lock_lost, &config.slips);
+        let slip = slip.or(clock);
         let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
         let slipped = slip.map(Slipped::Seen).or_else(|| {
             let patience = config.estimator.patience?;
@@ -253,6 +286,28 @@ impl<const N: usize> Running<N> {
             channel.monitor.begin();
         }
         slipped
+    }
+
+    /// The jump of the phases that most satellites have in common since they were seen before.
+    fn clock_jump(
+        &self,
+        observations: &[SatelliteObservation<'_>],
+        config: &Config,
+    ) -> Option<ClockJump> {
+        let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
+            let arc = self.channel(self.find(observation.satellite)?)?.arc;
+            let jump = arc.jump(self.repaired(observation.phase), observation.code);
+            (self.time.since(arc.last()) <= config.slips.gap).then_some(jump)
+        }));
+        ClockJump::of(&jumps, median(&jumps, |jump| *jump))
+    }
+
+    /// Phases without the milliseconds by which they are ahead of the codes, cycles.
+    fn repaired(&self, phase: [f64; 2]) -> [f64; 2] {
+        let [first, second] = phase;
+        let seconds = 1e-3 * f64::from(self.ahead);
+        let [of_first, of_second] = FREQUENCY;
+        [first - seconds * of_first, second - seconds * of_second]
     }
 
     fn find(&self, satellite: u8) -> Option<usize> {
@@ -277,6 +332,12 @@ impl<const N: usize> Running<N> {
         };
         let free = (COMMON..N).filter_map(|state| Some((state, unseen(state)?)));
         free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
+    }
+
+    /// Standard deviation of the position as the filter takes it, m.
+    fn deviation(&self) -> f64 {
+        let variance = |axis| self.estimate.covariance.get(axis, axis).unwrap_or(0.0);
+        libm::sqrt((0..3).map(variance).sum())
     }
 
     pub(crate) fn position(&self) -> Vector3<f64> {

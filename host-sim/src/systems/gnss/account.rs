@@ -6,6 +6,8 @@ pub mod report;
 pub mod tables;
 mod warning;
 
+use kestirim_ppp_filter::Contradiction;
+
 use self::comparison::Comparison;
 use self::report::Report;
 use super::Gnss;
@@ -18,8 +20,12 @@ use crate::system::{Account, Reason, System};
 
 /// Says why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
-    if track.filters.iter().any(|(_, followed)| !followed.contradicted.is_empty()) {
+    let all = || track.filters.iter().flat_map(|(_, followed)| followed.contradictions());
+    if all().next().is_some() {
         account.doubt(Reason::Innovations);
+    }
+    if all().any(|(_, contradiction)| contradiction == Contradiction::Rejections) {
+        account.doubt(Reason::Rejected);
     }
 }
 

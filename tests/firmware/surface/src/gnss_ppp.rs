@@ -128,6 +128,8 @@ fn signals() {
     }
     Arc::restart(any(&mut arc), time(), numbers(), numbers());
     keep(Arc::is_suspicious(&arc));
+    keep(Arc::stays_away(&arc));
+    keep(Arc::jump(&arc, numbers(), numbers()));
     keep(Arc::last(&arc));
 }
 

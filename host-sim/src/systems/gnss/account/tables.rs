@@ -1,7 +1,7 @@
 //! Tables that a replay writes.
 
 use kestirim_gnss_ppp::Slip;
-use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_ppp_filter::{Health, SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 
 use super::accuracy::Fix;
@@ -31,15 +31,14 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
         let deviations = deviations.map(|metres| format!("{metres:.6}"));
         std::iter::once(format!("{t:.6}")).chain(position).chain(deviations).collect()
     };
-    // In the order of the fixes.
-    let mut contradicted = followed.contradicted.iter().peekable();
-    let health = |fix: &Fix| match contradicted.next_if_eq(&&fix.t) {
-        Some(_) => Doubt::Innovations.state(),
-        None => HealthState::Good,
+    let state = |health: &Health| match health {
+        Health::Converging | Health::Converged => HealthState::Good,
+        Health::Unchecked => Doubt::NotObservable.state(),
+        Health::Contradicted(_) => Doubt::Innovations.state(),
     };
     Table {
         rows: followed.fixes.iter().zip(&followed.deviations).map(row).collect(),
-        health: followed.fixes.iter().map(health).collect(),
+        health: followed.healths.iter().map(state).collect(),
         ..Table::new(&["t", "x", "y", "z", "sde", "sdn", "sdu"])
     }
 }
@@ -82,6 +81,7 @@ const fn slip(slipped: Slipped) -> &'static str {
         Slipped::Seen(Slip::LossOfLock) => "loss-of-lock",
         Slipped::Seen(Slip::GeometryFree) => "geometry-free",
         Slipped::Seen(Slip::MelbourneWuebbena) => "melbourne-wuebbena",
+        Slipped::Seen(Slip::Clock) => "clock",
         Slipped::Contradicted => "contradicted",
     }
 }

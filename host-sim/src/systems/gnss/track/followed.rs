@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
 use kestirim_ppp_filter::{
-    Config, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped, Solution,
+    Config, Contradiction, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped,
+    Solution,
 };
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
@@ -50,12 +51,18 @@ pub struct Slips {
     pub melbourne_wuebbena: usize,
     /// A phase that contradicted all others for several epochs.
     pub contradicted: usize,
+    /// All phases jumped against their codes at once.
+    pub clock: usize,
 }
 
 impl Slips {
     /// All of them.
     pub const fn sum(self) -> usize {
-        self.loss_of_lock + self.geometry_free + self.melbourne_wuebbena + self.contradicted
+        self.loss_of_lock
+            + self.geometry_free
+            + self.melbourne_wuebbena
+            + self.contradicted
+            + self.clock
     }
 
     fn count(&mut self, slipped: Option<Slipped>) {
@@ -65,6 +72,7 @@ impl Slips {
             Some(Slipped::Seen(Slip::LossOfLock)) => self.loss_of_lock += 1,
             Some(Slipped::Seen(Slip::GeometryFree)) => self.geometry_free += 1,
             Some(Slipped::Seen(Slip::MelbourneWuebbena)) => self.melbourne_wuebbena += 1,
+            Some(Slipped::Seen(Slip::Clock)) => self.clock += 1,
             Some(Slipped::Contradicted) => self.contradicted += 1,
         }
     }
@@ -105,8 +113,10 @@ pub struct Followed {
     pub deviations: Vec<[f64; 3]>,
     /// The last of them.
     pub last: Option<Last>,
-    /// When the observations contradicted the solution, s.
-    pub contradicted: Vec<f64>,
+    /// How far each of them is to be trusted.
+    pub healths: Vec<Health>,
+    /// When all phases jumped against their codes, s, and by how many milliseconds; that was repaired.
+    pub clock_jumps: Vec<(f64, i32)>,
     /// Since when all positions have been converged ones, s.
     pub converged_since: Option<f64>,
     /// Observations that the filter was given.
@@ -199,6 +209,14 @@ impl Followed {
         self.fixes.iter().map(|fix| (rotation * (fix.position - place)).into()).collect()
     }
 
+    /// When solutions were not to be relied upon, s, and why.
+    pub fn contradictions(&self) -> impl Iterator<Item = (f64, Contradiction)> {
+        self.fixes.iter().zip(&self.healths).filter_map(|(fix, health)| match health {
+            Health::Contradicted(contradiction) => Some((fix.t, *contradiction)),
+            _ => None,
+        })
+    }
+
     fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {
         let tally = self.satellites.entry(prn).or_default();
         match reason {
@@ -219,8 +237,9 @@ impl Followed {
         let sd_enu = solution.deviations_enu();
         self.deviations.push(sd_enu);
         self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
-        if solution.health == Health::Contradicted {
-            self.contradicted.push(t);
+        self.healths.push(solution.health);
+        if solution.milliseconds != 0 {
+            self.clock_jumps.push((t, solution.milliseconds));
         }
         if solution.health == Health::Converged {
             self.converged_since.get_or_insert(t);
