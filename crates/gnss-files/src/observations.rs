@@ -10,7 +10,7 @@ use std::path::Path;
 use self::body::Body;
 use self::header::Header;
 pub use self::record::{Epoch, Observations, Observed};
-pub use self::signals::{Signal, Signals};
+pub use self::signals::{Carriers, Signal, Signals};
 use crate::error::Error;
 use crate::text::Text;
 

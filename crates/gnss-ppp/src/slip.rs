@@ -1,7 +1,6 @@
 //! Cycle slips, as the combinations of one satellite's observations show them.
 
-use crate::GpsTime;
-use crate::signal::{WIDE_LANE, geometry_free, melbourne_wuebbena};
+use crate::{Carriers, GpsTime};
 
 /// Reason of a cycle slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +55,7 @@ impl Default for SlipLimits {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Arc {
+    carriers: Carriers,
     last: GpsTime,
     geometry_free: f64,
     /// Variance of the jumps, m².
@@ -82,13 +82,14 @@ const GEOMETRY_FREE_DEVIATION: f64 = 0.01;
 const ACCUSTOMED: u16 = 10;
 
 impl Arc {
-    /// An arc that begins: `phase` in cycles, `code` in m.
-    pub fn begin(time: GpsTime, phase: [f64; 2], code: [f64; 2]) -> Self {
+    /// An arc that begins on two carriers: `phase` in cycles, `code` in m.
+    pub fn begin(time: GpsTime, carriers: Carriers, phase: [f64; 2], code: [f64; 2]) -> Self {
         Self {
+            carriers,
             last: time,
-            geometry_free: geometry_free(phase),
+            geometry_free: carriers.geometry_free(phase),
             geometry_free_variance: GEOMETRY_FREE_DEVIATION * GEOMETRY_FREE_DEVIATION,
-            wide_lane: melbourne_wuebbena(phase, code),
+            wide_lane: carriers.melbourne_wuebbena(phase, code),
             wide_lane_variance: WIDE_LANE_DEVIATION * WIDE_LANE_DEVIATION,
             count: 1,
             off: 0,
@@ -109,7 +110,7 @@ impl Arc {
         lock_lost: bool,
         limits: &SlipLimits,
     ) -> Option<Slip> {
-        let jump = geometry_free(phase) - self.geometry_free;
+        let jump = self.carriers.geometry_free(phase) - self.geometry_free;
         let spread = limits.deviations * libm::sqrt(self.geometry_free_variance);
         let away = time.since(self.last);
         let slip = if away > limits.gap || away.is_nan() {
@@ -130,14 +131,15 @@ impl Arc {
         self.count = (self.count + 1).min(MEMORY);
         let share = 1.0 / f64::from(self.count);
         self.geometry_free_variance += share * (jump * jump - self.geometry_free_variance);
-        self.widen(melbourne_wuebbena(phase, code) - self.wide_lane, share, limits);
+        let wide_lane = self.carriers.melbourne_wuebbena(phase, code);
+        self.widen(wide_lane - self.wide_lane, share, limits);
         None
     }
 
     /// A new arc of the same satellite: what is known of its ionosphere stays.
     pub fn restart(&mut self, time: GpsTime, phase: [f64; 2], code: [f64; 2]) {
         let variance = self.geometry_free_variance;
-        *self = Self::begin(time, phase, code);
+        *self = Self::begin(time, self.carriers, phase, code);
         self.geometry_free_variance = variance;
     }
 
@@ -178,7 +180,7 @@ impl Arc {
     ///
     /// `phase` in cycles, `code` in m.
     pub const fn jump(&self, phase: [f64; 2], code: [f64; 2]) -> f64 {
-        WIDE_LANE * (melbourne_wuebbena(phase, code) - self.wide_lane)
+        self.carriers.wide_lane() * (self.carriers.melbourne_wuebbena(phase, code) - self.wide_lane)
     }
 
     /// Time of the last observation of the satellite.

@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::{Arc, Slip};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Channel {
-    /// PRN of the GPS satellite.
+    /// Number of the satellite.
     pub(crate) satellite: u8,
     /// Combinations of its phases and codes, for the detection of slips.
     pub(crate) arc: Arc,

@@ -6,7 +6,6 @@ use crate::running::{Decisions, Lines, Running};
 use crate::states::{CLOCK, WET};
 use crate::{Config, Contradiction, Health, Motion, SatelliteReport, Solution};
 use kestirim_gnss_ppp::Site;
-use kestirim_scalar::Components;
 use nalgebra::Matrix3;
 
 /// Standard deviation of a position whose ambiguities are known, m.
@@ -33,7 +32,6 @@ impl<const N: usize> Running<N> {
                 slipped: line.slipped,
             }
         });
-        let state = |index: usize| self.estimate.mean.as_array().get(index).copied().unwrap_or(0.0);
         let spread = libm::sqrt(covariance.trace());
         let position = self.position();
         let contradiction = self.consistency.contradiction();
@@ -48,8 +46,8 @@ impl<const N: usize> Running<N> {
             position,
             covariance,
             covariance_enu: rotation * covariance * rotation.transpose(),
-            clock: state(CLOCK),
-            wet_delay: state(WET),
+            clock: self.state(CLOCK),
+            wet_delay: self.state(WET),
             health: if let Some(contradiction) = contradiction.or(moved) {
                 Health::Contradicted(contradiction)
             } else if heard < 5 {

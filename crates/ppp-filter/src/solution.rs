@@ -52,7 +52,7 @@ pub enum Contradiction {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SatelliteReport {
-    /// PRN of the GPS satellite.
+    /// Number of the satellite.
     pub satellite: u8,
     /// Direction from the receiver.
     pub direction: Direction,

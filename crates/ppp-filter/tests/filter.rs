@@ -2,7 +2,7 @@
 
 mod sky;
 
-use kestirim_gnss_ppp::{FREQUENCY, Receiver, Slip};
+use kestirim_gnss_ppp::{Carriers, FREQUENCY, Receiver, Slip};
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation,
     SatelliteReport, Slipped, Solution, states,
@@ -324,5 +324,38 @@ fn who_moves_is_not_at_rest() {
         };
         let longest = (0..200).map(trusted).collect::<Vec<_>>();
         assert!(longest[10..].iter().all(|trusted| !trusted), "{estimator:?} {longest:?}");
+    }
+}
+
+/// Half of the sky is Galileo's, whose clocks the receiver sees 30 m away.
+#[test]
+fn galileo_beside_gps() {
+    let as_galileo = |observations: &mut Vec<SatelliteObservation<'static>>, all: bool| {
+        for observation in observations.iter_mut().filter(|it| all || it.satellite % 2 == 0) {
+            observation.satellite += 100;
+            observation.carriers = Carriers::E1E5a;
+            for carrier in 0..2 {
+                let [before, after] = [Carriers::L1L2, Carriers::E1E5a].map(Carriers::wavelength);
+                observation.phase[carrier] *= before[carrier] / after[carrier];
+                observation.phase[carrier] += 30.0 / after[carrier];
+                observation.code[carrier] += 30.0;
+            }
+        }
+    };
+    for motion in [Motion::Static, SLOW] {
+        let both =
+            run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, false));
+        assert!(error(both.last().unwrap()) < 3e-3, "{}", error(both.last().unwrap()));
+        let lost = |seconds: f64, observations: &mut Vec<_>| {
+            as_galileo(observations, false);
+            if seconds > 1800.0 {
+                observations.retain(|it: &SatelliteObservation<'_>| it.satellite > 100);
+            }
+        };
+        let few = run(&mut filter(motion), 1830.0, lost);
+        assert!(error(few.last().unwrap()) < 2e-2, "{}", error(few.last().unwrap()));
+        let alone =
+            run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, true));
+        assert!(error(alone.last().unwrap()) < 5e-3, "{}", error(alone.last().unwrap()));
     }
 }

@@ -4,7 +4,7 @@ use super::header::Header;
 use super::record::{Epoch, Observations, Observed};
 use super::signals::{Raw, Seen, Signals};
 use crate::error::{Error, Warning};
-use crate::fields::gps_satellite;
+use crate::fields::{self, gps_satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::{GpsTime, full_year};
 
@@ -96,10 +96,10 @@ impl Body {
             let line = lines.expect("a satellite's observations")?;
             let name = names.get(i).copied().unwrap_or([0, 1, 2].map(|place| line.column(place)));
             let named =
-                satellite(name).ok_or_else(|| line.expected("a satellite's observations"))?;
+                satellite(name, old).ok_or_else(|| line.expected("a satellite's observations"))?;
             let start = self.raw.len();
             self.observations(named, line, lines)?;
-            let Named::Gps(prn) = named else { continue };
+            let Named::Known(prn) = named else { continue };
             if self.records[first..].iter().any(|&(other, _)| other == prn) {
                 self.doubled += 1;
                 self.raw.truncate(start);
@@ -157,12 +157,13 @@ impl Body {
         let old = self.header.version < 3;
         let (offset, in_a_line) = if old { (0, 5) } else { (3, usize::MAX) };
         let mut line = first;
-        for (i, observable) in self.header.observables.iter().enumerate() {
+        let observables = self.header.observables_of(!old && named.is_galileo());
+        for (i, observable) in observables.iter().enumerate() {
             let place = i % in_a_line;
             if i > 0 && place == 0 {
                 line = lines.expect("a satellite's further observations")?;
             }
-            let (Some(observable), Named::Gps(_)) = (observable, named) else { continue };
+            let (Some(observable), Named::Known(_)) = (observable, named) else { continue };
             let column = offset + 16 * place;
             let value = line.optional_number("an observation", column, column + 14)?;
             let Some(value) = value.filter(|&value| value != 0.0) else { continue };
@@ -229,7 +230,7 @@ fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec
         }
         let column = 32 + 3 * (i % 12);
         let name = [0, 1, 2].map(|place| line.column(column + place));
-        if satellite(name).is_none() {
+        if satellite(name, true).is_none() {
             return Err(line.expected("the satellites of an epoch"));
         }
         names.push(name);
@@ -240,14 +241,22 @@ fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec
 /// Meaning of a satellite's name.
 #[derive(Debug, Clone, Copy)]
 enum Named {
-    Gps(u8),
+    /// A satellite of GPS or Galileo, by its number.
+    Known(u8),
     Other,
 }
 
-/// The satellite of a name, if it is one.
-fn satellite(name: [u8; 3]) -> Option<Named> {
+impl Named {
+    const fn is_galileo(self) -> bool {
+        matches!(self, Self::Known(number) if number >= fields::GALILEO)
+    }
+}
+
+/// The satellite of a name, if it is one. RINEX 2 has the same observables for all systems: those are of GPS here.
+fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
     match name {
-        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Gps),
+        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
+        [b'E', ..] if !old => fields::satellite(&name).map(Named::Known),
         [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other),
         _ => None,
     }

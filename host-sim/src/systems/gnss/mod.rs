@@ -39,7 +39,7 @@ impl System for Gnss {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "obs",
-            "What the receiver observed: RINEX 2, 3 or 4 or CRINEX, GPS on L1 and L2; any file may be packed with gzip",
+            "What the receiver observed: RINEX 2, 3 or 4 or CRINEX, GPS on L1 and L2, Galileo on E1 and E5a or E5b; any file may be packed with gzip",
         ),
         FileField::required(
             "sp3",
@@ -53,8 +53,9 @@ impl System for Gnss {
         .several(),
         FileField::required(
             "antex",
-            "Phase centres of the satellites' and the receiver's antennas, ANTEX",
-        ),
+            "Phase centres of the satellites' and the receiver's antennas, ANTEX, one file or more",
+        )
+        .several(),
         FileField::optional("blq", "Ocean loading of the station, BLQ [default: not corrected]"),
         FileField::optional("truth", "a file of which the first line is X,Y,Z"),
     ];

@@ -1,5 +1,6 @@
 //! What a replay reports of one filter.
 
+use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
 use kestirim_ppp_filter::Health;
 use nalgebra::Vector3;
@@ -145,7 +146,7 @@ fn most_rejected(followed: &Followed) -> Vec<Rejections> {
         .iter()
         .filter(|(_, tally)| tally.rejected.sum() > 0)
         .map(|(prn, tally)| Rejections {
-            satellite: format!("G{prn:02}"),
+            satellite: satellite_name(*prn),
             epochs: tally.epochs,
             rejected: tally.rejected,
         })

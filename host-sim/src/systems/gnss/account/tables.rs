@@ -1,11 +1,13 @@
 //! Tables that a replay writes.
 
+use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::Slip;
 use kestirim_ppp_filter::{Health, SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 
 use super::accuracy::Fix;
 use crate::system::{HealthState, Reason as Doubt, Table};
+use crate::systems::gnss::settings::Systems;
 use crate::systems::gnss::track::followed::Followed;
 
 const RESIDUAL_COLUMNS: [&str; 13] = [
@@ -46,7 +48,11 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
 /// What became of each observation: a row for each satellite in each epoch.
 pub(in crate::systems::gnss) fn residuals(residuals: &[(f64, SatelliteReport)]) -> Table {
     let row = |(t, report): &(f64, SatelliteReport)| {
-        let mut row = vec![format!("{t:.6}"), report.satellite.to_string()];
+        let number = report.satellite;
+        // Satellites of GPS are called by their numbers since there were no others.
+        let name =
+            if Systems::Gps.has(number) { number.to_string() } else { satellite_name(number) };
+        let mut row = vec![format!("{t:.6}"), name];
         let direction = report.direction;
         let angles = [direction.elevation, direction.azimuth];
         row.extend(angles.map(|angle| format!("{:.3}", angle.to_degrees())));

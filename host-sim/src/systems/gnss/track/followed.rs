@@ -16,7 +16,7 @@ use crate::systems::gnss::account::accuracy::Fix;
 use crate::systems::gnss::recording::Recording;
 use crate::systems::gnss::recording::model::Epoch;
 use crate::systems::gnss::recording::products::Unusable;
-use crate::systems::gnss::settings::STATES;
+use crate::systems::gnss::settings::{STATES, STATES_WITH_GALILEO, Systems};
 
 /// Numbers of codes and of phases.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -137,17 +137,36 @@ pub struct Followed {
     pub residuals: Vec<(f64, SatelliteReport)>,
 }
 
-/// Feeds a filter with `epochs`; `with_residuals` keeps what became of each observation. `next` is called
-/// after each epoch.
+/// Feeds a filter with the satellites of some `systems` in `epochs`; `with_residuals` keeps what became of each
+/// observation. `next` is called after each epoch.
 pub fn follow(
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     config: Config,
+    systems: Systems,
+    with_residuals: bool,
+    next: impl FnMut(),
+) -> Followed {
+    if recording.has_galileo() && systems != Systems::Gps {
+        let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
+        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+    } else {
+        let filter = PppFilter::<STATES>::new(config);
+        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+    }
+}
+
+fn feed<const N: usize>(
+    mut filter: PppFilter<N>,
+    recording: &Recording,
+    epochs: &[Epoch],
+    receiver: &Receiver<'_>,
+    systems: Systems,
     with_residuals: bool,
     mut next: impl FnMut(),
 ) -> Followed {
-    let mut filter = PppFilter::<STATES>::new(config);
+    let mask = filter.config().elevation_mask;
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
     let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();
     // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
@@ -156,12 +175,13 @@ pub fn follow(
     let mut about = recording.approximate_position().map(Vector3::from);
     for epoch in epochs {
         let t = recording.seconds(epoch);
-        let mut unused = Unused { observed: epoch.satellites.len(), ..Unused::default() };
+        let satellites = || epoch.satellites.iter().filter(|observed| systems.has(observed.prn));
+        let mut unused = Unused { observed: satellites().count(), ..Unused::default() };
         observations.clear();
         if epoch.power_failure {
             lost.fill(true);
         }
-        for observed in &epoch.satellites {
+        for observed in satellites() {
             let lost = &mut lost[usize::from(observed.prn)];
             *lost |= observed.loss_of_lock.contains(&true);
             match recording.products().observation(epoch.time, observed) {
@@ -181,8 +201,7 @@ pub fn follow(
                 followed.take(t, &solution, with_residuals);
             }
             Err(error) => {
-                unused.below_mask =
-                    about.map_or(0, |place| below(&observations, &place, config.elevation_mask));
+                unused.below_mask = about.map_or(0, |place| below(&observations, &place, mask));
                 followed.outages.add(Outage { error, t, unused });
             }
         }
@@ -232,7 +251,7 @@ impl Followed {
         }
     }
 
-    fn take(&mut self, t: f64, solution: &Solution<STATES>, with_residuals: bool) {
+    fn take<const N: usize>(&mut self, t: f64, solution: &Solution<N>, with_residuals: bool) {
         self.fixes.push(Fix { t, position: solution.position });
         let sd_enu = solution.deviations_enu();
         self.deviations.push(sd_enu);
