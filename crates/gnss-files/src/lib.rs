@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod antennas;
+mod biases;
 mod clocks;
 mod crinex;
 mod error;
@@ -21,6 +22,7 @@ mod mutations;
 mod samples;
 
 pub use antennas::{Antenna, Antennas, PhaseCentre};
+pub use biases::Biases;
 pub use clocks::{ClockSample, Clocks};
 pub use error::{Error, Warning};
 pub use fields::satellite_name;

@@ -1,8 +1,11 @@
 //! The epochs of an observation file.
 
+use std::collections::BTreeSet;
+
 use super::header::Header;
 use super::record::{Epoch, Observations, Observed};
 use super::signals::{Raw, Seen, Signals};
+use crate::biases::Biases;
 use crate::error::{Error, Warning};
 use crate::fields::{self, gps_satellite};
 use crate::text::{Line, Lines, Text};
@@ -175,8 +178,8 @@ impl Body {
         Ok(())
     }
 
-    /// Chooses the signals and takes them out.
-    pub(super) fn finish(mut self, text: &Text) -> Observations {
+    /// Chooses the signals and takes them out, less the biases of their codes.
+    pub(super) fn finish(mut self, text: &Text, biases: &Biases) -> Observations {
         let mut seen = Seen::default();
         let mut start = 0;
         for &(prn, end) in &self.records {
@@ -184,13 +187,19 @@ impl Body {
             start = end;
         }
         let signals = seen.choose();
+        let mut corrected = BTreeSet::new();
         let mut epochs = Vec::with_capacity(self.epochs.len());
         let (mut record, mut start) = (0, 0);
         for epoch in &self.epochs {
             let mut satellites = Vec::with_capacity(epoch.end - record);
             for &(prn, end) in &self.records[record..epoch.end] {
                 let chosen = signals.get(&prn).copied().unwrap_or_default();
-                satellites.push(Observed::of(prn, &chosen, &self.raw[start..end]));
+                let mut observed = Observed::of(prn, &chosen, &self.raw[start..end]);
+                if let Some(biases) = biases.of(prn, chosen.carriers, chosen.code, epoch.time) {
+                    observed.shorten(biases);
+                    corrected.insert(prn);
+                }
+                satellites.push(observed);
                 start = end;
             }
             record = epoch.end;
@@ -204,7 +213,8 @@ impl Body {
         };
         warn(self.backwards, "epochs are not later than the one before and are left out");
         warn(self.doubled, "satellites are told of twice in an epoch; the first is taken");
-        self.warnings.extend(Signals::warnings(&signals).into_iter().map(|it| text.warning(it)));
+        let others = signals.iter().filter(|(number, _)| !corrected.contains(number));
+        self.warnings.extend(Signals::warnings(others).into_iter().map(|it| text.warning(it)));
         let Header { marker, receiver, antenna, approximate_position, antenna_delta_hen, .. } =
             self.header;
         Observations {

@@ -187,7 +187,8 @@ fn three(line: &Line<'_>) -> Result<[f64; 3], Error> {
 
 /// Times of Galileo, QZSS and IRNSS are those of GPS to some nanoseconds.
 fn time_system(line: &Line<'_>) -> Result<(), Error> {
-    match line.columns(48, 51) {
+    // Columns 48 to 51, or, as some programs have it, one beside.
+    match line.columns(43, 60) {
         b"" | b"GPS" | b"GAL" | b"QZS" | b"IRN" => Ok(()),
         other => {
             let found = String::from_utf8_lossy(other);

@@ -54,6 +54,13 @@ pub struct Observed {
 }
 
 impl Observed {
+    /// Takes biases, m, off the codes.
+    pub(super) fn shorten(&mut self, biases: [f64; 2]) {
+        for (code, bias) in self.code.iter_mut().zip(biases) {
+            *code = code.map(|code| code - bias);
+        }
+    }
+
     /// The observations of the chosen signals among all those of a satellite in an epoch.
     pub(super) fn of(prn: u8, signals: &Signals, raw: &[Raw]) -> Self {
         let mut observed = Self { prn, carriers: signals.carriers, ..Self::default() };

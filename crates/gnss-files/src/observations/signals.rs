@@ -39,7 +39,7 @@ impl Carriers {
 /// A code or phase with its band and tracking, displayed as RINEX 3 names it: `C1W`, `L2W`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Signal {
-    pub(super) phase: bool,
+    pub(crate) phase: bool,
     /// The digit of RINEX 3.
     band: u8,
     tracking: u8,
@@ -54,7 +54,7 @@ impl fmt::Display for Signal {
 
 impl Signal {
     /// The signal of an observation code of RINEX 3 or 2; none if it is not used.
-    pub(super) fn new(system: u8, code: &[u8]) -> Option<Self> {
+    pub(crate) fn new(system: u8, code: &[u8]) -> Option<Self> {
         let (kind, band, tracking) = match (system, code) {
             (_, &[kind @ (b'C' | b'L'), band, tracking]) => (kind, band, tracking),
             (b'G', &[b'P', band @ (b'1' | b'2')]) => (b'C', band, b'W'),
@@ -84,6 +84,15 @@ impl Signal {
         match self.band {
             b'1' | b'2' => matches!(self.tracking, b'W' | b'P' | b'Y'),
             band => band == b'5',
+        }
+    }
+
+    /// The code of the same carrier to which the clocks of satellites refer; none of a carrier to which they do not.
+    pub(crate) const fn reference(self, carriers: Carriers) -> Option<Self> {
+        match (carriers, self.is_reference()) {
+            (Carriers::L1L2, true) | (Carriers::E1E5a, _) => Some(self),
+            (Carriers::L1L2, false) => Some(Self { tracking: b'W', ..self }),
+            (Carriers::E1E5b, _) => None,
         }
     }
 }
@@ -162,10 +171,13 @@ impl Signals {
         chosen
     }
 
-    /// Sentences about codes to which the clocks of satellites do not refer.
-    pub(super) fn warnings(signals: &BTreeMap<u8, Self>) -> Vec<String> {
+    /// Sentences about the codes of satellites without known biases to which the clocks of satellites do not refer.
+    pub(super) fn warnings<'a>(signals: impl Iterator<Item = (&'a u8, &'a Self)>) -> Vec<String> {
         let mut others = BTreeMap::<Signal, Vec<String>>::new();
         for (number, signals) in signals {
+            if signals.code.contains(&None) {
+                continue;
+            }
             // Those of Galileo's E1 are nearly the same.
             let first = usize::from(signals.carriers != Carriers::L1L2);
             for code in signals.code.into_iter().skip(first).flatten() {

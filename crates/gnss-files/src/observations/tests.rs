@@ -147,6 +147,25 @@ fn what_cannot_be_used_is_refused() {
 }
 
 #[test]
+fn rinex_4_and_a_time_system_beside_its_columns() -> Result<(), Error> {
+    let file = observations_3().replace("     3.04 ", "     4.02 ");
+    let more = [
+        header("https://doi.org/10.57677/anything", "DOI"),
+        header("https://creativecommons.org/licenses/by/4.0", "LICENSE OF USE"),
+        header("https://stations.example/HERE00XXX", "STATION INFORMATION"),
+        header("", "END OF HEADER"),
+    ];
+    let file = file.replace(&more[3], &more.concat());
+    let whole = Observations::parse(&text(observations_3()))?;
+    assert_eq!(Observations::parse(&text(&file))?, whole);
+    for beside in ["    GPS ", "      GPS", " GPS"] {
+        let file = observations_3().replace("     GPS", beside);
+        assert_eq!(Observations::parse(&text(file))?.epochs, whole.epochs, "{beside:?}");
+    }
+    Ok(())
+}
+
+#[test]
 fn galileo_is_read_beside_gps() -> Result<(), Error> {
     let file = |bands: &str| {
         lines(&[

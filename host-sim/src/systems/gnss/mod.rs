@@ -56,6 +56,11 @@ impl System for Gnss {
             "Phase centres of the satellites' and the receiver's antennas, ANTEX, one file or more",
         )
         .several(),
+        FileField::optional(
+            "bias",
+            "Biases of the satellites' codes, Bias-SINEX, one file or more [default: not corrected]",
+        )
+        .several(),
         FileField::optional("blq", "Ocean loading of the station, BLQ [default: not corrected]"),
         FileField::optional("truth", "a file of which the first line is X,Y,Z"),
     ];

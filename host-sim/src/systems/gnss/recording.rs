@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use kestirim_gnss_files::{
-    Antenna, Antennas, Clocks, Observations, Orbits, Signals, StationLoading, Warning,
+    Antenna, Antennas, Biases, Clocks, Observations, Orbits, Signals, StationLoading, Warning,
     satellite_name,
 };
 use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
@@ -62,10 +62,11 @@ impl Recording {
         files.required("sp3")?;
         let antex = files.required("antex")?;
         let truth = files.one("truth").map(truth::read).transpose()?;
+        let biases = Biases::read(files.all("bias")).map_err(error)?;
         let clocks = files.all("clk");
         let clocks = || (!clocks.is_empty()).then(|| Clocks::read(clocks)).transpose();
         let (observations, (orbits, clocks)) = rayon::join(
-            || Observations::read(path),
+            || Observations::read_unbiased(path, &biases),
             || rayon::join(|| Orbits::read(files.all("sp3")), clocks),
         );
         let observations = observations.map_err(error)?;
