@@ -4,12 +4,14 @@ pub mod accuracy;
 pub mod comparison;
 pub mod report;
 pub mod tables;
+mod track_file;
 mod warning;
 
 use kestirim_ppp_filter::Contradiction;
 
 use self::comparison::Comparison;
 use self::report::Report;
+pub(super) use self::track_file::text as track_text;
 use super::Gnss;
 use super::recording::Recording;
 use super::settings::{Choice, FilterKind, Mode, Setup};

@@ -71,7 +71,8 @@ impl System for Gnss {
     const OUTPUTS: &'static [OutputField] = &[
         OutputField {
             name: "track",
-            help: "Write t,x,y,z (s, ECEF m), standard deviations and health of each epoch with a solution to this file",
+            help: "Write t,x,y,z (s, ECEF m), standard deviations and health of each epoch with a solution to this file; \
+                   by its ending .pos (RTKLIB), .nmea, .kml or .gpx instead",
         },
         OutputField {
             name: "residuals",
@@ -87,8 +88,13 @@ impl System for Gnss {
         settings::table(recording)
     }
 
-    fn idle(_: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
-        settings::idle(settings, name)
+    fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        match recording {
+            Some(recording) if name == "systems" && !recording.has_galileo() => {
+                Some(Idle::foreign("is for recordings with satellites of Galileo"))
+            }
+            _ => settings::idle(settings, name),
+        }
     }
 
     fn lacks_output(settings: &Settings) -> Option<&'static str> {
@@ -136,6 +142,10 @@ impl System for Gnss {
             "track" => account::tables::track(track.main()),
             _ => account::tables::residuals(&track.main().residuals),
         }
+    }
+
+    fn text(output: &str, ending: &str, recording: &Recording, track: &Track) -> Option<String> {
+        (output == "track").then(|| account::track_text(ending, recording, track.main()))?
     }
 
     fn streams(recording: &Recording, settings: &Settings, track: &Track) -> Vec<Stream> {

@@ -115,6 +115,8 @@ pub struct Followed {
     pub last: Option<Last>,
     /// How far each of them is to be trusted.
     pub healths: Vec<Health>,
+    /// How many satellites each of them is from.
+    pub heard: Vec<usize>,
     /// When all phases jumped against their codes, s, and by how many milliseconds; that was repaired.
     pub clock_jumps: Vec<(f64, i32)>,
     /// Since when all positions have been converged ones, s.
@@ -257,6 +259,7 @@ impl Followed {
         self.deviations.push(sd_enu);
         self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
         self.healths.push(solution.health);
+        self.heard.push(solution.satellites.len());
         if solution.milliseconds != 0 {
             self.clock_jumps.push((t, solution.milliseconds));
         }
