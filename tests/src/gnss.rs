@@ -32,7 +32,7 @@ pub const ESBC: Station = Station {
     clocks: &["esbc2020177/grg177_gps.clk.gz"],
     antennas: "esbc2020177/esbc.atx.gz",
     ocean_loading: None,
-    truth: [3_582_104.764_5, 532_590.179_0, 5_232_755.145_5],
+    truth: [3_582_104.765_7, 532_590.178_5, 5_232_755.139_0],
     until: 85_500.0,
 };
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use memchr::memmem::Finder;
 
 use crate::error::{Error, Warning};
-use crate::fields::gps_satellite;
+use crate::fields::satellite;
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
@@ -40,6 +40,8 @@ pub struct Antenna {
     pub name: String,
     /// The phase centres on L1 and L2, where the file has them.
     pub frequencies: [Option<PhaseCentre>; 2],
+    /// The phase centres on E1, E5a and E5b of Galileo, where the file has them.
+    pub galileo: [Option<PhaseCentre>; 3],
     /// The first instant at which a satellite has this antenna; none if it always had.
     pub valid_from: Option<GpsTime>,
     /// The last instant at which a satellite has this antenna; none if it still has.
@@ -53,7 +55,7 @@ impl Antenna {
     }
 }
 
-/// Antennas of GPS satellites and of one receiver.
+/// Antennas of satellites of GPS and Galileo and of one receiver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antennas {
     satellites: Vec<(u8, Antenna)>,
@@ -64,27 +66,50 @@ pub struct Antennas {
 }
 
 impl Antennas {
-    /// Reads a file for a receiver whose antenna's type and radome stand as in a RINEX header
-    /// ([`Observations::antenna`](crate::Observations::antenna)).
+    /// Reads files for a receiver whose antenna's type and radome stand as in a RINEX header
+    /// ([`Observations::antenna`](crate::Observations::antenna)). Of an antenna in two of them that of the later is
+    /// taken.
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
-    pub fn read(path: impl AsRef<Path>, receiver: &str) -> Result<Self, Error> {
-        Self::parse(&Text::read(path)?, receiver)
+    pub fn read(paths: &[impl AsRef<Path>], receiver: &str) -> Result<Self, Error> {
+        let texts: Result<Vec<_>, _> = paths.iter().map(Text::read).collect();
+        Self::parse(&texts?, receiver)
     }
 
-    /// Reads a file in memory, as [`Self::read`].
+    /// Reads files in memory, as [`Self::read`].
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn parse(text: &Text, receiver: &str) -> Result<Self, Error> {
+    pub fn parse(texts: &[Text], receiver: &str) -> Result<Self, Error> {
+        let mut antennas = Self::default();
+        let mut nearest = None;
+        for text in texts {
+            antennas.add(text, receiver, &mut nearest)?;
+        }
+        let receiver = receiver.trim_ascii();
+        if let (None, Some(text)) = (&antennas.receiver, texts.last()) {
+            let taken = if nearest.is_some() { "taken without its radome" } else { "left out" };
+            let problem =
+                format!("does not know the receiver's antenna {receiver:?}: it is {taken}");
+            antennas.warnings.push(text.warning(problem));
+            antennas.receiver = nearest;
+        }
+        Ok(antennas)
+    }
+
+    /// Adds the antennas of a file; `nearest` becomes the receiver's without a radome.
+    fn add(
+        &mut self,
+        text: &Text,
+        receiver: &str,
+        nearest: &mut Option<Antenna>,
+    ) -> Result<(), Error> {
         let mut lines = text.lines();
         let first = lines.next().filter(|line| line.label() == b"ANTEX VERSION / SYST");
         first.ok_or_else(|| text.wrong_kind("antenna patterns (ANTEX)"))?;
         let wanted = Name::new(receiver.as_bytes());
         let without_radome = Name { radome: *b"NONE", ..wanted };
-        let mut antennas = Self::default();
-        let mut nearest = None;
         let starts = Finder::new("START OF ANTENNA");
         loop {
             lines.skip_past(&starts);
@@ -93,9 +118,9 @@ impl Antennas {
                 return Err(line.expected("TYPE / SERIAL NO"));
             }
             let serial = line.columns(20, 40);
-            if serial.first() == Some(&b'G') && serial.len() == 3 {
-                if let Some(prn) = gps_satellite(serial) {
-                    antennas.satellites.push((prn, antenna(&line, &mut lines)?));
+            if let (3, [b'G' | b'E', ..]) = (serial.len(), serial) {
+                if let Some(number) = satellite(serial) {
+                    self.satellites.push((number, antenna(&line, &mut lines)?));
                 }
                 continue;
             }
@@ -103,21 +128,13 @@ impl Antennas {
                 continue;
             }
             let name = Name::new(line.bytes);
-            if name == wanted && antennas.receiver.is_none() {
-                antennas.receiver = Some(antenna(&line, &mut lines)?);
+            if name == wanted && self.receiver.is_none() {
+                self.receiver = Some(antenna(&line, &mut lines)?);
             } else if name == without_radome && nearest.is_none() {
-                nearest = Some(antenna(&line, &mut lines)?);
+                *nearest = Some(antenna(&line, &mut lines)?);
             }
         }
-        let receiver = receiver.trim_ascii();
-        if antennas.receiver.is_none() {
-            let taken = if nearest.is_some() { "taken without its radome" } else { "left out" };
-            let problem =
-                format!("does not know the receiver's antenna {receiver:?}: it is {taken}");
-            antennas.warnings.push(text.warning(problem));
-            antennas.receiver = nearest;
-        }
-        Ok(antennas)
+        Ok(())
     }
 
     /// The antenna of a satellite at a time.
@@ -168,6 +185,9 @@ fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
             b"START OF FREQUENCY" => match line.columns(3, 6) {
                 b"G01" => antenna.frequencies[0] = Some(grid.frequency(&line, lines)?),
                 b"G02" => antenna.frequencies[1] = Some(grid.frequency(&line, lines)?),
+                b"E01" => antenna.galileo[0] = Some(grid.frequency(&line, lines)?),
+                b"E05" => antenna.galileo[1] = Some(grid.frequency(&line, lines)?),
+                b"E07" => antenna.galileo[2] = Some(grid.frequency(&line, lines)?),
                 _ => lines.skip_past(&Finder::new("END OF FREQUENCY")),
             },
             b"START OF FREQ RMS" => lines.skip_past(&Finder::new("END OF FREQ RMS")),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Warning};
-use crate::fields::{blank_separated, decimal, gps_satellite, integer};
+use crate::fields::{blank_separated, decimal, integer, satellite};
 use crate::satellites::PerSatellite;
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
@@ -20,7 +20,7 @@ pub struct ClockSample {
     pub bias: f64,
 }
 
-/// Clocks of GPS satellites.
+/// Clocks of satellites, which are called by number: of GPS that of their name, of Galileo that and 100.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clocks {
     samples: PerSatellite<ClockSample>,
@@ -84,7 +84,7 @@ fn parse_file(
             break;
         }
         match line.bytes {
-            [b'A', b'S', b' ', b'G' | b' ', ..] => {
+            [b'A', b'S', b' ', b'G' | b'E' | b' ', ..] => {
                 let (prn, sample) =
                     record(line.bytes).ok_or_else(|| line.expected("a satellite's clock"))?;
                 if sample.bias.abs() < NO_BIAS {
@@ -100,7 +100,7 @@ fn parse_file(
         }
     }
     if samples.is_empty() {
-        return Err(text.error("expected clocks of GPS satellites, found none"));
+        return Err(text.error("expected clocks of satellites of GPS or Galileo, found none"));
     }
     Ok(samples)
 }
@@ -139,8 +139,8 @@ fn time_system(line: &Line<'_>) -> Result<(), Error> {
 fn record(bytes: &[u8]) -> Option<(u8, ClockSample)> {
     let mut fields = blank_separated(bytes).skip(1);
     let prn = match fields.next()? {
-        b"G" => gps_satellite(fields.next()?)?,
-        name => gps_satellite(name)?,
+        b"G" => satellite(fields.next()?)?,
+        name => satellite(name)?,
     };
     let mut calendar = [0; 5];
     for field in &mut calendar {
@@ -211,7 +211,7 @@ mod tests {
         let file = clocks().replace("0.100000000000E-04", "0.10000000000xE-04");
         assert!(complaint(&file).contains("line 5: expected a satellite's clock"));
         assert!(
-            complaint(&clocks().replace("AS G", "AS E")).contains("GPS satellites, found none")
+            complaint(&clocks().replace("AS G", "AS R")).contains("GPS or Galileo, found none")
         );
         let file = header("     3.04           O", "RINEX VERSION / TYPE");
         assert_eq!(

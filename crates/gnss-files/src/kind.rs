@@ -20,6 +20,7 @@ pub(crate) fn kind(bytes: &[u8]) -> String {
         _ if named(b"ANTEX VERSION") => "antenna patterns (ANTEX)",
         _ if named(b"IONEX VERSION") => "an ionosphere map (IONEX)",
         [b'#', b'a'..=b'd', b'P' | b'V', ..] => "orbits (SP3)",
+        _ if first.starts_with(b"%=BIA") => "biases (Bias-SINEX)",
         _ if start.starts_with(b"$$") => "ocean loading (BLQ)",
         _ if start.starts_with(b"<") => "a web page: the download did not work",
         _ => return quoted(first),

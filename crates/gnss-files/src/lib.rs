@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod antennas;
+mod biases;
 mod clocks;
 mod crinex;
 mod error;
@@ -21,9 +22,11 @@ mod mutations;
 mod samples;
 
 pub use antennas::{Antenna, Antennas, PhaseCentre};
+pub use biases::Biases;
 pub use clocks::{ClockSample, Clocks};
 pub use error::{Error, Warning};
-pub use observations::{Epoch, Observations, Observed, Signal, Signals};
+pub use fields::satellite_name;
+pub use observations::{Carriers, Epoch, Observations, Observed, Signal, Signals};
 pub use ocean_loading::{OceanLoading, StationLoading};
 pub use orbits::{OrbitSample, Orbits};
 pub use text::Text;

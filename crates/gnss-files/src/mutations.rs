@@ -16,7 +16,8 @@ fn read(bytes: Vec<u8>) {
             Observations::parse(&text).map(drop),
             Orbits::parse(&texts).map(drop),
             Clocks::parse(&texts).map(drop),
-            Antennas::parse(&text, "ANT  TYPE       DOME").map(drop),
+            Antennas::parse(std::slice::from_ref(&text), "ANT  TYPE       DOME").map(drop),
+            crate::Biases::parse(&texts).map(drop),
             StationLoading::parse(&text, "here", Some([4e6, 0.0, 4.9e6])).map(drop),
         ];
         Ok(results.into_iter().filter_map(Result::err).collect())

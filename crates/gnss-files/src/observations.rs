@@ -10,7 +10,8 @@ use std::path::Path;
 use self::body::Body;
 use self::header::Header;
 pub use self::record::{Epoch, Observations, Observed};
-pub use self::signals::{Signal, Signals};
+pub use self::signals::{Carriers, Signal, Signals};
+use crate::biases::Biases;
 use crate::error::Error;
 use crate::text::Text;
 
@@ -23,16 +24,33 @@ impl Observations {
         Self::parse(&Text::read(path)?)
     }
 
+    /// Reads a file and takes the biases of satellites off its codes. Satellites of which they are not known stand in
+    /// the warnings.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_unbiased(path: impl AsRef<Path>, biases: &Biases) -> Result<Self, Error> {
+        Self::parse_unbiased(&Text::read(path)?, biases)
+    }
+
     /// Reads a file in memory.
     ///
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(text: &Text) -> Result<Self, Error> {
+        Self::parse_unbiased(text, &Biases::default())
+    }
+
+    /// Reads a file in memory, as [`Self::read_unbiased`].
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse_unbiased(text: &Text, biases: &Biases) -> Result<Self, Error> {
         let mut lines = text.lines();
         let header = Header::parse(text, &mut lines)?;
         let mut body = Body::new(header);
         body.read(text, &mut lines)?;
-        Ok(body.finish(text))
+        Ok(body.finish(text, biases))
     }
 }
 

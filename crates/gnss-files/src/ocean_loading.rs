@@ -89,8 +89,14 @@ fn stations(text: &Text) -> Result<Vec<Station>, Error> {
             continue;
         }
         let name = line.bytes.trim_ascii();
+        if matches!(name, b"Errors:" | b"Warnings:") && !stations.is_empty() {
+            // What the service of Onsala says behind the last station.
+            break;
+        }
         let number = blank_separated(name).next().is_some_and(|field| decimal(field).is_some());
-        if number || !name[0].is_ascii_alphanumeric() {
+        // A name may be a number, alone in its line.
+        let is_name = name.iter().all(u8::is_ascii_digit);
+        if number && !is_name || !name[0].is_ascii_alphanumeric() {
             return Err(if stations.is_empty() {
                 text.wrong_kind("ocean loading (BLQ)")
             } else {
@@ -185,6 +191,15 @@ mod tests {
             assert_eq!((loading.amplitude[2][1], loading.lag[0][10]), (2.01, 3.1));
             assert_eq!(sentences(&found.warnings), [""; 0]);
         }
+        Ok(())
+    }
+
+    #[test]
+    fn a_number_for_a_name_and_a_footer() -> Result<(), Error> {
+        let file =
+            loading().replace("HERE", "0042") + "$$ END TABLE\nErrors:\nWarnings:\n a word\n";
+        let found = StationLoading::parse(&text(file), "0042", None)?;
+        assert!(found.loading.is_some() && found.warnings.is_empty());
         Ok(())
     }
 

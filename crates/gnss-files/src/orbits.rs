@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Warning};
-use crate::fields::gps_satellite;
+use crate::fields::satellite;
 use crate::satellites::PerSatellite;
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
@@ -28,7 +28,7 @@ pub struct OrbitSample {
     pub manoeuvre: bool,
 }
 
-/// Orbits of GPS satellites.
+/// Orbits of satellites, which are called by number: of GPS that of their name, of Galileo that and 100.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Orbits {
     samples: PerSatellite<OrbitSample>,
@@ -101,7 +101,7 @@ fn parse_file(
         match line.bytes {
             [b'P', name @ ..] => {
                 let time = time.ok_or_else(|| line.expected("the time of an epoch"))?;
-                if let Some(prn) = name.get(..3).and_then(gps_satellite) {
+                if let Some(prn) = name.get(..3).and_then(satellite) {
                     if let Some(sample) = position(&line, time)? {
                         samples.push(prn, sample);
                     }
@@ -121,7 +121,7 @@ fn parse_file(
         }
     }
     if samples.is_empty() {
-        return Err(first.error("expected orbits of GPS satellites, found none"));
+        return Err(first.error("expected orbits of satellites of GPS or Galileo, found none"));
     }
     if !ended {
         warnings.push(text.warning("has no EOF at its end: it may have been cut off"));
@@ -219,7 +219,7 @@ mod tests {
         let file = orbits().replace("-20000.000000", "-20000.00000x");
         assert!(complaint(&file).starts_with("file, line 11: expected a position in km"));
         assert!(
-            complaint(&orbits().replace("PG05", "PE05")).contains("GPS satellites, found none")
+            complaint(&orbits().replace("PG05", "PR05")).contains("GPS or Galileo, found none")
         );
         assert!(complaint("walk\n").contains("expected orbits (SP3), found \"walk\""));
     }

@@ -6,6 +6,23 @@ use std::path::Path;
 use crate::error::Warning;
 use crate::text::Text;
 
+/// Absolute biases of one satellite and differential ones of another, a receiver's and a phase's.
+pub(crate) fn biases() -> String {
+    lines(&[
+        "%=BIA 1.00 WHU 2021:242:32849 WHU 2021:210:00000 2021:210:86400 A 00001072",
+        "+BIAS/SOLUTION",
+        "*BIAS SVN_ PRN STATION__ OBS1 OBS2 BIAS_START____ BIAS_END______ UNIT __ESTIMATED_VALUE____",
+        " OSB  G063 G01           C1C       2021:210:00000 2021:211:00000 ns                  9.7876 .606000E-01",
+        " OSB  G063 G01           C2L       2021:210:00000 2021:210:86400 ns   0.163019000000000E+02 .146400E+00",
+        " OSB  G063 G01           L1C       2021:210:00000 2021:210:86400 cyc  0.163019000000000E+02 .146400E+00",
+        " DSB  G061 G02           C1C  C1W  2021:210:00000 0000:000:00000 ns                 -1.5000      0.0047",
+        " DSB  G061 G02           C2W  C2L  2021:210:00000 0000:000:00000 ns                 -0.5000      0.0047",
+        " DSB  G    G   HERE      C1C  C1W  2021:210:00000 0000:000:00000 ns                 -1.5000      0.0047",
+        "-BIAS/SOLUTION",
+        "%=ENDBIA",
+    ])
+}
+
 /// A line of a header.
 pub(crate) fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")

@@ -32,10 +32,7 @@ pub use observation::{Expected, SatelliteState};
 pub use ocean_loading::OceanLoading;
 pub use orbit::{Orbit, OrbitSample, OrbitState};
 pub use relativity::{carried_along, eccentricity_clock, sagnac, shapiro_delay};
-pub use signal::{
-    FREQUENCY, NARROW_LANE, WAVELENGTH, WIDE_LANE, geometry_free, ionosphere_free,
-    ionosphere_free_phase, melbourne_wuebbena,
-};
+pub use signal::{Carriers, Constellation, FREQUENCY, WAVELENGTH};
 pub use site::{Receiver, Site};
 pub use slip::{Arc, Slip, SlipLimits};
 pub use solid_tide::solid_tide;

@@ -1,10 +1,9 @@
 //! The ionosphere-free observation model of a satellite.
 
 use crate::constants::SPEED_OF_LIGHT;
-use crate::signal::{NARROW_LANE, ionosphere_free};
 use crate::{
-    BodyAxes, Correction, Direction, Pattern, Site, eccentricity_clock, sagnac, shapiro_delay,
-    wind_up,
+    BodyAxes, Carriers, Constellation, Correction, Direction, Pattern, Site, eccentricity_clock,
+    sagnac, shapiro_delay, wind_up,
 };
 use nalgebra::Vector3;
 
@@ -47,11 +46,12 @@ pub struct Expected {
 }
 
 impl Site<'_> {
-    /// The modelled observation of a satellite from here; none where that is not finite, as for a
+    /// The modelled observation of a satellite on two carriers from here; none where that is not finite, as for a
     /// receiver at the satellite's place.
     pub fn expect(
         &self,
         state: &SatelliteState,
+        carriers: Carriers,
         antenna: Option<&[Pattern<'_>; 2]>,
         previous_wind_up: Option<f64>,
     ) -> Option<Expected> {
@@ -80,12 +80,16 @@ impl Site<'_> {
             && has(Correction::SatelliteAntenna)
         {
             let both = [first.satellite_range(axes, &sight), second.satellite_range(axes, &sight)];
-            range += ionosphere_free(both);
+            range += carriers.ionosphere_free(both);
         }
-        if let Some([first, second]) = &self.receiver.antenna
+        let own = match carriers.constellation() {
+            Constellation::Gps => &self.receiver.antenna,
+            Constellation::Galileo => &self.receiver.galileo_antenna,
+        };
+        if let Some([first, second]) = own
             && has(Correction::ReceiverAntenna)
         {
-            range += ionosphere_free([
+            range += carriers.ionosphere_free([
                 first.receiver_range(direction),
                 second.receiver_range(direction),
             ]);
@@ -98,7 +102,7 @@ impl Site<'_> {
         };
         let expected = Expected {
             range,
-            wind_up: NARROW_LANE * wind_up_cycles,
+            wind_up: carriers.narrow_lane() * wind_up_cycles,
             wind_up_cycles,
             sight,
             direction,

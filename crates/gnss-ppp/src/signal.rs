@@ -1,47 +1,137 @@
-//! The two carriers of GPS and their linear combinations.
+//! Pairs of carriers and their linear combinations.
 
 use crate::constants::SPEED_OF_LIGHT;
 
-/// Carrier frequencies of L1 and L2, Hz (IS-GPS-200).
+/// Carrier frequencies of L1 and L2 of GPS, Hz (IS-GPS-200).
 pub const FREQUENCY: [f64; 2] = [1_575.42e6, 1_227.60e6];
 
 /// Wavelengths of L1 and L2, m.
 pub const WAVELENGTH: [f64; 2] = [SPEED_OF_LIGHT / FREQUENCY[0], SPEED_OF_LIGHT / FREQUENCY[1]];
 
-/// Wavelength of the narrow lane, c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
-pub const NARROW_LANE: f64 = SPEED_OF_LIGHT / (FREQUENCY[0] + FREQUENCY[1]);
+/// E5a and E5b of Galileo, Hz (Galileo OS SIS ICD); E1 is L1.
+const E5A: f64 = 1_176.45e6;
+const E5B: f64 = 1_207.14e6;
 
-/// Wavelength of φ1 − φ2, c/(f1 − f2), m.
-pub const WIDE_LANE: f64 = SPEED_OF_LIGHT / (FREQUENCY[0] - FREQUENCY[1]);
-
-const L1_SHARE: f64 =
-    FREQUENCY[0] * FREQUENCY[0] / (FREQUENCY[0] * FREQUENCY[0] - FREQUENCY[1] * FREQUENCY[1]);
-
-/// (f1²·a1 − f2²·a2)/(f1² − f2²): free of the ionosphere to first order (codes or phases, m).
-pub const fn ionosphere_free(both: [f64; 2]) -> f64 {
-    L1_SHARE * both[0] - (L1_SHARE - 1.0) * both[1]
+/// A satellite system.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Constellation {
+    /// GPS, to whose time a receiver's clock refers.
+    #[default]
+    Gps,
+    /// Galileo.
+    Galileo,
 }
 
-/// L1 − L2, m: free of all that is common to both carriers; the ionosphere and slips remain.
-///
-/// `phase` in cycles.
-pub const fn geometry_free(phase: [f64; 2]) -> f64 {
-    WAVELENGTH[0] * phase[0] - WAVELENGTH[1] * phase[1]
+/// The two carriers on which a satellite is observed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Carriers {
+    /// L1 and L2 of GPS.
+    #[default]
+    L1L2,
+    /// E1 and E5a of Galileo.
+    E1E5a,
+    /// E1 and E5b of Galileo.
+    E1E5b,
 }
 
-/// The Melbourne–Wübbena combination: φ1 − φ2 less what the codes say of it, in cycles of the wide
-/// lane: free of geometry and ionosphere; code noise and slips remain.
-///
-/// `phase` in cycles, `code` in m.
-pub const fn melbourne_wuebbena(phase: [f64; 2], code: [f64; 2]) -> f64 {
-    let weighted =
-        (FREQUENCY[0] * code[0] + FREQUENCY[1] * code[1]) / (FREQUENCY[0] + FREQUENCY[1]);
-    phase[0] - phase[1] - weighted / WIDE_LANE
+/// What the combinations of a pair are made of.
+struct Pair {
+    frequency: [f64; 2],
+    wavelength: [f64; 2],
+    /// f1²/(f1² − f2²).
+    share: f64,
+    /// c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
+    narrow_lane: f64,
+    /// c/(f1 − f2), m.
+    wide_lane: f64,
 }
 
-/// The ionosphere-free phase, m; `phase` in cycles.
-pub const fn ionosphere_free_phase(phase: [f64; 2]) -> f64 {
-    ionosphere_free([WAVELENGTH[0] * phase[0], WAVELENGTH[1] * phase[1]])
+impl Pair {
+    const fn new(first: f64, second: f64) -> Self {
+        Self {
+            frequency: [first, second],
+            wavelength: [SPEED_OF_LIGHT / first, SPEED_OF_LIGHT / second],
+            share: first * first / (first * first - second * second),
+            narrow_lane: SPEED_OF_LIGHT / (first + second),
+            wide_lane: SPEED_OF_LIGHT / (first - second),
+        }
+    }
+}
+
+static L1L2: Pair = Pair::new(FREQUENCY[0], FREQUENCY[1]);
+static E1E5A: Pair = Pair::new(FREQUENCY[0], E5A);
+static E1E5B: Pair = Pair::new(FREQUENCY[0], E5B);
+
+impl Carriers {
+    const fn pair(self) -> &'static Pair {
+        match self {
+            Self::L1L2 => &L1L2,
+            Self::E1E5a => &E1E5A,
+            Self::E1E5b => &E1E5B,
+        }
+    }
+
+    /// The system whose satellites send them.
+    pub const fn constellation(self) -> Constellation {
+        match self {
+            Self::L1L2 => Constellation::Gps,
+            Self::E1E5a | Self::E1E5b => Constellation::Galileo,
+        }
+    }
+
+    /// Their frequencies, Hz.
+    pub const fn frequency(self) -> [f64; 2] {
+        self.pair().frequency
+    }
+
+    /// Their wavelengths, m.
+    pub const fn wavelength(self) -> [f64; 2] {
+        self.pair().wavelength
+    }
+
+    /// Wavelength of the narrow lane, c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
+    pub const fn narrow_lane(self) -> f64 {
+        self.pair().narrow_lane
+    }
+
+    /// Wavelength of the wide lane φ1 − φ2, c/(f1 − f2), m.
+    pub const fn wide_lane(self) -> f64 {
+        self.pair().wide_lane
+    }
+
+    /// (f1²·a1 − f2²·a2)/(f1² − f2²): free of the ionosphere to first order (codes or phases, m).
+    pub const fn ionosphere_free(self, both: [f64; 2]) -> f64 {
+        let share = self.pair().share;
+        share * both[0] - (share - 1.0) * both[1]
+    }
+
+    /// The ionosphere-free phase, m; `phase` in cycles.
+    pub const fn ionosphere_free_phase(self, phase: [f64; 2]) -> f64 {
+        let wavelength = self.wavelength();
+        self.ionosphere_free([wavelength[0] * phase[0], wavelength[1] * phase[1]])
+    }
+
+    /// The first phase less the second, m: free of all that is common to both carriers; the ionosphere and slips remain.
+    ///
+    /// `phase` in cycles.
+    pub const fn geometry_free(self, phase: [f64; 2]) -> f64 {
+        let wavelength = self.wavelength();
+        wavelength[0] * phase[0] - wavelength[1] * phase[1]
+    }
+
+    /// The Melbourne–Wübbena combination: φ1 − φ2 less what the codes say of it, in cycles of the wide
+    /// lane: free of geometry and ionosphere; code noise and slips remain.
+    ///
+    /// `phase` in cycles, `code` in m.
+    pub const fn melbourne_wuebbena(self, phase: [f64; 2], code: [f64; 2]) -> f64 {
+        let Pair { frequency: [first, second], wide_lane, .. } = self.pair();
+        let weighted = (*first * code[0] + *second * code[1]) / (*first + *second);
+        phase[0] - phase[1] - weighted / *wide_lane
+    }
 }
 
 #[cfg(test)]
@@ -50,16 +140,26 @@ mod tests {
 
     #[test]
     fn the_combinations_cancel_what_they_should() {
-        let (range, ionosphere) = (22e6, 7.0);
-        let ratio = (FREQUENCY[0] / FREQUENCY[1]).powi(2);
-        let code = [range + ionosphere, range + ratio * ionosphere];
-        let phase =
-            [(range - ionosphere) / WAVELENGTH[0], (range - ratio * ionosphere) / WAVELENGTH[1]];
-        assert!((ionosphere_free(code) - range).abs() < 1e-7);
-        assert!((ionosphere_free_phase(phase) - range).abs() < 1e-7);
-        assert!((geometry_free(phase) - (ratio - 1.0) * ionosphere).abs() < 1e-7);
-        assert!(melbourne_wuebbena(phase, code).abs() < 1e-6);
-        assert!((melbourne_wuebbena([phase[0] + 5.0, phase[1] + 4.0], code) - 1.0).abs() < 1e-6);
-        assert!((ionosphere_free_phase([1.0, 1.0]) - NARROW_LANE).abs() < 1e-12);
+        for carriers in [Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b] {
+            let (range, ionosphere) = (22e6, 7.0);
+            let ([first, second], wavelength) = (carriers.frequency(), carriers.wavelength());
+            let ratio = (first / second).powi(2);
+            let code = [range + ionosphere, range + ratio * ionosphere];
+            let phase = [
+                (range - ionosphere) / wavelength[0],
+                (range - ratio * ionosphere) / wavelength[1],
+            ];
+            assert!((carriers.ionosphere_free(code) - range).abs() < 1e-7);
+            assert!((carriers.ionosphere_free_phase(phase) - range).abs() < 1e-7);
+            let geometry_free = carriers.geometry_free(phase);
+            assert!((geometry_free - (ratio - 1.0) * ionosphere).abs() < 1e-7);
+            assert!(carriers.melbourne_wuebbena(phase, code).abs() < 1e-6);
+            let slipped = carriers.melbourne_wuebbena([phase[0] + 5.0, phase[1] + 4.0], code);
+            assert!((slipped - 1.0).abs() < 1e-6);
+            let narrow = carriers.ionosphere_free_phase([1.0, 1.0]);
+            assert!((narrow - carriers.narrow_lane()).abs() < 1e-12);
+        }
+        assert_eq!(Carriers::L1L2.wavelength(), WAVELENGTH);
+        assert!((Carriers::E1E5a.wide_lane() - 0.751).abs() < 1e-3);
     }
 }

@@ -1,7 +1,6 @@
 //! Cycle slips, as the combinations of one satellite's observations show them.
 
-use crate::GpsTime;
-use crate::signal::{geometry_free, melbourne_wuebbena};
+use crate::{Carriers, GpsTime};
 
 /// Reason of a cycle slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +14,10 @@ pub enum Slip {
     /// The geometry-free phase jumped.
     GeometryFree,
     /// The Melbourne–Wübbena combination jumped, and something else agrees with it: see
-    /// [`Arc::is_suspicious`].
+    /// [`Arc::is_suspicious`] and [`Arc::stays_away`].
     MelbourneWuebbena,
+    /// The phases of all satellites jumped against their codes at once.
+    Clock,
 }
 
 /// Thresholds of the slip detection.
@@ -54,6 +55,7 @@ impl Default for SlipLimits {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Arc {
+    carriers: Carriers,
     last: GpsTime,
     geometry_free: f64,
     /// Variance of the jumps, m².
@@ -64,6 +66,10 @@ pub struct Arc {
     count: u16,
     /// In how many epochs, up to the last one, the wide lane was off.
     off: u16,
+    /// Where it was in the last of them, beside its mean, cycles.
+    away: f64,
+    /// Whether it was there in the one before, too.
+    stays: bool,
 }
 
 /// The running mean forgets over this many epochs: multipath of the code wanders.
@@ -76,16 +82,19 @@ const GEOMETRY_FREE_DEVIATION: f64 = 0.01;
 const ACCUSTOMED: u16 = 10;
 
 impl Arc {
-    /// An arc that begins: `phase` in cycles, `code` in m.
-    pub fn begin(time: GpsTime, phase: [f64; 2], code: [f64; 2]) -> Self {
+    /// An arc that begins on two carriers: `phase` in cycles, `code` in m.
+    pub fn begin(time: GpsTime, carriers: Carriers, phase: [f64; 2], code: [f64; 2]) -> Self {
         Self {
+            carriers,
             last: time,
-            geometry_free: geometry_free(phase),
+            geometry_free: carriers.geometry_free(phase),
             geometry_free_variance: GEOMETRY_FREE_DEVIATION * GEOMETRY_FREE_DEVIATION,
-            wide_lane: melbourne_wuebbena(phase, code),
+            wide_lane: carriers.melbourne_wuebbena(phase, code),
             wide_lane_variance: WIDE_LANE_DEVIATION * WIDE_LANE_DEVIATION,
             count: 1,
             off: 0,
+            away: 0.0,
+            stays: false,
         }
     }
 
@@ -101,7 +110,7 @@ impl Arc {
         lock_lost: bool,
         limits: &SlipLimits,
     ) -> Option<Slip> {
-        let jump = geometry_free(phase) - self.geometry_free;
+        let jump = self.carriers.geometry_free(phase) - self.geometry_free;
         let spread = limits.deviations * libm::sqrt(self.geometry_free_variance);
         let away = time.since(self.last);
         let slip = if away > limits.gap || away.is_nan() {
@@ -122,14 +131,15 @@ impl Arc {
         self.count = (self.count + 1).min(MEMORY);
         let share = 1.0 / f64::from(self.count);
         self.geometry_free_variance += share * (jump * jump - self.geometry_free_variance);
-        self.widen(melbourne_wuebbena(phase, code) - self.wide_lane, share, limits);
+        let wide_lane = self.carriers.melbourne_wuebbena(phase, code);
+        self.widen(wide_lane - self.wide_lane, share, limits);
         None
     }
 
     /// A new arc of the same satellite: what is known of its ionosphere stays.
     pub fn restart(&mut self, time: GpsTime, phase: [f64; 2], code: [f64; 2]) {
         let variance = self.geometry_free_variance;
-        *self = Self::begin(time, phase, code);
+        *self = Self::begin(time, self.carriers, phase, code);
         self.geometry_free_variance = variance;
     }
 
@@ -139,8 +149,11 @@ impl Arc {
         if jump.is_nan() {
             return;
         }
-        if jump.abs() <= spread.max(limits.melbourne_wuebbena) {
-            self.off = 0;
+        let spread = spread.max(limits.melbourne_wuebbena);
+        self.stays = self.off > 0 && (jump - self.away).abs() <= spread;
+        self.away = jump;
+        if jump.abs() <= spread {
+            (self.off, self.stays) = (0, false);
             self.wide_lane += share * jump;
             self.wide_lane_variance += share * (jump * jump - self.wide_lane_variance);
         } else if self.off < ACCUSTOMED {
@@ -154,6 +167,20 @@ impl Arc {
     /// such as a phase that does not fit, confirms the slip.
     pub const fn is_suspicious(&self) -> bool {
         self.off > 0
+    }
+
+    /// Whether the wide lane is not where it was, and stays there: seen in two epochs in a row, it is a slip. (An
+    /// outlier of the code is elsewhere in the next epoch; a bias of the code is taken for a slip, too.)
+    pub const fn stays_away(&self) -> bool {
+        self.stays
+    }
+
+    /// By how much the phases jumped against the codes, m: what the Melbourne–Wübbena combination of an epoch is away
+    /// from the mean of the arc. If that is the same for all satellites, it is the receiver's clock.
+    ///
+    /// `phase` in cycles, `code` in m.
+    pub const fn jump(&self, phase: [f64; 2], code: [f64; 2]) -> f64 {
+        self.carriers.wide_lane() * (self.carriers.melbourne_wuebbena(phase, code) - self.wide_lane)
     }
 
     /// Time of the last observation of the satellite.

@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::{Arc, Slip};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Channel {
-    /// PRN of the GPS satellite.
+    /// Number of the satellite.
     pub(crate) satellite: u8,
     /// Combinations of its phases and codes, for the detection of slips.
     pub(crate) arc: Arc,
@@ -17,10 +17,13 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    /// A slip by two signs: the wide lane is off, and the phase was rejected. Only with an estimator
-    /// that has patience for slips.
+    /// A slip by two signs: the wide lane is off, and the phase was rejected. An estimator without patience, which
+    /// does not look for rejected phases, has the wide lane alone, if that stays off.
     pub(crate) fn agrees(&self, patience: Option<u8>) -> Option<Slip> {
-        let both = self.arc.is_suspicious() && self.monitor.is_rejected();
-        (both && patience.is_some()).then_some(Slip::MelbourneWuebbena)
+        let slipped = match patience {
+            Some(_) => self.arc.is_suspicious() && self.monitor.is_rejected(),
+            None => self.arc.stays_away(),
+        };
+        slipped.then_some(Slip::MelbourneWuebbena)
     }
 }

@@ -14,7 +14,7 @@ pub struct Estimator {
     /// Weighting of an epoch's observations.
     pub robust: Robust<f64>,
     /// After how many epochs in which its phase was rejected a satellite's ambiguity begins anew. With none,
-    /// phases are not monitored at all: no slip by the wide lane, no noise estimated.
+    /// phases are not monitored: slips are those that the combinations show by themselves, no noise is estimated.
     pub patience: Option<u8>,
 }
 

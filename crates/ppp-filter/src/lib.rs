@@ -2,6 +2,7 @@
 #![no_std]
 
 mod channel;
+mod clock_jump;
 mod collected;
 mod config;
 mod consistency;
@@ -12,6 +13,7 @@ mod line;
 mod observation;
 mod phase_monitor;
 mod report;
+mod rest;
 mod running;
 mod solution;
 mod start;
@@ -22,5 +24,5 @@ pub use error::Error;
 pub use estimator::Estimator;
 pub use filter::PppFilter;
 pub use observation::SatelliteObservation;
-pub use solution::{Health, SatelliteReport, Slipped, Solution};
+pub use solution::{Contradiction, Health, SatelliteReport, Slipped, Solution};
 pub use states::states;

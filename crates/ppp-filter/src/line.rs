@@ -1,13 +1,14 @@
 //! One satellite's two observations, linearised.
 
+use crate::collected::collected;
 use crate::states::{CLOCK, COMMON, WET};
 use crate::{Config, Motion, SatelliteObservation, Slipped};
-use kestirim_gnss_ppp::{Expected, Site, ionosphere_free, ionosphere_free_phase};
+use kestirim_gnss_ppp::{Expected, Site};
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
-/// A row of H.
-pub(crate) type Row = [(usize, f64); COMMON + 1];
+/// A row of H: the states that a phase depends on, the ambiguity last.
+pub(crate) type Row = heapless::Vec<(usize, f64), { COMMON + 2 }>;
 
 /// One satellite's two observations, linearised.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +16,11 @@ pub(crate) struct Line {
     pub(crate) satellite: u8,
     /// Index of the state that is its ambiguity.
     pub(crate) state: usize,
+    /// That of its system's clock beside the receiver's, unless that is one.
+    pub(crate) offset: Option<usize>,
     pub(crate) slipped: Option<Slipped>,
+    /// Phases without the jumps of the receiver's clock, cycles.
+    phases: [f64; 2],
     pub(crate) expected: Expected,
     /// Observed less expected with no clock, no wet delay and no ambiguity, m.
     pub(crate) code: f64,
@@ -28,8 +33,10 @@ pub(crate) struct Line {
 }
 
 impl Line {
+    /// A line of which the `phases`, cycles, are those of the observation without the jumps of the receiver's clock.
     pub(crate) fn new(
         observation: &SatelliteObservation<'_>,
+        phases: [f64; 2],
         expected: Expected,
         state: usize,
         slipped: Option<Slipped>,
@@ -40,7 +47,9 @@ impl Line {
         let mut line = Self {
             satellite: observation.satellite,
             state,
+            offset: None,
             slipped,
+            phases,
             expected,
             code: 0.0,
             phase: 0.0,
@@ -64,8 +73,9 @@ impl Line {
     /// Expects the same observations at another place.
     pub(crate) fn relinearise(&mut self, observation: &SatelliteObservation<'_>, site: &Site<'_>) {
         let wind_up = Some(self.expected.wind_up_cycles);
+        let carriers = observation.carriers;
         if let Some(expected) =
-            site.expect(&observation.state, observation.antenna.as_ref(), wind_up)
+            site.expect(&observation.state, carriers, observation.antenna.as_ref(), wind_up)
         {
             self.expected = expected;
             self.compare(observation);
@@ -74,15 +84,17 @@ impl Line {
 
     fn compare(&mut self, observation: &SatelliteObservation<'_>) {
         let Expected { range, wind_up, .. } = self.expected;
-        self.code = ionosphere_free(observation.code) - range;
-        self.phase = ionosphere_free_phase(observation.phase) - range - wind_up;
+        self.code = observation.carriers.ionosphere_free(observation.code) - range;
+        self.phase = observation.carriers.ionosphere_free_phase(self.phases) - range - wind_up;
     }
 
     /// The row of the phase; that of the code ends before the ambiguity.
     pub(crate) fn row(&self) -> Row {
         let [x, y, z] = *self.expected.sight.as_array();
         let wet = (WET, self.expected.wet_mapping);
-        [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet, (self.state, 1.0)]
+        let common = [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet];
+        let own = self.offset.map(|offset| (offset, 1.0)).into_iter().chain([(self.state, 1.0)]);
+        collected(common.into_iter().chain(own))
     }
 
     /// z − h(x⁻) of the code and of the phase, where the line is linearised at a position off by
@@ -93,8 +105,8 @@ impl Line {
         offset: &Vector3<f64>,
     ) -> [f64; 2] {
         let of = |state: usize| mean.as_array().get(state).copied().unwrap_or(0.0);
-        let common =
-            of(CLOCK) + self.expected.wet_mapping * of(WET) - self.expected.sight.dot(offset);
+        let common = of(CLOCK) + self.offset.map_or(0.0, of) + self.expected.wet_mapping * of(WET)
+            - self.expected.sight.dot(offset);
         [self.code - common, self.phase - common - of(self.state)]
     }
 }

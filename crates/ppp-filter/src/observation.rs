@@ -1,21 +1,23 @@
-use kestirim_gnss_ppp::{Pattern, SatelliteState};
+use kestirim_gnss_ppp::{Carriers, Pattern, SatelliteState};
 
 /// Observation of one satellite in an epoch, and the satellite's state.
 ///
 /// Only complete observations serve: both codes and both phases.
 #[derive(Clone, Copy, Debug)]
 pub struct SatelliteObservation<'a> {
-    /// PRN of the GPS satellite.
+    /// Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's and 100, say.
     pub satellite: u8,
-    /// Codes on L1 and L2, m (P1 and P2, to which the clocks of the IGS refer).
+    /// The two carriers on which it is observed.
+    pub carriers: Carriers,
+    /// Codes on both, m (of GPS P1 and P2, to which the clocks of the IGS refer).
     pub code: [f64; 2],
-    /// Carrier phases on L1 and L2, cycles.
+    /// Carrier phases on both, cycles.
     pub phase: [f64; 2],
     /// Whether the receiver reports a loss of lock since the last epoch that had a solution.
     pub lock_lost: bool,
     /// The satellite's state at the time of transmission.
     pub state: SatelliteState,
-    /// Antenna on L1 and L2, where known.
+    /// Its antenna on both, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
 }
 

@@ -1,11 +1,11 @@
 //! The solution of an epoch.
 
+use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::running::{Decisions, Lines, Running};
 use crate::states::{CLOCK, WET};
-use crate::{Config, Health, Motion, SatelliteReport, Solution};
+use crate::{Config, Contradiction, Health, Motion, SatelliteReport, Solution};
 use kestirim_gnss_ppp::Site;
-use kestirim_scalar::Components;
 use nalgebra::Matrix3;
 
 /// Standard deviation of a position whose ambiguities are known, m.
@@ -13,7 +13,7 @@ const CONVERGED: f64 = 0.1;
 
 impl<const N: usize> Running<N> {
     pub(crate) fn solution(
-        &self,
+        &mut self,
         site: &Site<'_>,
         lines: &Lines<'_, '_, N>,
         decisions: &Decisions<N>,
@@ -32,24 +32,34 @@ impl<const N: usize> Running<N> {
                 slipped: line.slipped,
             }
         });
-        let state = |index: usize| self.estimate.mean.as_array().get(index).copied().unwrap_or(0.0);
         let spread = libm::sqrt(covariance.trace());
+        let position = self.position();
+        let contradiction = self.consistency.contradiction();
+        let rests = matches!(config.motion, Motion::Static) && contradiction.is_none();
+        if rests && spread < CONVERGED {
+            self.rest.stay(&position, spread);
+        }
+        let moved = self.rest.has_moved(&position).then_some(Contradiction::Motion);
         let heard = decisions.iter().filter(|[_, phase]| phase.weight > 0.0).count();
         Solution {
             time: self.time,
-            position: self.position(),
+            position,
             covariance,
             covariance_enu: rotation * covariance * rotation.transpose(),
-            clock: state(CLOCK),
-            wet_delay: state(WET),
-            health: if self.consistency.is_contradicted() {
-                Health::Contradicted
+            clock: self.state(CLOCK),
+            wet_delay: self.state(WET),
+            health: if let Some(contradiction) = contradiction.or(moved) {
+                Health::Contradicted(contradiction)
             } else if heard < 5 {
                 Health::Unchecked
             } else if spread < CONVERGED {
                 Health::Converged
             } else {
                 Health::Converging
+            },
+            milliseconds: match self.jump {
+                Some(ClockJump::Milliseconds(milliseconds)) => milliseconds,
+                _ => 0,
             },
             satellites: collected(satellites),
         }

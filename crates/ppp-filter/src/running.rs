@@ -1,15 +1,17 @@
 //! A filter that has a position.
 
 use crate::channel::Channel;
+use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::consistency::Consistency;
 use crate::line::{Line, Row};
 use crate::phase_monitor::{PhaseMonitor, is_judged};
+use crate::rest::Rest;
 use crate::start::CodePosition;
 use crate::states::{CLOCK, COMMON, WET};
 use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution};
 use heapless::Vec;
-use kestirim_gnss_ppp::{Arc, Expected, GpsTime, Receiver, Site};
+use kestirim_gnss_ppp::{Arc, Constellation, Expected, GpsTime, Receiver, Site, Slip};
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement};
 use kestirim_scalar::Components;
@@ -19,6 +21,9 @@ use nalgebra::{SVector, Vector3};
 const START_VARIANCE: f64 = 1e4;
 /// Variance of the receiver's clock, of which each epoch knows nothing but its codes, m².
 const CLOCK_VARIANCE: f64 = 1e6;
+/// Variance per second by which the clock of Galileo walks beside that of GPS, m²/s: the receiver's delays are steady,
+/// the times of the products are not always.
+const OFFSET_WALK: f64 = 1e-8;
 /// Variance of an ambiguity from one epoch's code, m².
 const AMBIGUITY_VARIANCE: f64 = 1e4;
 /// Wet zenith delay of a temperate climate, m.
@@ -28,6 +33,8 @@ const WET_DELAY: f64 = 0.1;
 const LINEAR: f64 = 100.0;
 /// Largest number of relinearisations of an epoch.
 const RELINEARISATIONS: usize = 5;
+/// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
+const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
@@ -45,7 +52,15 @@ pub(crate) struct Running<const N: usize> {
     pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
     channels: [Option<Channel>; N],
+    /// The state that is the clock of Galileo beside that of GPS, both as the receiver has them, from the first
+    /// satellite of Galileo on.
+    offset: Option<usize>,
     pub(crate) consistency: Consistency,
+    pub(crate) rest: Rest,
+    /// By how many milliseconds the phases are ahead of the codes since the beginning.
+    ahead: i32,
+    /// The jump of the present epoch.
+    pub(crate) jump: Option<ClockJump>,
 }
 
 impl<const N: usize> Running<N> {
@@ -66,8 +81,17 @@ impl<const N: usize> Running<N> {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        let consistency = Consistency::default();
-        Self { estimate, time, interval: None, channels: [None; N], consistency }
+        Self {
+            estimate,
+            time,
+            interval: None,
+            channels: [None; N],
+            offset: None,
+            consistency: Consistency::default(),
+            rest: Rest::default(),
+            ahead: 0,
+            jump: None,
+        }
     }
 
     /// Predicts to the time of an epoch.
@@ -84,6 +108,9 @@ impl<const N: usize> Running<N> {
             }
         }
         self.estimate.add_variance_at(WET, config.wet_delay_walk * elapsed)?;
+        if let Some(offset) = self.offset {
+            self.estimate.add_variance_at(offset, OFFSET_WALK * elapsed)?;
+        }
         Ok(())
     }
 
@@ -95,21 +122,44 @@ impl<const N: usize> Running<N> {
         config: &Config,
     ) -> Result<Solution<N>, Error> {
         let mut site = Site::new(receiver, &self.position(), self.time);
+        self.jump = self.clock_jump(observations, config);
+        if let Some(ClockJump::Milliseconds(milliseconds)) = self.jump {
+            self.ahead = self.ahead.saturating_add(milliseconds);
+        }
+        let known = self.offset;
         let mut lines = self.lines(&site, observations, config);
         if lines.len() < 4 {
             return Err(Error::TooFewSatellites);
         }
-        let clock = median(&lines, |(_, line)| line.code);
-        self.estimate.reset_at(CLOCK, clock, CLOCK_VARIANCE)?;
+        self.set_clocks(&lines, known)?;
         for (_, line) in lines.iter().filter(|(_, line)| line.slipped.is_some()) {
             let ambiguity = line.phase - line.code;
             self.estimate.reset_at(line.state, ambiguity, AMBIGUITY_VARIANCE)?;
         }
+        let contradicted = |line: &&Line| line.slipped == Some(Slipped::Contradicted);
+        let anew = lines.iter().map(|(_, line)| line).filter(contradicted).count();
+        self.rest.restart(anew, lines.len());
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.monitor(&lines, &decisions, config);
         self.consistency.update(decisions.as_flattened().iter());
         Ok(self.solution(&site, &lines, &decisions, config))
+    }
+
+    /// Begins the receiver's clock anew at the median code, and its offset to Galileo's time if that was not `known`.
+    fn set_clocks(&mut self, lines: &Lines<'_, '_, N>, known: Option<usize>) -> Result<(), Error> {
+        let codes = |of_galileo: bool| -> Vec<f64, N> {
+            let of = lines.iter().map(|(_, line)| line);
+            collected(of.filter(|it| it.offset.is_some() == of_galileo).map(|line| line.code))
+        };
+        let (gps, galileo) = (codes(false), codes(true));
+        let [of_gps, of_galileo] = [&gps, &galileo].map(|codes| median(codes, |code| *code));
+        let offset = known.map_or(0.0, |state| self.state(state));
+        let clock = if gps.is_empty() { of_galileo - offset } else { of_gps };
+        if let (Some(state), None) = (self.offset, known) {
+            self.estimate.reset_at(state, of_galileo - clock, CLOCK_VARIANCE)?;
+        }
+        Ok(self.estimate.reset_at(CLOCK, clock, CLOCK_VARIANCE)?)
     }
 
     /// Updates with the lines, and again from nearer the solution if that was far from where they
@@ -124,12 +174,17 @@ impl<const N: usize> Running<N> {
     ) -> Result<(), Error> {
         let predicted = self.estimate;
         let expected = self.position();
+        let deviation = self.deviation();
         let mut linearised = expected;
         for _ in 0..RELINEARISATIONS {
             self.estimate = predicted;
             self.update(lines, &(expected - linearised), decisions, config)?;
             let found = self.position();
             if (found - linearised).norm() < LINEAR {
+                if !GROUND.contains(&found.norm()) {
+                    return Err(Error::Contradictory);
+                }
+                self.rest.follow(&expected, deviation, &found);
                 return Ok(());
             }
             *site = Site::new(receiver, &found, self.time);
@@ -151,7 +206,7 @@ impl<const N: usize> Running<N> {
     ) -> Result<(), Error> {
         let rows: Vec<Row, N> = collected(lines.iter().map(|(_, line)| line.row()));
         let measurements = lines.iter().zip(&rows).map(|((_, line), row)| {
-            let [common @ .., _] = row;
+            let common = row.split_last().map_or(&row[..0], |(_, common)| common);
             let [code, phase] = line.innovations(&self.estimate.mean, offset);
             [
                 Measurement { row: common, innovation: code, variance: line.code_variance },
@@ -197,7 +252,10 @@ impl<const N: usize> Running<N> {
             }
             let known = self.find(observation.satellite);
             let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
-            let expected = site.expect(&observation.state, observation.antenna.as_ref(), wind_up);
+            let expected = {
+                let SatelliteObservation { state, carriers, antenna, .. } = observation;
+                site.expect(state, *carriers, antenna.as_ref(), wind_up)
+            };
             let Some(expected) = expected else { continue };
             let above = expected.direction.elevation >= config.elevation_mask;
             if !above && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
@@ -206,9 +264,18 @@ impl<const N: usize> Running<N> {
             if !above || !observation.is_finite() {
                 continue;
             }
+            let offset = match observation.carriers.constellation() {
+                Constellation::Gps => None,
+                Constellation::Galileo => {
+                    let Some(offset) = self.offset_state(observations) else { continue };
+                    Some(offset)
+                }
+            };
             let Some(state) = known.or_else(|| self.free(observations)) else { continue };
             let slipped = self.track(state, observation, &expected, config);
-            let mut line = Line::new(observation, expected, state, slipped, config);
+            let phase = self.repaired(observation);
+            let mut line = Line::new(observation, phase, expected, state, slipped, config);
+            line.offset = offset;
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
             {
@@ -229,13 +296,15 @@ impl<const N: usize> Running<N> {
         expected: &Expected,
         config: &Config,
     ) -> Option<Slipped> {
-        let SatelliteObservation { satellite, phase, code, lock_lost, .. } = *observation;
+        let SatelliteObservation { satellite, code, lock_lost, .. } = *observation;
+        let phase = self.repaired(observation);
+        let clock = matches!(self.jump, Some(ClockJump::Other)).then_some(Slip::Clock);
         let time = self.time;
         let place = self.channels.get_mut(state)?;
         let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
             *place = Some(Channel {
                 satellite,
-                arc: Arc::begin(time, phase, code),
+                arc: Arc::begin(time, observation.carriers, phase, code),
                 wind_up: expected.wind_up_cycles,
                 monitor: PhaseMonitor::NEW,
             });
@@ -243,6 +312,7 @@ impl<const N: usize> Running<N> {
         };
         channel.wind_up = expected.wind_up_cycles;
         let slip = channel.arc.observe(time, phase, code, lock_lost, &config.slips);
+        let slip = slip.or(clock);
         let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
         let slipped = slip.map(Slipped::Seen).or_else(|| {
             let patience = config.estimator.patience?;
@@ -255,6 +325,28 @@ impl<const N: usize> Running<N> {
         slipped
     }
 
+    /// The jump of the phases that most satellites have in common since they were seen before.
+    fn clock_jump(
+        &self,
+        observations: &[SatelliteObservation<'_>],
+        config: &Config,
+    ) -> Option<ClockJump> {
+        let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
+            let arc = self.channel(self.find(observation.satellite)?)?.arc;
+            let jump = arc.jump(self.repaired(observation), observation.code);
+            (self.time.since(arc.last()) <= config.slips.gap).then_some(jump)
+        }));
+        ClockJump::of(&jumps, median(&jumps, |jump| *jump))
+    }
+
+    /// Phases without the milliseconds by which they are ahead of the codes, cycles.
+    fn repaired(&self, observation: &SatelliteObservation<'_>) -> [f64; 2] {
+        let [first, second] = observation.phase;
+        let seconds = 1e-3 * f64::from(self.ahead);
+        let [of_first, of_second] = observation.carriers.frequency();
+        [first - seconds * of_first, second - seconds * of_second]
+    }
+
     fn find(&self, satellite: u8) -> Option<usize> {
         let is = |channel: &Option<Channel>| channel.is_some_and(|c| c.satellite == satellite);
         self.channels.iter().position(is)
@@ -262,6 +354,16 @@ impl<const N: usize> Running<N> {
 
     fn channel(&self, state: usize) -> Option<&Channel> {
         self.channels.get(state)?.as_ref()
+    }
+
+    /// The state that is the clock of Galileo, begun if there is none.
+    fn offset_state(&mut self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
+        if self.offset.is_none() {
+            let state = self.free(observations)?;
+            *self.channels.get_mut(state)? = None;
+            self.offset = Some(state);
+        }
+        self.offset
     }
 
     /// A state that is no satellite's, or that of the satellite unseen for longest.
@@ -275,13 +377,23 @@ impl<const N: usize> Running<N> {
             }
             Some(channel) => Some(self.time.since(channel.arc.last())),
         };
-        let free = (COMMON..N).filter_map(|state| Some((state, unseen(state)?)));
+        let states = (COMMON..N).filter(|state| self.offset != Some(*state));
+        let free = states.filter_map(|state| Some((state, unseen(state)?)));
         free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
     }
 
+    /// Standard deviation of the position as the filter takes it, m.
+    fn deviation(&self) -> f64 {
+        let variance = |axis| self.estimate.covariance.get(axis, axis).unwrap_or(0.0);
+        libm::sqrt((0..3).map(variance).sum())
+    }
+
+    pub(crate) fn state(&self, index: usize) -> f64 {
+        self.estimate.mean.as_array().get(index).copied().unwrap_or(0.0)
+    }
+
     pub(crate) fn position(&self) -> Vector3<f64> {
-        let of = |state: usize| self.estimate.mean.as_array().get(state).copied().unwrap_or(0.0);
-        Vector3::new(of(0), of(1), of(2))
+        Vector3::new(self.state(0), self.state(1), self.state(2))
     }
 }
 

@@ -28,9 +28,23 @@ pub enum Health {
     Converged,
     /// Hardly more observations are left than unknowns: no fault could be seen.
     Unchecked,
-    /// In the last ten epochs more than a fifth of the observations was rejected, or their residuals are almost three
-    /// times as large as their noise: times, products, codes or the model are wrong, and the standard deviations with them.
-    Contradicted,
+    /// The observations contradict the solution, or each other, or what was found before: times, products, codes or
+    /// the model are wrong, and the standard deviations with them. Not to be relied upon.
+    Contradicted(Contradiction),
+}
+
+/// Why a solution is not to be relied upon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Contradiction {
+    /// More than a tenth of the observations was rejected, for ten epochs, or more than a fifth.
+    Rejections,
+    /// What is left of the observations is far beyond their noise: 2.6 times for ten epochs, or 2.8 times.
+    Residuals,
+    /// A receiver at rest is more than ten standard deviations from where it was found before, or any receiver leapt
+    /// farther than ten standard deviations of its prediction.
+    Motion,
 }
 
 /// Decisions about one satellite's observations.
@@ -38,7 +52,7 @@ pub enum Health {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SatelliteReport {
-    /// PRN of the GPS satellite.
+    /// Number of the satellite.
     pub satellite: u8,
     /// Direction from the receiver.
     pub direction: Direction,
@@ -69,6 +83,8 @@ pub struct Solution<const N: usize> {
     pub wet_delay: f64,
     /// Quality of the solution.
     pub health: Health,
+    /// By how many milliseconds the phases of all satellites jumped against their codes in this epoch. That is repaired.
+    pub milliseconds: i32,
     /// Decisions about each satellite above the elevation mask.
     pub satellites: Vec<SatelliteReport, N>,
 }

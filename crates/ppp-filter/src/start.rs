@@ -2,7 +2,7 @@
 
 use crate::{Error, SatelliteObservation};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{eccentricity_clock, ionosphere_free, sagnac};
+use kestirim_gnss_ppp::{Constellation, eccentricity_clock, sagnac};
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use nalgebra::{SVector, Vector3};
 
@@ -39,6 +39,16 @@ pub(crate) fn code_position(
         let before = observations.get(..index).unwrap_or(&[]);
         if before.iter().any(|other| other.satellite == observation.satellite) {
             dropped |= 1 << index;
+        }
+    }
+    // Each system has a clock of its own: the codes of one of them tell the place.
+    let is = |it: &SatelliteObservation<'_>| it.carriers.constellation() == Constellation::Galileo;
+    let galileo = observations.iter().filter(|it| is(it)).count();
+    let most = observations.len().saturating_sub(galileo).max(galileo);
+    if most >= 4 {
+        let most_are_galileo = most == galileo;
+        for (index, observation) in observations.iter().enumerate() {
+            dropped |= u32::from(is(observation) != most_are_galileo) << index;
         }
     }
     loop {
@@ -112,6 +122,6 @@ fn compare(
     let computed = distance + sagnac(&state.position, &solution.position) + solution.clock
         - SPEED_OF_LIGHT * clock
         + troposphere;
-    let misfit = ionosphere_free(observation.code) - computed;
+    let misfit = observation.carriers.ionosphere_free(observation.code) - computed;
     (misfit + sight.sum()).is_finite().then_some((misfit, sight))
 }

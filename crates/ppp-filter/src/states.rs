@@ -8,7 +8,8 @@ pub(crate) const WET: usize = 4;
 /// Number of states besides the ambiguities.
 pub(crate) const COMMON: usize = 5;
 
-/// Number of states of a [`PppFilter`](crate::PppFilter) for so many satellites at a time.
+/// Number of states of a [`PppFilter`](crate::PppFilter) for so many satellites at a time. Where satellites of Galileo
+/// are among them, their clock takes the room of one.
 pub const fn states(satellites: usize) -> usize {
     COMMON.saturating_add(satellites)
 }

@@ -2,10 +2,10 @@
 
 mod sky;
 
-use kestirim_gnss_ppp::Receiver;
+use kestirim_gnss_ppp::{Carriers, FREQUENCY, Receiver, Slip};
 use kestirim_ppp_filter::{
-    Config, Deviation, Error, Estimator, Motion, PppFilter, SatelliteObservation, SatelliteReport,
-    Slipped, Solution, states,
+    Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation,
+    SatelliteReport, Slipped, Solution, states,
 };
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -259,5 +259,103 @@ proptest! {
                 prop_assert!(solution.covariance.iter().all(|value| value.is_finite()));
             }
         }
+    }
+}
+
+/// Receivers keep their clock near GPS time by whole milliseconds, and some tell it to the phases or codes alone.
+#[test]
+fn a_millisecond_is_repaired_whatever_the_filter() {
+    let milliseconds = |seconds: f64| f64::from(u8::from(seconds >= 1800.0)) * -2e-3;
+    let estimators = [
+        Estimator::plain(),
+        Estimator::igg3(),
+        Estimator::t_test(),
+        Estimator::adaptive(),
+        Estimator::guarded(Motion::Static),
+    ];
+    for estimator in estimators {
+        let config = Config { estimator, ..Config::new(Motion::Static) };
+        let solutions = run(&mut PppFilter::<N>::new(config), 2400.0, |seconds, observations| {
+            for observation in observations {
+                for (phase, frequency) in observation.phase.iter_mut().zip(FREQUENCY) {
+                    *phase += milliseconds(seconds) * frequency;
+                }
+            }
+        });
+        let told = |solution: &&Solution<N>| solution.milliseconds != 0;
+        assert_eq!(solutions.iter().filter(told).count(), 1);
+        assert_eq!(solutions[60].milliseconds, -2);
+        assert!(solutions.iter().skip(60).all(|it| error(it) < 5e-3), "{estimator:?}");
+        let slipped = |it: &SatelliteReport| matches!(it.slipped, Some(Slipped::Seen(_)));
+        assert!(!solutions.iter().any(|it| it.satellites.iter().any(slipped)));
+    }
+}
+
+/// Half a millisecond is no jump of a clock that anybody knows: all ambiguities begin anew.
+#[test]
+fn any_other_jump_of_all_phases_is_a_slip_of_all() {
+    let config = Config { estimator: Estimator::plain(), ..Config::new(Motion::Static) };
+    let solutions = run(&mut PppFilter::<N>::new(config), 2400.0, |seconds, observations| {
+        for observation in observations.iter_mut().filter(|_| seconds >= 1800.0) {
+            for (phase, frequency) in observation.phase.iter_mut().zip(FREQUENCY) {
+                *phase += 5e-4 * frequency;
+            }
+        }
+    });
+    let clock = Some(Slipped::Seen(Slip::Clock));
+    assert!(solutions[60].satellites.iter().all(|it| it.slipped == clock));
+    assert!(solutions.iter().skip(60).all(|it| error(it) < 5e-3));
+}
+
+/// A receiver said to be at rest that is carried off.
+#[test]
+fn who_moves_is_not_at_rest() {
+    let away = Vector3::new(2.0, -2.0, 1.0);
+    for estimator in [Estimator::plain(), Estimator::guarded(Motion::Static)] {
+        let config = Config { estimator, ..Config::new(Motion::Static) };
+        let mut filter = PppFilter::<N>::new(config);
+        let before = run(&mut filter, 3600.0, |_, _| {});
+        assert_eq!(before.last().unwrap().health, Health::Converged);
+        let trusted = |epoch: u32| {
+            let seconds = 3630.0 + 30.0 * f64::from(epoch);
+            let observations = observe(seconds, &(marker() + away));
+            let solution = step(&mut filter, seconds, &observations).unwrap();
+            !matches!(solution.health, Health::Contradicted(_))
+        };
+        let longest = (0..200).map(trusted).collect::<Vec<_>>();
+        assert!(longest[10..].iter().all(|trusted| !trusted), "{estimator:?} {longest:?}");
+    }
+}
+
+/// Half of the sky is Galileo's, whose clocks the receiver sees 30 m away.
+#[test]
+fn galileo_beside_gps() {
+    let as_galileo = |observations: &mut Vec<SatelliteObservation<'static>>, all: bool| {
+        for observation in observations.iter_mut().filter(|it| all || it.satellite % 2 == 0) {
+            observation.satellite += 100;
+            observation.carriers = Carriers::E1E5a;
+            for carrier in 0..2 {
+                let [before, after] = [Carriers::L1L2, Carriers::E1E5a].map(Carriers::wavelength);
+                observation.phase[carrier] *= before[carrier] / after[carrier];
+                observation.phase[carrier] += 30.0 / after[carrier];
+                observation.code[carrier] += 30.0;
+            }
+        }
+    };
+    for motion in [Motion::Static, SLOW] {
+        let both =
+            run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, false));
+        assert!(error(both.last().unwrap()) < 3e-3, "{}", error(both.last().unwrap()));
+        let lost = |seconds: f64, observations: &mut Vec<_>| {
+            as_galileo(observations, false);
+            if seconds > 1800.0 {
+                observations.retain(|it: &SatelliteObservation<'_>| it.satellite > 100);
+            }
+        };
+        let few = run(&mut filter(motion), 1830.0, lost);
+        assert!(error(few.last().unwrap()) < 2e-2, "{}", error(few.last().unwrap()));
+        let alone =
+            run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, true));
+        assert!(error(alone.last().unwrap()) < 5e-3, "{}", error(alone.last().unwrap()));
     }
 }

@@ -130,6 +130,16 @@ pub trait System: Sync + 'static {
         answer: &mut Answer,
     ) -> Result<(), Error>;
 
+    /// The text of one of the [`OUTPUTS`](Self::OUTPUTS) as the ending of its file asks for; none: the table.
+    fn text(
+        _output: &str,
+        _ending: &str,
+        _recording: &Self::Recording,
+        _trace: &Self::Trace,
+    ) -> Option<String> {
+        None
+    }
+
     /// The table of one of the [`OUTPUTS`](Self::OUTPUTS).
     fn table(
         output: &str,

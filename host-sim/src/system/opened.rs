@@ -151,6 +151,12 @@ impl<S: System> Opened for Open<S> {
         let faults = findings.iter().filter_map(|finding| finding.reason);
         let of_all = faults.map(Reason::state).max().unwrap_or_default();
         for (output, path) in &wanted.tables {
+            let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+            let ending = ending.to_ascii_lowercase();
+            if let Some(text) = S::text(output, &ending, &self.recording, &trace) {
+                output::write_file(path, |file| file.write_all(text.as_bytes()))?;
+                continue;
+            }
             let table = S::table(output, &self.recording, settings, &trace);
             write(path, &table.with_health(of_all))?;
         }

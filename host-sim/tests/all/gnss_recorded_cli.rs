@@ -38,7 +38,7 @@ impl Station {
             ("--clk", "esbc2020177/grg177_gps.clk.gz"),
             ("--antex", "esbc2020177/esbc.atx.gz"),
         ];
-        Self::new(&files, "3582104.7645,532590.1790,5232755.1455")
+        Self::new(&files, "3582104.7657,532590.1785,5232755.1390")
     }
 
     /// A Coruña, 27 May 2008: clocks every 15 min, near the coast.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use host_sim::figure::{Figure, svg};
 use host_sim::systems::gnss::figures::{errors, left};
-use host_sim::systems::gnss::settings::{FilterKind, PROCESS_NOISE};
+use host_sim::systems::gnss::settings::{FilterKind, PROCESS_NOISE, Systems};
 use host_sim::systems::gnss::track::followed::{Followed, follow};
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::{Config, Motion};
@@ -26,7 +26,7 @@ fn follow_all(station: &Station, folder: &Path, filters: &[FilterKind], motion: 
     let epochs = recording.epochs(Some(station.until));
     let day = |&filter: &FilterKind| {
         let config = Config { estimator: filter.estimator(motion, false), ..Config::new(motion) };
-        (filter, follow(&recording, epochs, &receiver, config, true, || ()))
+        (filter, follow(&recording, epochs, &receiver, config, Systems::All, true, || ()))
     };
     filters.par_iter().map(day).collect()
 }

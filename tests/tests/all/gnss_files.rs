@@ -85,7 +85,7 @@ fn antennas_and_ocean_loading_are_found() {
     let Some(folder) = folder_of("gnss") else { return };
     let station = Observations::read(folder.join("igs2008148/tlse_gps.rnx.gz"));
     let station = station.expect("a recording can be read");
-    let antennas = Antennas::read(folder.join("igs2008148/igs05_trim.atx.gz"), &station.antenna);
+    let antennas = Antennas::read(&[folder.join("igs2008148/igs05_trim.atx.gz")], &station.antenna);
     let antennas = antennas.expect("a recording can be read");
     assert_eq!(antennas.warnings, []);
     let [Some(l1), Some(l2)] = &antennas.receiver.as_ref().expect("its antenna").frequencies else {

@@ -39,8 +39,8 @@ fn a_modern_station() {
     let run = |what, config| measures(what, &ESBC.accuracy(&recording, config));
     let [_, opponent, _] = run("ESBC, static, plain", plain(Motion::Static));
     let [end, rms, convergence] = run("ESBC, static", Config::new(Motion::Static));
-    assert!(end <= 8.0 && rms <= 12.5 && convergence <= 34.0);
-    assert!(opponent <= 13.0, "the plain filter is a fair opponent");
+    assert!(end <= 4.5 && rms <= 9.8 && convergence <= 34.0);
+    assert!(opponent <= 10.0, "the plain filter is a fair opponent");
     assert!(rms <= 1.05 * opponent, "the default does no harm");
     let [_, opponent, _] = run("ESBC, kinematic, plain", plain(KINEMATIC));
     let [_, rms, _] = run("ESBC, kinematic", Config::new(KINEMATIC));
@@ -72,7 +72,7 @@ fn faults_in_the_file() {
     let run = |what, config| measures(what, &ESBC.accuracy(&recording, config));
     let [_, opponent, _] = run("injected, static, plain", plain(Motion::Static));
     let [end, rms, convergence] = run("injected, static", Config::new(Motion::Static));
-    assert!(end <= 10.0 && rms <= 14.0 && convergence <= 35.0);
+    assert!(end <= 8.0 && rms <= 12.0 && convergence <= 34.0);
     assert!(opponent >= 10.0 * rms, "the plain filter suffers");
     let [_, rms, _] = run("injected, kinematic", Config::new(KINEMATIC));
     assert!(rms <= 55.0);

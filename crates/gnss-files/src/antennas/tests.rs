@@ -5,7 +5,7 @@ const RECEIVER: &str = "ANT  TYPE       DOME";
 
 #[test]
 fn patterns_are_read_in_metres() -> Result<(), Error> {
-    let antennas = Antennas::parse(&text(antennas()), RECEIVER)?;
+    let antennas = Antennas::parse(&[text(antennas())], RECEIVER)?;
     assert_eq!(sentences(&antennas.warnings), [""; 0]);
     let receiver = antennas.receiver.expect("it is there");
     assert_eq!(receiver.name, RECEIVER);
@@ -20,7 +20,7 @@ fn patterns_are_read_in_metres() -> Result<(), Error> {
 
 #[test]
 fn satellites_change_their_numbers() -> Result<(), Error> {
-    let antennas = Antennas::parse(&text(antennas()), RECEIVER)?;
+    let antennas = Antennas::parse(&[text(antennas())], RECEIVER)?;
     let at = |year| GpsTime::from_calendar([year, 1, 1, 0, 0], 0.0).expect("a day");
     assert_eq!(antennas.satellite(5, at(2000)), None);
     assert_eq!(
@@ -35,13 +35,13 @@ fn satellites_change_their_numbers() -> Result<(), Error> {
 
 #[test]
 fn an_unknown_radome_or_antenna_is_told() -> Result<(), Error> {
-    let near = Antennas::parse(&text(antennas()), "ANT  TYPE       SNOW")?;
+    let near = Antennas::parse(&[text(antennas())], "ANT  TYPE       SNOW")?;
     assert_eq!(near.receiver.expect("one without radome").name, "ANT  TYPE       NONE");
     assert!(
         sentences(&near.warnings)[0]
             .contains("\"ANT  TYPE       SNOW\": it is taken without its radome")
     );
-    let far = Antennas::parse(&text(antennas()), "TIN CAN")?;
+    let far = Antennas::parse(&[text(antennas())], "TIN CAN")?;
     assert_eq!(far.receiver, None);
     assert!(sentences(&far.warnings)[0].contains("\"TIN CAN\": it is left out"));
     Ok(())
@@ -50,7 +50,7 @@ fn an_unknown_radome_or_antenna_is_told() -> Result<(), Error> {
 #[test]
 fn damage_is_located() {
     let complaint =
-        |file: &str| Antennas::parse(&text(file), RECEIVER).expect_err(file).to_string();
+        |file: &str| Antennas::parse(&[text(file)], RECEIVER).expect_err(file).to_string();
     let file = antennas().replace("-3.25", "-3,25");
     assert!(complaint(&file).ends_with("expected a phase centre variation in mm, found \"-3,25\""));
     let file = antennas().replace("     0.0  10.0   5.0", "     0.0  10.0   0.0");

@@ -1,10 +1,13 @@
 //! The epochs of an observation file.
 
+use std::collections::BTreeSet;
+
 use super::header::Header;
 use super::record::{Epoch, Observations, Observed};
 use super::signals::{Raw, Seen, Signals};
+use crate::biases::Biases;
 use crate::error::{Error, Warning};
-use crate::fields::gps_satellite;
+use crate::fields::{self, gps_satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::{GpsTime, full_year};
 
@@ -96,10 +99,10 @@ impl Body {
             let line = lines.expect("a satellite's observations")?;
             let name = names.get(i).copied().unwrap_or([0, 1, 2].map(|place| line.column(place)));
             let named =
-                satellite(name).ok_or_else(|| line.expected("a satellite's observations"))?;
+                satellite(name, old).ok_or_else(|| line.expected("a satellite's observations"))?;
             let start = self.raw.len();
             self.observations(named, line, lines)?;
-            let Named::Gps(prn) = named else { continue };
+            let Named::Known(prn) = named else { continue };
             if self.records[first..].iter().any(|&(other, _)| other == prn) {
                 self.doubled += 1;
                 self.raw.truncate(start);
@@ -157,12 +160,13 @@ impl Body {
         let old = self.header.version < 3;
         let (offset, in_a_line) = if old { (0, 5) } else { (3, usize::MAX) };
         let mut line = first;
-        for (i, observable) in self.header.observables.iter().enumerate() {
+        let observables = self.header.observables_of(!old && named.is_galileo());
+        for (i, observable) in observables.iter().enumerate() {
             let place = i % in_a_line;
             if i > 0 && place == 0 {
                 line = lines.expect("a satellite's further observations")?;
             }
-            let (Some(observable), Named::Gps(_)) = (observable, named) else { continue };
+            let (Some(observable), Named::Known(_)) = (observable, named) else { continue };
             let column = offset + 16 * place;
             let value = line.optional_number("an observation", column, column + 14)?;
             let Some(value) = value.filter(|&value| value != 0.0) else { continue };
@@ -174,8 +178,8 @@ impl Body {
         Ok(())
     }
 
-    /// Chooses the signals and takes them out.
-    pub(super) fn finish(mut self, text: &Text) -> Observations {
+    /// Chooses the signals and takes them out, less the biases of their codes.
+    pub(super) fn finish(mut self, text: &Text, biases: &Biases) -> Observations {
         let mut seen = Seen::default();
         let mut start = 0;
         for &(prn, end) in &self.records {
@@ -183,13 +187,19 @@ impl Body {
             start = end;
         }
         let signals = seen.choose();
+        let mut corrected = BTreeSet::new();
         let mut epochs = Vec::with_capacity(self.epochs.len());
         let (mut record, mut start) = (0, 0);
         for epoch in &self.epochs {
             let mut satellites = Vec::with_capacity(epoch.end - record);
             for &(prn, end) in &self.records[record..epoch.end] {
                 let chosen = signals.get(&prn).copied().unwrap_or_default();
-                satellites.push(Observed::of(prn, &chosen, &self.raw[start..end]));
+                let mut observed = Observed::of(prn, &chosen, &self.raw[start..end]);
+                if let Some(biases) = biases.of(prn, chosen.carriers, chosen.code, epoch.time) {
+                    observed.shorten(biases);
+                    corrected.insert(prn);
+                }
+                satellites.push(observed);
                 start = end;
             }
             record = epoch.end;
@@ -203,7 +213,8 @@ impl Body {
         };
         warn(self.backwards, "epochs are not later than the one before and are left out");
         warn(self.doubled, "satellites are told of twice in an epoch; the first is taken");
-        self.warnings.extend(Signals::warnings(&signals).into_iter().map(|it| text.warning(it)));
+        let others = signals.iter().filter(|(number, _)| !corrected.contains(number));
+        self.warnings.extend(Signals::warnings(others).into_iter().map(|it| text.warning(it)));
         let Header { marker, receiver, antenna, approximate_position, antenna_delta_hen, .. } =
             self.header;
         Observations {
@@ -229,7 +240,7 @@ fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec
         }
         let column = 32 + 3 * (i % 12);
         let name = [0, 1, 2].map(|place| line.column(column + place));
-        if satellite(name).is_none() {
+        if satellite(name, true).is_none() {
             return Err(line.expected("the satellites of an epoch"));
         }
         names.push(name);
@@ -240,14 +251,22 @@ fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec
 /// Meaning of a satellite's name.
 #[derive(Debug, Clone, Copy)]
 enum Named {
-    Gps(u8),
+    /// A satellite of GPS or Galileo, by its number.
+    Known(u8),
     Other,
 }
 
-/// The satellite of a name, if it is one.
-fn satellite(name: [u8; 3]) -> Option<Named> {
+impl Named {
+    const fn is_galileo(self) -> bool {
+        matches!(self, Self::Known(number) if number >= fields::GALILEO)
+    }
+}
+
+/// The satellite of a name, if it is one. RINEX 2 has the same observables for all systems: those are of GPS here.
+fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
     match name {
-        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Gps),
+        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
+        [b'E', ..] if !old => fields::satellite(&name).map(Named::Known),
         [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other),
         _ => None,
     }

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::fields::{blank_separated, decimal};
 use crate::text::{Line, Lines, Text};
 
-/// A column of observations of GPS satellites that is of use.
+/// A column of observations that is of use.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Observable {
     pub(super) signal: Signal,
@@ -23,15 +23,25 @@ pub(super) struct Header {
     pub(super) antenna: String,
     pub(super) approximate_position: Option<[f64; 3]>,
     pub(super) antenna_delta_hen: [f64; 3],
+    /// Of GPS and of Galileo.
+    lists: [List; 2],
+    /// The satellite system of a list that goes on.
+    system: u8,
+}
+
+/// The observables of a satellite system.
+#[derive(Debug, Clone, Default)]
+struct List {
     /// By column.
-    pub(super) observables: Vec<Option<Observable>>,
+    observables: Vec<Option<Observable>>,
     /// The list so far, and how many it should become.
     codes: Vec<Vec<u8>>,
     announced: usize,
-    /// The satellite system of a list that goes on.
-    system: u8,
     scales: Vec<(Vec<u8>, f64)>,
 }
+
+/// The letters of the systems in the order of their lists.
+const SYSTEMS: [u8; 2] = *b"GE";
 
 impl Header {
     pub(super) fn parse<'a>(text: &'a Text, lines: &mut Lines<'a>) -> Result<Self, Error> {
@@ -47,7 +57,11 @@ impl Header {
         for line in lines.by_ref() {
             if line.label() == b"END OF HEADER" {
                 let header = header.complete();
-                if header.observables.iter().flatten().next().is_none() {
+                if header
+                    .lists
+                    .iter()
+                    .all(|list| list.observables.iter().flatten().next().is_none())
+                {
                     let problem =
                         "expected observations of GPS on L1 or L2 in the header, found none";
                     return Err(text.error(problem));
@@ -93,7 +107,8 @@ impl Header {
                 }
                 self.extend(line, 6);
             }
-            b"SYS / SCALE FACTOR" if self.version >= 3 && line.column(0) == b'G' => {
+            b"SYS / SCALE FACTOR" if self.version >= 3 => {
+                let Some(list) = self.list(line.column(0)) else { return Ok(()) };
                 let scale = line.finite("a scale factor", 2, 6)?;
                 if scale <= 0.0 {
                     return Err(line.expected("a scale factor"));
@@ -101,9 +116,9 @@ impl Header {
                 let codes: Vec<_> =
                     blank_separated(line.columns(10, 60)).map(<[u8]>::to_vec).collect();
                 if codes.is_empty() {
-                    self.scales = vec![(Vec::new(), scale)];
+                    list.scales = vec![(Vec::new(), scale)];
                 }
-                self.scales.extend(codes.into_iter().map(|code| (code, scale)));
+                list.scales.extend(codes.into_iter().map(|code| (code, scale)));
             }
             _ => {}
         }
@@ -112,35 +127,54 @@ impl Header {
 
     fn start(&mut self, system: u8, announced: usize) {
         self.system = system;
-        if system == b'G' {
-            self.announced = announced;
-            self.codes.clear();
+        if let Some(list) = self.list(system) {
+            list.announced = announced;
+            list.codes.clear();
         }
     }
 
     fn extend(&mut self, line: &Line<'_>, from: usize) {
-        if self.system == b'G' {
+        if let Some(list) = self.list(self.system) {
             let codes = blank_separated(line.columns(from, 60)).map(<[u8]>::to_vec);
-            self.codes.extend(codes);
-            self.codes.truncate(self.announced);
+            list.codes.extend(codes);
+            list.codes.truncate(list.announced);
         }
+    }
+
+    fn list(&mut self, system: u8) -> Option<&mut List> {
+        let place = SYSTEMS.iter().position(|letter| *letter == system)?;
+        self.lists.get_mut(place)
+    }
+
+    /// The observables of satellites of GPS, or of Galileo, by column.
+    pub(super) fn observables_of(&self, galileo: bool) -> &[Option<Observable>] {
+        &self.lists[usize::from(galileo)].observables
     }
 
     /// Makes of the lists what the observations need.
     pub(super) fn complete(mut self) -> Self {
+        for (system, list) in SYSTEMS.into_iter().zip(&mut self.lists) {
+            list.complete(system);
+        }
+        self
+    }
+}
+
+impl List {
+    fn complete(&mut self, system: u8) {
         let scale = |code: &Vec<u8>| {
             let fits = |(of, _): &&(Vec<u8>, f64)| of.is_empty() || of == code;
             self.scales.iter().rev().find(fits).map_or(1.0, |&(_, scale)| scale)
         };
-        let observable =
-            |code: &Vec<u8>| Some(Observable { signal: Signal::new(code)?, scale: scale(code) });
+        let observable = |code: &Vec<u8>| {
+            Some(Observable { signal: Signal::new(system, code)?, scale: scale(code) })
+        };
         self.observables = self.codes.iter().map(observable).collect();
         // A list shorter than announced still has its columns.
         let announced = self.announced.min(999);
         if self.observables.len() < announced {
             self.observables.resize(announced, None);
         }
-        self
     }
 }
 
@@ -153,7 +187,8 @@ fn three(line: &Line<'_>) -> Result<[f64; 3], Error> {
 
 /// Times of Galileo, QZSS and IRNSS are those of GPS to some nanoseconds.
 fn time_system(line: &Line<'_>) -> Result<(), Error> {
-    match line.columns(48, 51) {
+    // Columns 48 to 51, or, as some programs have it, one beside.
+    match line.columns(43, 60) {
         b"" | b"GPS" | b"GAL" | b"QZS" | b"IRN" => Ok(()),
         other => {
             let found = String::from_utf8_lossy(other);

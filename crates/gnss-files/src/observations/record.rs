@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::signals::{Raw, Signals};
+use super::signals::{Carriers, Raw, Signals};
 use crate::error::Warning;
 use crate::time::GpsTime;
 
-/// Observations of GPS satellites on L1 and L2 by one receiver.
+/// Observations of satellites of GPS and Galileo on two carriers by one receiver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Observations {
     /// The name of the station's marker.
@@ -38,11 +38,13 @@ pub struct Epoch {
     pub satellites: Vec<Observed>,
 }
 
-/// Observations of one satellite in one epoch, on L1 and L2.
+/// Observations of one satellite in one epoch, on two carriers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Observed {
-    /// The satellite's number (PRN).
+    /// The satellite's number: of GPS that of its name (PRN), of Galileo that and 100.
     pub prn: u8,
+    /// The carriers.
+    pub carriers: Carriers,
     /// Pseudoranges, m.
     pub code: [Option<f64>; 2],
     /// Carrier phases, cycles.
@@ -52,11 +54,18 @@ pub struct Observed {
 }
 
 impl Observed {
+    /// Takes biases, m, off the codes.
+    pub(super) fn shorten(&mut self, biases: [f64; 2]) {
+        for (code, bias) in self.code.iter_mut().zip(biases) {
+            *code = code.map(|code| code - bias);
+        }
+    }
+
     /// The observations of the chosen signals among all those of a satellite in an epoch.
     pub(super) fn of(prn: u8, signals: &Signals, raw: &[Raw]) -> Self {
-        let mut observed = Self { prn, ..Self::default() };
+        let mut observed = Self { prn, carriers: signals.carriers, ..Self::default() };
         for &Raw { signal, value, lock_lost } in raw {
-            let band = signal.band;
+            let band = signal.place();
             if signal.phase && signals.phase[band] == Some(signal) {
                 observed.phase[band] = Some(value);
                 observed.loss_of_lock[band] = lock_lost;

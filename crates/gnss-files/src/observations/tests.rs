@@ -28,6 +28,7 @@ fn rinex_3_is_read() -> Result<(), Error> {
     );
     let first = Observed {
         prn: 5,
+        carriers: Carriers::L1L2,
         code: [Some(20_000_000.625), Some(20_000_001.5)],
         phase: [Some(105_100_000.25), Some(81_900_000.5)],
         loss_of_lock: [true, false],
@@ -135,7 +136,7 @@ fn what_cannot_be_used_is_refused() {
     assert!(complaint(&file).ends_with("expected times of GPS, found the time system \"GLO\""));
     let file = observations_3().replace("3.04 ", "1.04 ");
     assert!(complaint(&file).contains("expected RINEX 2, 3 or 4, found version 1.04"));
-    let file = observations_3().replace("G    5", "E    5");
+    let file = observations_3().replace("G    5", "C    5");
     assert!(complaint(&file).contains("expected observations of GPS on L1 or L2 in the header"));
     let file = header("     3.04           N", "RINEX VERSION / TYPE");
     let sentence = "file: expected observations (RINEX), found a navigation file (RINEX)";
@@ -143,4 +144,48 @@ fn what_cannot_be_used_is_refused() {
     assert!(complaint("<!DOCTYPE html>\n").contains("found a web page"));
     assert!(complaint("").ends_with("found an empty file"));
     assert!(complaint(&observations_3_header()).contains("found none"));
+}
+
+#[test]
+fn rinex_4_and_a_time_system_beside_its_columns() -> Result<(), Error> {
+    let file = observations_3().replace("     3.04 ", "     4.02 ");
+    let more = [
+        header("https://doi.org/10.57677/anything", "DOI"),
+        header("https://creativecommons.org/licenses/by/4.0", "LICENSE OF USE"),
+        header("https://stations.example/HERE00XXX", "STATION INFORMATION"),
+        header("", "END OF HEADER"),
+    ];
+    let file = file.replace(&more[3], &more.concat());
+    let whole = Observations::parse(&text(observations_3()))?;
+    assert_eq!(Observations::parse(&text(&file))?, whole);
+    for beside in ["    GPS ", "      GPS", " GPS"] {
+        let file = observations_3().replace("     GPS", beside);
+        assert_eq!(Observations::parse(&text(file))?.epochs, whole.epochs, "{beside:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn galileo_is_read_beside_gps() -> Result<(), Error> {
+    let file = |bands: &str| {
+        lines(&[
+            "     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE",
+            "G    2 C1W L1W                                              SYS / # / OBS TYPES",
+            &format!("E    6 {bands:<53}SYS / # / OBS TYPES"),
+            "                                                            END OF HEADER",
+            "> 2020 01 01 00 00  0.0000000  0  2",
+            "G05  20000000.125   105100000.250",
+            "E11  24000000.000   126100000.000    24000001.000    94200000.50011  24000002.000    96600000.000",
+        ])
+    };
+    let both = Observations::parse(&text(file("C1C L1C C5Q L5Q C7Q L7Q")))?;
+    let [five, eleven] = &both.epochs[0].satellites[..] else { panic!("two satellites") };
+    assert_eq!((five.prn, five.carriers), (5, Carriers::L1L2));
+    assert_eq!((eleven.prn, eleven.carriers), (111, Carriers::E1E5a));
+    assert_eq!(eleven.phase, [Some(126_100_000.0), Some(94_200_000.5)]);
+    assert_eq!(eleven.loss_of_lock, [false, true]);
+    let e5b = Observations::parse(&text(file("C1C L1C C6C L6C C7Q L7Q")))?;
+    let eleven = e5b.epochs[0].satellites[1];
+    assert_eq!((eleven.carriers, eleven.code[1]), (Carriers::E1E5b, Some(24_000_002.0)));
+    Ok(())
 }

@@ -1,6 +1,8 @@
 //! A sky of thirty-two satellites on circular orbits, and a receiver that observes them without noise.
 
-use kestirim_gnss_ppp::{GpsTime, Receiver, SatelliteState, Site, WAVELENGTH, carried_along};
+use kestirim_gnss_ppp::{
+    Carriers, GpsTime, Receiver, SatelliteState, Site, WAVELENGTH, carried_along,
+};
 use kestirim_ppp_filter::SatelliteObservation;
 use nalgebra::Vector3;
 
@@ -38,9 +40,10 @@ fn state(prn: u8, seconds: f64) -> SatelliteState {
 /// What a receiver at `place` observes `seconds` after the start, above five degrees.
 pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<SatelliteObservation<'static>> {
     let site = Site::new(&Receiver::default(), place, START.plus(seconds));
+    let carriers = Carriers::L1L2;
     let sight = |prn: u8| {
         let state = state(prn, seconds);
-        let expected = site.expect(&state, None, None)?;
+        let expected = site.expect(&state, carriers, None, None)?;
         if expected.direction.elevation < 0.09 {
             return None;
         }
@@ -48,6 +51,7 @@ pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<SatelliteObserv
         let phase = code + expected.wind_up + 3.0 * f64::from(prn);
         Some(SatelliteObservation {
             satellite: prn,
+            carriers,
             code: [code; 2],
             phase: WAVELENGTH.map(|wavelength| phase / wavelength),
             lock_lost: false,

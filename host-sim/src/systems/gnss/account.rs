@@ -4,10 +4,14 @@ pub mod accuracy;
 pub mod comparison;
 pub mod report;
 pub mod tables;
+mod track_file;
 mod warning;
+
+use kestirim_ppp_filter::Contradiction;
 
 use self::comparison::Comparison;
 use self::report::Report;
+pub(super) use self::track_file::text as track_text;
 use super::Gnss;
 use super::recording::Recording;
 use super::settings::{Choice, FilterKind, Mode, Setup};
@@ -18,8 +22,12 @@ use crate::system::{Account, Reason, System};
 
 /// Says why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
-    if track.filters.iter().any(|(_, followed)| !followed.contradicted.is_empty()) {
+    let all = || track.filters.iter().flat_map(|(_, followed)| followed.contradictions());
+    if all().next().is_some() {
         account.doubt(Reason::Innovations);
+    }
+    if all().any(|(_, contradiction)| contradiction == Contradiction::Rejections) {
+        account.doubt(Reason::Rejected);
     }
 }
 

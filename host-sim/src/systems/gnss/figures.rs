@@ -4,6 +4,7 @@ pub mod streams;
 
 use std::collections::BTreeMap;
 
+use kestirim_gnss_files::satellite_name;
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
@@ -154,7 +155,7 @@ pub fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
         }
     }
     let satellites = used.into_iter().enumerate().map(|(place, (satellite, points))| {
-        Series::points(format!("G{satellite:02}"), points)
+        Series::points(satellite_name(satellite), points)
             .marked(Mark::Dots)
             .coloured(Colour::Other(place))
     });

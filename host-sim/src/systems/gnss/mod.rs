@@ -39,7 +39,7 @@ impl System for Gnss {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "obs",
-            "What the receiver observed: RINEX 2, 3 or 4 or CRINEX, GPS on L1 and L2; any file may be packed with gzip",
+            "What the receiver observed: RINEX 2, 3 or 4 or CRINEX, GPS on L1 and L2, Galileo on E1 and E5a or E5b; any file may be packed with gzip",
         ),
         FileField::required(
             "sp3",
@@ -53,8 +53,14 @@ impl System for Gnss {
         .several(),
         FileField::required(
             "antex",
-            "Phase centres of the satellites' and the receiver's antennas, ANTEX",
-        ),
+            "Phase centres of the satellites' and the receiver's antennas, ANTEX, one file or more",
+        )
+        .several(),
+        FileField::optional(
+            "bias",
+            "Biases of the satellites' codes, Bias-SINEX, one file or more [default: not corrected]",
+        )
+        .several(),
         FileField::optional("blq", "Ocean loading of the station, BLQ [default: not corrected]"),
         FileField::optional("truth", "a file of which the first line is X,Y,Z"),
     ];
@@ -65,7 +71,8 @@ impl System for Gnss {
     const OUTPUTS: &'static [OutputField] = &[
         OutputField {
             name: "track",
-            help: "Write t,x,y,z (s, ECEF m), standard deviations and health of each epoch with a solution to this file",
+            help: "Write t,x,y,z (s, ECEF m), standard deviations and health of each epoch with a solution to this file; \
+                   by its ending .pos (RTKLIB), .nmea, .kml or .gpx instead",
         },
         OutputField {
             name: "residuals",
@@ -81,8 +88,13 @@ impl System for Gnss {
         settings::table(recording)
     }
 
-    fn idle(_: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
-        settings::idle(settings, name)
+    fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        match recording {
+            Some(recording) if name == "systems" && !recording.has_galileo() => {
+                Some(Idle::foreign("is for recordings with satellites of Galileo"))
+            }
+            _ => settings::idle(settings, name),
+        }
     }
 
     fn lacks_output(settings: &Settings) -> Option<&'static str> {
@@ -130,6 +142,10 @@ impl System for Gnss {
             "track" => account::tables::track(track.main()),
             _ => account::tables::residuals(&track.main().residuals),
         }
+    }
+
+    fn text(output: &str, ending: &str, recording: &Recording, track: &Track) -> Option<String> {
+        (output == "track").then(|| account::track_text(ending, recording, track.main()))?
     }
 
     fn streams(recording: &Recording, settings: &Settings, track: &Track) -> Vec<Stream> {

@@ -4,21 +4,25 @@ pub mod model;
 pub mod products;
 pub mod truth;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use kestirim_gnss_files::{
-    Antenna, Antennas, Clocks, Observations, Orbits, StationLoading, Warning,
+    Antenna, Antennas, Biases, Clocks, Observations, Orbits, Signals, StationLoading, Warning,
+    satellite_name,
 };
-use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
+use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use nalgebra::Vector3;
 
-use self::model::{Epoch, error, patterns};
+use self::model::{Epoch, error, patterns, receiver_patterns};
 use self::products::Products;
 use super::simulate::{Day, INTERVAL_S, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::Error;
 use crate::system::Files;
 use crate::text::printable_path;
 
+/// The number of the first satellite of Galileo, `E01`.
+const FIRST_GALILEO: u8 = 101;
 /// How much of a synthetic day is a recording, s.
 const SYNTHETIC_S: f64 = 8.0 * 3600.0;
 
@@ -35,6 +39,8 @@ pub struct Recording {
     antenna_delta_hen: [f64; 3],
     products: Products,
     antenna: Option<Antenna>,
+    /// On which carriers satellites of Galileo are observed.
+    galileo: Option<Carriers>,
     loading: Option<OceanLoading>,
     /// UTC ahead of GPS time, s.
     utc_minus_gps: f64,
@@ -52,18 +58,20 @@ impl Recording {
     /// # Errors
     /// The file, the line, and what was expected there.
     pub fn read(files: &Files) -> Result<Self, Error> {
-        let (path, antex) = (files.required("obs")?, files.required("antex")?);
+        let path = files.required("obs")?;
         files.required("sp3")?;
+        let antex = files.required("antex")?;
         let truth = files.one("truth").map(truth::read).transpose()?;
+        let biases = Biases::read(files.all("bias")).map_err(error)?;
         let clocks = files.all("clk");
         let clocks = || (!clocks.is_empty()).then(|| Clocks::read(clocks)).transpose();
         let (observations, (orbits, clocks)) = rayon::join(
-            || Observations::read(path),
+            || Observations::read_unbiased(path, &biases),
             || rayon::join(|| Orbits::read(files.all("sp3")), clocks),
         );
         let observations = observations.map_err(error)?;
         let (orbits, clocks) = (orbits.map_err(error)?, clocks.map_err(error)?);
-        let antennas = Antennas::read(antex, &observations.antenna).map_err(error)?;
+        let antennas = Antennas::read(files.all("antex"), &observations.antenna).map_err(error)?;
         let near = observations.approximate_position;
         let loading = files
             .one("blq")
@@ -94,11 +102,32 @@ impl Recording {
             )),
         }
         let midnight = GpsTime::new(start.day(), 0.0);
-        let is_unknown = |&&prn: &&u8| {
-            let antenna = antennas.satellite(prn, start);
-            !orbits.satellite(prn).is_empty() && antenna.and_then(patterns).is_none()
+        let is_unknown = |(number, signals): &(&u8, &Signals)| {
+            let carriers = model::carriers(signals.carriers);
+            let antenna = antennas.satellite(**number, start);
+            let antenna = antenna.and_then(|antenna| patterns(antenna, carriers));
+            !orbits.satellite(**number).is_empty() && antenna.is_none()
         };
-        let unknown: Vec<_> = observations.signals.keys().filter(is_unknown).copied().collect();
+        let all = observations.signals.iter();
+        let without = |(number, _): &(&u8, &Signals)| orbits.satellite(**number).is_empty();
+        let is_galileo = |(number, _): &(&u8, &Signals)| **number >= FIRST_GALILEO;
+        // A metre off is worse than nothing, where GPS serves without.
+        let left_out = all.clone().filter(is_galileo);
+        let left_out = left_out.filter(|it| without(it) || is_unknown(it));
+        let left_out: BTreeSet<u8> = left_out.map(|(number, _)| *number).collect();
+        if !left_out.is_empty() {
+            warnings.push((
+                None,
+                format!(
+                    "{} are left out: orbits or antennas of them are not known",
+                    names(left_out.iter().copied()),
+                ),
+            ));
+        }
+        let unknown = all.filter(|it| !is_galileo(it)).filter(is_unknown);
+        let unknown: Vec<_> = unknown.map(|(number, _)| *number).collect();
+        let galileo = observations.signals.range(FIRST_GALILEO..).next();
+        let galileo = galileo.map(|(_, signals)| model::carriers(signals.carriers));
         if !unknown.is_empty() {
             warnings.push((
                 Some(Correction::SatelliteAntenna),
@@ -123,11 +152,19 @@ impl Recording {
         Ok(Self {
             path: path.to_path_buf(),
             truth,
-            epochs: observations.epochs.into_iter().map(model::epoch).collect(),
+            epochs: observations
+                .epochs
+                .into_iter()
+                .map(|mut epoch| {
+                    epoch.satellites.retain(|observed| !left_out.contains(&observed.prn));
+                    model::epoch(epoch)
+                })
+                .collect(),
             approximate_position: observations.approximate_position,
             antenna_delta_hen: observations.antenna_delta_hen,
             products,
             antenna: antennas.receiver,
+            galileo,
             loading: loading.as_ref().map(model::ocean_loading),
             utc_minus_gps: -start.leap_seconds(),
             midnight,
@@ -161,6 +198,7 @@ impl Recording {
             antenna_delta_hen: [0.0; 3],
             products: day.products,
             antenna: None,
+            galileo: None,
             loading: None,
             utc_minus_gps: UTC_MINUS_GPS,
             midnight: MIDNIGHT,
@@ -199,6 +237,11 @@ impl Recording {
         self.approximate_position
     }
 
+    /// Whether satellites of Galileo are observed.
+    pub const fn has_galileo(&self) -> bool {
+        self.galileo.is_some()
+    }
+
     /// Orbits, clocks and antennas of satellites.
     pub const fn products(&self) -> &Products {
         &self.products
@@ -213,7 +256,9 @@ impl Recording {
     pub fn receiver(&self, corrections: Corrections) -> Receiver<'_> {
         let [up, east, north] = self.antenna_delta_hen;
         Receiver {
-            antenna: self.antenna.as_ref().and_then(patterns),
+            antenna: self.antenna.as_ref().and_then(|it| patterns(it, Carriers::L1L2)),
+            galileo_antenna: (self.galileo)
+                .and_then(|carriers| receiver_patterns(self.antenna.as_ref()?, carriers)),
             eccentricity: [east, north, up],
             ocean_loading: self.loading.as_ref(),
             ut1_minus_gps: self.utc_minus_gps,
@@ -224,6 +269,6 @@ impl Recording {
 
 /// Satellites as they are named in files.
 pub fn names(satellites: impl IntoIterator<Item = u8>) -> String {
-    let names: Vec<_> = satellites.into_iter().map(|prn| format!("G{prn:02}")).collect();
+    let names: Vec<_> = satellites.into_iter().map(satellite_name).collect();
     names.join(" ")
 }

@@ -9,7 +9,7 @@ use kestirim_ppp_filter::{Config, Motion, states};
 use kestirim_robust_kalman::{Igg3, Weight};
 use nalgebra::Vector3;
 
-pub use self::filter::{Choice, FilterKind, Mode};
+pub use self::filter::{Choice, FilterKind, Mode, Systems};
 use self::part::Part;
 use super::recording::Recording;
 use super::recording::truth::place;
@@ -20,6 +20,8 @@ pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];
 
 /// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
 pub const STATES: usize = states(20);
+/// The same where satellites of Galileo are among them.
+pub const STATES_WITH_GALILEO: usize = states(34);
 
 /// Variance per second of each coordinate of a receiver that may move at will, m²/s: in the 30 s between
 /// epochs it gets 55 m away, so that only what is observed in an epoch tells where it is.
@@ -34,6 +36,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     let step = ((last - first) / 200.0).max(1.0);
     vec![
         Setting::one_of("mode", "Whether the receiver moves", &Mode::default()),
+        Setting::one_of("systems", "Satellites of which systems serve", &Systems::default()),
         Setting::decades(
             "process-noise",
             "Variance added to each coordinate of a receiver that may move; 1e-4 holds a slow one together \
@@ -126,6 +129,8 @@ pub struct Setup {
     pub filter: Choice,
     /// Whether the receiver moves, and how.
     pub motion: Motion,
+    /// Satellites of which systems serve.
+    pub systems: Systems,
     /// Lowest elevation of a satellite, rad; none: the filter's own choice.
     pub mask: Option<f64>,
     /// Whether the paper's filters are taken as published.
@@ -146,6 +151,7 @@ impl Setup {
         Self {
             filter: Choice::One(filter),
             motion,
+            systems: Systems::default(),
             mask: None,
             published: false,
             thresholds: [None; 2],
@@ -168,6 +174,7 @@ impl Setup {
         Self {
             filter: settings.chosen("filter"),
             motion,
+            systems: settings.chosen("systems"),
             mask: settings.number("mask").map(f64::to_radians),
             published: settings.is_on("published"),
             thresholds: ["k0", "k1"].map(|name| settings.number(name)),

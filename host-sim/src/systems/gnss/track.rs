@@ -44,7 +44,8 @@ impl Track {
             let with_residuals = detail == Detail::Every && filter == main;
             let config = setup.config(filter);
             let next = || progress.inc();
-            (filter, follow(recording, epochs, &receiver, config, with_residuals, next))
+            let systems = setup.systems;
+            (filter, follow(recording, epochs, &receiver, config, systems, with_residuals, next))
         };
         let filters: Vec<_> = chosen.par_iter().map(one).collect();
         if filters.iter().all(|(_, followed)| followed.fixes.is_empty()) {

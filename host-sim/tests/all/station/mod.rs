@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{GpsTime, Receiver, SatelliteState, Site, WAVELENGTH};
+use kestirim_gnss_ppp::{Carriers, GpsTime, Receiver, SatelliteState, Site, WAVELENGTH};
 use nalgebra::{Rotation3, Vector3};
 
 /// 25 June 2020.
@@ -141,8 +141,9 @@ pub(crate) fn rinex(epochs: u32, fault: impl Fn(u32, u8) -> Option<Fault>) -> St
                     clock_interval: 0.0,
                     clock_distance: 0.0,
                 };
-                let expected =
-                    site.expect(&state, None, wind_up[usize::from(prn)]).expect("finite numbers");
+                let expected = site
+                    .expect(&state, Carriers::L1L2, None, wind_up[usize::from(prn)])
+                    .expect("finite numbers");
                 let again = expected.range / SPEED_OF_LIGHT + clock;
                 if (again - travel).abs() < 1e-12 {
                     break expected;

@@ -2,7 +2,9 @@
 
 use heapless::{String, Vec};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
+use kestirim_gnss_ppp::{
+    Carriers, Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState,
+};
 use kestirim_ppp_filter::SatelliteObservation;
 use nalgebra::Vector3;
 
@@ -143,6 +145,7 @@ impl Products {
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
         Ok(SatelliteObservation {
             satellite: observed.satellite,
+            carriers: Carriers::L1L2,
             code: [first, second],
             phase: [l1, l2],
             lock_lost,

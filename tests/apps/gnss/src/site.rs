@@ -51,6 +51,7 @@ static OCEAN_LOADING: OceanLoading = OceanLoading {
 pub const fn receiver() -> Receiver<'static> {
     Receiver {
         antenna: Some(RECEIVER_ANTENNA),
+        galileo_antenna: None,
         eccentricity: [0.0, 0.0, 0.0083],
         ocean_loading: Some(&OCEAN_LOADING),
         ut1_minus_gps: -18.24,

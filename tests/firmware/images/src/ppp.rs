@@ -2,7 +2,7 @@
 //! made by its own model of observations, with noise and two outliers. The host's tests read this very file.
 
 use kestirim_gnss_ppp::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
-use kestirim_gnss_ppp::{FREQUENCY, Geodetic, GpsTime, SatelliteState, Site, WAVELENGTH};
+use kestirim_gnss_ppp::{Carriers, FREQUENCY, Geodetic, GpsTime, SatelliteState, Site, WAVELENGTH};
 use kestirim_ppp_filter::{PppFilter, SatelliteObservation, states};
 use nalgebra::Vector3;
 
@@ -94,6 +94,7 @@ impl Epochs {
         let antenna = satellite_antenna();
         let none = SatelliteObservation {
             satellite: 0,
+            carriers: Carriers::L1L2,
             code: [0.0; 2],
             phase: [0.0; 2],
             lock_lost: false,
@@ -105,7 +106,7 @@ impl Epochs {
             observations.iter_mut().zip(&mut self.wind_up).enumerate()
         {
             let state = sending(satellite, &self.station, elapsed);
-            let expected = site.expect(&state, antenna.as_ref(), *wind_up)?;
+            let expected = site.expect(&state, Carriers::L1L2, antenna.as_ref(), *wind_up)?;
             *wind_up = Some(expected.wind_up_cycles);
             let range = expected.range
                 + CLOCK[0]

@@ -3,9 +3,8 @@
 use kestirim_gnss_ppp::{
     Arc, Bodies, BodyAxes, Clock, ClockSample, Correction, Corrections, Direction, Geodetic,
     GpsTime, OceanLoading, Orbit, OrbitSample, Pattern, Receiver, SatelliteState, Site, SlipLimits,
-    Troposphere, carried_along, eccentricity_clock, geometry_free, greenwich_sidereal_time,
-    ionosphere_free, ionosphere_free_phase, melbourne_wuebbena, sagnac, shapiro_delay, solid_tide,
-    wind_up, zenith_hydrostatic, zenith_wet,
+    Troposphere, carried_along, eccentricity_clock, greenwich_sidereal_time, sagnac, shapiro_delay,
+    solid_tide, wind_up, zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
 
@@ -28,6 +27,10 @@ fn axes() -> BodyAxes {
 
 fn direction() -> Direction {
     any(Direction { elevation: number(), azimuth: number() })
+}
+
+fn carriers() -> Carriers {
+    one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b])
 }
 
 fn times() {
@@ -63,6 +66,7 @@ fn site(pattern: Pattern<'_>) {
     keep(OceanLoading::displacement(&ocean, time(), number()));
     let receiver = any(Receiver {
         antenna: maybe([pattern; 2]),
+        galileo_antenna: maybe([pattern; 2]),
         eccentricity: numbers(),
         ocean_loading: maybe(&ocean),
         ut1_minus_gps: number(),
@@ -77,7 +81,7 @@ fn site(pattern: Pattern<'_>) {
         clock_interval: number(),
         clock_distance: number(),
     });
-    keep(Site::expect(&site, &state, maybe(&[pattern; 2]), option()));
+    keep(Site::expect(&site, &state, carriers(), maybe(&[pattern; 2]), option()));
 }
 
 fn satellites() {
@@ -117,17 +121,25 @@ fn earth() {
 }
 
 fn signals() {
-    keep(ionosphere_free(numbers()));
-    keep(geometry_free(numbers()));
-    keep(melbourne_wuebbena(numbers(), numbers()));
-    keep(ionosphere_free_phase(numbers()));
-    let mut arc = any(Arc::begin(time(), numbers(), numbers()));
+    let pair = carriers();
+    keep(Carriers::constellation(pair));
+    keep(Carriers::frequency(pair));
+    keep(Carriers::wavelength(pair));
+    keep(Carriers::narrow_lane(pair));
+    keep(Carriers::wide_lane(pair));
+    keep(Carriers::ionosphere_free(pair, numbers()));
+    keep(Carriers::geometry_free(pair, numbers()));
+    keep(Carriers::melbourne_wuebbena(pair, numbers(), numbers()));
+    keep(Carriers::ionosphere_free_phase(pair, numbers()));
+    let mut arc = any(Arc::begin(time(), pair, numbers(), numbers()));
     let limits = any(<SlipLimits as Default>::default());
     for _ in 0..rounds() {
         keep(Arc::observe(any(&mut arc), time(), numbers(), numbers(), yes_or_no(), &limits));
     }
     Arc::restart(any(&mut arc), time(), numbers(), numbers());
     keep(Arc::is_suspicious(&arc));
+    keep(Arc::stays_away(&arc));
+    keep(Arc::jump(&arc, numbers(), numbers()));
     keep(Arc::last(&arc));
 }
 

@@ -54,6 +54,7 @@ fn filters<const N: usize>() {
     let ocean = any(OceanLoading { amplitude: [numbers(); 3], lag: [numbers(); 3] });
     let receiver = any(Receiver {
         antenna,
+        galileo_antenna: antenna,
         eccentricity: numbers(),
         ocean_loading: maybe(&ocean),
         ut1_minus_gps: number(),
@@ -67,7 +68,9 @@ fn filters<const N: usize>() {
         clock_distance: number(),
     });
     let (satellite, code, phase, lock_lost) = (whole(), numbers(), numbers(), yes_or_no());
-    let observation = SatelliteObservation { satellite, code, phase, lock_lost, state, antenna };
+    let carriers = one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b]);
+    let observation =
+        SatelliteObservation { satellite, carriers, code, phase, lock_lost, state, antenna };
     let observations = any([observation; 4]);
     let mut filter = any(PppFilter::<N>::new(config()));
     keep(PppFilter::config(&filter));

@@ -1,5 +1,6 @@
 //! What a replay reports of one filter.
 
+use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
 use kestirim_ppp_filter::Health;
 use nalgebra::Vector3;
@@ -30,8 +31,10 @@ pub struct Report {
     pub mode: Mode,
     /// All epochs from the first on.
     pub epochs: usize,
-    /// Those with a solution.
+    /// Those with a solution that nothing contradicts.
     pub solved: usize,
+    /// Those with a solution that is not to be relied upon.
+    pub contradicted: usize,
     /// The last position of the marker, ECEF, m.
     pub position_ecef_m: [f64; 3],
     /// Its standard deviations to the east, north and up, m.
@@ -101,7 +104,8 @@ impl Report {
             published: setup.published && filter.is_published(),
             mode: Mode::of(setup.motion),
             epochs: followed.epochs,
-            solved: followed.fixes.len(),
+            solved: followed.fixes.len() - followed.contradictions().count(),
+            contradicted: followed.contradictions().count(),
             position_ecef_m: fix.position.into(),
             sd_enu_m: last.sd_enu,
             convergence: convergence(last.health),
@@ -132,7 +136,7 @@ const fn convergence(health: Health) -> &'static str {
         Health::Converging => "converging",
         Health::Converged => "converged",
         Health::Unchecked => "unchecked",
-        Health::Contradicted => "contradicted",
+        Health::Contradicted(_) => "contradicted",
     }
 }
 
@@ -142,7 +146,7 @@ fn most_rejected(followed: &Followed) -> Vec<Rejections> {
         .iter()
         .filter(|(_, tally)| tally.rejected.sum() > 0)
         .map(|(prn, tally)| Rejections {
-            satellite: format!("G{prn:02}"),
+            satellite: satellite_name(*prn),
             epochs: tally.epochs,
             rejected: tally.rejected,
         })
@@ -178,7 +182,12 @@ impl Report {
         let mut fact = |name, value| facts.push((name, value));
         let mode = format!("{:?}", self.mode).to_lowercase();
         fact("filter", format!("{}, {mode}", self.title()));
-        fact("epochs", format!("{}, {} with a solution", self.epochs, self.solved));
+        let contradicted = match self.contradicted {
+            0 => String::new(),
+            count => format!(", {count} with one that is contradicted"),
+        };
+        let epochs = format!("{}, {} with a solution{contradicted}", self.epochs, self.solved);
+        fact("epochs", epochs);
         let [x, y, z] = self.position_ecef_m;
         fact("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
         let place = Geodetic::from_ecef(&Vector3::from(self.position_ecef_m));
@@ -237,6 +246,7 @@ fn slips(slips: Slips) -> String {
         (slips.geometry_free, "geometry-free"),
         (slips.melbourne_wuebbena, "Melbourne–Wübbena"),
         (slips.contradicted, "contradicted"),
+        (slips.clock, "of the receiver's clock"),
     ];
     listed(&kinds)
 }

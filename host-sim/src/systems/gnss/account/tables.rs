@@ -1,11 +1,13 @@
 //! Tables that a replay writes.
 
+use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::Slip;
-use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_ppp_filter::{Health, SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 
 use super::accuracy::Fix;
 use crate::system::{HealthState, Reason as Doubt, Table};
+use crate::systems::gnss::settings::Systems;
 use crate::systems::gnss::track::followed::Followed;
 
 const RESIDUAL_COLUMNS: [&str; 13] = [
@@ -31,15 +33,14 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
         let deviations = deviations.map(|metres| format!("{metres:.6}"));
         std::iter::once(format!("{t:.6}")).chain(position).chain(deviations).collect()
     };
-    // In the order of the fixes.
-    let mut contradicted = followed.contradicted.iter().peekable();
-    let health = |fix: &Fix| match contradicted.next_if_eq(&&fix.t) {
-        Some(_) => Doubt::Innovations.state(),
-        None => HealthState::Good,
+    let state = |health: &Health| match health {
+        Health::Converging | Health::Converged => HealthState::Good,
+        Health::Unchecked => Doubt::NotObservable.state(),
+        Health::Contradicted(_) => Doubt::Innovations.state(),
     };
     Table {
         rows: followed.fixes.iter().zip(&followed.deviations).map(row).collect(),
-        health: followed.fixes.iter().map(health).collect(),
+        health: followed.healths.iter().map(state).collect(),
         ..Table::new(&["t", "x", "y", "z", "sde", "sdn", "sdu"])
     }
 }
@@ -47,7 +48,11 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
 /// What became of each observation: a row for each satellite in each epoch.
 pub(in crate::systems::gnss) fn residuals(residuals: &[(f64, SatelliteReport)]) -> Table {
     let row = |(t, report): &(f64, SatelliteReport)| {
-        let mut row = vec![format!("{t:.6}"), report.satellite.to_string()];
+        let number = report.satellite;
+        // Satellites of GPS are called by their numbers since there were no others.
+        let name =
+            if Systems::Gps.has(number) { number.to_string() } else { satellite_name(number) };
+        let mut row = vec![format!("{t:.6}"), name];
         let direction = report.direction;
         let angles = [direction.elevation, direction.azimuth];
         row.extend(angles.map(|angle| format!("{:.3}", angle.to_degrees())));
@@ -82,6 +87,7 @@ const fn slip(slipped: Slipped) -> &'static str {
         Slipped::Seen(Slip::LossOfLock) => "loss-of-lock",
         Slipped::Seen(Slip::GeometryFree) => "geometry-free",
         Slipped::Seen(Slip::MelbourneWuebbena) => "melbourne-wuebbena",
+        Slipped::Seen(Slip::Clock) => "clock",
         Slipped::Contradicted => "contradicted",
     }
 }

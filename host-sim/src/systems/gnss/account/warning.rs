@@ -1,5 +1,7 @@
 //! What a user should know of files, and of how they fit each other.
 
+use kestirim_ppp_filter::Contradiction;
+
 use crate::metrics::median;
 use crate::systems::gnss::recording::model::Epoch;
 use crate::systems::gnss::recording::{Recording, names};
@@ -45,17 +47,34 @@ fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
 
 /// A sentence for each kind of epochs without a solution, and one about those that contradict themselves.
 pub(super) fn outages(followed: &Followed) -> Vec<String> {
-    followed.outages.warnings().chain(contradictions(followed)).collect()
+    let told = contradictions(followed).into_iter().chain(clock_jumps(followed));
+    followed.outages.warnings().chain(told).collect()
 }
 
 /// A sentence about epochs of which the observations contradict the solution.
 fn contradictions(followed: &Followed) -> Option<String> {
-    let first = followed.contradicted.first()?;
-    let (count, of) = (followed.contradicted.len(), followed.fixes.len());
+    let (first, contradiction) = followed.contradictions().next()?;
+    let (count, of) = (followed.contradictions().count(), followed.fixes.len());
     let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
+    let why = match contradiction {
+        Contradiction::Motion => "the receiver is not where it was found before",
+        _ => "the observations contradict the solution",
+    };
     Some(format!(
-        "in {count} of {of} epochs, the first at {first} s, the observations contradict the solution ({share:.0} % rejected in \
-         all): positions and standard deviations there are wrong; check times, products, codes and antennas"
+        "in {count} of {of} epochs, the first at {first} s, {why} ({share:.0} % rejected in all): positions and standard \
+         deviations there are wrong; check times, products, codes and antennas"
+    ))
+}
+
+/// A sentence about jumps of the receiver's clock that were repaired.
+fn clock_jumps(followed: &Followed) -> Option<String> {
+    let (first, milliseconds) = followed.clock_jumps.first()?;
+    let more = match followed.clock_jumps.len() - 1 {
+        0 => String::new(),
+        count => format!(", and {count} times more"),
+    };
+    Some(format!(
+        "at {first} s all phases jump by {milliseconds} ms against their codes{more}: repaired"
     ))
 }
 

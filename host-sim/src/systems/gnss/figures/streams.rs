@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use kestirim_gnss_files::satellite_name;
 use kestirim_ppp_filter::SatelliteReport;
 use kestirim_robust_kalman::Reason;
 use nalgebra::Vector3;
@@ -59,7 +60,8 @@ fn by_satellite(
     of: fn(&SatelliteReport) -> f64,
 ) -> Stream {
     let satellites: BTreeSet<u8> = residuals.iter().map(|(_, report)| report.satellite).collect();
-    let columns: Vec<_> = satellites.iter().map(|satellite| format!("g{satellite:02}_m")).collect();
+    let name = |satellite: &u8| format!("{}_m", satellite_name(*satellite).to_lowercase());
+    let columns: Vec<_> = satellites.iter().map(name).collect();
     let row = |reports: &[(f64, SatelliteReport)]| {
         let value = |satellite: &u8| {
             let report = reports.iter().find(|(_, report)| report.satellite == *satellite);

@@ -151,6 +151,7 @@ fn observations(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
 fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: Config) -> Score {
     let receiver = Receiver {
         antenna: None,
+        galileo_antenna: None,
         eccentricity: [0.0; 3],
         ocean_loading: None,
         ut1_minus_gps: UTC_MINUS_GPS,

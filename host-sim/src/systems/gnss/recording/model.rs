@@ -1,7 +1,7 @@
 //! The data of files as the observation model takes them: `kestirim-gnss-files` to `kestirim-gnss-ppp`, bit for bit.
 
 use kestirim_gnss_files::{self as files, Observed};
-use kestirim_gnss_ppp::{ClockSample, GpsTime, OceanLoading, OrbitSample, Pattern};
+use kestirim_gnss_ppp::{Carriers, ClockSample, GpsTime, OceanLoading, OrbitSample, Pattern};
 use nalgebra::Vector3;
 
 use crate::Error;
@@ -49,12 +49,30 @@ pub fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f64) -> C
     ClockSample { second: time(instant).since(reference), bias }
 }
 
-/// An antenna's phase centres on L1 and L2, if both are known.
-pub fn patterns(antenna: &files::Antenna) -> Option<[Pattern<'_>; 2]> {
-    match &antenna.frequencies {
-        [Some(first), Some(second)] => Some([pattern(first), pattern(second)]),
-        _ => None,
+/// Two carriers.
+pub const fn carriers(carriers: files::Carriers) -> Carriers {
+    match carriers {
+        files::Carriers::L1L2 => Carriers::L1L2,
+        files::Carriers::E1E5a => Carriers::E1E5a,
+        files::Carriers::E1E5b => Carriers::E1E5b,
     }
+}
+
+/// An antenna's phase centres on two carriers, if both are known.
+pub fn patterns(antenna: &files::Antenna, carriers: Carriers) -> Option<[Pattern<'_>; 2]> {
+    let ([l1, l2], [e1, e5a, e5b]) = (&antenna.frequencies, &antenna.galileo);
+    let (first, second) = match carriers {
+        Carriers::L1L2 => (l1, l2),
+        Carriers::E1E5a => (e1, e5a),
+        Carriers::E1E5b => (e1, e5b),
+    };
+    Some([pattern(first.as_ref()?), pattern(second.as_ref()?)])
+}
+
+/// The same of a receiver's antenna: one that was calibrated for GPS alone is taken to be on E1 as on L1, and on E5a
+/// and E5b as on L2.
+pub fn receiver_patterns(antenna: &files::Antenna, carriers: Carriers) -> Option<[Pattern<'_>; 2]> {
+    patterns(antenna, carriers).or_else(|| patterns(antenna, Carriers::L1L2))
 }
 
 fn pattern(centre: &files::PhaseCentre) -> Pattern<'_> {

@@ -5,11 +5,12 @@ use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
 use kestirim_ppp_filter::SatelliteObservation;
 
-use super::model::{clock_sample, orbit_sample, patterns};
+use super::model::{carriers, clock_sample, orbit_sample, patterns};
 
 /// Clocks are bridged over the interval of the coarsest products, s.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
-const SATELLITES: u8 = 32;
+/// The largest number of a satellite: of Galileo those of their names and 100.
+const SATELLITES: u8 = 136;
 
 /// Why a satellite that was observed does not serve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,6 +114,7 @@ impl Products {
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
         Ok(SatelliteObservation {
             satellite: observed.prn,
+            carriers: carriers(observed.carriers),
             code: [first, second],
             phase: [l1, l2],
             lock_lost: observed.loss_of_lock.contains(&true),
@@ -123,7 +125,10 @@ impl Products {
                 clock_interval: clock.interval,
                 clock_distance: clock.distance,
             },
-            antenna: satellite.antenna.as_ref().and_then(patterns),
+            antenna: satellite
+                .antenna
+                .as_ref()
+                .and_then(|antenna| patterns(antenna, carriers(observed.carriers))),
         })
     }
 }

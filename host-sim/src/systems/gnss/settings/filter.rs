@@ -26,6 +26,30 @@ impl Mode {
     }
 }
 
+/// Satellites of which systems serve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Systems {
+    /// Those of all that are observed and known
+    #[default]
+    All,
+    /// Of GPS alone
+    Gps,
+    /// Of Galileo alone
+    Galileo,
+}
+
+impl Systems {
+    /// Whether a satellite serves, by its number: those of Galileo begin at 101.
+    pub const fn has(self, satellite: u8) -> bool {
+        match self {
+            Self::All => true,
+            Self::Gps => satellite <= 100,
+            Self::Galileo => satellite > 100,
+        }
+    }
+}
+
 /// Which filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]

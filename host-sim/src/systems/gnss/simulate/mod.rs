@@ -60,7 +60,7 @@ impl Day {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kestirim_gnss_ppp::{Arc, SlipLimits, geometry_free};
+    use kestirim_gnss_ppp::{Arc, Carriers, SlipLimits};
 
     #[test]
     fn the_same_day_again_and_faults_beside_it() {
@@ -111,18 +111,19 @@ mod tests {
                 let place = usize::from(observed.prn);
                 let (phase, code) = ([l1, l2], [p1, p2]);
                 match &mut arcs[place] {
-                    None => arcs[place] = Some(Arc::begin(epoch.time, phase, code)),
+                    None => arcs[place] = Some(Arc::begin(epoch.time, Carriers::L1L2, phase, code)),
                     Some(arc) => {
                         let slip =
                             arc.observe(epoch.time, phase, code, false, &SlipLimits::default());
                         slips += usize::from(slip.is_some());
                         if slip.is_none() {
-                            largest = largest.max((geometry_free(phase) - last[place]).abs());
+                            largest = largest
+                                .max((Carriers::L1L2.geometry_free(phase) - last[place]).abs());
                         }
                         count += 1;
                     }
                 }
-                last[place] = geometry_free(phase);
+                last[place] = Carriers::L1L2.geometry_free(phase);
             }
         }
         // Each satellite rises once or twice a day; an arc broken by low elevation comes beside it.

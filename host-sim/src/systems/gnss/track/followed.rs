@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
 use kestirim_ppp_filter::{
-    Config, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped, Solution,
+    Config, Contradiction, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped,
+    Solution,
 };
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
@@ -15,7 +16,7 @@ use crate::systems::gnss::account::accuracy::Fix;
 use crate::systems::gnss::recording::Recording;
 use crate::systems::gnss::recording::model::Epoch;
 use crate::systems::gnss::recording::products::Unusable;
-use crate::systems::gnss::settings::STATES;
+use crate::systems::gnss::settings::{STATES, STATES_WITH_GALILEO, Systems};
 
 /// Numbers of codes and of phases.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -50,12 +51,18 @@ pub struct Slips {
     pub melbourne_wuebbena: usize,
     /// A phase that contradicted all others for several epochs.
     pub contradicted: usize,
+    /// All phases jumped against their codes at once.
+    pub clock: usize,
 }
 
 impl Slips {
     /// All of them.
     pub const fn sum(self) -> usize {
-        self.loss_of_lock + self.geometry_free + self.melbourne_wuebbena + self.contradicted
+        self.loss_of_lock
+            + self.geometry_free
+            + self.melbourne_wuebbena
+            + self.contradicted
+            + self.clock
     }
 
     fn count(&mut self, slipped: Option<Slipped>) {
@@ -65,6 +72,7 @@ impl Slips {
             Some(Slipped::Seen(Slip::LossOfLock)) => self.loss_of_lock += 1,
             Some(Slipped::Seen(Slip::GeometryFree)) => self.geometry_free += 1,
             Some(Slipped::Seen(Slip::MelbourneWuebbena)) => self.melbourne_wuebbena += 1,
+            Some(Slipped::Seen(Slip::Clock)) => self.clock += 1,
             Some(Slipped::Contradicted) => self.contradicted += 1,
         }
     }
@@ -105,8 +113,12 @@ pub struct Followed {
     pub deviations: Vec<[f64; 3]>,
     /// The last of them.
     pub last: Option<Last>,
-    /// When the observations contradicted the solution, s.
-    pub contradicted: Vec<f64>,
+    /// How far each of them is to be trusted.
+    pub healths: Vec<Health>,
+    /// How many satellites each of them is from.
+    pub heard: Vec<usize>,
+    /// When all phases jumped against their codes, s, and by how many milliseconds; that was repaired.
+    pub clock_jumps: Vec<(f64, i32)>,
     /// Since when all positions have been converged ones, s.
     pub converged_since: Option<f64>,
     /// Observations that the filter was given.
@@ -127,17 +139,36 @@ pub struct Followed {
     pub residuals: Vec<(f64, SatelliteReport)>,
 }
 
-/// Feeds a filter with `epochs`; `with_residuals` keeps what became of each observation. `next` is called
-/// after each epoch.
+/// Feeds a filter with the satellites of some `systems` in `epochs`; `with_residuals` keeps what became of each
+/// observation. `next` is called after each epoch.
 pub fn follow(
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     config: Config,
+    systems: Systems,
+    with_residuals: bool,
+    next: impl FnMut(),
+) -> Followed {
+    if recording.has_galileo() && systems != Systems::Gps {
+        let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
+        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+    } else {
+        let filter = PppFilter::<STATES>::new(config);
+        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+    }
+}
+
+fn feed<const N: usize>(
+    mut filter: PppFilter<N>,
+    recording: &Recording,
+    epochs: &[Epoch],
+    receiver: &Receiver<'_>,
+    systems: Systems,
     with_residuals: bool,
     mut next: impl FnMut(),
 ) -> Followed {
-    let mut filter = PppFilter::<STATES>::new(config);
+    let mask = filter.config().elevation_mask;
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
     let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();
     // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
@@ -146,12 +177,13 @@ pub fn follow(
     let mut about = recording.approximate_position().map(Vector3::from);
     for epoch in epochs {
         let t = recording.seconds(epoch);
-        let mut unused = Unused { observed: epoch.satellites.len(), ..Unused::default() };
+        let satellites = || epoch.satellites.iter().filter(|observed| systems.has(observed.prn));
+        let mut unused = Unused { observed: satellites().count(), ..Unused::default() };
         observations.clear();
         if epoch.power_failure {
             lost.fill(true);
         }
-        for observed in &epoch.satellites {
+        for observed in satellites() {
             let lost = &mut lost[usize::from(observed.prn)];
             *lost |= observed.loss_of_lock.contains(&true);
             match recording.products().observation(epoch.time, observed) {
@@ -171,8 +203,7 @@ pub fn follow(
                 followed.take(t, &solution, with_residuals);
             }
             Err(error) => {
-                unused.below_mask =
-                    about.map_or(0, |place| below(&observations, &place, config.elevation_mask));
+                unused.below_mask = about.map_or(0, |place| below(&observations, &place, mask));
                 followed.outages.add(Outage { error, t, unused });
             }
         }
@@ -199,6 +230,14 @@ impl Followed {
         self.fixes.iter().map(|fix| (rotation * (fix.position - place)).into()).collect()
     }
 
+    /// When solutions were not to be relied upon, s, and why.
+    pub fn contradictions(&self) -> impl Iterator<Item = (f64, Contradiction)> {
+        self.fixes.iter().zip(&self.healths).filter_map(|(fix, health)| match health {
+            Health::Contradicted(contradiction) => Some((fix.t, *contradiction)),
+            _ => None,
+        })
+    }
+
     fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {
         let tally = self.satellites.entry(prn).or_default();
         match reason {
@@ -214,13 +253,15 @@ impl Followed {
         }
     }
 
-    fn take(&mut self, t: f64, solution: &Solution<STATES>, with_residuals: bool) {
+    fn take<const N: usize>(&mut self, t: f64, solution: &Solution<N>, with_residuals: bool) {
         self.fixes.push(Fix { t, position: solution.position });
         let sd_enu = solution.deviations_enu();
         self.deviations.push(sd_enu);
         self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
-        if solution.health == Health::Contradicted {
-            self.contradicted.push(t);
+        self.healths.push(solution.health);
+        self.heard.push(solution.satellites.len());
+        if solution.milliseconds != 0 {
+            self.clock_jumps.push((t, solution.milliseconds));
         }
         if solution.health == Health::Converged {
             self.converged_since.get_or_insert(t);

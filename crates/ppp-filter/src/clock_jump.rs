@@ -1,0 +1,54 @@
+//! Jumps of all phases against their codes: some receivers keep their clock near GPS time by whole milliseconds, and tell
+//! it to the codes alone, or to the phases.
+
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+
+/// A millisecond of light, m.
+pub(crate) const MILLISECOND: f64 = SPEED_OF_LIGHT * 1e-3;
+/// What jumps by less is a slip of its own, or an outlier of the code, m; what jumps like others is so near to them.
+const SMALLEST: f64 = 15.0;
+/// From fewer satellites nothing is said.
+const FEWEST: usize = 3;
+
+/// A jump of all satellites' phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ClockJump {
+    /// By whole milliseconds.
+    Milliseconds(i32),
+    /// By anything else: all ambiguities begin anew.
+    Other,
+}
+
+impl ClockJump {
+    /// The jump that most satellites have in common, of `jumps` in m, of which `middle` is the median.
+    pub(crate) fn of(jumps: &[f64], middle: f64) -> Option<Self> {
+        let like = jumps.iter().filter(|&jump| (jump - middle).abs() < SMALLEST).count();
+        if middle.abs() < SMALLEST || jumps.len() < FEWEST || 2 * like <= jumps.len() {
+            return None;
+        }
+        let milliseconds = libm::round(middle / MILLISECOND);
+        let whole = (middle - milliseconds * MILLISECOND).abs() < SMALLEST;
+        // Clocks that are seconds off jump by anything.
+        let near = milliseconds.abs() < 1e6;
+        Some(if whole && near { Self::Milliseconds(milliseconds as i32) } else { Self::Other })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_most_have_in_common() {
+        let of = |jumps: &[f64], middle| ClockJump::of(jumps, middle);
+        assert_eq!(of(&[0.1, -0.4, 0.2, 299_792.0], 0.1), None);
+        assert_eq!(of(&[299_792.0; 2], 299_792.0), None, "of two");
+        let most = [299_793.0, 299_790.0, 299_792.0, 20.0];
+        assert_eq!(of(&most, 299_792.0), Some(ClockJump::Milliseconds(1)));
+        assert_eq!(of(&[-599_585.0; 5], -599_585.0), Some(ClockJump::Milliseconds(-2)));
+        assert_eq!(of(&[100.0, 101.0, 99.0], 100.0), Some(ClockJump::Other));
+        assert_eq!(of(&[100.0, 300.0, 600.0], 300.0), None, "each by its own");
+        assert_eq!(of(&[1e20; 4], 1e20), Some(ClockJump::Other));
+        assert_eq!(of(&[f64::NAN; 4], f64::NAN), None);
+    }
+}

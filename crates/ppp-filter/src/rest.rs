@@ -1,0 +1,113 @@
+//! Whether a receiver stays where it was found.
+
+use nalgebra::Vector3;
+
+/// A receiver that is farther away, in standard deviations, has moved, or those are wrong.
+const FARTHEST: f64 = 10.0;
+/// No receiver gets this far between two epochs unless its process noise says so, m.
+const LEAP: f64 = 100.0;
+/// What remains of an epoch in the sums after the next one.
+const KEPT: f64 = 0.9;
+/// For how many epochs a leap is told of.
+const TOLD: u8 = 30;
+/// The place is compared with where it was known half as well, at the least.
+const BETTER: f64 = 0.5;
+
+/// Where a receiver was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Rest {
+    /// Of a receiver at rest: where, ECEF, m, and the standard deviation.
+    place: Option<(Vector3<f64>, f64)>,
+    /// For how many epochs it is still told that a receiver leapt.
+    leaping: u8,
+    /// Ambiguities that began anew in the last epochs because their phases contradicted the place, each epoch counted
+    /// for less than the next.
+    anew: f64,
+}
+
+impl Rest {
+    /// A receiver came from where it was predicted, with a standard deviation, to where it was found.
+    pub(crate) fn follow(
+        &mut self,
+        predicted: &Vector3<f64>,
+        deviation: f64,
+        found: &Vector3<f64>,
+    ) {
+        let leapt = (found - predicted).norm() > LEAP.max(FARTHEST * deviation);
+        let told = if leapt { TOLD } else { 0 };
+        self.leaping = self.leaping.saturating_sub(1).max(told);
+    }
+
+    /// Of so many satellites some ambiguities begin anew because their phases contradict the place. If those are most
+    /// of them, it is the place that is wrong.
+    pub(crate) fn restart(&mut self, anew: usize, satellites: usize) {
+        self.anew = KEPT * self.anew + anew as f64;
+        if 2.0 * self.anew > satellites as f64 {
+            (self.anew, self.leaping) = (0.0, u8::MAX);
+        }
+    }
+
+    /// A receiver at rest is found somewhere, with a standard deviation that tells where it is.
+    pub(crate) fn stay(&mut self, found: &Vector3<f64>, deviation: f64) {
+        let better = self.place.is_none_or(|(_, known)| deviation < BETTER * known);
+        if better && !self.has_left(found) {
+            self.place = Some((*found, deviation));
+        }
+    }
+
+    /// Whether what is found contradicts what was found before.
+    pub(crate) fn has_moved(&self, found: &Vector3<f64>) -> bool {
+        self.leaping > 0 || self.has_left(found)
+    }
+
+    fn has_left(&self, found: &Vector3<f64>) -> bool {
+        self.place.is_some_and(|(place, known)| (found - place).norm() > FARTHEST * known)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_that_is_known_better_and_better() {
+        let mut rest = Rest::default();
+        for deviation in [0.09, 0.04, 0.015, 0.01] {
+            rest.stay(&Vector3::zeros(), deviation);
+        }
+        // Compared with 15 mm, as 10 mm are not half of that.
+        assert!(!rest.has_moved(&Vector3::new(0.149, 0.0, 0.0)));
+        let away = Vector3::new(0.151, 0.0, 0.0);
+        assert!(rest.has_moved(&away));
+        rest.stay(&away, 0.001);
+        assert!(rest.has_moved(&away), "what moved is no place to stay");
+        assert!(!rest.has_moved(&Vector3::zeros()));
+    }
+
+    #[test]
+    fn most_ambiguities_anew_are_a_motion() {
+        let mut rest = Rest::default();
+        rest.restart(4, 9);
+        assert!(!rest.has_moved(&Vector3::zeros()));
+        rest.restart(1, 9);
+        assert!(rest.has_moved(&Vector3::zeros()));
+    }
+
+    #[test]
+    fn a_leap_is_told_for_a_while() {
+        let mut rest = Rest::default();
+        let at = |x: f64| Vector3::new(x, 0.0, 0.0);
+        rest.follow(&at(0.0), 1.0, &at(99.0));
+        rest.follow(&at(0.0), 50.0, &at(499.0));
+        assert!(!rest.has_moved(&at(0.0)));
+        rest.follow(&at(0.0), 50.0, &at(501.0));
+        for _ in 0..29 {
+            rest.follow(&at(501.0), 50.0, &at(501.0));
+            assert!(rest.has_moved(&at(501.0)));
+        }
+        rest.follow(&at(501.0), 50.0, &at(501.0));
+        assert!(!rest.has_moved(&at(501.0)));
+    }
+}
