@@ -1,4 +1,5 @@
 use crate::alignment::STANDARD_GRAVITY;
+use crate::clipping::{Clipping, Turned};
 use crate::clock::{Clock, Tick};
 use crate::detector::{Motion, Verdict};
 use crate::health::Health;
@@ -7,7 +8,7 @@ use crate::sample::Size;
 use crate::stride::Strides;
 use crate::{Alignment, Config, Error, Estimate, ImuSample, SensorClass, Stride, Warnings};
 use kestirim_attitude::Orientation;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// All of a tracker but the decision when the foot stands, which the caller brings.
@@ -16,6 +17,7 @@ pub(crate) struct Engine<T: Scalar, N> {
     config: Config<T>,
     clock: Clock,
     pub(crate) alignment: Alignment<T>,
+    pub(crate) clipping: Clipping<T>,
     navigator: Option<N>,
     strides: Strides<T>,
     health: Health<T>,
@@ -33,6 +35,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             config,
             clock: Clock::default(),
             alignment: Alignment::new(config.sensor),
+            clipping: Clipping::new(),
             navigator: None,
             strides: Strides::new(),
             health: Health::new(),
@@ -45,6 +48,30 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     #[inline]
     pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<(Tick<T>, Size), Error> {
         Ok((self.clock.tick(sample.time_us)?, sample.check()?))
+    }
+
+    /// Learns of an examined sample what is the same in the whole stream: biases, and ends of ranges.
+    pub(crate) fn learn(&mut self, sample: &ImuSample<T>, (tick, size): (Tick<T>, Size)) {
+        self.clock.set(sample.time_us);
+        if tick == Tick::Duplicate {
+            return;
+        }
+        self.alignment.update(sample);
+        if let Tick::Elapsed { interval, gap } = tick {
+            if gap {
+                self.clipping.forget();
+            }
+            let (rate, pushed) = (&sample.angular_rate, SVector::zeros());
+            let turned = Turned { rate, large: size.large_rate, interval, pushed };
+            self.clipping.update(&turned, |_| ());
+        }
+    }
+
+    /// Keeps what was learnt and forgets the stream, to begin it again.
+    pub(crate) fn rewind(&mut self) {
+        self.clock = Clock::default();
+        self.alignment = self.alignment.rewound();
+        self.clipping = self.clipping.rewound();
     }
 
     /// The sample as a detector wants it.
@@ -86,6 +113,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             if let Tick::Elapsed { interval, gap } = tick {
                 if gap {
                     self.health.gap();
+                    self.clipping.forget();
                 }
                 let step = Step {
                     interval,
@@ -93,7 +121,16 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     angular_rate: motion.angular_rate,
                     turn: motion.angular_rate * interval,
                 };
+                let mut pushed = -navigator.velocity();
                 navigator.propagate(&step, verdict.stance);
+                pushed += navigator.velocity();
+                pushed.as_array_mut()[2] += interval * T::from_f64(STANDARD_GRAVITY);
+                let turned =
+                    Turned { rate: &sample.angular_rate, large: size.large_rate, interval, pushed };
+                self.clipping.update(&turned, |missed| {
+                    self.health.clipped();
+                    navigator.miss(missed);
+                });
                 if verdict.stance {
                     let landing = !self.was_stance;
                     if landing {

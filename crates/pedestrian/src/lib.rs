@@ -2,6 +2,7 @@
 #![no_std]
 
 mod alignment;
+mod clipping;
 mod clock;
 pub mod detector;
 mod engine;
@@ -16,6 +17,7 @@ mod tracker;
 mod uncertainty;
 
 pub use alignment::Alignment;
+pub use clipping::MissedTurn;
 pub use error::Error;
 pub use health::Warnings;
 pub use navigator::{Ekf, Lite, Navigator, Step, ZeroVelocity};

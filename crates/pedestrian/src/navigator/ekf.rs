@@ -1,11 +1,11 @@
-use super::strapdown::Strapdown;
+use super::strapdown::{Strapdown, cross};
 use super::{Navigator, Step, ZeroVelocity};
-use crate::SensorClass;
 use crate::sensor::Noise;
+use crate::{MissedTurn, SensorClass};
 use kestirim_attitude::Orientation;
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_scalar::{Components, Scalar};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// An error-state Kalman filter on zero velocities (Foxlin 2005; Skog et al. 2010).
 ///
@@ -40,6 +40,11 @@ impl<T: Scalar> Ekf<T> {
     const REFERENCE_INTERVAL: f64 = 0.005;
     /// Value of the SHOE statistic T at which the variance doubles, (rad/s)².
     const DOUBTFUL: f64 = 0.3;
+    /// Standard deviation of a turn that the gyroscope missed, relative to what it is taken for.
+    const MISSED: f64 = 0.5;
+    /// Share of that about the vertical: a foot that moves too fast for its gyroscope lands with velocities which have
+    /// other reasons, too, and would turn the heading.
+    const MISSED_HEADING: f64 = 0.5;
     /// Longest swing in which the uncertainty grows (s): beyond it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
@@ -101,6 +106,21 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
             self.swing += step.interval;
             self.propagate_covariance(&pushed, step.interval);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn miss(&mut self, missed: &MissedTurn<T>) {
+        let turn = self.orientation.to_earth(&missed.turn);
+        let velocity = cross(&turn, &missed.pushed);
+        self.orientation = self.orientation.turned_in_earth(&turn);
+        self.strapdown.velocity += velocity;
+        // By as much as the turn is wrong, all of its consequences are.
+        let ([x, y, z], [tx, ty, tz]) = (*velocity.as_array(), *turn.as_array());
+        let scale = T::from_f64(Self::MISSED * Self::MISSED * Self::SCALE);
+        let doubtful = [x, y, z, tx, ty, tz * T::from_f64(Self::MISSED_HEADING)];
+        let noise = SMatrix::from(doubtful.map(|a| doubtful.map(|b| a * scale * b)));
+        self.error.covariance.add(&Covariance::from_lower_triangle(&noise));
     }
 
     #[inline]

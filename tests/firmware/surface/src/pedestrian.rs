@@ -7,7 +7,7 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Magnitude, Motion, MovingVariance, Shoe, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty,
+    Alignment, Config, Ekf, ImuSample, Lite, MissedTurn, Navigator, OfflineTracker, PathUncertainty,
     SensorClass, Step, Stride, Tracker, ZeroVelocity,
 };
 use kestirim_scalar::{Q12_20, Scalar};
@@ -57,6 +57,8 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
         Navigator::propagate(any(&mut navigator), &step, yes_or_no());
         let (velocity, landing) = (matrix(), yes_or_no());
         let zero = any(ZeroVelocity { velocity, statistic: number(), interval: number(), landing });
+        let missed = any(MissedTurn { turn: matrix(), pushed: matrix() });
+        Navigator::miss(any(&mut navigator), &missed);
         Navigator::zero_velocity(any(&mut navigator), &zero);
         let sensor = one_of([SensorClass::Industrial, SensorClass::Consumer]);
         Navigator::restart(any(&mut navigator), sensor, any(Orientation::identity()));
