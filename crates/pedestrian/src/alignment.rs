@@ -177,11 +177,13 @@ impl<T: Scalar> Alignment<T> {
             return magnitude;
         }
 
-        let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
         self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
-        let gain = self.bias_variance / (self.bias_variance + spread + floor);
-        self.gyro_bias += (rate - self.gyro_bias) * gain;
-        self.bias_variance *= T::ONE - gain;
+        if !sways(&rate, spread) {
+            let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
+            let gain = self.bias_variance / (self.bias_variance + spread + floor);
+            self.gyro_bias += (rate - self.gyro_bias) * gain;
+            self.bias_variance *= T::ONE - gain;
+        }
 
         let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
         let gain = self.gravity_variance / (self.gravity_variance + noise);
@@ -191,6 +193,14 @@ impl<T: Scalar> Alignment<T> {
         self.accelerometer_bias = force * (excess / magnitude);
         magnitude
     }
+}
+
+/// Whether a standstill's mean rate (rad/s) may be a person's sway as well as a bias: it spreads, (0.01 rad/s)² an axis,
+/// and by a good part of itself.
+fn sways<T: Scalar>(rate: &SVector<T, 3>, spread: T) -> bool {
+    let rate = rate * T::from_f64(100.0);
+    let square = T::dot(rate.as_array(), rate.as_array());
+    spread > T::from_f64(0.5 * 0.5) && spread > square * T::from_f64(0.2 * 0.2)
 }
 
 fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {

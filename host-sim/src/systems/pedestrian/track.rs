@@ -1,5 +1,6 @@
 //! Feeds a walk to the tracker, in the number type, mode and shape that were chosen.
 
+mod evidence;
 pub(super) mod sensor;
 pub mod trace;
 
