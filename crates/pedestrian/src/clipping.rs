@@ -16,8 +16,6 @@ pub struct MissedTurn<T: Scalar> {
 pub(crate) struct Turned<'a, T: Scalar> {
     /// As it was measured (rad/s).
     pub(crate) rate: &'a SVector<T, 3>,
-    /// Whether a component is large.
-    pub(crate) large: bool,
     /// s.
     pub(crate) interval: T,
     /// What the specific force changed the velocity by (m/s, earth).
@@ -31,22 +29,28 @@ pub(crate) struct Turned<'a, T: Scalar> {
 /// with the slopes by which it is entered and left, the curve would have risen far above it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clipping<T: Scalar> {
-    /// The positive and the negative end of each axis.
-    ends: [[End<T>; 2]; 3],
+    axes: [Axis<T>; 3],
     /// The rates before the newest (rad/s).
     before: [SVector<T, 3>; 2],
     /// A plateau has begun and not been judged yet.
     is_open: bool,
 }
 
+/// The two ends of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Axis<T: Scalar> {
+    positive: End<T>,
+    negative: End<T>,
+    run: Run<T>,
+}
+
 /// One end of an axis.
 #[derive(Clone, Copy, Debug)]
-struct End<T: Scalar> {
+struct End<T> {
     /// The largest rate that two samples in a row have reached (rad/s).
     level: T,
     /// That this level is one.
     evidence: u8,
-    run: Run<T>,
 }
 
 /// A stretch of samples at an end.
@@ -54,6 +58,8 @@ struct End<T: Scalar> {
 struct Run<T: Scalar> {
     /// Samples; zero between two stretches.
     count: u8,
+    /// At the negative end.
+    is_negative: bool,
     /// How long (s).
     duration: T,
     /// By how much the rate grew from sample to sample before it (rad/s).
@@ -68,9 +74,9 @@ struct Run<T: Scalar> {
 
 impl<T: Scalar> Run<T> {
     fn none() -> Self {
-        let (zero, nothing) = (T::ZERO, SVector::zeros());
-        let (turned, pushed) = (nothing, nothing);
-        Self { count: 0, duration: zero, rising: zero, turned, pushed, is_over: false }
+        let (zero, turned, pushed) = (T::ZERO, SVector::zeros(), SVector::zeros());
+        let (count, is_negative, is_over) = (0, false, false);
+        Self { count, is_negative, duration: zero, rising: zero, turned, pushed, is_over }
     }
 
     /// Moves on by a step, of which this share comes after the middle.
@@ -104,47 +110,30 @@ impl<T: Scalar> End<T> {
     const LONGEST: f64 = 0.3;
 
     fn new() -> Self {
-        Self { level: T::from_f64(ImuSample::<T>::LARGE_RATE), evidence: 0, run: Run::none() }
+        Self { level: T::from_f64(ImuSample::<T>::LARGE_RATE), evidence: 0 }
     }
 
     fn is_clipped(&self) -> bool {
         self.evidence >= Self::ENOUGH
     }
 
-    /// Takes the newest rate towards this end and the two before it; a stretch that is over, and the angle missed in it
-    /// (rad).
-    #[inline]
-    fn update(&mut self, rate: T, before: [T; 2], step: &Turned<'_, T>) -> Option<(Run<T>, T)> {
-        if self.run.is_over {
-            self.run.move_on(step, T::ONE);
-            let run = core::mem::replace(&mut self.run, Run::none());
-            return self.judge(run, (before[0] - rate).max(T::ZERO));
-        }
-        if rate < self.level * T::from_f64(Self::NEAR) {
-            if self.run.count > 0 {
-                self.run.is_over = true;
-                self.run.move_on(step, T::ONE);
-            }
-            return None;
-        }
-        self.rise(rate.min(before[0]));
-        if self.run.count == 0 {
-            self.run.rising = (before[0] - before[1]).max(T::ZERO);
-        }
-        self.run.count = self.run.count.saturating_add(1);
-        self.run.duration += step.interval;
-        self.run.move_on(step, T::HALF);
-        None
+    /// Keeps an end that is known: the same plateaus come once more.
+    fn rewound(self) -> Self {
+        Self { evidence: if self.is_clipped() { self.evidence } else { 0 }, ..self }
     }
 
-    /// Two samples in a row have reached this rate.
-    #[inline]
-    fn rise(&mut self, sustained: T) {
-        if sustained > self.level * T::from_f64(Self::GROWTH) {
+    fn is_near(&self, rate: T) -> bool {
+        rate >= self.level * T::from_f64(Self::NEAR)
+    }
+
+    /// Two samples in a row have reached this rate. Whether the level was none.
+    fn rise(&mut self, sustained: T) -> bool {
+        let was_none = sustained > self.level * T::from_f64(Self::GROWTH);
+        if was_none {
             self.evidence = 0;
-            self.run = Run::none();
         }
         self.level = self.level.max(sustained);
+        was_none
     }
 
     /// What a stretch weighs that would have risen by eight times so much (rad/s), had it gone on.
@@ -160,8 +149,9 @@ impl<T: Scalar> End<T> {
         }
     }
 
-    /// Judges a stretch that is over, after which the rate fell by so much from sample to sample.
-    fn judge(&mut self, run: Run<T>, falling: T) -> Option<(Run<T>, T)> {
+    /// Judges a stretch that is over, after which the rate fell by so much from sample to sample; the angle missed in it
+    /// (rad).
+    fn judge(&mut self, run: &Run<T>, falling: T) -> Option<T> {
         if run.duration > T::from_f64(Self::LONGEST) {
             return None;
         }
@@ -170,63 +160,98 @@ impl<T: Scalar> End<T> {
         let steeper = T::from_f64(Self::STEEPER);
         let slopes = run.rising.min(falling * steeper) + falling.min(run.rising * steeper);
         let rise = slopes * T::from_micro(i32::from(run.count) * 1_000_000);
-        self.evidence = self.evidence.saturating_add(self.weight(&run, rise));
+        self.evidence = self.evidence.saturating_add(self.weight(run, rise));
         let bend = run.duration.min(T::from_f64(Self::BEND));
-        self.is_clipped().then(|| (run, rise * bend * T::from_f64(1.0 / 12.0)))
+        self.is_clipped().then(|| rise * bend * T::from_f64(1.0 / 12.0))
+    }
+}
+
+impl<T: Scalar> Axis<T> {
+    fn new() -> Self {
+        Self { positive: End::new(), negative: End::new(), run: Run::none() }
+    }
+
+    /// Takes the newest rate and the two before it; a stretch that is over, and the angle missed in it (rad).
+    fn update(&mut self, rate: T, before: [T; 2], step: &Turned<'_, T>) -> Option<(Run<T>, T)> {
+        let is_negative = if self.run.count > 0 { self.run.is_negative } else { rate < T::ZERO };
+        let (end, sign) =
+            if is_negative { (&mut self.negative, -T::ONE) } else { (&mut self.positive, T::ONE) };
+        let (rate, before) = (rate * sign, before.map(|rate| rate * sign));
+        if self.run.is_over {
+            self.run.move_on(step, T::ONE);
+            let run = core::mem::replace(&mut self.run, Run::none());
+            let angle = end.judge(&run, (before[0] - rate).max(T::ZERO))?;
+            return Some((run, angle * sign));
+        }
+        if end.is_near(rate) {
+            if end.rise(rate.min(before[0])) {
+                self.run = Run::none();
+            }
+            if self.run.count == 0 {
+                self.run.is_negative = is_negative;
+                self.run.rising = (before[0] - before[1]).max(T::ZERO);
+            }
+            self.run.count = self.run.count.saturating_add(1);
+            self.run.duration += step.interval;
+            self.run.move_on(step, T::HALF);
+        } else if self.run.count > 0 {
+            self.run.is_over = true;
+            self.run.move_on(step, T::ONE);
+        }
+        None
     }
 }
 
 impl<T: Scalar> Clipping<T> {
     pub(crate) fn new() -> Self {
-        Self { ends: [[End::new(); 2]; 3], before: [SVector::zeros(); 2], is_open: false }
+        Self { axes: [Axis::new(); 3], before: [SVector::zeros(); 2], is_open: false }
     }
 
     /// Keeps the ends of the range and forgets the stream, to begin it again.
     pub(crate) fn rewound(mut self) -> Self {
         self.before = [SVector::zeros(); 2];
         self.forget();
-        for end in self.ends.iter_mut().flatten() {
-            // The same plateaus come once more.
-            end.evidence = if end.is_clipped() { end.evidence } else { 0 };
+        for axis in &mut self.axes {
+            axis.positive = axis.positive.rewound();
+            axis.negative = axis.negative.rewound();
         }
         self
     }
 
     /// Samples are missing: what was begun is not known.
     pub(crate) fn forget(&mut self) {
-        for end in self.ends.iter_mut().flatten() {
-            end.run = Run::none();
+        for axis in &mut self.axes {
+            axis.run = Run::none();
         }
         self.is_open = false;
     }
 
-    /// Takes the next step, and tells `miss` what was missed in a stretch that is now over.
+    /// Whether a step with a `large` rate or without has to be shown.
     #[inline]
-    pub(crate) fn update(&mut self, step: &Turned<'_, T>, miss: impl FnMut(&MissedTurn<T>)) {
-        if step.large || self.is_open {
-            self.at_ends(step, miss);
-        }
-        self.before = [*step.rate, self.before[0]];
+    pub(crate) fn concerns(&self, large: bool) -> bool {
+        large || self.is_open
     }
 
-    #[inline(never)]
-    fn at_ends(&mut self, step: &Turned<'_, T>, mut miss: impl FnMut(&MissedTurn<T>)) {
+    /// Keeps a rate (rad/s), shown or not.
+    #[inline]
+    pub(crate) fn remember(&mut self, rate: &SVector<T, 3>) {
+        self.before = [*rate, self.before[0]];
+    }
+
+    /// Takes a step and tells `miss` what was missed in a stretch that is now over.
+    pub(crate) fn show(&mut self, step: &Turned<'_, T>, mut miss: impl FnMut(&MissedTurn<T>)) {
         let [before, earlier] = [*self.before[0].as_array(), *self.before[1].as_array()];
         self.is_open = false;
-        for axis in 0..3 {
-            let (rate, before) = (step.rate.as_array()[axis], [before[axis], earlier[axis]]);
-            let [positive, negative] = &mut self.ends[axis];
-            for (end, sign) in [(positive, T::ONE), (negative, -T::ONE)] {
-                let before = before.map(|rate| rate * sign);
-                if let Some((run, angle)) = end.update(rate * sign, before, step) {
-                    // It was missed about the axis as that stood in the middle of the stretch.
-                    let mut about = SVector::<T, 3>::zeros();
-                    about.as_array_mut()[axis] = angle * sign;
-                    let since = Orientation::identity().turned_in_body(&run.turned);
-                    miss(&MissedTurn { turn: since.to_body(&about), pushed: run.pushed });
-                }
-                self.is_open |= end.run.count > 0;
+        for (index, axis) in self.axes.iter_mut().enumerate() {
+            let (rate, before) = (step.rate.as_array()[index], [before[index], earlier[index]]);
+            if let Some((run, angle)) = axis.update(rate, before, step) {
+                // It was missed about the axis as that stood in the middle of the stretch.
+                let mut about = SVector::<T, 3>::zeros();
+                about.as_array_mut()[index] = angle;
+                let since = Orientation::identity().turned_in_body(&run.turned);
+                miss(&MissedTurn { turn: since.to_body(&about), pushed: run.pushed });
             }
+            self.is_open |= axis.run.count > 0;
         }
     }
 }

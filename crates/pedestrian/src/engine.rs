@@ -61,9 +61,11 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             if gap {
                 self.clipping.forget();
             }
-            let (rate, pushed) = (&sample.angular_rate, SVector::zeros());
-            let turned = Turned { rate, large: size.large_rate, interval, pushed };
-            self.clipping.update(&turned, |_| ());
+            if self.clipping.concerns(size.large_rate) {
+                let (rate, pushed) = (&sample.angular_rate, SVector::zeros());
+                self.clipping.show(&Turned { rate, interval, pushed }, |_| ());
+            }
+            self.clipping.remember(&sample.angular_rate);
         }
     }
 
@@ -121,16 +123,13 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     angular_rate: motion.angular_rate,
                     turn: motion.angular_rate * interval,
                 };
-                let mut pushed = -navigator.velocity();
+                let before = navigator.velocity();
                 navigator.propagate(&step, verdict.stance);
-                pushed += navigator.velocity();
-                pushed.as_array_mut()[2] += interval * T::from_f64(STANDARD_GRAVITY);
-                let turned =
-                    Turned { rate: &sample.angular_rate, large: size.large_rate, interval, pushed };
-                self.clipping.update(&turned, |missed| {
-                    self.health.clipped();
-                    navigator.miss(missed);
-                });
+                if self.clipping.concerns(size.large_rate) {
+                    let (rate, health) = (&sample.angular_rate, &mut self.health);
+                    bridge(&mut self.clipping, health, navigator, rate, interval, &before);
+                }
+                self.clipping.remember(&sample.angular_rate);
                 if verdict.stance {
                     let landing = !self.was_stance;
                     if landing {
@@ -195,6 +194,25 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         let out_of_range = self.strides.path_length() == T::MAX;
         Warnings { out_of_range, ..self.health.warnings() }
     }
+}
+
+/// Shows a step to what knows the ends of the range, and moves on by what was missed there.
+#[inline(never)] // As below.
+fn bridge<T: Scalar, N: Navigator<T>>(
+    clipping: &mut Clipping<T>,
+    health: &mut Health<T>,
+    navigator: &mut N,
+    rate: &SVector<T, 3>,
+    interval: T,
+    before: &SVector<T, 3>,
+) {
+    let [x, y, z] = *(navigator.velocity() - before).as_array();
+    let fall = interval * T::from_f64(STANDARD_GRAVITY);
+    let turned = Turned { rate, interval, pushed: SVector::from([x, y, z + fall]) };
+    clipping.show(&turned, |missed| {
+        health.clipped();
+        navigator.miss(missed);
+    });
 }
 
 /// Levels a foot as its stance shows gravity, with the heading that it has.

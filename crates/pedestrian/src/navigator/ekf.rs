@@ -5,7 +5,7 @@ use crate::{MissedTurn, SensorClass};
 use kestirim_attitude::Orientation;
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_scalar::{Components, Scalar};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// An error-state Kalman filter on zero velocities (Foxlin 2005; Skog et al. 2010).
 ///
@@ -32,6 +32,8 @@ pub struct Ekf<T: Scalar> {
 impl<T: Scalar> Ekf<T> {
     /// Scale of all covariances.
     const SCALE: f64 = 1000.0;
+    /// Scale of all standard deviations.
+    const ROOT_OF_SCALE: f64 = 31.622_776_6;
     /// Standard deviation of the first tilt (rad).
     const TILT: f64 = 0.02;
     /// Standard deviation of a zero velocity at rest, sampled at [`Ekf::REFERENCE_INTERVAL`] (m/s).
@@ -117,10 +119,9 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         self.strapdown.velocity += velocity;
         // By as much as the turn is wrong, all of its consequences are.
         let ([x, y, z], [tx, ty, tz]) = (*velocity.as_array(), *turn.as_array());
-        let scale = T::from_f64(Self::MISSED * Self::MISSED * Self::SCALE);
         let doubtful = [x, y, z, tx, ty, tz * T::from_f64(Self::MISSED_HEADING)];
-        let noise = SMatrix::from(doubtful.map(|a| doubtful.map(|b| a * scale * b)));
-        self.error.covariance.add(&Covariance::from_lower_triangle(&noise));
+        let share = T::from_f64(Self::MISSED * Self::ROOT_OF_SCALE);
+        self.error.covariance.add_outer(&SVector::from(doubtful.map(|entry| entry * share)));
     }
 
     #[inline]
