@@ -85,6 +85,8 @@ impl<T: Scalar> Alignment<T> {
     const NO_GRAVITY: f64 = 0.5;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
+    /// A bias with more than this standard deviation is not known (0.01 rad/s).
+    const UNKNOWN: f64 = 1.0;
     /// Standard deviation by which a bias wanders between two standstills (0.01 rad/s).
     const WANDER: f64 = 0.01;
 
@@ -178,7 +180,9 @@ impl<T: Scalar> Alignment<T> {
         }
 
         self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
-        if !sways(&rate, spread) {
+        // Who knows the zero well weighs a sway rightly; to who knows nothing of it, it would be the zero.
+        let knows = self.bias_variance < T::from_f64(Self::UNKNOWN * Self::UNKNOWN);
+        if knows || !sways(&rate, spread) {
             let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
             let gain = self.bias_variance / (self.bias_variance + spread + floor);
             self.gyro_bias += (rate - self.gyro_bias) * gain;
