@@ -116,6 +116,17 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         *self.entry(I, I) += variance;
     }
 
+    /// P ← P + v·vᵀ: all states are wrong by the same unknown number of times their entry of `vector`.
+    #[inline]
+    pub fn add_outer(&mut self, vector: &SVector<T, N>) {
+        let [vector] = &vector.data.0;
+        for (j, &along) in vector.iter().enumerate() {
+            for (i, &across) in vector.iter().enumerate().skip(j) {
+                *self.entry(i, j) += across * along;
+            }
+        }
+    }
+
     /// P ← E P Eᵀ with `E = 1 + a·e_I·e_Jᵀ`: state `I` becomes `I + a·J`.
     ///
     /// A transition that moves a few states by others is a product of such shears. A constant

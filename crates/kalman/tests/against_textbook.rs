@@ -61,6 +61,12 @@ fn check_shear<T: Scalar>(p: &Matrix4, a: f64, tolerance: f64) {
     assert_close(&ours, &Vector4::zeros(), &(f * p * f.transpose()), tolerance);
 }
 
+fn check_outer<T: Scalar>(p: &Matrix4, v: &Vector4, tolerance: f64) {
+    let mut ours = gaussian::<T>(&Vector4::zeros(), p);
+    ours.covariance.add_outer(&v.map(T::from_f64));
+    assert_close(&ours, &Vector4::zeros(), &(p + v * v.transpose()), tolerance);
+}
+
 fn check_predict<T: Scalar>(x: &Vector4, p: &Matrix4, f: &Matrix4, tolerance: f64) {
     let mut ours = gaussian::<T>(x, p);
     let q = Covariance::from_variances(&[T::from_f64(0.1); 4]);
@@ -101,6 +107,11 @@ proptest! {
     #[test]
     fn a_shear_is_the_dense_product(p in covariance(), a in -2.0..2.0f64) {
         in_every_scalar!(check_shear(&p, a));
+    }
+
+    #[test]
+    fn an_outer_product_is_the_dense_one(p in covariance(), v in vector()) {
+        in_every_scalar!(check_outer(&p, &v));
     }
 
     #[test]

@@ -85,6 +85,8 @@ impl<T: Scalar> Alignment<T> {
     const NO_GRAVITY: f64 = 0.5;
     /// The accelerometer's, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
+    /// A bias with more than this standard deviation is not known (0.01 rad/s).
+    const UNKNOWN: f64 = 1.0;
     /// Standard deviation by which a bias wanders between two standstills (0.01 rad/s).
     const WANDER: f64 = 0.01;
 
@@ -177,11 +179,15 @@ impl<T: Scalar> Alignment<T> {
             return magnitude;
         }
 
-        let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
         self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
-        let gain = self.bias_variance / (self.bias_variance + spread + floor);
-        self.gyro_bias += (rate - self.gyro_bias) * gain;
-        self.bias_variance *= T::ONE - gain;
+        // Who knows the zero well weighs a sway rightly; to who knows nothing of it, it would be the zero.
+        let knows = self.bias_variance < T::from_f64(Self::UNKNOWN * Self::UNKNOWN);
+        if knows || !sways(&rate, spread) {
+            let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
+            let gain = self.bias_variance / (self.bias_variance + spread + floor);
+            self.gyro_bias += (rate - self.gyro_bias) * gain;
+            self.bias_variance *= T::ONE - gain;
+        }
 
         let noise = T::from_f64(Self::FORCE_FLOOR * Self::FORCE_FLOOR);
         let gain = self.gravity_variance / (self.gravity_variance + noise);
@@ -191,6 +197,14 @@ impl<T: Scalar> Alignment<T> {
         self.accelerometer_bias = force * (excess / magnitude);
         magnitude
     }
+}
+
+/// Whether a standstill's mean rate (rad/s) may be a person's sway as well as a bias: it spreads, (0.01 rad/s)² an axis,
+/// and by a good part of itself.
+fn sways<T: Scalar>(rate: &SVector<T, 3>, spread: T) -> bool {
+    let rate = rate * T::from_f64(100.0);
+    let square = T::dot(rate.as_array(), rate.as_array());
+    spread > T::from_f64(0.5 * 0.5) && spread > square * T::from_f64(0.2 * 0.2)
 }
 
 fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {

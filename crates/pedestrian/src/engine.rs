@@ -1,4 +1,5 @@
 use crate::alignment::STANDARD_GRAVITY;
+use crate::clipping::{Clipping, Turned};
 use crate::clock::{Clock, Tick};
 use crate::detector::{Motion, Verdict};
 use crate::health::Health;
@@ -7,7 +8,7 @@ use crate::sample::Size;
 use crate::stride::Strides;
 use crate::{Alignment, Config, Error, Estimate, ImuSample, SensorClass, Stride, Warnings};
 use kestirim_attitude::Orientation;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 /// All of a tracker but the decision when the foot stands, which the caller brings.
@@ -16,6 +17,7 @@ pub(crate) struct Engine<T: Scalar, N> {
     config: Config<T>,
     clock: Clock,
     pub(crate) alignment: Alignment<T>,
+    pub(crate) clipping: Clipping<T>,
     navigator: Option<N>,
     strides: Strides<T>,
     health: Health<T>,
@@ -33,6 +35,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             config,
             clock: Clock::default(),
             alignment: Alignment::new(config.sensor),
+            clipping: Clipping::new(),
             navigator: None,
             strides: Strides::new(),
             health: Health::new(),
@@ -45,6 +48,32 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     #[inline]
     pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<(Tick<T>, Size), Error> {
         Ok((self.clock.tick(sample.time_us)?, sample.check()?))
+    }
+
+    /// Learns of an examined sample what is the same in the whole stream: biases, and ends of ranges.
+    pub(crate) fn learn(&mut self, sample: &ImuSample<T>, (tick, size): (Tick<T>, Size)) {
+        self.clock.set(sample.time_us);
+        if tick == Tick::Duplicate {
+            return;
+        }
+        self.alignment.update(sample);
+        if let Tick::Elapsed { interval, gap } = tick {
+            if gap {
+                self.clipping.forget();
+            }
+            if self.clipping.concerns(size.large_rate) {
+                let (rate, pushed) = (&sample.angular_rate, SVector::zeros());
+                self.clipping.show(&Turned { rate, interval, pushed }, |_| ());
+            }
+            self.clipping.remember(&sample.angular_rate);
+        }
+    }
+
+    /// Keeps what was learnt and forgets the stream, to begin it again.
+    pub(crate) fn rewind(&mut self) {
+        self.clock = Clock::default();
+        self.alignment = self.alignment.rewound();
+        self.clipping = self.clipping.rewound();
     }
 
     /// The sample as a detector wants it.
@@ -86,6 +115,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             if let Tick::Elapsed { interval, gap } = tick {
                 if gap {
                     self.health.gap();
+                    self.clipping.forget();
                 }
                 let step = Step {
                     interval,
@@ -93,7 +123,13 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     angular_rate: motion.angular_rate,
                     turn: motion.angular_rate * interval,
                 };
+                let before = navigator.velocity();
                 navigator.propagate(&step, verdict.stance);
+                if self.clipping.concerns(size.large_rate) {
+                    let (rate, health) = (&sample.angular_rate, &mut self.health);
+                    bridge(&mut self.clipping, health, navigator, rate, interval, &before);
+                }
+                self.clipping.remember(&sample.angular_rate);
                 if verdict.stance {
                     let landing = !self.was_stance;
                     if landing {
@@ -158,6 +194,25 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         let out_of_range = self.strides.path_length() == T::MAX;
         Warnings { out_of_range, ..self.health.warnings() }
     }
+}
+
+/// Shows a step to what knows the ends of the range, and moves on by what was missed there.
+#[inline(never)] // As below.
+fn bridge<T: Scalar, N: Navigator<T>>(
+    clipping: &mut Clipping<T>,
+    health: &mut Health<T>,
+    navigator: &mut N,
+    rate: &SVector<T, 3>,
+    interval: T,
+    before: &SVector<T, 3>,
+) {
+    let [x, y, z] = *(navigator.velocity() - before).as_array();
+    let fall = interval * T::from_f64(STANDARD_GRAVITY);
+    let turned = Turned { rate, interval, pushed: SVector::from([x, y, z + fall]) };
+    clipping.show(&turned, |missed| {
+        health.clipped();
+        navigator.miss(missed);
+    });
 }
 
 /// Levels a foot as its stance shows gravity, with the heading that it has.

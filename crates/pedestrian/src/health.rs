@@ -12,7 +12,8 @@ pub struct Warnings {
     /// Repeatedly an axis of the accelerometer showed the same large value three times in a row: its
     /// range is too small.
     pub accelerometer_saturated: bool,
-    /// The same of the gyroscope.
+    /// The same of the gyroscope; or an axis stands at one end, whatever the noise there, and what it missed is bridged
+    /// ([`MissedTurn`](crate::MissedTurn)).
     pub gyroscope_saturated: bool,
     /// At rest the accelerometer does not show 9.8 m/s²: its unit is wrong (g?) or it needs calibration.
     pub gravity_implausible: bool,
@@ -119,6 +120,11 @@ impl<T: Scalar> Health<T> {
         self.warnings.rate_implausible |= rate.as_array().iter().any(|rate| rate.abs() > limit);
     }
 
+    /// The gyroscope was at an end of its range.
+    pub(crate) fn clipped(&mut self) {
+        self.warnings.gyroscope_saturated = true;
+    }
+
     /// Samples are missing.
     pub(crate) fn gap(&mut self) {
         self.warnings.gaps = true;
@@ -150,7 +156,9 @@ impl<T: Scalar> Health<T> {
             self.bad_landings = self.bad_landings.saturating_add(1);
         }
         self.warnings.tilt_lost |= is_bad;
-        self.warnings.axes_inconsistent |= self.bad_landings >= Self::LANDINGS;
+        // A clipped gyroscope leaves as much: it is no sign of wrong axes.
+        self.warnings.axes_inconsistent |=
+            self.bad_landings >= Self::LANDINGS && !self.warnings.gyroscope_saturated;
         is_bad
     }
 }

@@ -2,11 +2,13 @@
 #![no_std]
 
 mod alignment;
+mod clipping;
 mod clock;
 pub mod detector;
 mod engine;
 mod error;
 mod health;
+mod magnetic;
 mod navigator;
 mod offline;
 mod sample;
@@ -16,8 +18,10 @@ mod tracker;
 mod uncertainty;
 
 pub use alignment::Alignment;
+pub use clipping::MissedTurn;
 pub use error::Error;
 pub use health::Warnings;
+pub use magnetic::MagneticHeading;
 pub use navigator::{Ekf, Lite, Navigator, Step, ZeroVelocity};
 pub use offline::OfflineTracker;
 pub use sample::ImuSample;

@@ -45,18 +45,11 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
             return Err((statistic.len(), Error::NoMemory));
         }
         let mut engine = Engine::<T, N>::new(config);
-        let mut last_us = 0;
         for (index, sample) in samples.iter().enumerate() {
-            sample.check().map_err(|error| (index, error))?;
-            if sample.time_us < last_us {
-                return Err((index, Error::TimeBackwards));
-            }
-            if sample.time_us != last_us {
-                engine.alignment.update(sample);
-            }
-            last_us = sample.time_us;
+            let examined = engine.examine(sample).map_err(|error| (index, error))?;
+            engine.learn(sample, examined);
         }
-        engine.alignment = engine.alignment.rewound();
+        engine.rewind();
         centred_statistic(&engine, samples, statistic);
         let minimum = RecentMinimum::new(Self::LOOK_BINS);
         Ok(Self { engine, samples, statistic, minimum, next: 0, ahead: 0 })

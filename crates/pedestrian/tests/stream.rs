@@ -7,8 +7,8 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Motion, MovingVariance, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Config, Ekf, EkfTracker, Error, ImuSample, Lite, LiteTracker, OfflineTracker, SensorClass,
-    Tracker, Warnings,
+    Config, Ekf, EkfTracker, Error, ImuSample, Lite, LiteTracker, Navigator, OfflineTracker,
+    SensorClass, Tracker, Warnings,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::{SVector, Vector3};
@@ -54,6 +54,43 @@ fn what_is_wrong_with_a_stream_is_named() {
     );
     let never_still = Foot { headings: vec![], noise: 3.0, ..Foot::default() };
     assert!(warnings(&never_still.samples()).never_still);
+}
+
+/// A walk of twenty strides whose gyroscope ends at this rate (rad/s), with half a per cent of noise there.
+fn clipped_at(end: f64) -> (Vec<ImuSample<f64>>, Foot) {
+    let foot = Foot { rate: 200.0, pitch: 2.0, headings: vec![0.0; 20], ..Foot::default() };
+    let mut samples = foot.samples::<f64>();
+    for (k, sample) in samples.iter_mut().enumerate() {
+        let noise = 1.0 + 0.005 * ((k * 379 % 1009) as f64 / 504.0 - 1.0);
+        sample.angular_rate =
+            sample.angular_rate.map(|w| if w.abs() > end { w.signum() * end * noise } else { w });
+    }
+    (samples, foot)
+}
+
+fn end_of<N: Navigator<f64>>(samples: &[ImuSample<f64>]) -> (Vector3<f64>, Warnings) {
+    let mut tracker = Tracker::<f64, N>::new(Config { contact_height: 0.0, ..Config::default() });
+    let mut position = Vector3::zeros();
+    for sample in samples {
+        position = tracker.update(sample).unwrap().position;
+    }
+    (position, tracker.warnings())
+}
+
+#[test]
+fn a_clipped_gyroscope_is_told_and_bridged() {
+    let (whole, _) = clipped_at(f64::INFINITY);
+    let fastest = whole.iter().map(|s| s.angular_rate.amax()).fold(0.0, f64::max);
+    for share in [0.75, 0.9] {
+        let (samples, foot) = clipped_at(share * fastest);
+        let truth = foot.stride * foot.headings.len() as f64;
+        for (position, warnings) in [end_of::<Ekf<f64>>(&samples), end_of::<Lite<f64>>(&samples)] {
+            let error = (position.x.hypot(position.y) - truth).abs();
+            assert!(warnings.gyroscope_saturated && !warnings.axes_inconsistent, "{warnings:?}");
+            assert!(error < 0.03 * truth, "{share}: {error} m, height {} m", position.z);
+        }
+    }
+    assert!(!end_of::<Ekf<f64>>(&whole).1.gyroscope_saturated);
 }
 
 #[test]

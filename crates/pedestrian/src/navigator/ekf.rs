@@ -1,7 +1,7 @@
-use super::strapdown::Strapdown;
+use super::strapdown::{Strapdown, cross};
 use super::{Navigator, Step, ZeroVelocity};
-use crate::SensorClass;
 use crate::sensor::Noise;
+use crate::{MissedTurn, SensorClass};
 use kestirim_attitude::Orientation;
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_scalar::{Components, Scalar};
@@ -32,6 +32,8 @@ pub struct Ekf<T: Scalar> {
 impl<T: Scalar> Ekf<T> {
     /// Scale of all covariances.
     const SCALE: f64 = 1000.0;
+    /// Scale of all standard deviations.
+    const ROOT_OF_SCALE: f64 = 31.622_776_6;
     /// Standard deviation of the first tilt (rad).
     const TILT: f64 = 0.02;
     /// Standard deviation of a zero velocity at rest, sampled at [`Ekf::REFERENCE_INTERVAL`] (m/s).
@@ -40,6 +42,11 @@ impl<T: Scalar> Ekf<T> {
     const REFERENCE_INTERVAL: f64 = 0.005;
     /// Value of the SHOE statistic T at which the variance doubles, (rad/s)².
     const DOUBTFUL: f64 = 0.3;
+    /// Standard deviation of a turn that the gyroscope missed, relative to what it is taken for.
+    const MISSED: f64 = 0.5;
+    /// Share of that about the vertical: a foot that moves too fast for its gyroscope lands with velocities which have
+    /// other reasons, too, and would turn the heading.
+    const MISSED_HEADING: f64 = 0.5;
     /// Longest swing in which the uncertainty grows (s): beyond it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
@@ -101,6 +108,20 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
             self.swing += step.interval;
             self.propagate_covariance(&pushed, step.interval);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn miss(&mut self, missed: &MissedTurn<T>) {
+        let turn = self.orientation.to_earth(&missed.turn);
+        let velocity = cross(&turn, &missed.pushed);
+        self.orientation = self.orientation.turned_in_earth(&turn);
+        self.strapdown.velocity += velocity;
+        // By as much as the turn is wrong, all of its consequences are.
+        let ([x, y, z], [tx, ty, tz]) = (*velocity.as_array(), *turn.as_array());
+        let doubtful = [x, y, z, tx, ty, tz * T::from_f64(Self::MISSED_HEADING)];
+        let share = T::from_f64(Self::MISSED * Self::ROOT_OF_SCALE);
+        self.error.covariance.add_outer(&SVector::from(doubtful.map(|entry| entry * share)));
     }
 
     #[inline]

@@ -1,7 +1,7 @@
-use super::strapdown::Strapdown;
+use super::strapdown::{Strapdown, cross};
 use super::{Navigator, Step, ZeroVelocity};
-use crate::SensorClass;
 use crate::alignment::STANDARD_GRAVITY;
+use crate::{MissedTurn, SensorClass};
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
@@ -54,6 +54,12 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         // Steps are checked: bounded rates over at most a fifth of a second.
         let _ = self.ahrs.update(&step.angular_rate, gravity.as_ref(), step.interval);
         self.drifted = (self.drifted + step.interval).min(T::from_f64(Self::LONGEST_SWING));
+    }
+
+    fn miss(&mut self, missed: &MissedTurn<T>) {
+        let turn = self.ahrs.orientation().to_earth(&missed.turn);
+        self.ahrs.turn_in_earth(&turn);
+        self.strapdown.velocity += cross(&turn, &missed.pushed);
     }
 
     #[inline]

@@ -8,7 +8,7 @@ pub use ekf::Ekf;
 pub use lite::Lite;
 pub(crate) use strapdown::velocity_of_rolling;
 
-use crate::SensorClass;
+use crate::{MissedTurn, SensorClass};
 use kestirim_attitude::Orientation;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
@@ -47,6 +47,8 @@ pub trait Navigator<T: Scalar> {
     fn start(sensor: SensorClass, orientation: Orientation<T>) -> Self;
     /// Moves by one step.
     fn propagate(&mut self, step: &Step<T>, stance: bool);
+    /// The gyroscope was at the end of its range: the body has turned by more than it measured.
+    fn miss(&mut self, missed: &MissedTurn<T>);
     /// The foot stands at the end of this step.
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>);
     /// The tilt was lost: begins anew at rest with this orientation, where the swing led with the drift of its velocity

@@ -56,7 +56,7 @@ pub(crate) fn velocity_of_rolling<T: Scalar>(
 }
 
 #[inline]
-fn cross<T: Scalar>(a: &SVector<T, 3>, b: &SVector<T, 3>) -> SVector<T, 3> {
+pub(super) fn cross<T: Scalar>(a: &SVector<T, 3>, b: &SVector<T, 3>) -> SVector<T, 3> {
     let (a, b) = (*a.as_array(), *b.as_array());
     SVector::from([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }

@@ -16,6 +16,8 @@ pub(crate) struct Foot {
     pub(crate) stride: f64,
     /// The heading of each stride (rad).
     pub(crate) headings: Vec<f64>,
+    /// How far the foot pitches in a swing (rad).
+    pub(crate) pitch: f64,
     /// Sampling rate (Hz).
     pub(crate) rate: f64,
     /// Gyro bias (rad/s, body).
@@ -29,6 +31,7 @@ impl Default for Foot {
         Self {
             stride: 1.2,
             headings: vec![0.0; 10],
+            pitch: 0.8,
             rate: 100.0,
             bias: Vector3::zeros(),
             noise: 0.0,
@@ -56,7 +59,7 @@ impl Foot {
             if phase > 0.0 && phase < 1.0 {
                 let lift = 256.0 * (phase * (1.0 - phase)).powi(4);
                 position.z += 0.1 * lift;
-                return (position, heading, -0.8 * lift * (1.0 - 2.0 * phase));
+                return (position, heading, -self.pitch * lift * (1.0 - 2.0 * phase));
             }
             begun += SWING + STAND;
         }

@@ -48,6 +48,11 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
         .undecided()
         .live(),
         Setting::switch("causal", "Look only backwards, as firmware must", false),
+        Setting::switch(
+            "magnetometer",
+            "Correct the heading where the foot stands twice in the same magnetic field, if the log has one; not causally",
+            true,
+        ),
         Setting::number("rate", "Average the log down to this rate first", "Hz", rates, rates[1])
             .undecided(),
         Setting::some_of("scalar", "Number type of the tracker", &SCALARS, &ScalarKind::F32).live(),
@@ -65,11 +70,21 @@ pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
         "factor" if !scaled.contains(&detector) => {
             Some(Idle::foreign("is for --detector variance, angular-rate or shoe"))
         }
+        "magnetometer" if !turns_back(settings) => {
+            Some(Idle::foreign("is for --tracker ekf and --detector adaptive, without --causal"))
+        }
         "causal" if detector != DetectorName::Adaptive => {
             Some(Idle::implied("is what every detector but adaptive does anyway"))
         }
         _ => None,
     }
+}
+
+/// Whether a magnetometer may correct the heading: that of the other trackers does not drift at a constant rate.
+fn turns_back(settings: &Settings) -> bool {
+    settings.chosen::<TrackerKind>("tracker") == TrackerKind::Ekf
+        && settings.chosen::<DetectorName>("detector") == DetectorName::Adaptive
+        && !settings.is_on("causal")
 }
 
 /// Everything that can be chosen about a tracker.
@@ -86,6 +101,8 @@ pub struct Options {
     pub contact_height_m: Option<f64>,
     /// Look only backwards, as firmware must.
     pub causal: bool,
+    /// Correct the heading by a magnetometer, if there is one.
+    pub magnetometer: bool,
     /// Number type of the estimator.
     pub scalar: ScalarKind,
 }
@@ -139,6 +156,7 @@ impl Options {
             sensor: settings.chosen("sensor"),
             contact_height_m: settings.number("contact-height"),
             causal: settings.is_on("causal"),
+            magnetometer: settings.is_on("magnetometer") && turns_back(settings),
             scalar: settings.chosen("scalar"),
         }
     }
@@ -215,6 +233,7 @@ impl Default for Options {
             sensor: SensorClass::default(),
             contact_height_m: None,
             causal: false,
+            magnetometer: true,
             scalar: ScalarKind::F32,
         }
     }

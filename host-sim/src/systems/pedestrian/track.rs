@@ -1,5 +1,7 @@
 //! Feeds a walk to the tracker, in the number type, mode and shape that were chosen.
 
+mod evidence;
+mod heading;
 pub(super) mod sensor;
 pub mod trace;
 
@@ -50,13 +52,17 @@ impl Track {
         let tracked = averaged.as_ref().unwrap_or(recording);
         let (samples, options) =
             (&tracked.log.samples, options.with_sensor(|| sensor::class_of(tracked)));
+        let rate = options.magnetometer.then(|| heading::rate(&tracked.log, &options)).flatten();
         let tracked = match detail {
             Detail::Result => {
                 walk(samples, &options).map(|walk| Trace { walk, ..Trace::default() })
             }
             Detail::Every => trace::trace(samples, &options),
         };
-        let trace = tracked.map_err(|error| refused(recording, &error))?;
+        let mut trace = tracked.map_err(|error| refused(recording, &error))?;
+        if let Some(rate) = rate {
+            trace.walk.turn_back(rate);
+        }
         Ok(Self { averaged, trace })
     }
 
@@ -82,6 +88,8 @@ pub struct Walk {
     pub path_length_m: f64,
     /// Horizontal distance from start to end, m.
     pub closure_m: f64,
+    /// The rate at which the heading drifted, rad/s, as a magnetometer showed it and as the path was corrected by.
+    pub heading_rate: Option<f64>,
     /// What is suspicious about the sensor or the walk.
     pub warnings: Vec<String>,
     /// The class of sensor that it was tracked for.

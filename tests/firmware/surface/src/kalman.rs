@@ -27,6 +27,7 @@ fn covariances<T: Scalar, const N: usize>() {
     keep(Covariance::is_finite(&covariance));
     Covariance::add(any(&mut covariance), &Covariance::from_variances(&numbers()));
     Covariance::scale(any(&mut covariance), number());
+    Covariance::add_outer(any(&mut covariance), &matrix());
     Covariance::add_variance::<1>(any(&mut covariance), number());
     Covariance::shear::<0, 1>(any(&mut covariance), number());
     Covariance::reset_component::<1>(any(&mut covariance), number());

@@ -7,8 +7,8 @@ use kestirim_pedestrian::detector::{
     Adaptive, AngularRateEnergy, FixedShoe, Magnitude, Motion, MovingVariance, Shoe, StanceDetector,
 };
 use kestirim_pedestrian::{
-    Alignment, Config, Ekf, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty,
-    SensorClass, Step, Stride, Tracker, ZeroVelocity,
+    Alignment, Config, Ekf, Estimate, ImuSample, Lite, MagneticHeading, MissedTurn, Navigator,
+    OfflineTracker, PathUncertainty, SensorClass, Step, Stride, Tracker, ZeroVelocity,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -57,6 +57,8 @@ fn navigates<T: Scalar, N: Navigator<T> + Debug>() {
         Navigator::propagate(any(&mut navigator), &step, yes_or_no());
         let (velocity, landing) = (matrix(), yes_or_no());
         let zero = any(ZeroVelocity { velocity, statistic: number(), interval: number(), landing });
+        let missed = any(MissedTurn { turn: matrix(), pushed: matrix() });
+        Navigator::miss(any(&mut navigator), &missed);
         Navigator::zero_velocity(any(&mut navigator), &zero);
         let sensor = one_of([SensorClass::Industrial, SensorClass::Consumer]);
         Navigator::restart(any(&mut navigator), sensor, any(Orientation::identity()));
@@ -115,9 +117,24 @@ fn doubts<T: Scalar>() {
     keep(PathUncertainty::standard_deviation(&uncertainty));
 }
 
+fn turns_back<T: Scalar>() {
+    let mut heading = any(<MagneticHeading<T> as Default>::default());
+    for _ in 0..rounds() {
+        let (position, velocity) = (matrix(), matrix());
+        let orientation = any(Orientation::identity());
+        let (time_us, stance, stride) = (whole(), yes_or_no(), None);
+        let estimate = any(Estimate { time_us, position, velocity, orientation, stance, stride });
+        let field = matrix();
+        MagneticHeading::update(any(&mut heading), &sample(), &estimate, Some(&field), number());
+    }
+    MagneticHeading::finish(any(&mut heading), number());
+    keep(MagneticHeading::rate(&heading));
+}
+
 fn all_of<T: Scalar>() {
     call_each([
         doubts::<T>,
+        turns_back::<T>,
         detectors::<T>,
         navigators::<T>,
         tracks::<T, Lite<T>>,

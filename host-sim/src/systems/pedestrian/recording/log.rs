@@ -13,6 +13,14 @@ use crate::table::{FARTHEST_POSITION, refused};
 use crate::text;
 
 const TRUTH_COLUMNS: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
+/// Names of a magnetometer's columns. Any unit will do: only its directions and ratios are used.
+const FIELD_COLUMNS: [[&str; 3]; 5] = [
+    ["mx_G", "my_G", "mz_G"],
+    ["mx_uT", "my_uT", "mz_uT"],
+    ["mx", "my", "mz"],
+    ["magx", "magy", "magz"],
+    ["mag_x", "mag_y", "mag_z"],
+];
 
 /// A recorded walk.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,6 +29,9 @@ pub struct Log {
     pub samples: Vec<Sample>,
     /// Where the sensor was at each sample, if the log says so.
     pub truth: Option<Vec<TrackPoint>>,
+    /// The magnetic field at each sample (body, in the log's unit, not a number where it was not measured), if the log has
+    /// one.
+    pub field: Option<Vec<[f64; 3]>>,
     /// What was concluded about columns and units, and from what.
     pub import: Vec<String>,
     /// What is suspicious but readable.
@@ -61,9 +72,19 @@ pub fn parse(path: &Path, bytes: &[u8], options: &Options) -> Result<Log, Error>
     let truth = truth(path, &read)?;
     Ok(Log {
         truth,
+        field: field(&read),
         import: read.conclusions.iter().map(Conclusion::to_string).collect(),
         warnings: read.damage.sentences(),
         samples: read.samples,
+    })
+}
+
+/// The magnetic field, by the columns that say so.
+fn field(log: &Inertial) -> Option<Vec<[f64; 3]>> {
+    FIELD_COLUMNS.iter().find_map(|names| {
+        let [x, y, z] = names.map(|name| log.column(name));
+        let (x, y, z) = (x?, y?, z?);
+        Some(x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect())
     })
 }
 

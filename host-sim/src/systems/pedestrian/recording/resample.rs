@@ -34,8 +34,9 @@ pub fn average_down(log: &Log, rate_hz: f64) -> Result<Log, Error> {
     let blocks = log.samples.chunk_by(|a, b| block(a) == block(b));
     let samples: Vec<_> = blocks.map(average).collect();
     let truth = log.truth.as_ref().map(|truth| at_times_of(&samples, truth));
+    let field = log.field.as_ref().map(|field| average_field(log, field, block));
     let (import, warnings) = (log.import.clone(), log.warnings.clone());
-    Ok(Log { samples, truth, import, warnings })
+    Ok(Log { samples, truth, field, import, warnings })
 }
 
 /// The rate of a log, Hz; none of fewer than two samples.
@@ -62,6 +63,20 @@ fn average(block: &[Sample]) -> Sample {
         specific_force: mean(|sample| sample.specific_force),
         angular_rate: mean(|sample| sample.angular_rate),
     }
+}
+
+/// The field's mean in each block: of the samples that have one.
+fn average_field(log: &Log, field: &[[f64; 3]], block: impl Fn(&Sample) -> u64) -> Vec<[f64; 3]> {
+    let pairs: Vec<_> = log.samples.iter().zip(field).collect();
+    let blocks = pairs.chunk_by(|(a, _), (b, _)| block(a) == block(b));
+    let mean = |part: &[(&Sample, &[f64; 3])]| {
+        let known = part.iter().filter(|(_, field)| field.iter().all(|axis| axis.is_finite()));
+        let known: Vec<_> = known.collect();
+        std::array::from_fn(|i| {
+            known.iter().map(|(_, field)| field[i]).sum::<f64>() / known.len() as f64
+        })
+    };
+    blocks.map(mean).collect()
 }
 
 fn at_times_of(samples: &[Sample], truth: &[TrackPoint]) -> Vec<TrackPoint> {

@@ -1,0 +1,257 @@
+use crate::ImuSample;
+use kestirim_attitude::Orientation;
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+
+/// What an axis of a gyroscope did not see, because the body turned faster about it than it can measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MissedTurn<T: Scalar> {
+    /// The most likely rotation, a vector in body axes as they stand now (rad).
+    pub turn: SVector<T, 3>,
+    /// What the specific force has changed the velocity by since (m/s, earth, gravity not taken off).
+    pub pushed: SVector<T, 3>,
+}
+
+/// A step as it was integrated.
+pub(crate) struct Turned<'a, T: Scalar> {
+    /// As it was measured (rad/s).
+    pub(crate) rate: &'a SVector<T, 3>,
+    /// s.
+    pub(crate) interval: T,
+    /// What the specific force changed the velocity by (m/s, earth).
+    pub(crate) pushed: SVector<T, 3>,
+}
+
+/// Finds the ends of a gyroscope's range in the stream, and what was beyond them.
+///
+/// A calibrated unit that clips does not repeat a value: bias, scale and the other axes move its plateau by some per
+/// mille, and each axis has two ends of its own. What tells a plateau from the top of a swing is its corners: going on
+/// with the slopes by which it is entered and left, the curve would have risen far above it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clipping<T: Scalar> {
+    axes: [Axis<T>; 3],
+    /// The rates before the newest (rad/s).
+    before: [SVector<T, 3>; 2],
+    /// A plateau has begun and not been judged yet.
+    is_open: bool,
+}
+
+/// The two ends of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Axis<T: Scalar> {
+    positive: End<T>,
+    negative: End<T>,
+    run: Run<T>,
+}
+
+/// One end of an axis.
+#[derive(Clone, Copy, Debug)]
+struct End<T> {
+    /// The largest rate that two samples in a row have reached (rad/s).
+    level: T,
+    /// That this level is one.
+    evidence: u8,
+}
+
+/// A stretch of samples at an end.
+#[derive(Clone, Copy, Debug)]
+struct Run<T: Scalar> {
+    /// Samples; zero between two stretches.
+    count: u8,
+    /// At the negative end.
+    is_negative: bool,
+    /// How long (s).
+    duration: T,
+    /// By how much the rate grew from sample to sample before it (rad/s).
+    rising: T,
+    /// How the body has turned since its middle, as far as that was measured (rad).
+    turned: SVector<T, 3>,
+    /// What the specific force has changed the velocity by since then (m/s, earth).
+    pushed: SVector<T, 3>,
+    /// The stretch is over: with the next sample it is known how the rate falls.
+    is_over: bool,
+}
+
+impl<T: Scalar> Run<T> {
+    fn none() -> Self {
+        let (zero, turned, pushed) = (T::ZERO, SVector::zeros(), SVector::zeros());
+        let (count, is_negative, is_over) = (0, false, false);
+        Self { count, is_negative, duration: zero, rising: zero, turned, pushed, is_over }
+    }
+
+    /// Moves on by a step, of which this share comes after the middle.
+    fn move_on(&mut self, step: &Turned<'_, T>, share: T) {
+        self.turned += step.rate * (step.interval * share);
+        self.pushed += step.pushed * share;
+    }
+}
+
+impl<T: Scalar> End<T> {
+    /// Share of the largest rate from which on a sample may be clipped.
+    const NEAR: f64 = 0.98;
+    /// A level that grows by more was none.
+    const GROWTH: f64 = 1.02;
+    /// A plateau that goes on as it is entered and left would rise by more than this share of its level, where the top of
+    /// a parabola rises by 0.02 and a flatter one by 0.04.
+    const CORNERS: f64 = 0.05;
+    /// One that rises by more than this has sharp corners: it weighs twice …
+    const SHARP: f64 = 0.1;
+    /// … if it is brief (s), for a foot may turn evenly for a while, …
+    const BRIEF: f64 = 0.06;
+    /// … and if samples come more often (s): else an impact looks the same.
+    const RESOLVED: f64 = 0.0075;
+    /// Evidence at the same level that is no chance: strides differ.
+    const ENOUGH: u8 = 4;
+    /// A swing falls at most so many times as steeply as it rises, and the other way round: what is steeper is an impact.
+    const STEEPER: f64 = 2.0;
+    /// A foot's swing bends within this time (s): a longer plateau would be no higher.
+    const BEND: f64 = 0.08;
+    /// No foot turns so fast for so long (s): the sensor is stuck.
+    const LONGEST: f64 = 0.3;
+
+    fn new() -> Self {
+        Self { level: T::from_f64(ImuSample::<T>::LARGE_RATE), evidence: 0 }
+    }
+
+    fn is_clipped(&self) -> bool {
+        self.evidence >= Self::ENOUGH
+    }
+
+    /// Keeps an end that is known: the same plateaus come once more.
+    fn rewound(self) -> Self {
+        Self { evidence: if self.is_clipped() { self.evidence } else { 0 }, ..self }
+    }
+
+    fn is_near(&self, rate: T) -> bool {
+        rate >= self.level * T::from_f64(Self::NEAR)
+    }
+
+    /// Two samples in a row have reached this rate. Whether the level was none.
+    fn rise(&mut self, sustained: T) -> bool {
+        let was_none = sustained > self.level * T::from_f64(Self::GROWTH);
+        if was_none {
+            self.evidence = 0;
+        }
+        self.level = self.level.max(sustained);
+        was_none
+    }
+
+    /// What a stretch weighs that would have risen by eight times so much (rad/s), had it gone on.
+    fn weight(&self, run: &Run<T>, rise: T) -> u8 {
+        let corners = rise * T::from_f64(1.0 / 8.0);
+        let interval = run.duration / T::from_micro(i32::from(run.count.max(1)) * 1_000_000);
+        let brief = run.duration < T::from_f64(Self::BRIEF);
+        let resolved = interval < T::from_f64(Self::RESOLVED);
+        if corners > self.level * T::from_f64(Self::SHARP) && run.count > 1 && brief && resolved {
+            2
+        } else {
+            u8::from(corners > self.level * T::from_f64(Self::CORNERS) && run.count > 2)
+        }
+    }
+
+    /// Judges a stretch that is over, after which the rate fell by so much from sample to sample; the angle missed in it
+    /// (rad).
+    fn judge(&mut self, run: &Run<T>, falling: T) -> Option<T> {
+        if run.duration > T::from_f64(Self::LONGEST) {
+            return None;
+        }
+        // The cubic that begins and ends with these slopes rises by an eighth of their sum times the duration, and
+        // encloses a twelfth of the same times the duration.
+        let steeper = T::from_f64(Self::STEEPER);
+        let slopes = run.rising.min(falling * steeper) + falling.min(run.rising * steeper);
+        let rise = slopes * T::from_micro(i32::from(run.count) * 1_000_000);
+        self.evidence = self.evidence.saturating_add(self.weight(run, rise));
+        let bend = run.duration.min(T::from_f64(Self::BEND));
+        self.is_clipped().then(|| rise * bend * T::from_f64(1.0 / 12.0))
+    }
+}
+
+impl<T: Scalar> Axis<T> {
+    fn new() -> Self {
+        Self { positive: End::new(), negative: End::new(), run: Run::none() }
+    }
+
+    /// Takes the newest rate and the two before it; a stretch that is over, and the angle missed in it (rad).
+    fn update(&mut self, rate: T, before: [T; 2], step: &Turned<'_, T>) -> Option<(Run<T>, T)> {
+        let is_negative = if self.run.count > 0 { self.run.is_negative } else { rate < T::ZERO };
+        let (end, sign) =
+            if is_negative { (&mut self.negative, -T::ONE) } else { (&mut self.positive, T::ONE) };
+        let (rate, before) = (rate * sign, before.map(|rate| rate * sign));
+        if self.run.is_over {
+            self.run.move_on(step, T::ONE);
+            let run = core::mem::replace(&mut self.run, Run::none());
+            let angle = end.judge(&run, (before[0] - rate).max(T::ZERO))?;
+            return Some((run, angle * sign));
+        }
+        if end.is_near(rate) {
+            if end.rise(rate.min(before[0])) {
+                self.run = Run::none();
+            }
+            if self.run.count == 0 {
+                self.run.is_negative = is_negative;
+                self.run.rising = (before[0] - before[1]).max(T::ZERO);
+            }
+            self.run.count = self.run.count.saturating_add(1);
+            self.run.duration += step.interval;
+            self.run.move_on(step, T::HALF);
+        } else if self.run.count > 0 {
+            self.run.is_over = true;
+            self.run.move_on(step, T::ONE);
+        }
+        None
+    }
+}
+
+impl<T: Scalar> Clipping<T> {
+    pub(crate) fn new() -> Self {
+        Self { axes: [Axis::new(); 3], before: [SVector::zeros(); 2], is_open: false }
+    }
+
+    /// Keeps the ends of the range and forgets the stream, to begin it again.
+    pub(crate) fn rewound(mut self) -> Self {
+        self.before = [SVector::zeros(); 2];
+        self.forget();
+        for axis in &mut self.axes {
+            axis.positive = axis.positive.rewound();
+            axis.negative = axis.negative.rewound();
+        }
+        self
+    }
+
+    /// Samples are missing: what was begun is not known.
+    pub(crate) fn forget(&mut self) {
+        for axis in &mut self.axes {
+            axis.run = Run::none();
+        }
+        self.is_open = false;
+    }
+
+    /// Whether a step with a `large` rate or without has to be shown.
+    #[inline]
+    pub(crate) fn concerns(&self, large: bool) -> bool {
+        large || self.is_open
+    }
+
+    /// Keeps a rate (rad/s), shown or not.
+    #[inline]
+    pub(crate) fn remember(&mut self, rate: &SVector<T, 3>) {
+        self.before = [*rate, self.before[0]];
+    }
+
+    /// Takes a step and tells `miss` what was missed in a stretch that is now over.
+    pub(crate) fn show(&mut self, step: &Turned<'_, T>, mut miss: impl FnMut(&MissedTurn<T>)) {
+        let [before, earlier] = [*self.before[0].as_array(), *self.before[1].as_array()];
+        self.is_open = false;
+        for (index, axis) in self.axes.iter_mut().enumerate() {
+            let (rate, before) = (step.rate.as_array()[index], [before[index], earlier[index]]);
+            if let Some((run, angle)) = axis.update(rate, before, step) {
+                // It was missed about the axis as that stood in the middle of the stretch.
+                let mut about = SVector::<T, 3>::zeros();
+                about.as_array_mut()[index] = angle;
+                let since = Orientation::identity().turned_in_body(&run.turned);
+                miss(&MissedTurn { turn: since.to_body(&about), pushed: run.pushed });
+            }
+            self.is_open |= axis.run.count > 0;
+        }
+    }
+}

@@ -1,0 +1,232 @@
+use crate::{Estimate, ImuSample};
+use kestirim_attitude::Orientation;
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+
+/// The rate at which a walk's heading drifts, from a magnetometer on the same foot, where one stands twice.
+///
+/// Indoors the field's direction differs by tens of degrees from one stride to the next, so a compass is no heading there.
+/// But where a foot comes back to where it has stood, the field is the same again, whatever iron distorts it: what the two
+/// stands differ by is the error of the heading. Stands are compared
+/// - at the same place, as far as the path tells,
+/// - with the sensor in the same attitude, so that its own iron, hard and soft, is the same in both,
+/// - and with the same strength and dip of the field: else the place is another.
+///
+/// A heading error no larger than two stands at the same place differ by is none. Who corrects a recorded path turns each
+/// step of it back by [`MagneticHeading::rate`] times the time since the start.
+#[derive(Clone, Copy, Debug)]
+pub struct MagneticHeading<T: Scalar> {
+    stands: [Option<Stand<T>>; CAPACITY],
+    now: Option<Stand<T>>,
+    /// Σ Δt² of all pairs (min²).
+    times: T,
+    /// Σ Δt·Δψ of all pairs (min·rad).
+    turned: T,
+}
+
+/// Stands that are remembered.
+const CAPACITY: usize = 8;
+
+/// A stand of the foot.
+#[derive(Clone, Copy, Debug)]
+struct Stand<T: Scalar> {
+    begun_us: u64,
+    ended_us: u64,
+    /// Where (m, earth).
+    position: SVector<T, 3>,
+    /// Where up was in the sensor's axes.
+    up: SVector<T, 3>,
+    /// The mean of the field, in the sensor's axes and in the earth's.
+    body: SVector<T, 3>,
+    earth: SVector<T, 3>,
+    /// The mean of the specific force (m/s², earth): where it points is up, whatever tilt the tracker has.
+    force: SVector<T, 3>,
+    /// Samples of the field: the mean is of so many.
+    count: u16,
+}
+
+impl<T: Scalar> Stand<T> {
+    /// A stance of walking is over sooner (µs).
+    const SHORTEST_US: u64 = 1_000_000;
+    /// Largest difference of the field's strength, relative to it.
+    const STRENGTH: f64 = 0.02;
+    /// Largest difference of the horizontal share of the field, 2° of dip.
+    const DIP: f64 = 0.03;
+    /// Smallest cosine between the attitudes, 20°.
+    const ATTITUDE: f64 = 0.94;
+    /// The least horizontal share of a field that tells a heading.
+    const HORIZONTAL: f64 = 0.1;
+
+    /// With the field levelled by the force: at 70° of dip a tilt turns the field by three times itself.
+    fn levelled(mut self) -> Option<Self> {
+        self.earth = Orientation::from_specific_force(&self.force)?.to_earth(&self.earth);
+        Some(self)
+    }
+
+    fn horizontal(&self) -> T {
+        let [x, y, _] = *self.earth.as_array();
+        x.hypot(y)
+    }
+
+    fn strength(&self) -> T {
+        self.horizontal().hypot(self.earth.as_array()[2])
+    }
+
+    /// The heading error since another stand, if this is the same place again (rad).
+    fn turned_since(&self, other: &Self, deviation: T) -> Option<T> {
+        let ([x, y, _], [ox, oy, _]) = (*self.position.as_array(), *other.position.as_array());
+        let [strength, before] = [self.strength(), other.strength()];
+        let [share, share_before] = [self.horizontal() / strength, other.horizontal() / before];
+        let cosine = |a: &SVector<T, 3>, b: &SVector<T, 3>| T::dot(a.as_array(), b.as_array());
+        let attitude = T::from_f64(Self::ATTITUDE);
+        let is_same = (x - ox).hypot(y - oy) < deviation * T::from_f64(3.0)
+            && (strength - before).abs() < before * T::from_f64(Self::STRENGTH)
+            && (share - share_before).abs() < T::from_f64(Self::DIP)
+            && share > T::from_f64(Self::HORIZONTAL)
+            && cosine(&self.up, &other.up) > attitude
+            && cosine(&self.body, &other.body) > attitude * strength * before;
+        let ([mx, my, _], [ox, oy, _]) = (*self.earth.as_array(), *other.earth.as_array());
+        is_same.then(|| (ox * my - oy * mx).atan2(ox * mx + oy * my))
+    }
+}
+
+impl<T: Scalar> Default for MagneticHeading<T> {
+    fn default() -> Self {
+        Self { stands: [None; CAPACITY], now: None, times: T::ZERO, turned: T::ZERO }
+    }
+}
+
+impl<T: Scalar> MagneticHeading<T> {
+    /// Standard deviation of what two stands at the same place differ by (rad): half a degree, on recorded walks.
+    const REPEATABILITY: f64 = 0.0087;
+
+    /// Takes a sample, the estimate that was made of it, the field at its time (body, in any unit in which its square is a
+    /// number) if it was measured, and the standard deviation of the position (m,
+    /// [`PathUncertainty`](crate::PathUncertainty)).
+    pub fn update(
+        &mut self,
+        sample: &ImuSample<T>,
+        estimate: &Estimate<T>,
+        field: Option<&SVector<T, 3>>,
+        deviation: T,
+    ) {
+        if !estimate.stance {
+            self.finish(deviation);
+            return;
+        }
+        let stand = self.now.get_or_insert_with(|| Stand {
+            begun_us: estimate.time_us,
+            ended_us: estimate.time_us,
+            position: estimate.position,
+            up: estimate.orientation.up_in_body(),
+            body: SVector::zeros(),
+            earth: SVector::zeros(),
+            force: SVector::zeros(),
+            count: 0,
+        });
+        stand.ended_us = estimate.time_us;
+        let is_number =
+            |field: &&SVector<T, 3>| field.iter().all(|component| component.is_finite());
+        if let Some(field) = field.filter(is_number) {
+            stand.count = stand.count.saturating_add(1);
+            let share = T::ONE / T::from_micro(i32::from(stand.count.min(2000)) * 1_000_000);
+            let earth = estimate.orientation.to_earth(field);
+            let force = estimate.orientation.to_earth(&sample.specific_force);
+            stand.body += (field - stand.body) * share;
+            stand.earth += (earth - stand.earth) * share;
+            stand.force += (force - stand.force) * share;
+        }
+    }
+
+    /// Ends the stand that the foot is in.
+    pub fn finish(&mut self, deviation: T) {
+        let Some(stand) = self.now.take().and_then(Stand::levelled) else { return };
+        let lasted_us = stand.ended_us.saturating_sub(stand.begun_us);
+        if stand.count == 0 || lasted_us < Stand::<T>::SHORTEST_US {
+            return;
+        }
+        for before in self.stands.iter().flatten() {
+            if let Some(turned) = stand.turned_since(before, deviation) {
+                let minutes = minutes::<T>(stand.begun_us.saturating_sub(before.ended_us));
+                self.times += minutes * minutes;
+                self.turned += minutes * turned;
+            }
+        }
+        if let Some(free) = self.stands.iter_mut().find(|stand| stand.is_none()) {
+            *free = Some(stand);
+        }
+    }
+
+    /// The rate at which the heading drifts (rad/s, anticlockwise from above), where it shows.
+    pub fn rate(&self) -> Option<T> {
+        let least = T::from_f64(2.0 * Self::REPEATABILITY) * self.times.sqrt();
+        (self.times > T::ZERO && self.turned.abs() > least)
+            .then(|| self.turned / self.times * T::from_f64(1.0 / 60.0))
+    }
+}
+
+/// Microseconds in minutes.
+fn minutes<T: Scalar>(us: u64) -> T {
+    T::from_micro((us / 60).min(i32::MAX as u64) as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kestirim_attitude::Orientation;
+    use kestirim_scalar::Q12_20;
+    use nalgebra::Vector3;
+
+    /// Two stands of two seconds, a minute apart, with this heading error, distance and field of the second.
+    fn rate<T: Scalar>(error: f64, distance: f64, field: Vector3<f64>) -> Option<f64> {
+        // The sensor's own iron, the same in both.
+        let iron = Vector3::new(0.05, -0.02, 0.03);
+        let mut heading = MagneticHeading::<T>::default();
+        let first = Vector3::new(0.15, 0.05, -0.45);
+        for (begin, error, distance, field) in [(0, 0.0, 0.0, first), (60, error, distance, field)]
+        {
+            for k in 0..200_u64 {
+                let believed =
+                    Orientation::identity().turned_in_earth(&Vector3::new(0.0, 0.0, error));
+                let estimate = Estimate {
+                    time_us: begin * 1_000_000 + k * 10_000,
+                    position: SVector::from([T::from_f64(distance), T::ZERO, T::ZERO]),
+                    velocity: SVector::zeros(),
+                    orientation: Orientation::from_quaternion(
+                        believed.quaternion().map(T::from_f64),
+                    )
+                    .expect("an orientation"),
+                    stance: true,
+                    stride: None,
+                };
+                let measured = (field + iron).map(T::from_f64);
+                let sample = ImuSample {
+                    time_us: estimate.time_us,
+                    specific_force: Vector3::new(0.0, 0.0, 9.8).map(T::from_f64),
+                    angular_rate: SVector::zeros(),
+                };
+                heading.update(&sample, &estimate, Some(&measured), T::from_f64(0.2));
+            }
+            heading.finish(T::from_f64(0.2));
+        }
+        heading.rate().map(T::to_f64)
+    }
+
+    #[test]
+    fn a_foot_that_comes_back_shows_the_drift_of_its_heading() {
+        let field = Vector3::new(0.15, 0.05, -0.45);
+        for rate in [rate::<f64>(0.05, 0.3, field), rate::<Q12_20>(0.05, 0.3, field)] {
+            let rate = rate.expect("a rate");
+            assert!((rate * 58.0 / 0.05 - 1.0).abs() < 0.05, "{rate}");
+        }
+    }
+
+    #[test]
+    fn what_may_be_another_place_shows_nothing() {
+        let field = Vector3::new(0.15, 0.05, -0.45);
+        assert_eq!(rate::<f64>(0.05, 0.7, field), None, "too far away");
+        assert_eq!(rate::<f64>(0.05, 0.3, field * 1.1), None, "a stronger field");
+        assert_eq!(rate::<f64>(0.05, 0.3, Vector3::new(0.2, 0.05, -0.43)), None, "another dip");
+        assert_eq!(rate::<f64>(0.01, 0.3, field), None, "no more than two stands differ by");
+    }
+}
