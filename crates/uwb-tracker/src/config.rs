@@ -1,6 +1,8 @@
+use crate::Anchor;
 use kestirim_adaptive_kalman::Learning;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{Huber, Room};
+use nalgebra::SVector;
 
 /// Settings of a tracker: its radio, and what carries the tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +33,34 @@ pub struct Config<T> {
     pub room: Option<Room<T>>,
 }
 
+/// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to the farthest.
+///
+/// A radio's excess grows with the distance, and so does what it leaves uncertain: the constants that are lengths are
+/// those of an office, and grow with this.
+pub(crate) fn size<T: Scalar>(anchors: &[Anchor<T>]) -> T {
+    let share = T::from_micro(anchors.len().clamp(1, 2000) as i32 * 1_000_000).recip();
+    let mut centre = SVector::<T, 3>::zeros();
+    for anchor in anchors {
+        centre += anchor.position * share;
+    }
+    let mut reach = T::ZERO;
+    for anchor in anchors {
+        reach = reach.max(T::norm((anchor.position - centre).as_array()));
+    }
+    // Of anchors that are refused anyway it may be anything.
+    (reach * T::from_f64(1.0 / 6.0)).clamp(T::ONE, T::from_f64(30.0))
+}
+
 impl<T: Scalar> Config<T> {
+    /// The same for anchors of this [`size`].
+    pub(crate) fn scaled(self, size: T) -> Self {
+        Self {
+            range_sigma: self.range_sigma * size,
+            common_bias_sigma: self.common_bias_sigma * size,
+            ..self
+        }
+    }
+
     /// For anchors whose biases are known: a variance may fall to (5 cm)².
     #[inline]
     pub fn calibrated(height: T) -> Self {

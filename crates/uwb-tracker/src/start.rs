@@ -23,13 +23,17 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     config: &Config<T>,
     links: &[Link<T>],
     time_us: u64,
+    fresh_us: u64,
     patience: bool,
 ) -> Option<Gaussian<T, N>> {
     let variance = config.range_sigma * config.range_sigma;
     let mut observations = Vec::<Observation<T>, A>::new();
     for link in links {
-        if let Some(range) = link.fresh(time_us) {
+        if let Some((range, age_us)) = link.fresh(time_us, fresh_us) {
             let anchor = link.anchor.position;
+            // The tag may have moved since.
+            let moved = T::from_micro(age_us.min(fresh_us) as i32) * T::from_f64(VELOCITY_SIGMA);
+            let variance = variance + moved * moved;
             observations.push(Observation { anchor, range, variance }).ok()?;
         }
     }

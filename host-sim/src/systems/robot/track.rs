@@ -4,6 +4,7 @@ mod each_epoch;
 pub mod follow;
 pub mod published;
 mod recursive;
+mod wheeled;
 
 use self::follow::{Follow, Reception};
 use super::height::FoundHeight;
