@@ -56,7 +56,9 @@ impl<T: Scalar> Config<T> {
     pub(crate) fn scaled(self, size: T) -> Self {
         Self {
             range_sigma: self.range_sigma * size,
+            learning: self.learning.map(|learning| learning.raised(size)),
             common_bias_sigma: self.common_bias_sigma * size,
+            bias_sigma: self.bias_sigma * size,
             ..self
         }
     }

@@ -34,7 +34,8 @@ pub struct Health<T> {
     pub rejected: u32,
     /// Positions begun anew after the first.
     pub restarts: u16,
-    /// Anchors heard within the last second, or two rounds of the anchors where those take longer.
+    /// Anchors heard within the last second, or two rounds of the anchors where those take longer, but for those that have
+    /// long measured too long.
     pub heard: u8,
     /// Dilution of precision of those anchors; none if they do not determine a position.
     pub dilution: Option<T>,
@@ -49,6 +50,9 @@ pub struct Health<T> {
 
 /// After so many tries to begin, ranges that contradict each other are accepted, too.
 const MOST_TRIES: u8 = 20;
+
+/// Mean NIS of ranges up to which they agree.
+const NIS_OF_AGREEMENT: f64 = 4.0;
 
 /// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
@@ -75,11 +79,21 @@ impl<T: Scalar> Counters<T> {
         self.distrust = self.distrust.saturating_sub(1);
     }
 
-    /// Counts a range that was left out; whether half of them are lately, of so many anchors `heard`: then the position
-    /// is to be given up.
+    /// Whether at least one anchor more than the `coordinates` agree beside this one, of so many `heard`.
     #[inline]
-    pub(crate) fn reject(&mut self, heard: u8) -> bool {
+    pub(crate) fn others_agree(&self, link: &Link<T>, heard: u8, coordinates: usize) -> bool {
+        let others = usize::from(heard).saturating_sub(usize::from(!link.is_blocked));
+        self.nis < T::from_f64(NIS_OF_AGREEMENT) && others > coordinates
+    }
+
+    /// Counts a range that was left out; whether half of them are lately, of so many anchors `heard`: then the position
+    /// is to be given up. That an anchor is blocked is known, and no reason.
+    #[inline]
+    pub(crate) fn reject(&mut self, heard: u8, is_blocked: bool) -> bool {
         self.rejected = self.rejected.wrapping_add(1);
+        if is_blocked {
+            return false;
+        }
         self.distrust = self.distrust.saturating_add(2);
         self.distrust > 2 * u16::from(heard)
     }
@@ -102,11 +116,12 @@ impl<T: Scalar> Counters<T> {
     }
 }
 
-/// How many anchors were heard lately.
+/// How many anchors were heard lately of which nothing is in the way.
 #[inline]
 pub(crate) fn count_heard<T: Scalar>(links: &[Link<T>], pace: &Pace, time_us: u64) -> u8 {
     let fresh_us = pace.fresh_us();
-    links.iter().filter(|link| link.fresh(time_us, fresh_us).is_some()).count() as u8
+    let counts = |link: &&Link<T>| !link.is_blocked && link.fresh(time_us, fresh_us).is_some();
+    links.iter().filter(counts).count() as u8
 }
 
 /// Health of a tracker that has this position, of this variance (the sum of its coordinates', m²).
@@ -118,7 +133,9 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     still: bool,
 ) -> Health<T> {
     let heard = count_heard(links, pace, time_us);
-    let fresh = links.iter().filter(|link| link.fresh(time_us, pace.fresh_us()).is_some());
+    let fresh_us = pace.fresh_us();
+    let fresh =
+        links.iter().filter(|link| !link.is_blocked && link.fresh(time_us, fresh_us).is_some());
     let dilution = position.and_then(|(position, _)| {
         let directions = fresh
             .map(|link| expected_range(&position, config.height, &link.anchor.position).direction);

@@ -92,6 +92,8 @@ pub(crate) struct Link<T: Scalar> {
     next_us: u64,
     /// The last range, freed of its bias, m.
     range: T,
+    /// Whether it has measured too long for a while, when others agreed: something stands in its way.
+    pub(crate) is_blocked: bool,
 }
 
 impl<T: Scalar> Link<T> {
@@ -105,6 +107,7 @@ impl<T: Scalar> Link<T> {
             gate: Gate::new(config.gate.unwrap_or(T::MAX), Self::PATIENCE),
             next_us: 0,
             range: T::ZERO,
+            is_blocked: false,
         }
     }
 

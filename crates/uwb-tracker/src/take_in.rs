@@ -5,7 +5,8 @@ use crate::{Config, Error, Outcome};
 use kestirim_kalman::{Gaussian, Innovation, Observation, Verdict, Weighed};
 use kestirim_scalar::Scalar;
 
-/// Takes a range in, or leaves it out. Its anchor's noise is learnt where there are more ranges than unknowns
+/// Takes a range in, or leaves it out. Ranges that are too long again and again are those of an anchor that is blocked
+/// where the others agree, and else of an estimate that is wrong. The anchor's noise is learnt where there are more ranges than unknowns
 /// (`redundant`): a range that the estimate has to follow fits whatever it is worth.
 ///
 /// # Errors
@@ -17,6 +18,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     observation: &impl Observation<T, N>,
     config: &Config<T>,
     redundant: bool,
+    others_agree: bool,
 ) -> Result<(Outcome, Innovation<T>), Error> {
     let weighed = estimate.weigh_observation(observation, link.noise.variance())?;
     let seen = weighed.report();
@@ -25,6 +27,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     let believed = gate.gamma() * weighed.variance();
     let (outcome, square) = match verdict {
         Verdict::Admit => {
+            link.is_blocked = false;
             let square = weighed.innovation() * weighed.innovation();
             if let Some(noise) = weakened(&weighed, config) {
                 estimate.correct(&weighed.with_noise(noise)?)?;
@@ -35,6 +38,10 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
             }
         }
         Verdict::Reject => (Outcome::Rejected, believed),
+        Verdict::Recover if others_agree && weighed.innovation() > T::ZERO => {
+            link.is_blocked = true;
+            (Outcome::Rejected, believed)
+        }
         Verdict::Recover => {
             // Fixed point cannot widen without end; then the estimate is given up sooner or later.
             let widened = estimate.correct_widened(&weighed, gate.gamma()).is_ok();
@@ -48,14 +55,20 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     Ok((outcome, seen))
 }
 
-/// The noise that Huber gives a range beyond his threshold: S grows to S |ν|/(k √S).
+/// The noise that Huber gives a range beyond his threshold: S grows to S |ν|/limit.
+///
+/// What is too long is doubted sooner than what is too short, because of what may be in the way; but not for what the
+/// tag itself may have done since it was last seen, which is as likely to lengthen as to shorten. So the limit is at k√R and
+/// no less than one deviation of the expected range.
 #[inline(always)]
 fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<T>) -> Option<T> {
     let huber = config.huber.as_ref()?;
     let threshold = huber.threshold(weighed.innovation());
-    if !weighed.exceeds(threshold * threshold) {
+    let square = threshold * threshold;
+    let limit = square * weighed.noise() + square.max(T::ONE) * weighed.spread();
+    if !weighed.exceeds(weighed.by_variance(limit)) {
         return None;
     }
-    let variance = weighed.innovation().abs() * weighed.variance().sqrt() / threshold;
+    let variance = weighed.variance() * (weighed.innovation().abs() / limit.sqrt());
     Some((variance - weighed.spread()).max(weighed.noise()))
 }

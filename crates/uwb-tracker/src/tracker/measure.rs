@@ -29,11 +29,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             observes_bias,
         };
         let redundant = self.heard as usize > D + usize::from(observes_bias);
-        let (outcome, seen) = take_in(estimate, link, &observation, &self.config, redundant)?;
+        let agree = self.counters.others_agree(link, self.heard, D);
+        let (outcome, seen) =
+            take_in(estimate, link, &observation, &self.config, redundant, agree)?;
         link.hear(sample.time_us, range);
         self.pace.hear(sample.time_us, sample.anchor, anchors);
         if outcome == Outcome::Rejected {
-            self.reject();
+            let is_blocked = link.is_blocked;
+            self.reject(is_blocked);
         } else {
             self.counters.take(seen.nis);
         }
@@ -41,8 +44,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     }
 
     /// Counts a range that was left out; when half of them are, the position is given up.
-    pub(super) fn reject(&mut self) {
-        if self.counters.reject(self.heard.max(D as u8)) {
+    pub(super) fn reject(&mut self, is_blocked: bool) {
+        if self.counters.reject(self.heard.max(D as u8), is_blocked) {
             self.estimate = None;
         }
     }

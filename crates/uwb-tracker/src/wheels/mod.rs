@@ -60,7 +60,9 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
     pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
         let size = size(anchors);
-        let config = config.scaled(size);
+        // What grows with the distance is a state here, and no constant error.
+        let (bias_sigma, learning) = (config.bias_sigma, config.learning);
+        let config = Config { bias_sigma, learning, ..config.scaled(size) };
         let mut links = Vec::new();
         for anchor in anchors {
             anchor.check()?;
@@ -218,6 +220,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let observation =
             ProportionalRange { measured: range, anchor: &place, height: self.config.height };
         let redundant = self.heard > 2;
+        let agree = self.counters.others_agree(link, self.heard, 2);
         let (mut courses, mut learning) = (self.courses, *link);
         let mut result = None;
         for (index, course) in courses.iter_mut().enumerate() {
@@ -226,7 +229,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             let mut other = *link;
             let link = if index == best { &mut learning } else { &mut other };
             let (outcome, seen) =
-                take_in(&mut course.estimate, link, &observation, &self.config, redundant)?;
+                take_in(&mut course.estimate, link, &observation, &self.config, redundant, agree)?;
             course.charge(&seen, link.gate.gamma());
             if index == best {
                 result = Some((outcome, seen));
@@ -241,7 +244,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         self.pace.hear(sample.time_us, sample.anchor, self.links.len());
         if outcome != Outcome::Rejected {
             self.counters.take(seen.nis);
-        } else if self.counters.reject(self.heard.max(2)) {
+        } else if self.counters.reject(self.heard.max(2), learning.is_blocked) {
             self.courses = [None; 2];
         }
         Ok(Report { outcome, innovation: Some(seen) })
