@@ -33,6 +33,9 @@ pub struct Config<T> {
     pub room: Option<Room<T>>,
 }
 
+/// From the centre of an office to its farthest anchor, m.
+const OFFICE: f64 = 6.0;
+
 /// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to the farthest.
 ///
 /// A radio's excess grows with the distance, and so does what it leaves uncertain: the constants that are lengths are
@@ -48,7 +51,14 @@ pub(crate) fn size<T: Scalar>(anchors: &[Anchor<T>]) -> T {
         reach = reach.max(T::norm((anchor.position - centre).as_array()));
     }
     // Of anchors that are refused anyway it may be anything.
-    (reach * T::from_f64(1.0 / 6.0)).clamp(T::ONE, T::from_f64(30.0))
+    (reach * T::from_f64(1.0 / OFFICE)).clamp(T::ONE, T::from_f64(30.0))
+}
+
+/// How the common bias depends on the distance: 1 in an office; and of what a place of this [`size`] is beyond it, in
+/// proportion (1/m).
+pub(crate) fn bias_shape<T: Scalar>(size: T) -> [T; 2] {
+    let constant = size.recip();
+    [constant, (T::ONE - constant) * constant * T::from_f64(1.0 / OFFICE)]
 }
 
 impl<T: Scalar> Config<T> {
@@ -59,6 +69,7 @@ impl<T: Scalar> Config<T> {
             learning: self.learning.map(|learning| learning.raised(size)),
             common_bias_sigma: self.common_bias_sigma * size,
             bias_sigma: self.bias_sigma * size,
+            acceleration_density: self.acceleration_density * size,
             ..self
         }
     }

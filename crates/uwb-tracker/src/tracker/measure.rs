@@ -27,6 +27,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             anchor: &place,
             height: self.config.height,
             observes_bias,
+            bias_shape: self.bias_shape,
         };
         let redundant = self.heard as usize > D + usize::from(observes_bias);
         let agree = self.counters.others_agree(link, self.heard, D);

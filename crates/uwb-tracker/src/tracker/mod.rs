@@ -2,7 +2,7 @@ mod health;
 mod measure;
 mod time;
 
-use crate::config::size;
+use crate::config::{bias_shape, size};
 use crate::health::Counters;
 use crate::link::{Link, Pace};
 use crate::stillness::Stillness;
@@ -40,6 +40,8 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     pace: Pace,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
+    /// How the common bias depends on the distance: a constant, and a slope, 1/m.
+    bias_shape: [T; 2],
     counters: Counters<T>,
 }
 
@@ -84,6 +86,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             heard: 0,
             pace: Pace::new(),
             lost_sigma: size * T::from_f64(LOST_SIGMA),
+            bias_shape: bias_shape(size),
             counters: Counters::new(),
         })
     }
