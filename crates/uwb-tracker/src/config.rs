@@ -5,6 +5,10 @@ use kestirim_uwb_ranging::{Huber, Room};
 use nalgebra::SVector;
 
 /// Settings of a tracker: its radio, and what carries the tag.
+///
+/// Lengths are those of an office, with no more than 6 m from the anchors to their centre on average. Among anchors farther
+/// apart a tracker lets the deviations, the variances that may be learnt and the density of the acceleration grow in
+/// proportion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -33,10 +37,10 @@ pub struct Config<T> {
     pub room: Option<Room<T>>,
 }
 
-/// From the centre of an office to its farthest anchor, m.
+/// From the centre of an office to its anchors, m.
 const OFFICE: f64 = 6.0;
 
-/// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to the farthest.
+/// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to each, on average.
 ///
 /// A radio's excess grows with the distance, and so does what it leaves uncertain: the constants that are lengths are
 /// those of an office, and grow with this.
@@ -48,7 +52,7 @@ pub(crate) fn size<T: Scalar>(anchors: &[Anchor<T>]) -> T {
     }
     let mut reach = T::ZERO;
     for anchor in anchors {
-        reach = reach.max(T::norm((anchor.position - centre).as_array()));
+        reach += T::norm((anchor.position - centre).as_array()) * share;
     }
     // Of anchors that are refused anyway it may be anything.
     (reach * T::from_f64(1.0 / OFFICE)).clamp(T::ONE, T::from_f64(30.0))

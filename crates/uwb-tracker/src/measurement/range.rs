@@ -7,7 +7,7 @@ use nalgebra::SVector;
 ///
 /// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b,
 /// which is zero where it is not observed. In an office c is 1 and s is 0; among anchors far apart ranges' excess grows
-/// with the distance, and b is that of a range as long as from the anchors' centre to the farthest.
+/// with the distance, and b is that of a range as long as from the anchors' centre to them.
 ///
 /// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former.
 ///

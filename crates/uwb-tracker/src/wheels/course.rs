@@ -5,7 +5,7 @@ use super::state::{BIAS, COSINE, COUNT, DRIFT, EXCESS, GAIN, SINE, X, Y};
 use crate::{Error, OdometrySample};
 use kestirim_kalman::{Covariance, Gaussian, Innovation};
 use kestirim_scalar::{Columns, Components, Scalar};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// An estimate, the turns that the wheels have counted, and what the ranges say of it.
 #[derive(Clone, Copy, Debug)]
@@ -41,26 +41,20 @@ impl<T: Scalar> Course<T> {
     pub(super) fn begun<const N: usize>(start: &Gaussian<T, N>, bias: T, gain: T) -> Self {
         let number = T::from_f64;
         let mut mean = SVector::<T, COUNT>::zeros();
-        let mut matrix = Covariance::<T, COUNT>::zero().to_matrix();
-        for (&at, &value) in [X, Y].iter().zip(start.mean.iter()) {
-            mean.as_array_mut()[at] = value;
-        }
-        mean.as_array_mut()[GAIN] = gain;
-        let known = |i, j| start.covariance.get(i, j).unwrap_or(T::ZERO);
+        let [x, y] = [0, 1].map(|axis| start.mean.get(axis).copied().unwrap_or(T::ZERO));
+        let known = mean.as_array_mut();
+        (known[X], known[Y], known[GAIN]) = (x, y, gain);
         let excess = bias * number(EXCESS_BY_BIAS);
-        for (i, j, value) in [
-            (X, X, known(0, 0)),
-            (X, Y, known(0, 1)),
-            (Y, Y, known(1, 1)),
-            (COSINE, COSINE, number(HEADING_VARIANCE)),
-            (SINE, SINE, number(HEADING_VARIANCE)),
-            (DRIFT, DRIFT, number(DRIFT_SIGMA * DRIFT_SIGMA)),
-            (GAIN, GAIN, number(GAIN_SIGMA * GAIN_SIGMA)),
-            (BIAS, BIAS, bias * bias),
-            (EXCESS, EXCESS, excess * excess),
-        ] {
-            matrix.as_columns_mut()[i][j] = value;
-        }
+        let known = |i, j| start.covariance.get(i, j).unwrap_or(T::ZERO);
+        let mut matrix = SMatrix::<T, COUNT, COUNT>::zeros();
+        let lower = matrix.as_columns_mut();
+        (lower[X][X], lower[X][Y], lower[Y][Y]) = (known(0, 0), known(0, 1), known(1, 1));
+        lower[COSINE][COSINE] = number(HEADING_VARIANCE);
+        lower[SINE][SINE] = number(HEADING_VARIANCE);
+        lower[DRIFT][DRIFT] = number(DRIFT_SIGMA * DRIFT_SIGMA);
+        lower[GAIN][GAIN] = number(GAIN_SIGMA * GAIN_SIGMA);
+        lower[BIAS][BIAS] = bias * bias;
+        lower[EXCESS][EXCESS] = excess * excess;
         let covariance = Covariance::from_lower_triangle(&matrix);
         Self { estimate: Gaussian::new(mean, covariance), turned: T::ZERO, cost: T::ZERO }
     }
