@@ -28,6 +28,13 @@ impl<T: Scalar> Learning<T> {
         }
     }
 
+    /// The same rule with a least variance `factor` times as large, up to the greatest.
+    #[inline]
+    #[must_use]
+    pub fn raised(&self, factor: T) -> Self {
+        Self { least: self.least * factor, most: self.most * factor, ..*self }
+    }
+
     /// The variance after one more sample: of no more than the largest variance, so that a square that is
     /// out of range does no harm.
     #[inline(always)]

@@ -1,8 +1,14 @@
+use crate::Anchor;
 use kestirim_adaptive_kalman::Learning;
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{Huber, Room};
+use nalgebra::SVector;
 
 /// Settings of a tracker: its radio, and what carries the tag.
+///
+/// Lengths are those of an office, with no more than 6 m from the anchors to their centre on average. Among anchors farther
+/// apart a tracker lets the deviations, the variances that may be learnt and the density of the acceleration grow in
+/// proportion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -31,7 +37,47 @@ pub struct Config<T> {
     pub room: Option<Room<T>>,
 }
 
+/// From the centre of an office to its anchors, m.
+const OFFICE: f64 = 6.0;
+
+/// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to each, on average.
+///
+/// A radio's excess grows with the distance, and so does what it leaves uncertain: the constants that are lengths are
+/// those of an office, and grow with this.
+pub(crate) fn size<T: Scalar>(anchors: &[Anchor<T>]) -> T {
+    let share = T::from_micro(anchors.len().clamp(1, 2000) as i32 * 1_000_000).recip();
+    let mut centre = SVector::<T, 3>::zeros();
+    for anchor in anchors {
+        centre += anchor.position * share;
+    }
+    let mut reach = T::ZERO;
+    for anchor in anchors {
+        reach += T::norm((anchor.position - centre).as_array()) * share;
+    }
+    // Of anchors that are refused anyway it may be anything.
+    (reach * T::from_f64(1.0 / OFFICE)).clamp(T::ONE, T::from_f64(30.0))
+}
+
+/// How the common bias depends on the distance: 1 in an office; and of what a place of this [`size`] is beyond it, in
+/// proportion (1/m).
+pub(crate) fn bias_shape<T: Scalar>(size: T) -> [T; 2] {
+    let constant = size.recip();
+    [constant, (T::ONE - constant) * constant * T::from_f64(1.0 / OFFICE)]
+}
+
 impl<T: Scalar> Config<T> {
+    /// The same for anchors of this [`size`].
+    pub(crate) fn scaled(self, size: T) -> Self {
+        Self {
+            range_sigma: self.range_sigma * size,
+            learning: self.learning.map(|learning| learning.raised(size)),
+            common_bias_sigma: self.common_bias_sigma * size,
+            bias_sigma: self.bias_sigma * size,
+            acceleration_density: self.acceleration_density * size,
+            ..self
+        }
+    }
+
     /// For anchors whose biases are known: a variance may fall to (5 cm)².
     #[inline]
     pub fn calibrated(height: T) -> Self {

@@ -1,6 +1,6 @@
 //! Positions from the ranges of one moment, without memory: the paper's "unfiltered".
 
-use crate::link::FRESH_US;
+use crate::link::Pace;
 use crate::{Anchor, Error, RangeSample};
 use heapless::Vec;
 use kestirim_scalar::Scalar;
@@ -28,6 +28,7 @@ pub struct EpochSolver<T: Scalar, const A: usize> {
     anchors: Vec<Anchor<T>, A>,
     /// Time of the last range of each anchor (µs), and the range without its bias, m.
     last: [Option<(u64, T)>; A],
+    pace: Pace,
 }
 
 impl<T: Scalar, const A: usize> EpochSolver<T, A> {
@@ -47,7 +48,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
             anchor.check()?;
         }
         let anchors = Vec::from_slice(anchors).map_err(|_| Error::TooManyAnchors)?;
-        Ok(Self { method, solver, anchors, last: [None; A] })
+        Ok(Self { method, solver, anchors, last: [None; A], pace: Pace::new() })
     }
 
     /// The tag's height in two dimensions, m.
@@ -81,12 +82,14 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
             Some((heard_us, _)) if *heard_us > sample.time_us => Err(Error::OutOfOrder),
             _ => {
                 *last = Some((sample.time_us, sample.range - anchor.bias));
+                self.pace.hear(sample.time_us, sample.anchor, self.anchors.len());
                 Ok(())
             }
         }
     }
 
-    /// The position (m) that the ranges of no more than a second before `time_us` make. Least squares looks
+    /// The position (m) that the ranges of no more than a second before `time_us` make, or of two rounds of the
+    /// anchors where those take longer. Least squares looks
     /// near `start`, too, where one is given.
     ///
     /// # Errors
@@ -99,7 +102,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         let mut observations = Vec::<Observation<T>, A>::new();
         for (anchor, last) in self.anchors.iter().zip(&self.last) {
             let Some((heard_us, range)) = *last else { continue };
-            if time_us.saturating_sub(heard_us) > FRESH_US {
+            if time_us.saturating_sub(heard_us) > self.pace.fresh_us() {
                 continue;
             }
             let variance = T::from_f64(Self::VARIANCE);

@@ -1,4 +1,8 @@
+use crate::Config;
+use crate::link::{Link, Pace};
 use kestirim_scalar::Scalar;
+use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
+use nalgebra::SVector;
 
 /// State of a tracker's position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,7 +13,7 @@ pub enum State {
     Initialising,
     /// Ranges come in and fit.
     Tracking,
-    /// No range came for a second: the position is extrapolated.
+    /// No range came for a second, or two rounds of the anchors where those take longer: the position is extrapolated.
     Coasting,
     /// The position has become worthless: the next ranges make a new one.
     Lost,
@@ -30,7 +34,8 @@ pub struct Health<T> {
     pub rejected: u32,
     /// Positions begun anew after the first.
     pub restarts: u16,
-    /// Anchors heard within the last second.
+    /// Anchors heard within the last second, or two rounds of the anchors where those take longer, but for those that have
+    /// long measured too long.
     pub heard: u8,
     /// Dilution of precision of those anchors; none if they do not determine a position.
     pub dilution: Option<T>,
@@ -42,6 +47,12 @@ pub struct Health<T> {
     /// Whether the tag stands still, as far as IMU or wheels tell.
     pub still: bool,
 }
+
+/// After so many tries to begin, ranges that contradict each other are accepted, too.
+const MOST_TRIES: u8 = 20;
+
+/// Mean NIS of ranges up to which they agree.
+const NIS_OF_AGREEMENT: f64 = 4.0;
 
 /// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
@@ -68,9 +79,84 @@ impl<T: Scalar> Counters<T> {
         self.distrust = self.distrust.saturating_sub(1);
     }
 
+    /// Whether at least one anchor more than the `coordinates` agree beside this one, of so many `heard`.
     #[inline]
-    pub(crate) fn reject(&mut self) {
+    pub(crate) fn others_agree(&self, link: &Link<T>, heard: u8, coordinates: usize) -> bool {
+        let others = usize::from(heard).saturating_sub(usize::from(!link.is_blocked));
+        self.nis < T::from_f64(NIS_OF_AGREEMENT) && others > coordinates
+    }
+
+    /// Counts a range that was left out; whether half of them are lately, of so many anchors `heard`: then the position
+    /// is to be given up. That an anchor is blocked is known, and no reason.
+    #[inline]
+    pub(crate) fn reject(&mut self, heard: u8, is_blocked: bool) -> bool {
         self.rejected = self.rejected.wrapping_add(1);
+        if is_blocked {
+            return false;
+        }
         self.distrust = self.distrust.saturating_add(2);
+        self.distrust > 2 * u16::from(heard)
+    }
+
+    /// Whether to try to begin a position now that so many of all `anchors` are `heard`: when all are, or one of them
+    /// `again`, before the others; and whether there is patience with ranges that contradict each other.
+    pub(crate) fn try_again(&mut self, heard: u8, anchors: usize, again: bool) -> Option<bool> {
+        if !again && usize::from(heard) < anchors {
+            return None;
+        }
+        let patience = self.tries < MOST_TRIES;
+        self.tries = self.tries.saturating_add(1);
+        Some(patience)
+    }
+
+    /// A position was begun.
+    pub(crate) fn begun(&mut self) {
+        self.starts = self.starts.saturating_add(1);
+        (self.tries, self.distrust, self.nis) = (0, 0, T::ONE);
+    }
+}
+
+/// How many anchors were heard lately of which nothing is in the way.
+#[inline]
+pub(crate) fn count_heard<T: Scalar>(links: &[Link<T>], pace: &Pace, time_us: u64) -> u8 {
+    let fresh_us = pace.fresh_us();
+    let counts = |link: &&Link<T>| !link.is_blocked && link.fresh(time_us, fresh_us).is_some();
+    links.iter().filter(counts).count() as u8
+}
+
+/// Health of a tracker that has this position, of this variance (the sum of its coordinates', m²).
+pub(crate) fn health<T: Scalar, const D: usize>(
+    (counters, config): (&Counters<T>, &Config<T>),
+    (links, pace): (&[Link<T>], &Pace),
+    position: Option<(SVector<T, D>, T)>,
+    time_us: u64,
+    still: bool,
+) -> Health<T> {
+    let heard = count_heard(links, pace, time_us);
+    let fresh_us = pace.fresh_us();
+    let fresh =
+        links.iter().filter(|link| !link.is_blocked && link.fresh(time_us, fresh_us).is_some());
+    let dilution = position.and_then(|(position, _)| {
+        let directions = fresh
+            .map(|link| expected_range(&position, config.height, &link.anchor.position).direction);
+        dilution_of_precision(directions).ok()
+    });
+    let bias_sigma = dilution.map_or(T::ZERO, |dilution| dilution * config.bias_sigma);
+    Health {
+        state: match (&position, counters.starts) {
+            (None, 0) => State::Initialising,
+            (None, _) => State::Lost,
+            (Some(_), _) if heard == 0 => State::Coasting,
+            (Some(_), _) => State::Tracking,
+        },
+        nis: counters.nis,
+        taken: counters.taken,
+        rejected: counters.rejected,
+        restarts: counters.starts.saturating_sub(1),
+        heard,
+        dilution,
+        position_sigma: position.map(|(_, variance)| variance.sqrt().hypot(bias_sigma)),
+        bias_sigma,
+        still,
     }
 }

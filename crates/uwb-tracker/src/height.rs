@@ -1,6 +1,6 @@
 //! The height of a tag in the plane, from its ranges.
 
-use crate::link::FRESH_US;
+use crate::link::Pace;
 use crate::{Anchor, Error, RangeSample};
 use heapless::Vec;
 use kestirim_scalar::Scalar;
@@ -27,6 +27,7 @@ pub struct HeightFinder<T: Scalar, const A: usize> {
     /// Time of the last moment that was taken in (µs).
     moment_us: Option<u64>,
     place: Option<Place<T, A>>,
+    pace: Pace,
 }
 
 /// Two ranges (m) and their times (µs).
@@ -85,7 +86,15 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
             _ => Error::NotFinite,
         })?;
         let links = [Link { last: None, before: None }; A];
-        Ok(Self { search, biases, links, newest_us: None, moment_us: None, place: None })
+        Ok(Self {
+            search,
+            biases,
+            links,
+            newest_us: None,
+            moment_us: None,
+            place: None,
+            pace: Pace::new(),
+        })
     }
 
     /// Takes in a range; whether that ended a place, so that the height may be another.
@@ -108,6 +117,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
         if is_later {
             self.newest_us = Some(sample.time_us);
         }
+        self.pace.hear(sample.time_us, sample.anchor, self.biases.len());
         if let Some(link) = self.links.get_mut(sample.anchor) {
             let last = Some((sample.time_us, sample.range - bias));
             *link = Link { last, before: link.last };
@@ -150,7 +160,8 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
     /// The ranges at the newest moment to which all anchors that are heard can be interpolated; none if
     /// that is not new.
     fn moment(&mut self, time_us: u64) -> Option<[Option<T>; A]> {
-        let fresh = |heard_us: u64| time_us.saturating_sub(heard_us) <= FRESH_US;
+        let fresh_us = self.pace.fresh_us();
+        let fresh = |heard_us: u64| time_us.saturating_sub(heard_us) <= fresh_us;
         let last = self.links.iter().filter_map(|link| link.last.map(|(heard_us, _)| heard_us));
         let moment_us = last.filter(|&heard_us| fresh(heard_us)).min()?;
         if self.moment_us.is_some_and(|before_us| moment_us <= before_us) {
@@ -165,11 +176,11 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
             let (before_us, before) = link.before?;
             let since_us = moment_us.checked_sub(before_us)?;
             let interval_us = last_us.saturating_sub(before_us);
-            if interval_us == 0 || interval_us > FRESH_US {
+            if interval_us == 0 || interval_us > fresh_us {
                 return None;
             }
-            // No longer than a second.
-            let seconds = |us: u64| T::from_micro(us.min(FRESH_US) as i32);
+            // No longer than ranges are ever fresh.
+            let seconds = |us: u64| T::from_micro(us.min(Pace::MOST_US) as i32);
             Some(before + (last - before) * (seconds(since_us) / seconds(interval_us)))
         }))
     }

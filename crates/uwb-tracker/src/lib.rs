@@ -13,7 +13,9 @@ mod published;
 mod sample;
 mod start;
 mod stillness;
+mod take_in;
 mod tracker;
+mod wheels;
 
 pub use config::Config;
 pub use epoch::{EpochMethod, EpochSolver};
@@ -26,3 +28,4 @@ pub use sample::{InertialSample, OdometrySample, Outcome, RangeSample, Report};
 pub use tracker::{
     CalibratedPlaneTracker, CalibratedSpaceTracker, PlaneTracker, SpaceTracker, Tracker,
 };
+pub use wheels::WheelTracker;

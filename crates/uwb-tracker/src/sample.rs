@@ -55,7 +55,8 @@ pub struct OdometrySample<T> {
     pub time_us: u64,
     /// Mean speed of the wheels, m/s.
     pub speed: T,
-    /// Difference of their speeds by the track, rad/s; only whether the robot turns is read from it.
+    /// Difference of their speeds by the track, or the rate of a gyroscope beside them, rad/s. [`Tracker`](crate::Tracker)
+    /// only reads from it whether the robot turns.
     pub turn_rate: T,
 }
 

@@ -5,7 +5,7 @@ use crate::link::Link;
 use heapless::Vec;
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_scalar::{Columns, Components, Scalar};
-use kestirim_uwb_ranging::{Observation, Solver};
+use kestirim_uwb_ranging::{Fix, Observation, Solver, expected_range};
 use nalgebra::{SMatrix, SVector};
 
 /// Standard deviation that biases add to the fit's, m.
@@ -23,13 +23,17 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     config: &Config<T>,
     links: &[Link<T>],
     time_us: u64,
+    fresh_us: u64,
     patience: bool,
 ) -> Option<Gaussian<T, N>> {
     let variance = config.range_sigma * config.range_sigma;
     let mut observations = Vec::<Observation<T>, A>::new();
     for link in links {
-        if let Some(range) = link.fresh(time_us) {
+        if let Some((range, age_us)) = link.fresh(time_us, fresh_us) {
             let anchor = link.anchor.position;
+            // The tag may have moved since.
+            let moved = T::from_micro(age_us.min(fresh_us) as i32) * T::from_f64(VELOCITY_SIGMA);
+            let variance = variance + moved * moved;
             observations.push(Observation { anchor, range, variance }).ok()?;
         }
     }
@@ -40,10 +44,12 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
         common_bias: estimates_bias.then_some(config.common_bias_sigma),
         huber: config.huber,
     };
-    let fix = solver.solve::<D>(&observations, None).ok()?;
-    if patience && fix.cost > T::from_f64(LARGEST_COST) {
-        return None;
-    }
+    let most = T::from_f64(LARGEST_COST);
+    let fix = solver.solve::<D>(&observations, None).ok();
+    let fix = match fix {
+        Some(fix) if fix.cost <= most => fix,
+        other => without_one(&solver, &observations, most).or(other.filter(|_| !patience))?,
+    };
     let mut mean = SVector::<T, N>::zeros();
     let mut covariance = SMatrix::<T, N, N>::zeros();
     for axis in 0..D {
@@ -66,4 +72,34 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     }
     let covariance = Covariance::from_lower_triangle(&covariance);
     covariance.is_finite().then(|| Gaussian::new(mean, covariance))
+}
+
+/// The position that the ranges make without one that is too long, the one with which they agree best; none if they do
+/// not agree then either. What is left must have a range to spare.
+fn without_one<T: Scalar, const D: usize, const A: usize>(
+    solver: &Solver<T>,
+    observations: &Vec<Observation<T>, A>,
+    most: T,
+) -> Option<Fix<T, D>> {
+    let mut best: Option<Fix<T, D>> = None;
+    if observations.len() < D + 2 {
+        return None;
+    }
+    for (index, blocked) in observations.iter().enumerate() {
+        let mut rest = Vec::<Observation<T>, A>::new();
+        for (other, observation) in observations.iter().enumerate() {
+            if other != index {
+                rest.push(*observation).ok()?;
+            }
+        }
+        let Ok(fix) = solver.solve::<D>(&rest, best.map(|best| best.position)) else { continue };
+        let expected = expected_range(&fix.position, solver.height, &blocked.anchor).distance;
+        let excess = blocked.range - expected - fix.common_bias;
+        let is_blocked = excess * excess > blocked.variance * most && excess > T::ZERO;
+        let is_better = best.as_ref().is_none_or(|best| fix.cost < best.cost);
+        if is_blocked && is_better && fix.cost <= most {
+            best = Some(fix);
+        }
+    }
+    best
 }

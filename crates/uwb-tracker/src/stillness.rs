@@ -12,7 +12,9 @@ pub(crate) struct Stillness<T: Scalar> {
     last_us: Option<u64>,
     mean: SVector<T, 3>,
     variance: T,
-    still: bool,
+    calm: bool,
+    /// When it was last jolted (µs); if it ever was.
+    jolted_us: Option<u64>,
 }
 
 impl<T: Scalar> Stillness<T> {
@@ -22,18 +24,29 @@ impl<T: Scalar> Stillness<T> {
     const MEAN_TIME: f64 = 0.5;
     /// Time over which the squares are averaged, s.
     const SQUARE_TIME: f64 = 0.15;
+    /// Root mean square of the changes in a step, m/s².
+    const JOLT: f64 = 1.0;
+    /// Time after a jolt before which nothing is believed to stand (µs): longer than a step.
+    const STEP_US: u64 = 700_000;
     /// Longest gap between samples after which stillness is still known (µs).
     const GAP_US: u64 = 500_000;
 
     pub(crate) fn new() -> Self {
-        Self { last_us: None, mean: SVector::zeros(), variance: T::ONE, still: false }
+        Self {
+            last_us: None,
+            mean: SVector::zeros(),
+            variance: T::ONE,
+            calm: false,
+            jolted_us: None,
+        }
     }
 
     /// Whether the tag stands at `time_us`.
     #[inline]
     pub(crate) fn is_still(&self, time_us: u64) -> bool {
         let fresh = |last_us| time_us.saturating_sub(last_us) <= Self::GAP_US;
-        self.still && self.last_us.is_some_and(fresh)
+        let settled = |jolted_us| time_us.saturating_sub(jolted_us) >= Self::STEP_US;
+        self.calm && self.last_us.is_some_and(fresh) && self.jolted_us.is_none_or(settled)
     }
 
     /// Takes in what the accelerometer shows and, where it is known, how strongly it is pushed: a steady push
@@ -54,6 +67,9 @@ impl<T: Scalar> Stillness<T> {
         let size = T::norm(deviation.as_array()).min(T::TWO);
         self.variance += (size * size - self.variance) * share(T::from_f64(Self::SQUARE_TIME));
         let calm = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
-        self.still = calm && push < T::from_f64(Self::LIMIT);
+        self.calm = calm && push < T::from_f64(Self::LIMIT);
+        if self.variance > T::from_f64(Self::JOLT * Self::JOLT) {
+            self.jolted_us = Some(time_us);
+        }
     }
 }

@@ -3,8 +3,9 @@
 mod common;
 
 use common::{CORNERS, anchors, distance, sample};
+use kestirim_kalman::Gaussian;
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_uwb_tracker::{Config, Error, InertialSample, OdometrySample, Tracker};
+use kestirim_uwb_tracker::{Config, Error, InertialSample, OdometrySample, Tracker, WheelTracker};
 use nalgebra::{SMatrix, Vector3};
 use proptest::prelude::*;
 
@@ -80,17 +81,58 @@ fn feed<T: Scalar, const D: usize, const N: usize>(
             prop_assert_eq!(format!("{tracker:?}"), before, "{:?}", event);
         }
         if let Some(estimate) = tracker.estimate() {
-            prop_assert!(estimate.mean.iter().all(|x| x.is_finite()), "{:?}", event);
-            let p: SMatrix<f64, N, N> = estimate.covariance.to_matrix().map(T::to_f64);
-            let deviations = p.diagonal().map(f64::sqrt);
-            prop_assert!(deviations.iter().all(|deviation| *deviation > 0.0), "{:?} {}", event, p);
-            let scale = SMatrix::<f64, N, N>::from_diagonal(&deviations.map(f64::recip));
-            // A Cholesky factor with a hair's breadth exists of every positive semidefinite matrix.
-            let correlations = scale * p * scale + SMatrix::<f64, N, N>::identity() * 1e-6;
-            prop_assert!(correlations.cholesky().is_some(), "{:?} {}", event, p);
+            is_an_estimate(estimate, event)?;
         }
         let health = tracker.health(now_us);
         prop_assert!(health.nis >= T::ZERO);
+    }
+    Ok(())
+}
+
+/// Finite, with a covariance that is one.
+fn is_an_estimate<T: Scalar, const N: usize>(
+    estimate: &Gaussian<T, N>,
+    event: &Event,
+) -> Result<(), TestCaseError> {
+    prop_assert!(estimate.mean.iter().all(|x| x.is_finite()), "{:?}", event);
+    let p: SMatrix<f64, N, N> = estimate.covariance.to_matrix().map(T::to_f64);
+    let deviations = p.diagonal().map(f64::sqrt);
+    prop_assert!(deviations.iter().all(|deviation| *deviation > 0.0), "{:?} {}", event, p);
+    let scale = SMatrix::<f64, N, N>::from_diagonal(&deviations.map(f64::recip));
+    // A Cholesky factor with a hair's breadth exists of every positive semidefinite matrix.
+    let correlations = scale * p * scale + SMatrix::<f64, N, N>::identity() * 1e-6;
+    prop_assert!(correlations.cholesky().is_some(), "{:?} {}", event, p);
+    Ok(())
+}
+
+/// The same on wheels.
+fn drive<T: Scalar>(config: Config<T>, events: &[Event]) -> Result<(), TestCaseError> {
+    let mut tracker = WheelTracker::<T, 4>::new(config, &anchors(&CORNERS, 0.0)).unwrap();
+    let (mut now_us, number) = (1_000_000_u64, T::from_f64);
+    for event in events {
+        let before = format!("{tracker:?}");
+        let mut at = |later_us: i64| {
+            now_us = now_us.saturating_add_signed(later_us);
+            now_us
+        };
+        let refused = match *event {
+            Event::Range { later_us, anchor, range } => {
+                tracker.range(&sample(at(later_us), anchor, range)).is_err()
+            }
+            Event::Inertial { .. } => false,
+            Event::Wheels { later_us, speed, turn_rate } => {
+                let (speed, turn_rate) = (number(speed), number(turn_rate));
+                let time_us = at(later_us);
+                tracker.odometry(&OdometrySample { time_us, speed, turn_rate }).is_err()
+            }
+        };
+        if refused {
+            prop_assert_eq!(format!("{tracker:?}"), before, "{:?}", event);
+        }
+        if let Some(estimate) = tracker.estimate() {
+            is_an_estimate(estimate, event)?;
+        }
+        prop_assert!(tracker.health(now_us).nis >= T::ZERO);
     }
     Ok(())
 }
@@ -106,6 +148,9 @@ proptest! {
         feed::<f32, 2, 4>(Config::plain(1.0), &events)?;
         feed::<Q12_20, 2, 4>(Config::calibrated(Q12_20::ONE), &events)?;
         feed::<Q12_20, 2, 5>(Config::uncalibrated(Q12_20::ONE), &events)?;
+        drive::<f64>(Config::uncalibrated(1.0), &events)?;
+        drive::<f32>(Config::calibrated(1.0), &events)?;
+        drive::<Q12_20>(Config::uncalibrated(Q12_20::ONE), &events)?;
     }
 }
 

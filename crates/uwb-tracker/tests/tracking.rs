@@ -209,6 +209,54 @@ fn the_first_position_waits_for_all_anchors_or_a_second_round() {
     assert!((tracker.position().unwrap().x - 3.0).abs() < 0.1);
 }
 
+fn check_blocked<T: Scalar>() {
+    // From the first range on, and for good: one of five anchors is behind a wall.
+    let places: [[f64; 3]; 5] =
+        std::array::from_fn(|k| if k < 4 { CORNERS[k] } else { [4.0, 0.0, 1.5] });
+    let mut tracker =
+        CalibratedPlaneTracker::<T, 5>::new(Config::calibrated(T::ONE), &anchors(&places, 0.0))
+            .unwrap();
+    for k in 0..300_u64 {
+        let tag = [3.0 + 0.005 * k as f64, 2.0, 1.0];
+        for (anchor, &place) in places.iter().enumerate() {
+            let excess = if anchor == 2 { 6.0 } else { 0.0 };
+            let range = distance(place, tag) + excess;
+            tracker.range(&sample(100_000 * k, anchor, range)).unwrap();
+        }
+        let position = tracker.position().expect("a position from the first epoch on");
+        let error = (position[0].to_f64() - tag[0]).hypot(position[1].to_f64() - tag[1]);
+        assert!(error < 0.3, "{k}: {error}");
+    }
+    let health = tracker.health(29_900_000);
+    assert_eq!((health.restarts, health.state), (0, State::Tracking));
+}
+
+#[test]
+fn an_anchor_behind_a_wall_is_no_reason_to_be_lost() {
+    in_every_scalar!(check_blocked);
+}
+
+fn check_slow<T: Scalar>() {
+    // Each anchor is heard every 2.4 s.
+    let mut tracker =
+        CalibratedPlaneTracker::<T, 4>::new(Config::calibrated(T::ONE), &anchors(&CORNERS, 0.0))
+            .unwrap();
+    for k in 0..100_u64 {
+        let anchor = (k % 4) as usize;
+        let range = distance(CORNERS[anchor], [3.0, 2.0, 1.0]);
+        tracker.range(&sample(600_000 * k, anchor, range)).unwrap();
+        assert_eq!(tracker.position().is_some(), k >= 3, "{k}");
+    }
+    let health = tracker.health(59_400_000);
+    assert_eq!((health.state, health.heard), (State::Tracking, 4));
+    assert_eq!(tracker.health(59_400_000 + 6_000_000).state, State::Coasting);
+}
+
+#[test]
+fn ranges_that_come_slowly_make_a_position_all_the_same() {
+    in_every_scalar!(check_slow);
+}
+
 #[test]
 fn an_imu_at_rest_holds_the_position() {
     let still = Vector3::new(0.1_f32, -0.2, 9.8);

@@ -310,12 +310,12 @@ fn broken_files_are_refused_with_file_and_line() {
         let sentence = refusal(&files);
         assert!(sentence.contains(name) && sentence.contains(expected), "{sentence}");
     }
-    let seventeen = (0..17).map(|index| format!("{index},{index},0,1\n"));
-    let seventeen = seventeen.collect::<Vec<_>>().concat();
+    let too_many = (0..33).map(|index| format!("{index},{index},0,1\n"));
+    let too_many = too_many.collect::<Vec<_>>().concat();
     for (name, contents, expected) in [
         ("h.csv", "anchor,x,y,z\n1,NaN,0,0\n".to_owned(), "line 2: expected a finite number"),
         ("i.csv", "anchor,x,y,z\n1,0,0,0\n1,1,0,0\n".to_owned(), "line 3: expected another anchor"),
-        ("j.csv", format!("anchor,x,y,z\n{seventeen}"), "line 18: expected at most 16 anchors"),
+        ("j.csv", format!("anchor,x,y,z\n{too_many}"), "line 34: expected at most 32 anchors"),
     ] {
         let anchors = desk.file(name, contents);
         let sentence = refusal(&["replay", "robot", "--anchors", &anchors, "--log", &room.log]);

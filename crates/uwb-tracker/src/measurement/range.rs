@@ -5,10 +5,11 @@ use nalgebra::SVector;
 
 /// A range to an anchor: the slant distance and what all ranges are too long by.
 ///
-/// Physics: h(x) = |p − a| + b, with the tag's position p, the anchor's place a and the common bias b, which
-/// is zero where it is not observed.
+/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b,
+/// which is zero where it is not observed. In an office c is 1 and s is 0; among anchors far apart ranges' excess grows
+/// with the distance, and b is that of a range as long as from the anchors' centre to them.
 ///
-/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = 1, nothing else.
+/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former.
 ///
 /// Source: the paper's eq. 10; the common bias as the clock bias of a GNSS receiver's pseudorange (Kaplan and
 /// Hegarty 2017, 2.5.2).
@@ -21,6 +22,8 @@ pub(crate) struct Range<'a, T: Scalar, const D: usize> {
     pub(crate) height: T,
     /// Whether enough anchors are heard to tell a common bias from a distance.
     pub(crate) observes_bias: bool,
+    /// c and s.
+    pub(crate) bias_shape: [T; 2],
 }
 
 /// ∂h/∂x of a [`Range`]: D directions, and the common bias where it is a state.
@@ -49,8 +52,9 @@ impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Range<'_, 
         if N == 2 * D {
             return Ok((self.measured - distance, RangeRow(row)));
         }
-        row[D] = (2 * D, if self.observes_bias { T::ONE } else { T::ZERO });
-        let expected = if self.observes_bias { distance + mean[2 * D] } else { distance };
-        Ok((self.measured - expected, RangeRow(row)))
+        let [constant, slope] = self.bias_shape;
+        let excess = if self.observes_bias { constant + slope * distance } else { T::ZERO };
+        row[D] = (2 * D, excess);
+        Ok((self.measured - distance - excess * mean[2 * D], RangeRow(row)))
     }
 }

@@ -2,8 +2,9 @@ mod health;
 mod measure;
 mod time;
 
+use crate::config::{bias_shape, size};
 use crate::health::Counters;
-use crate::link::Link;
+use crate::link::{Link, Pace};
 use crate::stillness::Stillness;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
 use heapless::Vec;
@@ -36,17 +37,28 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     /// Time until which standstills are not taken in, µs.
     doubted_until_us: u64,
     heard: u8,
+    pace: Pace,
+    /// Standard deviation beyond which a position is given up, m.
+    lost_sigma: T,
+    /// How the common bias depends on the distance: a constant, and a slope, 1/m.
+    bias_shape: [T; 2],
     counters: Counters<T>,
 }
 
+/// Standard deviation beyond which a position is given up among anchors of an office, m; in proportion where they
+/// are farther apart.
+pub(crate) const LOST_SIGMA: f64 = 2.0;
+/// Time without a sample after which a position is given up (µs).
+pub(crate) const LOST_US: u64 = 60_000_000;
+/// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
+/// after an exchange of messages.
+pub(crate) const LATE_US: u64 = 100_000;
+/// Largest plausible acceleration of what carries a tag, m/s² …
+const LARGEST_ACCELERATION: f64 = 500.0;
+/// … and largest speed, m/s or rad/s.
+const LARGEST_SPEED: f64 = 100.0;
+
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// Largest plausible acceleration of what carries a tag, m/s² …
-    const LARGEST_ACCELERATION: f64 = 500.0;
-    /// … and largest speed, m/s or rad/s.
-    const LARGEST_SPEED: f64 = 100.0;
-    /// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
-    /// after an exchange of messages.
-    const LATE_US: u64 = 100_000;
     /// Between ranges, the estimate follows the IMU in steps of this (µs).
     const INERTIAL_STEP_US: u64 = 100_000;
 
@@ -56,6 +68,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
     pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
         const { assert!(N == 2 * D || N == 2 * D + 1, "positions, velocities and perhaps a bias") };
+        let size = size(anchors);
+        let config = config.scaled(size);
         let mut links = Vec::new();
         for anchor in anchors {
             anchor.check()?;
@@ -70,6 +84,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             wheels: None,
             doubted_until_us: 0,
             heard: 0,
+            pace: Pace::new(),
+            lost_sigma: size * T::from_f64(LOST_SIGMA),
+            bias_shape: bias_shape(size),
             counters: Counters::new(),
         })
     }
@@ -117,7 +134,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
     #[inline]
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
-        let range = self.check(sample)?;
+        let range = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?.admit(sample)?;
         if sample.time_us <= self.time_us {
             self.check_time(sample.time_us)?;
             return self.measure(sample, range);
@@ -139,7 +156,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     pub fn inertial(&mut self, sample: &InertialSample<T, D>) -> Result<(), Error> {
         let numbers = sample.acceleration.iter().chain(sample.push.iter().flatten());
         for &number in numbers {
-            plausible(number, Self::LARGEST_ACCELERATION)?;
+            plausible(number, LARGEST_ACCELERATION)?;
         }
         self.check_time(sample.time_us)?;
         let elapsed = sample.time_us.saturating_sub(self.time_us);
@@ -167,30 +184,24 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// tracker is as it was.
     #[inline]
     pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
-        plausible(sample.speed, Self::LARGEST_SPEED)?;
-        plausible(sample.turn_rate, Self::LARGEST_SPEED)?;
+        plausible_wheels(sample)?;
         self.check_time(sample.time_us)?;
         self.wheels = Some(*sample);
         Ok(())
     }
 
-    /// The range freed of its bias, if it can be one.
-    #[inline]
-    fn check(&self, sample: &RangeSample<T>) -> Result<T, Error> {
-        let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
-        sample.check()?;
-        if sample.time_us < link.next_us() {
-            let again = sample.time_us == link.next_us() - 1;
-            return Err(if again { Error::Duplicate } else { Error::OutOfOrder });
-        }
-        Ok(sample.range - link.anchor.bias)
-    }
-
     #[inline]
     fn check_time(&self, time_us: u64) -> Result<(), Error> {
-        let late = time_us < self.time_us && self.time_us - time_us > Self::LATE_US;
+        let late = time_us < self.time_us && self.time_us - time_us > LATE_US;
         if late { Err(Error::OutOfOrder) } else { Ok(()) }
     }
+}
+
+/// Refuses what no wheels do.
+#[inline]
+pub(crate) fn plausible_wheels<T: Scalar>(sample: &OdometrySample<T>) -> Result<(), Error> {
+    plausible(sample.speed, LARGEST_SPEED)?;
+    plausible(sample.turn_rate, LARGEST_SPEED)
 }
 
 /// Refuses what is not finite or too large.

@@ -1,6 +1,7 @@
 //! Time of the estimate, and standstills of the tag.
 
-use super::Tracker;
+use super::{LOST_US, Tracker};
+use crate::health::count_heard;
 use crate::measurement::{Speed, Standstill};
 use crate::{Error, OdometrySample, motion};
 use kestirim_kalman::Gaussian;
@@ -12,10 +13,6 @@ pub(super) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Age beyond which odometry is not used (µs).
     const WHEELS_US: u64 = 500_000;
-    /// Standard deviation beyond which a position is given up, m.
-    const LOST_SIGMA: f64 = 2.0;
-    /// Time without a sample after which a position is given up (µs).
-    const LOST_US: u64 = 60_000_000;
     /// Mean NIS of ranges above which a standstill is doubted.
     const NIS_OF_MOTION: f64 = 4.0;
     /// Time for which standstills are doubted then (µs), …
@@ -43,7 +40,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if elapsed == 0 {
             return Ok(());
         }
-        if elapsed > Self::LOST_US {
+        if elapsed > LOST_US {
             self.estimate = None;
         }
         if self.counters.nis > T::from_f64(Self::NIS_OF_MOTION) {
@@ -51,7 +48,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
         if let Some(mut estimate) = self.estimate {
             let still = self.is_still(time_us) && Standstill::agrees::<T, D, N>(&estimate);
-            let interval = T::from_micro(elapsed.min(Self::LOST_US) as i32);
+            let interval = T::from_micro(elapsed.min(LOST_US) as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
             if still {
                 Standstill::correct::<T, D, N>(&mut estimate)?;
@@ -61,7 +58,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
                 Speed::<T, D> { measured: wheels.speed }.correct(&mut estimate)?;
             }
             let variances = estimate.covariance.variances();
-            let most = T::from_f64(Self::LOST_SIGMA * Self::LOST_SIGMA);
+            let most = self.lost_sigma * self.lost_sigma;
             let lost = variances.iter().take(D).any(|&variance| variance > most);
             self.estimate = if lost { None } else { Some(estimate) };
         }
@@ -72,7 +69,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
 
     #[inline]
     pub(super) fn count_heard(&self, time_us: u64) -> u8 {
-        self.links.iter().filter(|link| link.fresh(time_us).is_some()).count() as u8
+        count_heard(&self.links, &self.pace, time_us)
     }
 
     #[inline]

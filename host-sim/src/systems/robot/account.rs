@@ -77,8 +77,11 @@ pub(super) fn account(
     if report.rejected > report.updates {
         account.doubt(Reason::Rejected);
     }
-    if traces.iter().all(|trace| trace.last().is_none()) {
+    if traces.iter().all(|trace| trace.last().is_none()) || traces.iter().any(Trace::is_vague) {
         account.doubt(Reason::NotObservable);
+    }
+    if !recording.is_static() && traces.iter().any(Trace::is_interrupted) {
+        account.doubt(Reason::Dropout);
     }
     account.fact("ranges taken in", report.updates.to_string());
     account.fact("ranges left out", report.rejected.to_string());

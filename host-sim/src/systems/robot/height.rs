@@ -15,6 +15,8 @@ use crate::system::Settings;
 /// What an unknown height may add to the position's standard deviation, m: as much as everything else does among
 /// anchors as they come (the book's table has 9 to 21 cm).
 const LARGEST_SIGMA_M: f64 = 0.15;
+/// A tag is looked for so high above the floor at least, m, as the finder looks.
+const LEAST_ROOM_M: f64 = 2.0;
 /// Time between the parts of a recording, µs: longer than ranges are fresh.
 const APART_US: u64 = 10_000_000;
 /// What helps if the ranges do not tell the height.
@@ -31,6 +33,8 @@ pub struct FoundHeight {
     pub position_sigma_m: f64,
     /// What the anchors measure too long at this height, m. Empty of calibrated ones, which keep what was measured.
     pub biases: Vec<f64>,
+    /// Whether the ranges tell it; else it is anywhere between floor and highest anchor, and does not matter.
+    pub is_of_ranges: bool,
 }
 
 impl FoundHeight {
@@ -38,7 +42,8 @@ impl FoundHeight {
     pub fn in_words(&self) -> String {
         let Self { metres, sigma_m, position_sigma_m, .. } = self;
         let moved = 100.0 * position_sigma_m;
-        format!("{metres:.2} ± {sigma_m:.2} m from the ranges, the position ± {moved:.1} cm by it")
+        let whence = if self.is_of_ranges { " from the ranges" } else { ", anywhere" };
+        format!("{metres:.2} ± {sigma_m:.2} m{whence}, the position ± {moved:.1} cm by it")
     }
 
     /// The same, if positions may depend on it.
@@ -57,10 +62,32 @@ impl FoundHeight {
     }
 }
 
+/// The height of a tag among anchors so far apart that it hardly matters: between the floor and the highest anchor, or 2 m
+/// above the floor if that is higher; none if it matters.
+///
+/// A range over the distance d is longer by Δ²/2d for a difference Δ of heights: 5 cm for 2 m over 40 m.
+fn of_no_matter(anchors: &[[f64; 3]]) -> Option<FoundHeight> {
+    let count = anchors.len() as f64;
+    let centre = [0, 1].map(|axis| anchors.iter().map(|place| place[axis]).sum::<f64>() / count);
+    let reach = anchors.iter().map(|[x, y, _]| (x - centre[0]).hypot(y - centre[1]));
+    let reach = reach.fold(0.0, f64::max);
+    let heights = || anchors.iter().map(|place| place[2]);
+    let floor = heights().fold(0.0, f64::min);
+    let highest = heights().fold(floor + LEAST_ROOM_M, f64::max);
+    let position_sigma_m = (highest - floor).powi(2) / (2.0 * reach);
+    // Evenly distributed.
+    let sigma_m = (highest - floor) / 12_f64.sqrt();
+    let metres = 0.5 * (floor + highest);
+    let found =
+        FoundHeight { metres, sigma_m, position_sigma_m, biases: vec![], is_of_ranges: false };
+    (position_sigma_m <= LARGEST_SIGMA_M).then_some(found)
+}
+
 /// Finds the height from ranges as they come in.
 #[derive(Debug)]
 pub(super) struct Finder {
     finder: HeightFinder<f64, MOST>,
+    of_no_matter: Option<FoundHeight>,
     /// How many anchors are not calibrated.
     uncalibrated: usize,
 }
@@ -77,7 +104,8 @@ impl Finder {
         } else {
             (HeightFinder::uncalibrated(&places), places.len())
         };
-        Ok(Self { finder: finder.map_err(refused)?, uncalibrated })
+        let of_no_matter = of_no_matter(&setup.anchors);
+        Ok(Self { finder: finder.map_err(refused)?, of_no_matter, uncalibrated })
     }
 
     /// Takes in a range, at a time in µs since the recording began; whether the height may be another then.
@@ -92,6 +120,9 @@ impl Finder {
     /// # Errors
     /// [`Error::Usage`]: they do not.
     pub(super) fn found(&self) -> Result<FoundHeight, Error> {
+        if let Some(found) = &self.of_no_matter {
+            return Ok(found.clone());
+        }
         let Some(height) = self.finder.height() else {
             let problem = format!("the ranges do not tell the tag's height: {MISSING}");
             return Err(Error::Usage(problem));
@@ -101,6 +132,7 @@ impl Finder {
             sigma_m: height.sigma,
             position_sigma_m: height.position_sigma,
             biases: height.biases[..self.uncalibrated].to_vec(),
+            is_of_ranges: true,
         };
         found.accepted()
     }
@@ -129,6 +161,9 @@ pub(super) fn of_recording(recording: &Recording, setup: &Setup) -> Result<Found
 
 fn search(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
     let mut finder = Finder::new(setup)?;
+    if finder.of_no_matter.is_some() {
+        return finder.found();
+    }
     let mut begun_us = 0;
     for part in &recording.parts {
         let start_us = part.events.iter().map(Event::time_us).min().unwrap_or_default();
@@ -144,4 +179,20 @@ fn search(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
         begun_us = latest_us.saturating_add(APART_US);
     }
     finder.found()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_height_matters_in_a_room_and_not_in_a_field() {
+        let corners = |reach: f64| {
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+                .map(|[x, y]| [reach * x, reach * y, 1.5])
+        };
+        assert_eq!(of_no_matter(&corners(3.0)), None);
+        let found = of_no_matter(&corners(20.0)).unwrap();
+        assert!((found.metres - 1.0).abs() < 1e-9 && found.position_sigma_m < 0.1, "{found:?}");
+    }
 }

@@ -68,6 +68,13 @@ pub struct Part {
     pub height_m: Option<f64>,
 }
 
+impl Part {
+    /// Whether wheels were read.
+    pub fn has_wheels(&self) -> bool {
+        self.events.iter().any(|event| matches!(event, Event::Wheels(_)))
+    }
+}
+
 /// Where the tag was.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Truth {

@@ -9,7 +9,7 @@ use kestirim_uwb_ranging::Room;
 use self::tuning::Tuning;
 use super::height::{self, FoundHeight};
 use super::recording::anchors::Anchors;
-use super::recording::{Heights, Recording};
+use super::recording::{Heights, Part, Recording};
 use super::simulate::scenario::ANCHORS;
 use crate::Error;
 use crate::system::{Idle, ScalarKind, Setting, Settings};
@@ -192,6 +192,8 @@ pub struct Setup {
     pub anchors: Vec<[f64; 3]>,
     /// What they measure too long by, m, if they are calibrated.
     pub biases: Option<Vec<f64>>,
+    /// Whether the log has the robot's wheels.
+    pub has_wheels: bool,
     /// The height as the ranges tell it, if nobody else does, with what uncalibrated anchors measure too long
     /// then.
     pub found: Option<FoundHeight>,
@@ -210,6 +212,7 @@ impl Setup {
             height_m,
             anchors: anchors.to_vec(),
             biases: None,
+            has_wheels: false,
             found: None,
             tuning: Tuning::default(),
         }
@@ -225,7 +228,9 @@ impl Setup {
     /// # Errors
     /// [`Error::Usage`]: the ranges do not tell it.
     pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Self, Error> {
+        let has_wheels = recording.parts.iter().any(Part::has_wheels);
         let setup = Self::of(settings, &recording.anchors, recording.biases.as_deref());
+        let setup = Self { has_wheels, ..setup };
         if !height::is_missing(recording, settings) {
             return Ok(setup);
         }
@@ -253,9 +258,15 @@ impl Setup {
             height_m: settings.number("height").unwrap_or_else(|| anchors.mean_height()),
             anchors: anchors.positions.clone(),
             biases: biases.filter(|_| settings.is_on("calibrated")).map(<[f64]>::to_vec),
+            has_wheels: false,
             found: None,
             tuning: Tuning::of(settings),
         }
+    }
+
+    /// Whether the default tracker is moved by the wheels: in the plane.
+    pub(super) fn is_wheeled(&self) -> bool {
+        self.has_wheels && self.dimensions == Dimensions::Two
     }
 
     /// The room in another number type.

@@ -4,6 +4,7 @@ mod each_epoch;
 pub mod follow;
 pub mod published;
 mod recursive;
+mod wheeled;
 
 use self::follow::{Follow, Reception};
 use super::height::FoundHeight;
@@ -37,12 +38,20 @@ pub struct Epoch {
     pub health: HealthState,
 }
 
+/// A position of a larger standard deviation is not what anybody ranges for, m.
+const VAGUE_M: f64 = 1.0;
+
 impl Epoch {
     /// Standard deviations of x, y and z, m, as far as they are known.
     pub fn sigmas_m(&self) -> [Option<f64>; 3] {
         let of = |variance: f64| variance.max(0.0).sqrt();
         let [x, y] = self.spread.map_or([None; 2], |[xx, _, yy]| [xx, yy].map(|it| Some(of(it))));
         [x, y, self.height_variance.map(of)]
+    }
+
+    /// Whether the position is known to a metre, or not at all.
+    pub fn is_vague(&self) -> bool {
+        self.sigma_m().is_some_and(|sigma| sigma > VAGUE_M)
     }
 
     /// Standard deviation of the position in the plane, root of its variances' sum, m.
@@ -83,6 +92,19 @@ impl Trace {
     /// Where it was at the last epoch, if that is known.
     pub fn last(&self) -> Option<[f64; 3]> {
         self.epochs.last().and_then(|epoch| epoch.position)
+    }
+
+    /// Whether more than a tenth of the positions are vague.
+    pub fn is_vague(&self) -> bool {
+        let vague = self.epochs.iter().filter(|epoch| epoch.is_vague()).count();
+        10 * vague > self.known().count()
+    }
+
+    /// Whether there is no position for more than a tenth of the time.
+    pub fn is_interrupted(&self) -> bool {
+        let ends = self.epochs.first().zip(self.epochs.last());
+        let seconds = ends.map(|(first, last)| (last.time_us - first.time_us) as f64 * 1e-6);
+        self.lost_s() > 0.1 * seconds.unwrap_or_default()
     }
 
     /// How long the tag was not known after the first range, s.
@@ -143,7 +165,11 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
                 let (position, spread) = (tracker.position(), tracker.spread());
                 let height_variance = tracker.height_variance();
                 let health = recent.health(time_us, &trace.ranges);
-                trace.epochs.push(Epoch { time_us, position, spread, height_variance, health });
+                let mut epoch = Epoch { time_us, position, spread, height_variance, health };
+                if epoch.is_vague() && epoch.health == HealthState::Good {
+                    epoch.health = Reason::NotObservable.state();
+                }
+                trace.epochs.push(epoch);
             }
             _ => {}
         }

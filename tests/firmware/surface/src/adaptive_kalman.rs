@@ -16,6 +16,7 @@ fn learning<T: Scalar>() -> Option<Learning<T>> {
     let learning = any(Learning::new(number(), number(), number()).ok()?);
     keep(Learning::learn(&learning, number(), number()));
     keep(Learning::limited(&learning, number()));
+    keep(Learning::raised(&learning, number()));
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
     Some(learning)
 }

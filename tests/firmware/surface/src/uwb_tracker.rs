@@ -4,7 +4,7 @@ use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Room, Solver};
 use kestirim_uwb_tracker::{
     Anchor, Config, EpochMethod, EpochSolver, Error, HeightFinder, InertialSample, OdometrySample,
-    PublishedConfig, PublishedTracker, RangeSample, Tracker,
+    PublishedConfig, PublishedTracker, RangeSample, Tracker, WheelTracker,
 };
 
 use super::values::{
@@ -53,6 +53,22 @@ fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     keep(Tracker::estimate(&tracker));
     keep(Tracker::range_sigma(&tracker, whole()));
     keep(Tracker::health(&tracker, whole()));
+}
+
+fn drives<T: Scalar, const A: usize>() {
+    let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
+    let Ok(mut tracker) = any(WheelTracker::<T, A>::new(config(), slice(&anchors))) else { return };
+    for _ in 0..rounds() {
+        try_on(&mut tracker, |tracker| WheelTracker::range(tracker, &sample()));
+        let odometry =
+            any(OdometrySample { time_us: whole(), speed: number(), turn_rate: number() });
+        try_on(&mut tracker, |tracker| WheelTracker::odometry(tracker, &odometry));
+        try_on(&mut tracker, |tracker| WheelTracker::set_height(tracker, number()));
+    }
+    keep(WheelTracker::position(&tracker));
+    keep(WheelTracker::estimate(&tracker));
+    keep(WheelTracker::scale(&tracker));
+    keep(WheelTracker::health(&tracker, whole()));
 }
 
 fn sample<T: Scalar>() -> RangeSample<T> {
@@ -118,6 +134,8 @@ fn all_of<T: Scalar>() {
         tracks::<T, 2, 5, 9>,
         tracks::<T, 3, 6, 4>,
         tracks::<T, 3, 7, 9>,
+        drives::<T, 4>,
+        drives::<T, 9>,
         epochs::<T, 2, 4>,
         epochs::<T, 3, 9>,
         heights::<T, 4>,

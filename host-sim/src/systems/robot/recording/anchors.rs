@@ -7,7 +7,7 @@ use crate::table;
 use crate::text::printable;
 
 /// The most anchors that the trackers are built for.
-pub const MOST: usize = 16;
+pub const MOST: usize = 32;
 
 /// Anchors in the order of their file.
 #[derive(Debug, Clone, Default, PartialEq)]

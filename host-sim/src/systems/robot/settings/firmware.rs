@@ -113,6 +113,7 @@ impl Setup {
             TrackerKind::Lsq => ("EpochSolver", String::new(), "EpochMethod::Trilateration, "),
             TrackerKind::Nls => ("EpochSolver", String::new(), "EpochMethod::LeastSquares, "),
             TrackerKind::AekfPublished => ("PublishedTracker", format!("{axes}, {states}, "), ""),
+            TrackerKind::Default if self.is_wheeled() => ("WheelTracker", String::new(), ""),
             TrackerKind::Default if self.biases.is_none() => {
                 ("Tracker", format!("{axes}, {}, ", states + 1), "")
             }

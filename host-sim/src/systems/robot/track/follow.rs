@@ -11,6 +11,7 @@ use nalgebra::SVector;
 use super::each_epoch::EachEpoch;
 use super::published::{Beginning, Published};
 use super::recursive::Recursive;
+use super::wheeled::Wheeled;
 use crate::Error;
 use crate::system::ScalarKind;
 use crate::systems::robot::recording::event::Event;
@@ -91,13 +92,17 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
             Box::new(Recursive::<T, D, N>::new(setup, Config { learning, ..plain })?)
         }
         TrackerKind::AekfPublished => Published::<T, D, N>::boxed(setup, Beginning::HONEST)?,
-        TrackerKind::Default if setup.biases.is_some() => {
-            let config = tuning.of_the_robust(Config::calibrated(height));
-            Box::new(Recursive::<T, D, N>::new(setup, config)?)
-        }
         TrackerKind::Default => {
-            let config = tuning.of_the_robust(Config::uncalibrated(height));
-            Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, config)?)
+            let is_calibrated = setup.biases.is_some();
+            let config = if is_calibrated { Config::calibrated } else { Config::uncalibrated };
+            let config = tuning.of_the_robust(config(height));
+            if setup.is_wheeled() {
+                Box::new(Wheeled::<T>::new(setup, config)?)
+            } else if is_calibrated {
+                Box::new(Recursive::<T, D, N>::new(setup, config)?)
+            } else {
+                Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, config)?)
+            }
         }
     })
 }

@@ -1,0 +1,62 @@
+//! Motion of a robot on wheels.
+
+use super::state::{BIAS, COSINE, COUNT, DRIFT, GAIN, SINE, X, Y};
+use kestirim_kalman::{Gaussian, Process};
+use kestirim_scalar::{Components, Scalar};
+
+/// A step as the wheels counted it.
+///
+/// Physics: the wheels' own count is a way δ = (cos φ, sin φ) d in axes of its own, with φ the turns so far and d what the
+/// step is long by. In the room it is K δ, K = \[c, −s; s, c\], which turns by the heading in which the count began, and
+/// stretches by the wheels' scale. With c and s as states that is **linear**: no heading need be known to begin with, nor
+/// whether the wheels count forwards. The turns are φ̇ = g ω + w, and what g and w are wrong by turns (c, s).
+///
+/// Source: the linear form of relative orientation and scale is that of visual and inertial initialisation (Martinelli
+/// 2014); wheel odometry Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drive<T> {
+    /// Length of the step, s.
+    pub(crate) interval: T,
+    /// The way in the axes of the count, m.
+    pub(crate) way: [T; 2],
+    /// The turn as measured, rad.
+    pub(crate) turn: T,
+    /// Variance that the step adds to each coordinate, m², …
+    pub(crate) position_noise: T,
+    /// … and to c and s.
+    pub(crate) heading_noise: T,
+}
+
+impl<T: Scalar> Drive<T> {
+    /// Random walk of the drift, (rad in 100 s)²/s, and of the common bias, m²/s.
+    const DRIFT_DENSITY: f64 = 1e-4;
+    const BIAS_DENSITY: f64 = 1e-5;
+}
+
+impl<T: Scalar> Process<T, COUNT> for Drive<T> {
+    #[inline]
+    fn advance(&self, estimate: &mut Gaussian<T, COUNT>) {
+        let ([ahead, left], mean) = (self.way, estimate.mean.as_array_mut());
+        let (cosine, sine) = (mean[COSINE], mean[SINE]);
+        mean[X] += ahead * cosine - left * sine;
+        mean[Y] += ahead * sine + left * cosine;
+        let covariance = &mut estimate.covariance;
+        covariance.shear::<X, COSINE>(ahead);
+        covariance.shear::<X, SINE>(-left);
+        covariance.shear::<Y, SINE>(ahead);
+        covariance.shear::<Y, COSINE>(left);
+        let drift = self.interval * T::from_f64(0.01);
+        covariance.shear::<COSINE, DRIFT>(-sine * drift);
+        covariance.shear::<SINE, DRIFT>(cosine * drift);
+        if self.turn != T::ZERO {
+            covariance.shear::<COSINE, GAIN>(-sine * self.turn);
+            covariance.shear::<SINE, GAIN>(cosine * self.turn);
+        }
+        covariance.add_variance::<X>(self.position_noise);
+        covariance.add_variance::<Y>(self.position_noise);
+        covariance.add_variance::<COSINE>(self.heading_noise);
+        covariance.add_variance::<SINE>(self.heading_noise);
+        covariance.add_variance::<DRIFT>(self.interval * T::from_f64(Self::DRIFT_DENSITY));
+        covariance.add_variance::<BIAS>(self.interval * T::from_f64(Self::BIAS_DENSITY));
+    }
+}

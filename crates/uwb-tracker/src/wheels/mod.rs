@@ -1,0 +1,306 @@
+//! A tag on a robot with wheels.
+
+mod course;
+mod drive;
+pub(crate) mod state;
+
+use self::course::Course;
+use self::state::{COSINE, COUNT, SINE};
+use crate::config::size;
+use crate::health::{Counters, count_heard};
+use crate::link::{Link, Pace};
+use crate::measurement::ProportionalRange;
+use crate::start::start;
+use crate::take_in::take_in;
+use crate::tracker::{LATE_US, LOST_SIGMA, LOST_US, plausible_wheels};
+use crate::{Anchor, Config, Error, Health, OdometrySample, Outcome, RangeSample, Report, health};
+use heapless::Vec;
+use kestirim_kalman::Gaussian;
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+
+/// A tag in the plane on a robot whose wheels are counted, from single ranges of up to A anchors.
+///
+/// The wheels move the estimate, the ranges correct it. Scale and drift of the wheels' turns are estimated, and so is
+/// the heading, of which nothing need be known; whether they turn left or right is found out by following both until the
+/// ranges have decided. Ranges may be too long by a common bias, and in proportion to the distance.
+///
+/// The eight states are the position (m), k cos θ and k sin θ of the wheels' scale k and the heading θ in which their
+/// count began, the turns' drift (rad in 100 s) and gain, the bias of all ranges (m) and their excess in 10 m (m).
+#[derive(Clone, Debug)]
+pub struct WheelTracker<T: Scalar, const A: usize> {
+    config: Config<T>,
+    links: Vec<Link<T>, A>,
+    /// Two while it is not decided to which side turns are counted; none without a position.
+    courses: [Option<Course<T>>; 2],
+    /// Time of the estimate, µs.
+    time_us: u64,
+    wheels: Option<OdometrySample<T>>,
+    heard: u8,
+    pace: Pace,
+    /// How much larger the anchors' place is than an office.
+    size: T,
+    counters: Counters<T>,
+}
+
+/// Age beyond which a sample of the wheels is not used (µs).
+const WHEELS_US: u64 = 2_000_000;
+/// Mean NIS of ranges from which on the wheels are taken to slip, or to be others' than the robot's; below it, their
+/// noise grows with it.
+const NIS_OF_SLIP: f64 = 4.0;
+/// A course that is so much less probable than the other (−2 ln) is given up: one of 20,000.
+const DECIDED: f64 = 20.0;
+/// Least scale of wheels that have a heading.
+const LEAST_SCALE: f64 = 0.1;
+
+impl<T: Scalar, const A: usize> WheelTracker<T, A> {
+    /// A tracker for these anchors, before its first position.
+    ///
+    /// # Errors
+    /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
+    pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
+        let size = size(anchors);
+        // What grows with the distance is a state here, and no constant error.
+        let (bias_sigma, learning) = (config.bias_sigma, config.learning);
+        let config = Config { bias_sigma, learning, ..config.scaled(size) };
+        let mut links = Vec::new();
+        for anchor in anchors {
+            anchor.check()?;
+            links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
+        }
+        Ok(Self {
+            config,
+            links,
+            courses: [None; 2],
+            time_us: 0,
+            wheels: None,
+            heard: 0,
+            pace: Pace::new(),
+            size,
+            counters: Counters::new(),
+        })
+    }
+
+    /// Position of the tag, m; none before the first one, or when it is lost.
+    #[inline]
+    pub fn position(&self) -> Option<SVector<T, 2>> {
+        let mean = self.estimate()?.mean;
+        Some(SVector::from_fn(|axis, _| mean.as_array()[axis]))
+    }
+
+    /// Mean and covariance of all states.
+    #[inline]
+    pub fn estimate(&self) -> Option<&Gaussian<T, COUNT>> {
+        self.courses.get(self.best())?.as_ref().map(|course| &course.estimate)
+    }
+
+    /// By what the wheels' ways are to be multiplied; negative scales are headings backwards. None before it is known.
+    pub fn scale(&self) -> Option<T> {
+        let mean = self.estimate()?.mean;
+        let scale = mean.as_array()[COSINE].hypot(mean.as_array()[SINE]);
+        Some(scale).filter(|&scale| scale > T::from_f64(LEAST_SCALE))
+    }
+
+    /// Health of the tracker at `time_us`.
+    pub fn health(&self, time_us: u64) -> Health<T> {
+        let position = self.estimate().and_then(|estimate| {
+            let variance = estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?;
+            Some((self.position()?, variance))
+        });
+        let stands =
+            |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
+        let still = self.fresh_wheels(time_us).is_some_and(stands);
+        let (of, heard) = ((&self.counters, &self.config), (&*self.links, &self.pace));
+        health::health(of, heard, position, time_us, still)
+    }
+
+    /// Sets the tag's height, m.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn set_height(&mut self, height: T) -> Result<(), Error> {
+        if !height.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        self.config.height = height;
+        Ok(())
+    }
+
+    /// Takes in a sample of the wheels: what they did since the one before.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the
+    /// tracker is as it was.
+    pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
+        plausible_wheels(sample)?;
+        self.check_time(sample.time_us)?;
+        let before = self.wheels.replace(*sample);
+        let advanced = self.advance(sample.time_us);
+        if advanced.is_err() {
+            self.wheels = before;
+        }
+        advanced
+    }
+
+    /// Takes in a range.
+    ///
+    /// # Errors
+    /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
+    pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
+        let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        let range = link.admit(sample)?;
+        self.check_time(sample.time_us)?;
+        let before = (self.courses, self.time_us, self.heard);
+        let report = self.advance(sample.time_us).and_then(|()| self.measure(sample, range));
+        if report.is_err() {
+            (self.courses, self.time_us, self.heard) = before;
+        }
+        report
+    }
+
+    #[inline]
+    fn check_time(&self, time_us: u64) -> Result<(), Error> {
+        let late = time_us < self.time_us && self.time_us - time_us > LATE_US;
+        if late { Err(Error::OutOfOrder) } else { Ok(()) }
+    }
+
+    /// The course that explains the ranges best.
+    #[inline]
+    fn best(&self) -> usize {
+        match &self.courses {
+            [Some(first), Some(second)] => usize::from(second.cost < first.cost),
+            [None, Some(_)] => 1,
+            _ => 0,
+        }
+    }
+
+    #[inline]
+    fn fresh_wheels(&self, time_us: u64) -> Option<&OdometrySample<T>> {
+        let is_fresh =
+            |wheels: &&OdometrySample<T>| time_us.saturating_sub(wheels.time_us) <= WHEELS_US;
+        self.wheels.as_ref().filter(is_fresh)
+    }
+
+    /// Drives all courses on to `time_us`; gives the position up if it has become worthless.
+    fn advance(&mut self, time_us: u64) -> Result<(), Error> {
+        let elapsed = time_us.saturating_sub(self.time_us);
+        if elapsed == 0 {
+            return Ok(());
+        }
+        let interval = T::from_micro(elapsed.min(LOST_US) as i32);
+        let believed = self.counters.nis < T::from_f64(NIS_OF_SLIP);
+        let wheels = self.fresh_wheels(time_us).filter(|_| believed);
+        let last = self.wheels.map_or(T::ZERO, |wheels| wheels.speed);
+        let doubt = self.counters.nis.max(T::ONE);
+        let mut courses = self.courses;
+        for course in courses.iter_mut().flatten() {
+            match wheels {
+                Some(wheels) => course.drive(interval, wheels, doubt)?,
+                None => course.drift(interval, last)?,
+            }
+        }
+        let most = self.size * T::from_f64(LOST_SIGMA);
+        let most = most * most;
+        let lost = |course: &Course<T>| {
+            let variances = course.estimate.covariance.variances();
+            variances.iter().take(2).any(|&variance| variance > most)
+        };
+        let given_up = elapsed > LOST_US || courses.iter().flatten().any(lost);
+        self.courses = if given_up { [None; 2] } else { courses };
+        self.time_us = time_us;
+        self.heard = count_heard(&self.links, &self.pace, time_us);
+        Ok(())
+    }
+
+    /// Takes in a range at the estimate's own time.
+    fn measure(&mut self, sample: &RangeSample<T>, range: T) -> Result<Report<T>, Error> {
+        let best = self.best();
+        let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
+        let place = link.anchor.position;
+        let observation =
+            ProportionalRange { measured: range, anchor: &place, height: self.config.height };
+        let redundant = self.heard > 2;
+        let agree = self.counters.others_agree(link, self.heard, 2);
+        let (mut courses, mut learning) = (self.courses, *link);
+        let mut result = None;
+        for (index, course) in courses.iter_mut().enumerate() {
+            let Some(course) = course else { continue };
+            // What the anchor is worth is learnt from the better course alone.
+            let mut other = *link;
+            let link = if index == best { &mut learning } else { &mut other };
+            let (outcome, seen) =
+                take_in(&mut course.estimate, link, &observation, &self.config, redundant, agree)?;
+            course.charge(&seen, link.gate.gamma());
+            if index == best {
+                result = Some((outcome, seen));
+            }
+        }
+        let Some((outcome, seen)) = result else {
+            return Ok(self.collect(sample, range));
+        };
+        *link = learning;
+        link.hear(sample.time_us, range);
+        self.courses = decided(courses);
+        self.pace.hear(sample.time_us, sample.anchor, self.links.len());
+        if outcome != Outcome::Rejected {
+            self.counters.take(seen.nis);
+        } else if self.counters.reject(self.heard.max(2), learning.is_blocked) {
+            self.courses = [None; 2];
+        }
+        Ok(Report { outcome, innovation: Some(seen) })
+    }
+
+    /// Keeps a range for a first position, and makes one if it can.
+    #[inline(never)] // Rare, and large.
+    fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
+        let (fresh_us, anchors) = (self.pace.fresh_us(), self.links.len());
+        let mut again = false;
+        if let Some(link) = self.links.get_mut(sample.anchor) {
+            again =
+                link.fresh(self.time_us, fresh_us).is_some() && !self.pace.is_last(sample.anchor);
+            link.hear(sample.time_us, range);
+        }
+        self.pace.hear(sample.time_us, sample.anchor, anchors);
+        let started = self.begin(again);
+        let outcome = if started { Outcome::Started } else { Outcome::Collected };
+        Report { outcome, innovation: None }
+    }
+
+    fn begin(&mut self, again: bool) -> bool {
+        let heard = count_heard(&self.links, &self.pace, self.time_us);
+        let Some(patience) = self.counters.try_again(heard, self.links.len(), again) else {
+            return false;
+        };
+        let fresh_us = self.pace.fresh_us();
+        let found =
+            start::<T, 2, 5, A>(&self.config, &self.links, self.time_us, fresh_us, patience);
+        let Some(found) = found else { return false };
+        // Ranges' excess in proportion is a state of its own: what is left is that of an office.
+        let bias_sigma = self.config.common_bias_sigma / self.size;
+        let course = |gain| Some(Course::begun(&found, bias_sigma, gain));
+        self.courses = [course(T::ONE), course(-T::ONE)];
+        for link in &mut self.links {
+            *link = link.begun(&self.config);
+        }
+        self.heard = heard;
+        self.counters.begun();
+        true
+    }
+}
+
+/// Both courses, until one is much more probable than the other.
+fn decided<T: Scalar>(courses: [Option<Course<T>>; 2]) -> [Option<Course<T>>; 2] {
+    let [Some(mut first), Some(mut second)] = courses else { return courses };
+    let most = T::from_f64(DECIDED);
+    if first.cost > second.cost + most {
+        return [None, Some(second)];
+    }
+    if second.cost > first.cost + most {
+        return [Some(first), None];
+    }
+    // Only their difference counts.
+    let least = first.cost.min(second.cost);
+    first.cost -= least;
+    second.cost -= least;
+    [Some(first), Some(second)]
+}
