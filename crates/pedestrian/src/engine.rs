@@ -190,8 +190,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
-        // Fixed point stays at its largest value, and the path length only grows.
-        let out_of_range = self.strides.path_length() == T::MAX;
+        // Fixed point stays at its largest value.
+        let is_within = |navigator: &N| T::all_finite(navigator.position().as_array());
+        let out_of_range =
+            self.strides.path_length() == T::MAX || !self.navigator.as_ref().is_none_or(is_within);
         Warnings { out_of_range, ..self.health.warnings() }
     }
 }

@@ -1,4 +1,5 @@
 use crate::{ImuSample, SensorClass};
+use kestirim_health::Reason;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
@@ -32,9 +33,24 @@ pub struct Warnings {
     pub gaps: bool,
     /// The stream showed no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,
-    /// The path is longer than the number type can tell (`Q12_20`: 2 km): its length stands still, and the position
-    /// may be at the end of its range.
+    /// The path is longer than the number type can tell (`Q12_20`: 2 km), or the foot farther away: there the numbers
+    /// stand still.
     pub out_of_range: bool,
+}
+
+impl Warnings {
+    /// How far the path can be relied upon for all that.
+    pub fn health(&self) -> kestirim_health::Health {
+        let saturated = self.accelerometer_saturated || self.gyroscope_saturated;
+        kestirim_health::Health::GOOD
+            .with(Reason::Saturated, saturated)
+            .with(Reason::Dropout, self.gaps || self.tilt_lost)
+            .with(Reason::NotObservable, self.never_still)
+            .with(Reason::Units, self.gravity_implausible || self.rate_implausible)
+            .with(Reason::Axes, self.axes_inconsistent)
+            .with(Reason::Innovations, self.landings_implausible)
+            .with(Reason::Range, self.out_of_range)
+    }
 }
 
 /// Checks of a stream for faults that no filter can correct.

@@ -21,6 +21,7 @@ pub use alignment::Alignment;
 pub use clipping::MissedTurn;
 pub use error::Error;
 pub use health::Warnings;
+pub use kestirim_health::{Health, Reason};
 pub use magnetic::MagneticHeading;
 pub use navigator::{Ekf, Lite, Navigator, Step, ZeroVelocity};
 pub use offline::OfflineTracker;

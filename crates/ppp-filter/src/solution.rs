@@ -33,6 +33,21 @@ pub enum Health {
     Contradicted(Contradiction),
 }
 
+impl Health {
+    /// The same in the words of all systems. That ambiguities are not known yet is no fault.
+    pub fn in_short(self) -> kestirim_health::Health {
+        use kestirim_health::Reason;
+        match self {
+            Self::Converging | Self::Converged => kestirim_health::Health::GOOD,
+            Self::Unchecked => Reason::NotObservable.into(),
+            Self::Contradicted(Contradiction::Rejections) => {
+                kestirim_health::Health::from(Reason::Innovations).with(Reason::Rejected, true)
+            }
+            Self::Contradicted(_) => Reason::Innovations.into(),
+        }
+    }
+}
+
 /// Why a solution is not to be relied upon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

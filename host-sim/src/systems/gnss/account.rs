@@ -7,7 +7,7 @@ pub mod tables;
 mod track_file;
 mod warning;
 
-use kestirim_ppp_filter::Contradiction;
+use kestirim_ppp_filter::Health;
 
 use self::comparison::Comparison;
 use self::report::Report;
@@ -18,16 +18,14 @@ use super::settings::{Choice, FilterKind, Mode, Setup};
 use super::track::Track;
 use super::track::followed::Followed;
 use crate::Error;
-use crate::system::{Account, Reason, System};
+use crate::system::{Account, System};
 
 /// Says why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
-    let all = || track.filters.iter().flat_map(|(_, followed)| followed.contradictions());
-    if all().next().is_some() {
-        account.doubt(Reason::Innovations);
-    }
-    if all().any(|(_, contradiction)| contradiction == Contradiction::Rejections) {
-        account.doubt(Reason::Rejected);
+    let contradicted = track.filters.iter().flat_map(|(_, followed)| followed.contradictions());
+    for (_, contradiction) in contradicted {
+        let doubts = Health::Contradicted(contradiction).in_short();
+        doubts.reasons().for_each(|reason| account.doubt(reason));
     }
 }
 

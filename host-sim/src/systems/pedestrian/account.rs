@@ -67,9 +67,7 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.about = Some(recording.path.clone());
     account.understood(&report.import);
-    for reason in &walk.reasons {
-        account.doubt(*reason);
-    }
+    walk.doubts.reasons().for_each(|reason| account.doubt(reason));
     account.fact("samples", format!("{} in {:.1} s", report.samples, report.duration_s));
     account.fact("class of the sensor", report.sensor.clone());
     account.fact("strides", report.strides.len().to_string());

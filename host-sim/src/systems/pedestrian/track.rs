@@ -26,7 +26,7 @@ use super::recording::position::TrackPoint;
 use super::settings::{DetectorKind, Options, SensorClass, TrackerKind};
 use crate::Error;
 use crate::metrics::STANDARD_GRAVITY;
-use crate::system::{Detail, HealthState, Reason, ScalarKind};
+use crate::system::{Detail, Health, HealthState, Reason, ScalarKind};
 
 /// What the tracker made of a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,7 +95,7 @@ pub struct Walk {
     /// The class of sensor that it was tracked for.
     pub sensor: SensorClass,
     /// Why it suffers.
-    pub reasons: Vec<Reason>,
+    pub doubts: Health,
     /// How far it can be relied upon, where that changes: from which entry of the track on.
     pub health: Vec<(usize, HealthState)>,
 }
@@ -297,7 +297,7 @@ impl Walk {
     /// From here on the walk is no better than its warnings say; that it began without a standstill is told at the
     /// end, when none came.
     fn doubt(&mut self, warnings: Warnings) {
-        let state = warning::state(Warnings { never_still: false, ..warnings });
+        let state = Warnings { never_still: false, ..warnings }.health().state();
         let before = self.health.last().map_or(HealthState::Good, |(_, before)| *before);
         if before < state {
             self.health.push((self.track.len().saturating_sub(1), state));
@@ -306,8 +306,8 @@ impl Walk {
 
     /// How far each entry of the track can be relied upon.
     pub fn healths(&self) -> impl Iterator<Item = HealthState> {
-        let never_still = self.reasons.iter().find(|reason| **reason == Reason::NotObservable);
-        let from_the_start = never_still.map_or(HealthState::Good, |reason| reason.state());
+        let never_still = self.doubts.has(Reason::NotObservable);
+        let from_the_start = Health::GOOD.with(Reason::NotObservable, never_still).state();
         let (mut changes, mut now) = (self.health.iter().peekable(), from_the_start);
         (0..self.track.len()).map(move |index| {
             while let Some((_, state)) = changes.next_if(|(from, _)| *from <= index) {
@@ -348,7 +348,7 @@ impl Walk {
         if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
             self.closure_m = x.hypot(*y);
         }
-        (self.warnings, self.reasons) = (warning::sentences(warnings), warning::reasons(warnings));
+        (self.warnings, self.doubts) = (warning::sentences(warnings), warnings.health());
     }
 }
 

@@ -8,7 +8,7 @@ use kestirim_pedestrian::detector::{
 };
 use kestirim_pedestrian::{
     Alignment, Config, Ekf, Estimate, ImuSample, Lite, MagneticHeading, MissedTurn, Navigator,
-    OfflineTracker, PathUncertainty, SensorClass, Step, Stride, Tracker, ZeroVelocity,
+    OfflineTracker, PathUncertainty, SensorClass, Step, Stride, Tracker, Warnings, ZeroVelocity,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -87,7 +87,8 @@ fn track<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug>(
     }
     keep(Tracker::finish(any(&mut tracker)));
     keep(Tracker::path_length(&tracker));
-    keep(Tracker::warnings(&tracker));
+    let warnings = any(Tracker::warnings(&tracker));
+    keep(Warnings::health(&warnings));
     let alignment = Tracker::alignment(&tracker);
     keep(Alignment::gyro_bias(alignment));
     keep(Alignment::accelerometer_bias(alignment));

@@ -4,7 +4,8 @@ use kestirim_gnss_ppp::{
     Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
 };
 use kestirim_ppp_filter::{
-    Config, Deviation, Error, Estimator, Motion, PppFilter, SatelliteObservation, Solution, states,
+    Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation, Solution,
+    states,
 };
 
 use super::values::{
@@ -79,6 +80,7 @@ fn filters<const N: usize>() {
         try_on(&mut filter, |filter| {
             let solution = any(PppFilter::process(filter, time, &receiver, slice(&observations))?);
             keep(Solution::deviations_enu(&solution));
+            keep(Health::in_short(solution.health));
             Ok::<_, Error>(())
         });
     }

@@ -2,11 +2,11 @@
 
 use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::Slip;
-use kestirim_ppp_filter::{Health, SatelliteReport, Slipped};
+use kestirim_ppp_filter::{SatelliteReport, Slipped};
 use kestirim_robust_kalman::{Decision, Reason};
 
 use super::accuracy::Fix;
-use crate::system::{HealthState, Reason as Doubt, Table};
+use crate::system::Table;
 use crate::systems::gnss::settings::Systems;
 use crate::systems::gnss::track::followed::Followed;
 
@@ -33,14 +33,9 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
         let deviations = deviations.map(|metres| format!("{metres:.6}"));
         std::iter::once(format!("{t:.6}")).chain(position).chain(deviations).collect()
     };
-    let state = |health: &Health| match health {
-        Health::Converging | Health::Converged => HealthState::Good,
-        Health::Unchecked => Doubt::NotObservable.state(),
-        Health::Contradicted(_) => Doubt::Innovations.state(),
-    };
     Table {
         rows: followed.fixes.iter().zip(&followed.deviations).map(row).collect(),
-        health: followed.healths.iter().map(state).collect(),
+        health: followed.healths.iter().map(|health| health.in_short().state()).collect(),
         ..Table::new(&["t", "x", "y", "z", "sde", "sdn", "sdu"])
     }
 }

@@ -122,7 +122,7 @@ mod tests {
             path_length_m: 4.0 * stretch,
             closure_m: 4.0 * stretch,
             warnings: vec![],
-            reasons: vec![],
+            doubts: crate::system::Health::GOOD,
             ..Walk::default()
         }
     }
