@@ -13,6 +13,11 @@ const POSITION_SIGMA: f64 = 0.1;
 /// Standard deviation of the velocity of a tag when it is first heard, m/s.
 const VELOCITY_SIGMA: f64 = 0.5;
 
+/// Farther than this a tag is not taken to have moved, m: fixed point needs variances that are not too different.
+const FARTHEST: f64 = 1.0;
+/// Share by which the fit's variances grow: of poor geometries fixed point does not find them better.
+const ROUNDING: f64 = 1.0 / 64.0;
+
 /// Largest cost of a fit; one that costs more has an outlier among its ranges: three standard
 /// deviations a range cost 3.
 const LARGEST_COST: f64 = 12.0;
@@ -32,7 +37,8 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
         if let Some((range, age_us)) = link.fresh(time_us, fresh_us) {
             let anchor = link.anchor.position;
             // The tag may have moved since.
-            let moved = T::from_micro(age_us.min(fresh_us) as i32) * T::from_f64(VELOCITY_SIGMA);
+            let age = T::from_micro(age_us.min(fresh_us) as i32);
+            let moved = (age * T::from_f64(VELOCITY_SIGMA)).min(T::from_f64(FARTHEST));
             let variance = variance + moved * moved;
             observations.push(Observation { anchor, range, variance }).ok()?;
         }
@@ -57,7 +63,8 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
         for other in axis..D {
             covariance.as_columns_mut()[axis][other] = fix.covariance.as_columns()[axis][other];
         }
-        covariance.as_columns_mut()[axis][axis] += T::from_f64(POSITION_SIGMA * POSITION_SIGMA);
+        let own = &mut covariance.as_columns_mut()[axis][axis];
+        *own += *own * T::from_f64(ROUNDING) + T::from_f64(POSITION_SIGMA * POSITION_SIGMA);
         covariance.as_columns_mut()[D + axis][D + axis] =
             T::from_f64(VELOCITY_SIGMA * VELOCITY_SIGMA);
     }

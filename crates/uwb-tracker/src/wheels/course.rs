@@ -22,8 +22,6 @@ const HEADING_VARIANCE: f64 = 0.5;
 /// Standard deviations to begin with: of the drift, rad in 100 s; of the turns' gain (beside its sign).
 const DRIFT_SIGMA: f64 = 1.0;
 const GAIN_SIGMA: f64 = 0.5;
-/// Excess in 10 m by common bias: of an office 6 m wide, both are the same.
-const EXCESS_BY_BIAS: f64 = 10.0 / 6.0;
 /// Variance that a metre of the way adds to each coordinate, m²/m: the wheels slip by 10 cm in a metre.
 const SLIP: f64 = 0.01;
 /// … and to the heading, 1/m, and a turn, 1/rad.
@@ -36,15 +34,18 @@ const UNKNOWN_TIME: f64 = 2.0;
 const UNKNOWN_TURN: f64 = 0.1;
 
 impl<T: Scalar> Course<T> {
-    /// From a position (of a start in the plane: x, y and what is no state here), with a common bias of this
-    /// standard deviation (m) and turns of this sign.
-    pub(super) fn begun<const N: usize>(start: &Gaussian<T, N>, bias: T, gain: T) -> Self {
+    /// From a position (of a start in the plane: x, y and what is no state here), with a common bias and an
+    /// excess in 10 m of these standard deviations (m) and turns of this sign.
+    pub(super) fn begun<const N: usize>(
+        start: &Gaussian<T, N>,
+        [bias, excess]: [T; 2],
+        gain: T,
+    ) -> Self {
         let number = T::from_f64;
         let mut mean = SVector::<T, COUNT>::zeros();
         let [x, y] = [0, 1].map(|axis| start.mean.get(axis).copied().unwrap_or(T::ZERO));
         let known = mean.as_array_mut();
         (known[X], known[Y], known[GAIN]) = (x, y, gain);
-        let excess = bias * number(EXCESS_BY_BIAS);
         let known = |i, j| start.covariance.get(i, j).unwrap_or(T::ZERO);
         let mut matrix = SMatrix::<T, COUNT, COUNT>::zeros();
         let lower = matrix.as_columns_mut();

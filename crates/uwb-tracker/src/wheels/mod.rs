@@ -50,6 +50,10 @@ const WHEELS_US: u64 = 2_000_000;
 const NIS_OF_SLIP: f64 = 4.0;
 /// A course that is so much less probable than the other (−2 ln) is given up: one of 20,000.
 const DECIDED: f64 = 20.0;
+/// Excess in 10 m by common bias: of an office 6 m wide, both are the same …
+const EXCESS_BY_BIAS: f64 = 10.0 / 6.0;
+/// … but there they cannot be told apart, and so hardly any is expected: a share of that.
+const LEAST_EXCESS: f64 = 0.1;
 /// Least scale of wheels that have a heading.
 const LEAST_SCALE: f64 = 0.1;
 
@@ -61,8 +65,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
         let size = size(anchors);
         // What grows with the distance is a state here, and no constant error.
-        let (bias_sigma, learning) = (config.bias_sigma, config.learning);
-        let config = Config { bias_sigma, learning, ..config.scaled(size) };
+        let (learning, bias_sigma) = (config.learning, config.bias_sigma);
+        let config = Config { learning, bias_sigma, ..config.scaled(size) };
         let mut links = Vec::new();
         for anchor in anchors {
             anchor.check()?;
@@ -275,9 +279,11 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let found =
             start::<T, 2, 5, A>(&self.config, &self.links, self.time_us, fresh_us, patience);
         let Some(found) = found else { return false };
-        // Ranges' excess in proportion is a state of its own: what is left is that of an office.
-        let bias_sigma = self.config.common_bias_sigma / self.size;
-        let course = |gain| Some(Course::begun(&found, bias_sigma, gain));
+        // The common bias is that of an office; what the place is beyond that makes an excess in proportion.
+        let bias = self.config.common_bias_sigma / self.size;
+        let beyond = (T::ONE - self.size.recip()).max(T::from_f64(LEAST_EXCESS));
+        let excess = bias * T::from_f64(EXCESS_BY_BIAS) * beyond;
+        let course = |gain| Some(Course::begun(&found, [bias, excess], gain));
         self.courses = [course(T::ONE), course(-T::ONE)];
         for link in &mut self.links {
             *link = link.begun(&self.config);

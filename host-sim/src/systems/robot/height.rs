@@ -86,7 +86,7 @@ fn of_no_matter(anchors: &[[f64; 3]]) -> Option<FoundHeight> {
 /// Finds the height from ranges as they come in.
 #[derive(Debug)]
 pub(super) struct Finder {
-    finder: HeightFinder<f64, MOST>,
+    search: HeightFinder<f64, MOST>,
     of_no_matter: Option<FoundHeight>,
     /// How many anchors are not calibrated.
     uncalibrated: usize,
@@ -105,14 +105,14 @@ impl Finder {
             (HeightFinder::uncalibrated(&places), places.len())
         };
         let of_no_matter = of_no_matter(&setup.anchors);
-        Ok(Self { finder: finder.map_err(refused)?, of_no_matter, uncalibrated })
+        Ok(Self { search: finder.map_err(refused)?, of_no_matter, uncalibrated })
     }
 
     /// Takes in a range, at a time in µs since the recording began; whether the height may be another then.
     pub(super) fn take(&mut self, time_us: u64, range: &Range) -> bool {
         let (anchor, range) = (range.anchor, range.metres);
         // What a tracker refuses says nothing here either.
-        self.finder.range(&RangeSample { time_us, anchor, range }).unwrap_or(false)
+        self.search.range(&RangeSample { time_us, anchor, range }).unwrap_or(false)
     }
 
     /// The height, if the ranges tell it.
@@ -123,7 +123,7 @@ impl Finder {
         if let Some(found) = &self.of_no_matter {
             return Ok(found.clone());
         }
-        let Some(height) = self.finder.height() else {
+        let Some(height) = self.search.height() else {
             let problem = format!("the ranges do not tell the tag's height: {MISSING}");
             return Err(Error::Usage(problem));
         };
@@ -175,7 +175,7 @@ fn search(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
             finder.take(time_us, range);
             latest_us = latest_us.max(time_us);
         }
-        finder.finder.end_place();
+        finder.search.end_place();
         begun_us = latest_us.saturating_add(APART_US);
     }
     finder.found()
