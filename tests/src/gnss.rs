@@ -5,7 +5,7 @@ use std::path::Path;
 use host_sim::system::Files;
 use host_sim::systems::gnss::account::accuracy::{Accuracy, Fix};
 use host_sim::systems::gnss::recording::Recording;
-use host_sim::systems::gnss::settings::STATES;
+use host_sim::systems::gnss::settings::STATES_WITH_GALILEO;
 use kestirim_gnss_ppp::{Corrections, sagnac};
 use kestirim_ppp_filter::{Config, PppFilter, SatelliteObservation};
 use nalgebra::Vector3;
@@ -17,7 +17,7 @@ pub struct Station {
     pub observations: &'static str,
     orbits: &'static [&'static str],
     clocks: &'static [&'static str],
-    antennas: &'static str,
+    antennas: &'static [&'static str],
     ocean_loading: Option<&'static str>,
     /// The marker's true place, ECEF, m.
     pub truth: [f64; 3],
@@ -30,7 +30,7 @@ pub const ESBC: Station = Station {
     observations: "esbc2020177/esbc_gps.rnx.gz",
     orbits: &["esbc2020177/grg176_gps.sp3.gz", "esbc2020177/grg177_gps.sp3.gz"],
     clocks: &["esbc2020177/grg177_gps.clk.gz"],
-    antennas: "esbc2020177/esbc.atx.gz",
+    antennas: &["esbc2020177/esbc.atx.gz"],
     ocean_loading: None,
     truth: [3_582_104.765_7, 532_590.178_5, 5_232_755.139_0],
     until: 85_500.0,
@@ -39,6 +39,18 @@ pub const ESBC: Station = Station {
 /// The same with injected faults.
 pub const ESBC_INJECTED: Station =
     Station { observations: "esbc2020177_injected/esbc_gps_CPSB0.rnx.gz", ..ESBC };
+
+/// The same day with Galileo.
+pub const ESBC_MULTI: Station = Station {
+    observations: "esbc2020177_multi/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz",
+    orbits: &[
+        "esbc2020177_multi/GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz",
+        "esbc2020177_multi/GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz",
+    ],
+    clocks: &["esbc2020177_multi/GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz"],
+    antennas: &["esbc2020177/esbc.atx.gz", "esbc2020177_multi/galileo_igs20.atx.gz"],
+    ..ESBC
+};
 
 /// A Coruña, 27 May 2008: clocks every 15 minutes.
 pub const ACOR: Station = Station {
@@ -49,7 +61,7 @@ pub const ACOR: Station = Station {
         "igs2008148/igs14813.sp3.gz",
     ],
     clocks: &[],
-    antennas: "igs2008148/igs05_trim.atx.gz",
+    antennas: &["igs2008148/igs05_trim.atx.gz"],
     ocean_loading: Some("igs2008148/subset.blq"),
     truth: [4_594_489.675_1, -678_367.693_5, 4_357_066.166_7],
     until: 86_400.0,
@@ -73,7 +85,7 @@ impl Station {
             ("obs", &[self.observations][..]),
             ("sp3", self.orbits),
             ("clk", self.clocks),
-            ("antex", &[self.antennas]),
+            ("antex", self.antennas),
             ("blq", self.ocean_loading.as_slice()),
         ] {
             for name in names {
@@ -95,7 +107,7 @@ impl Station {
     ) -> Vec<Fix> {
         let receiver = recording.receiver(corrections);
         let marker = Vector3::from(self.truth);
-        let mut filter = PppFilter::<STATES>::new(config);
+        let mut filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
         let mut fixes = Vec::new();
         for epoch in recording.epochs(Some(self.until)) {
             let t = recording.seconds(epoch);
@@ -135,7 +147,7 @@ impl Station {
 pub fn lengthen(observation: &mut SatelliteObservation<'_>, code: f64, phase: f64) {
     for carrier in 0..2 {
         observation.code[carrier] += code;
-        observation.phase[carrier] += phase / kestirim_gnss_ppp::WAVELENGTH[carrier];
+        observation.phase[carrier] += phase / observation.carriers.wavelength()[carrier];
     }
 }
 

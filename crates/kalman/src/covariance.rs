@@ -120,9 +120,9 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     #[inline]
     pub fn add_outer(&mut self, vector: &SVector<T, N>) {
         let [vector] = &vector.data.0;
-        for (j, &along) in vector.iter().enumerate() {
-            for (i, &across) in vector.iter().enumerate().skip(j) {
-                *self.entry(i, j) += across * along;
+        for j in 0..N {
+            for i in j..N {
+                self.lower.data.0[j][i] += vector[i] * vector[j];
             }
         }
     }

@@ -8,7 +8,7 @@ use host_sim::systems::gnss::account::accuracy::Accuracy;
 use host_sim::systems::gnss::recording::Recording;
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
-use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station, TLSE, lengthen};
+use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, ESBC_MULTI, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 use rand_core::{Rng, SeedableRng};
@@ -45,6 +45,32 @@ fn a_modern_station() {
     let [_, opponent, _] = run("ESBC, kinematic, plain", plain(KINEMATIC));
     let [_, rms, _] = run("ESBC, kinematic", Config::new(KINEMATIC));
     assert!(rms <= 43.0 && rms <= opponent);
+}
+
+#[test]
+fn galileo_beside_gps() {
+    let Some(recording) = read(ESBC_MULTI) else { return };
+    let run = |what, config| measures(what, &ESBC_MULTI.accuracy(&recording, config));
+    let [end, rms, convergence] = run("ESBC with Galileo, static", Config::new(Motion::Static));
+    assert!(end <= 7.5 && rms <= 11.5 && convergence <= 23.0);
+    let [_, rms, _] = run("ESBC with Galileo, kinematic", Config::new(KINEMATIC));
+    assert!(rms <= 31.5);
+}
+
+/// All phases jump by a millisecond at noon, as those of a receiver that tells its clock to them alone.
+#[test]
+fn a_clock_that_jumps_costs_no_filter_its_day() {
+    let Some(recording) = read(ESBC) else { return };
+    for config in [plain(Motion::Static), Config::new(Motion::Static), plain(KINEMATIC)] {
+        let jump = |t: f64, observation: &mut SatelliteObservation<'_>| {
+            lengthen(observation, 0.0, if t < 43_200.0 { 0.0 } else { 299_792.458 });
+        };
+        let still = |_| Vector3::zeros();
+        let fixes = ESBC.follow(&recording, config, Corrections::ALL, still, jump);
+        let [_, jumped, _] = measures("a jump", &ESBC.compare(&fixes));
+        let [_, clean, _] = measures("none", &ESBC.accuracy(&recording, config));
+        assert!((jumped - clean).abs() < 0.01, "{jumped} mm for {clean} mm");
+    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Everything of `kestirim-gnss-ppp`.
 
 use kestirim_gnss_ppp::{
-    Arc, Bodies, BodyAxes, Clock, ClockSample, Correction, Corrections, Direction, Geodetic,
-    GpsTime, OceanLoading, Orbit, OrbitSample, Pattern, Receiver, SatelliteState, Site, SlipLimits,
-    Troposphere, carried_along, eccentricity_clock, greenwich_sidereal_time, sagnac, shapiro_delay,
-    solid_tide, wind_up, zenith_hydrostatic, zenith_wet,
+    Arc, Bodies, BodyAxes, Carriers, Clock, ClockSample, Correction, Corrections, Direction,
+    Geodetic, GpsTime, OceanLoading, Orbit, OrbitSample, Pattern, Receiver, SatelliteState, Site,
+    SlipLimits, Troposphere, carried_along, eccentricity_clock, greenwich_sidereal_time, sagnac,
+    shapiro_delay, solid_tide, wind_up, zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
 

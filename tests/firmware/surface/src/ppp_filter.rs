@@ -1,7 +1,7 @@
 //! Everything of `kestirim-ppp-filter`.
 
 use kestirim_gnss_ppp::{
-    Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
+    Carriers, Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
 };
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation, Solution,

@@ -37,6 +37,7 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
                 code: sighting.code.map(Some),
                 phase: sighting.phase.map(Some),
                 loss_of_lock: [false, sighting.lock_lost],
+                ..files::Observed::default()
             };
             let sighting =
                 products.observation(epoch.time(), &observed).expect("there are products");
