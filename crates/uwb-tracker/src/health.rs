@@ -1,5 +1,6 @@
 use crate::Config;
 use crate::link::{Link, Pace};
+use kestirim_health::Reason;
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
 use nalgebra::SVector;
@@ -44,8 +45,21 @@ pub struct Health<T> {
     pub position_sigma: Option<T>,
     /// The latter alone, m: [`Config::bias_sigma`](crate::Config::bias_sigma) times the dilution of the anchors heard.
     pub bias_sigma: T,
+    /// Whether lately more than a third of the ranges were left out, but for those of blocked anchors.
+    pub distrusted: bool,
     /// Whether the tag stands still, as far as IMU or wheels tell.
     pub still: bool,
+}
+
+impl<T: Copy> Health<T> {
+    /// The same in the words of all systems. That no position has been found yet is no fault.
+    pub fn in_short(&self) -> kestirim_health::Health {
+        let is_blind = self.state == State::Tracking && self.dilution.is_none();
+        kestirim_health::Health::GOOD
+            .with(Reason::Dropout, self.state == State::Coasting)
+            .with(Reason::Rejected, self.distrusted)
+            .with(Reason::NotObservable, self.state == State::Lost || is_blind)
+    }
 }
 
 /// After so many tries to begin, ranges that contradict each other are accepted, too.
@@ -157,6 +171,7 @@ pub(crate) fn health<T: Scalar, const D: usize>(
         dilution,
         position_sigma: position.map(|(_, variance)| variance.sqrt().hypot(bias_sigma)),
         bias_sigma,
+        distrusted: counters.distrust > u16::from(heard.max(1)),
         still,
     }
 }

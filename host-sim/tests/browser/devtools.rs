@@ -1,4 +1,4 @@
-//! Chromium over its DevTools protocol: a WebSocket and a few of its methods.
+//! Chromium over its `DevTools` protocol: a WebSocket and a few of its methods.
 //!
 //! Weighed: `headless_chrome` is built by a program under the GPL, `chromiumoxide` brings the whole protocol as code.
 
@@ -58,20 +58,20 @@ impl Browser {
         let (socket, _) = tungstenite::client(address, stream).expect("a WebSocket");
         let (session, events) = (None, Vec::new());
         let mut browser = Self { program, socket, session, calls: 0, events, _profile: profile };
-        let page = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
+        let page = browser.call("Target.createTarget", &json!({ "url": "about:blank" }));
         let attach = json!({ "targetId": page["targetId"], "flatten": true });
-        let session = browser.call("Target.attachToTarget", attach)["sessionId"].clone();
+        let session = browser.call("Target.attachToTarget", &attach)["sessionId"].clone();
         browser.session = session.as_str().map(str::to_owned);
         browser
     }
 
     /// What a method answers.
-    pub(super) fn call(&mut self, method: &str, parameters: Value) -> Value {
+    pub(super) fn call(&mut self, method: &str, parameters: &Value) -> Value {
         self.try_call(method, parameters).unwrap_or_else(|error| panic!("{method}: {error}"))
     }
 
     /// What a method answers, or its complaint.
-    pub(super) fn try_call(&mut self, method: &str, parameters: Value) -> Result<Value, Value> {
+    pub(super) fn try_call(&mut self, method: &str, parameters: &Value) -> Result<Value, Value> {
         self.calls += 1;
         let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
         if let Some(session) = &self.session {

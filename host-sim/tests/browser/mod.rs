@@ -38,10 +38,10 @@ impl Page {
         };
         let page = Self { browser: RefCell::new(Browser::start(&program, width)), width };
         for domain in ["Page", "Runtime", "Log", "Network", "DOM"] {
-            page.call(&format!("{domain}.enable"), json!({}));
+            page.call(&format!("{domain}.enable"), &json!({}));
         }
         page.size(900);
-        page.call("Page.navigate", json!({ "url": address }));
+        page.call("Page.navigate", &json!({ "url": address }));
         let place = place(address);
         page.wait_for(&format!(
             "location.href.startsWith('{place}') && document.readyState === 'complete'"
@@ -49,7 +49,7 @@ impl Page {
         Some(page)
     }
 
-    fn call(&self, method: &str, parameters: Value) -> Value {
+    fn call(&self, method: &str, parameters: &Value) -> Value {
         self.browser.borrow_mut().call(method, parameters)
     }
 
@@ -58,7 +58,7 @@ impl Page {
         let (width, mobile) = (self.width, self.width < 500);
         let size =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile });
-        self.call("Emulation.setDeviceMetricsOverride", size);
+        self.call("Emulation.setDeviceMetricsOverride", &size);
     }
 
     /// What a piece of JavaScript says; promises are awaited.
@@ -70,7 +70,7 @@ impl Page {
 
     fn try_evaluate(&self, script: &str) -> Result<Value, Value> {
         let script = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
-        self.browser.borrow_mut().try_call("Runtime.evaluate", script)
+        self.browser.borrow_mut().try_call("Runtime.evaluate", &script)
     }
 
     /// Waits until a piece of JavaScript is true.
@@ -86,10 +86,10 @@ impl Page {
 
     /// Puts a file into a field of a form.
     pub(crate) fn choose_file(&self, field: &str, path: &str) {
-        let root = self.call("DOM.getDocument", json!({}))["root"]["nodeId"].clone();
-        let field = self.call("DOM.querySelector", json!({ "nodeId": root, "selector": field }));
+        let root = self.call("DOM.getDocument", &json!({}))["root"]["nodeId"].clone();
+        let field = self.call("DOM.querySelector", &json!({ "nodeId": root, "selector": field }));
         let files = json!({ "nodeId": field["nodeId"], "files": [path] });
-        self.call("DOM.setFileInputFiles", files);
+        self.call("DOM.setFileInputFiles", &files);
     }
 
     /// Presses a key where the focus is.
@@ -105,7 +105,7 @@ impl Page {
             let text = if kind == "keyUp" { "" } else { text };
             let event =
                 json!({ "type": kind, "key": key, "windowsVirtualKeyCode": code, "text": text });
-            self.call("Input.dispatchKeyEvent", event);
+            self.call("Input.dispatchKeyEvent", &event);
         }
     }
 
@@ -143,7 +143,7 @@ impl Page {
         self.size(height.map_or(900, |height| height as u32));
         // Figures that come into view are drawn now.
         std::thread::sleep(Duration::from_millis(500));
-        let image = self.call("Page.captureScreenshot", json!({ "format": "png" }));
+        let image = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
         let image = STANDARD.decode(image["data"].as_str().expect("an image")).expect("base64");
         let path = folder.join(name);
         fs::write(&path, image).expect("the folder can be written");

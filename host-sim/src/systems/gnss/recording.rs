@@ -1,14 +1,14 @@
 //! What a receiver recorded: from files or synthetic.
 
+mod coverage;
 pub mod model;
 pub mod products;
 pub mod truth;
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use kestirim_gnss_files::{
-    Antenna, Antennas, Biases, Clocks, Observations, Orbits, Signals, StationLoading, Warning,
+    Antenna, Antennas, Biases, Clocks, Observations, Orbits, StationLoading, Warning,
     satellite_name,
 };
 use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
@@ -19,7 +19,6 @@ use self::products::Products;
 use super::simulate::{Day, INTERVAL_S, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::Error;
 use crate::system::Files;
-use crate::text::printable_path;
 
 /// The number of the first satellite of Galileo, `E01`.
 const FIRST_GALILEO: u8 = 101;
@@ -102,51 +101,11 @@ impl Recording {
             )),
         }
         let midnight = GpsTime::new(start.day(), 0.0);
-        let is_unknown = |(number, signals): &(&u8, &Signals)| {
-            let carriers = model::carriers(signals.carriers);
-            let antenna = antennas.satellite(**number, start);
-            let antenna = antenna.and_then(|antenna| patterns(antenna, carriers));
-            !orbits.satellite(**number).is_empty() && antenna.is_none()
-        };
-        let all = observations.signals.iter();
-        let without = |(number, _): &(&u8, &Signals)| orbits.satellite(**number).is_empty();
-        let is_galileo = |(number, _): &(&u8, &Signals)| **number >= FIRST_GALILEO;
-        // A metre off is worse than nothing, where GPS serves without.
-        let left_out = all.clone().filter(is_galileo);
-        let left_out = left_out.filter(|it| without(it) || is_unknown(it));
-        let left_out: BTreeSet<u8> = left_out.map(|(number, _)| *number).collect();
-        if !left_out.is_empty() {
-            warnings.push((
-                None,
-                format!(
-                    "{} are left out: orbits or antennas of them are not known",
-                    names(left_out.iter().copied()),
-                ),
-            ));
-        }
-        let unknown = all.filter(|it| !is_galileo(it)).filter(is_unknown);
-        let unknown: Vec<_> = unknown.map(|(number, _)| *number).collect();
+        let left_out =
+            coverage::left_out(&observations, &orbits, &antennas, (antex, start), &mut warnings);
         let galileo = observations.signals.range(FIRST_GALILEO..).next();
         let galileo = galileo.map(|(_, signals)| model::carriers(signals.carriers));
-        if !unknown.is_empty() {
-            warnings.push((
-                Some(Correction::SatelliteAntenna),
-                format!(
-                    "{}: does not know the antennas of {}: they are off by a metre or more",
-                    printable_path(antex),
-                    names(unknown),
-                ),
-            ));
-        }
-        let times = orbits.satellites().filter_map(|prn| {
-            let samples = orbits.satellite(prn);
-            let ends = [samples.first()?.time, samples.last()?.time];
-            Some(ends.map(|time| model::time(time).since(midnight)))
-        });
-        let orbits_span = times
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [first, last]| {
-                [a.min(first), b.max(last)]
-            });
+        let orbits_span = coverage::span(&orbits, midnight);
         let products = Products::new(start, &orbits, clocks.as_ref(), &antennas);
         let loading = loading.and_then(|station| station.loading);
         Ok(Self {

@@ -3,8 +3,8 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Room, Solver};
 use kestirim_uwb_tracker::{
-    Anchor, Config, EpochMethod, EpochSolver, Error, HeightFinder, InertialSample, OdometrySample,
-    PublishedConfig, PublishedTracker, RangeSample, Tracker, WheelTracker,
+    Anchor, Config, EpochMethod, EpochSolver, Error, Health, HeightFinder, InertialSample,
+    OdometrySample, PublishedConfig, PublishedTracker, RangeSample, Tracker, WheelTracker,
 };
 
 use super::values::{
@@ -52,7 +52,8 @@ fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     keep(Tracker::velocity(&tracker));
     keep(Tracker::estimate(&tracker));
     keep(Tracker::range_sigma(&tracker, whole()));
-    keep(Tracker::health(&tracker, whole()));
+    let health = any(Tracker::health(&tracker, whole()));
+    keep(Health::in_short(&health));
 }
 
 fn drives<T: Scalar, const A: usize>() {

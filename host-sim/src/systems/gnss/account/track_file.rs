@@ -188,7 +188,7 @@ mod tests {
 
     fn row() -> Row {
         Row {
-            gps: calendar(59_025, 86_399.9996),
+            gps: calendar(59_025, 86_399.999_6),
             utc: calendar(59_025, 17.5),
             latitude: -55.5,
             longitude: 8.456_789_012,
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn dates_of_the_calendar() {
         assert_eq!(calendar(59_025, 0.0), ([2020, 6, 25, 0, 0], 0.0));
-        assert_eq!(calendar(59_025, 86_399.9996), ([2020, 6, 26, 0, 0], 0.0));
+        assert_eq!(calendar(59_025, 86_399.999_6), ([2020, 6, 26, 0, 0], 0.0));
         assert_eq!(calendar(51_544, -18.0), ([1999, 12, 31, 23, 59], 42.0));
         assert_eq!(calendar(60_369, 45_296.5), ([2024, 2, 29, 12, 34], 56.5));
     }
