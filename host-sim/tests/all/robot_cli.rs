@@ -55,6 +55,31 @@ fn the_track_has_a_row_for_every_epoch() {
 }
 
 #[test]
+fn a_room_on_a_map_is_followed_like_one_at_the_origin() {
+    let room = Room::clean();
+    let [east, north] = [512_345.0, 5_412_345.0];
+    let on_the_map = ANCHORS.iter().enumerate().fold("anchor,x,y,z\n".to_owned(), |text, it| {
+        let (index, [x, y, z]) = it;
+        text + &format!("A{index},{},{},{z}\n", x + east, y + north)
+    });
+    let anchors = room.desk.file("map.csv", on_the_map);
+    let (near, far) = (room.desk.named("near.csv"), room.desk.named("far.csv"));
+    for scalar in ["f32", "f64", "fixed"] {
+        let options = ["--height", "1", "--scalar", scalar];
+        host_sim(&room.replay(&[&options[..], &["--track", &near]].concat()));
+        let start = ["replay", "robot", "--anchors", &anchors, "--log", &room.log, "--track", &far];
+        let output = host_sim(&[&start[..], &options].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let ((_, near), (_, far)) = (rows_of::<3>(&near), rows_of::<3>(&far));
+        assert_eq!(near.len(), far.len());
+        for (([_, x, y], _), ([_, far_x, far_y], _)) in near.iter().zip(&far) {
+            let off = (far_x - east - x).hypot(far_y - north - y);
+            assert!(off < 1e-3, "{scalar}: {off}");
+        }
+    }
+}
+
+#[test]
 fn without_a_height_it_is_found_and_said() {
     let room = Room::new([0.1; 4], |_, t, anchor, range| vec![line(t, anchor, range)]);
     let report = room.report(&[]);

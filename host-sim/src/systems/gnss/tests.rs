@@ -28,7 +28,9 @@ fn synthetic_recordings_answer_with_the_same_figures() {
             ["error", "components", "residuals", "phases", "sigma", "satellites", "plan"];
         assert_eq!(ids, expected, "{name}");
         assert!(answer.facts.iter().any(|(name, _)| name == "final error"), "{:?}", answer.facts);
-        assert!(answer.warnings.is_empty(), "{:?}", answer.warnings);
+        // Of the faults a tenth of an epoch's observations may be.
+        let is_of_faults = |warning: &String| *name == "faults" && warning.contains("rejected");
+        assert!(answer.warnings.iter().all(is_of_faults), "{:?}", answer.warnings);
     }
     assert!(Recording::synthetic("winter").is_err());
 }
@@ -93,10 +95,10 @@ fn all_filters_are_shown_beside_each_other() {
     assert_eq!((figure(&answer, "error").series.len(), answer.facts.len()), (6, 7));
     assert!(answer.command.ends_with("--synthetic clean --filter all --until 3600"));
     let disabled: Vec<_> = answer.disabled.iter().map(|(name, _)| *name).collect();
-    assert_eq!(disabled, ["process-noise", "scalar"]);
+    assert_eq!(disabled, ["systems", "process-noise", "scalar"]);
     let plain = answered(&*opened, &json!({ "filter": "gkf" }));
     let disabled: Vec<_> = plain.disabled.iter().map(|(name, _)| *name).collect();
-    assert_eq!(disabled, ["process-noise", "published", "k0", "k1", "scalar"]);
+    assert_eq!(disabled, ["systems", "process-noise", "published", "k0", "k1", "scalar"]);
 }
 
 #[test]

@@ -80,8 +80,8 @@ impl System for Pedestrian {
         settings::table(recording.map(Recording::rates_hz))
     }
 
-    fn idle(_: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
-        settings::idle(settings, name)
+    fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
+        settings::idle(recording.map(|it| it.log.field.is_some()), settings, name)
     }
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {

@@ -59,8 +59,8 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
     ]
 }
 
-/// Why a setting has no effect as the others are.
-pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
+/// Why a setting has no effect as the others are, for a log that has a magnetometer or not, if that is known.
+pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> Option<Idle> {
     let detector = settings.chosen("detector");
     let scaled = [DetectorName::Variance, DetectorName::AngularRate, DetectorName::Shoe];
     match name {
@@ -72,6 +72,9 @@ pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
         }
         "magnetometer" if !turns_back(settings) => {
             Some(Idle::foreign("is for --tracker ekf and --detector adaptive, without --causal"))
+        }
+        "magnetometer" if has_field == Some(false) => {
+            Some(Idle::implied("is of no use: the log has no magnetometer"))
         }
         "causal" if detector != DetectorName::Adaptive => {
             Some(Idle::implied("is what every detector but adaptive does anyway"))

@@ -1,6 +1,7 @@
 //! Feeds a recording to a tracker, and keeps what became of every range.
 
 mod each_epoch;
+mod elsewhere;
 pub mod follow;
 pub mod published;
 mod recursive;

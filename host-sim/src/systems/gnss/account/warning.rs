@@ -56,13 +56,16 @@ fn contradictions(followed: &Followed) -> Option<String> {
     let (first, contradiction) = followed.contradictions().next()?;
     let (count, of) = (followed.contradictions().count(), followed.fixes.len());
     let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
-    let why = match contradiction {
-        Contradiction::Motion => "the receiver is not where it was found before",
-        _ => "the observations contradict the solution",
+    let (why, therefore) = match contradiction {
+        Contradiction::Motion => ("the receiver is not where it was found before", "are"),
+        Contradiction::Residuals => ("the observations contradict the solution", "are"),
+        Contradiction::Rejections => {
+            ("more than a tenth of the observations is rejected", "may be")
+        }
     };
     Some(format!(
         "in {count} of {of} epochs, the first at {first} s, {why} ({share:.0} % rejected in all): positions and standard \
-         deviations there are wrong; check times, products, codes and antennas"
+         deviations there {therefore} wrong; check times, products, codes and antennas"
     ))
 }
 

@@ -9,6 +9,7 @@ use kestirim_uwb_tracker::{Anchor, Config, EpochMethod};
 use nalgebra::SVector;
 
 use super::each_epoch::EachEpoch;
+use super::elsewhere::{self, Elsewhere};
 use super::published::{Beginning, Published};
 use super::recursive::Recursive;
 use super::wheeled::Wheeled;
@@ -58,6 +59,12 @@ impl Reception {
 /// # Errors
 /// [`Error::Usage`] if these anchors or numbers will not do.
 pub fn build(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    let Some(origin) = elsewhere::origin(setup) else { return build_here(setup) };
+    let tracker = build_here(&elsewhere::about(setup, origin))?;
+    Ok(Box::new(Elsewhere { tracker, origin }))
+}
+
+fn build_here(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
     match setup.scalar {
         ScalarKind::F32 => with_scalar::<f32>(setup),
         ScalarKind::F64 => with_scalar::<f64>(setup),
