@@ -63,7 +63,7 @@ impl<T: Copy> Health<T> {
 }
 
 /// After so many tries to begin, ranges that contradict each other are accepted, too.
-const MOST_TRIES: u8 = 20;
+pub(crate) const MOST_TRIES: u8 = 20;
 
 /// Mean NIS of ranges up to which they agree.
 const NIS_OF_AGREEMENT: f64 = 4.0;
@@ -113,14 +113,14 @@ impl<T: Scalar> Counters<T> {
     }
 
     /// Whether to try to begin a position now that so many of all `anchors` are `heard`: when all are, or one of them
-    /// `again`, before the others; and whether there is patience with ranges that contradict each other.
-    pub(crate) fn try_again(&mut self, heard: u8, anchors: usize, again: bool) -> Option<bool> {
+    /// `again`, before the others; and how many tries there were.
+    pub(crate) fn try_again(&mut self, heard: u8, anchors: usize, again: bool) -> Option<u8> {
         if !again && usize::from(heard) < anchors {
             return None;
         }
-        let patience = self.tries < MOST_TRIES;
-        self.tries = self.tries.saturating_add(1);
-        Some(patience)
+        let tries = self.tries;
+        self.tries = tries.saturating_add(1);
+        Some(tries)
     }
 
     /// A position was begun.

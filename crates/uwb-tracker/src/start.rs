@@ -1,6 +1,7 @@
 //! A first position, or a new one.
 
 use crate::Config;
+use crate::health::MOST_TRIES;
 use crate::link::Link;
 use heapless::Vec;
 use kestirim_kalman::{Covariance, Gaussian};
@@ -22,14 +23,14 @@ const ROUNDING: f64 = 1.0 / 64.0;
 /// deviations a range cost 3.
 const LARGEST_COST: f64 = 12.0;
 
-/// The estimate that the fresh ranges make, if they are enough and, unless there is no more `patience`, agree
-/// with each other.
+/// The estimate that the fresh ranges make, if they are enough and agree with each other, or after many `tries` even if they
+/// do not.
 pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     config: &Config<T>,
     links: &[Link<T>],
     time_us: u64,
     fresh_us: u64,
-    patience: bool,
+    tries: u8,
 ) -> Option<Gaussian<T, N>> {
     let variance = config.range_sigma * config.range_sigma;
     let mut observations = Vec::<Observation<T>, A>::new();
@@ -54,7 +55,8 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     let fix = solver.solve::<D>(&observations, None).ok();
     let fix = match fix {
         Some(fix) if fix.cost <= most => fix,
-        other => without_one(&solver, &observations, most).or(other.filter(|_| !patience))?,
+        other => without_one(&solver, &observations, most, tries)
+            .or(other.filter(|_| tries >= MOST_TRIES))?,
     };
     let mut mean = SVector::<T, N>::zeros();
     let mut covariance = SMatrix::<T, N, N>::zeros();
@@ -81,32 +83,28 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     covariance.is_finite().then(|| Gaussian::new(mean, covariance))
 }
 
-/// The position that the ranges make without one that is too long, the one with which they agree best; none if they do
-/// not agree then either. What is left must have a range to spare.
+/// The position that the ranges make without one that is too long; none if they do not agree then either. What is left must
+/// have a range to spare. Each try leaves out another one: all of them in turn take longer than a sample may.
 fn without_one<T: Scalar, const D: usize, const A: usize>(
     solver: &Solver<T>,
     observations: &Vec<Observation<T>, A>,
     most: T,
+    tries: u8,
 ) -> Option<Fix<T, D>> {
-    let mut best: Option<Fix<T, D>> = None;
     if observations.len() < D + 2 {
         return None;
     }
-    for (index, blocked) in observations.iter().enumerate() {
-        let mut rest = Vec::<Observation<T>, A>::new();
-        for (other, observation) in observations.iter().enumerate() {
-            if other != index {
-                rest.push(*observation).ok()?;
-            }
-        }
-        let Ok(fix) = solver.solve::<D>(&rest, best.map(|best| best.position)) else { continue };
-        let expected = expected_range(&fix.position, solver.height, &blocked.anchor).distance;
-        let excess = blocked.range - expected - fix.common_bias;
-        let is_blocked = excess * excess > blocked.variance * most && excess > T::ZERO;
-        let is_better = best.as_ref().is_none_or(|best| fix.cost < best.cost);
-        if is_blocked && is_better && fix.cost <= most {
-            best = Some(fix);
+    let index = usize::from(tries).checked_rem(observations.len())?;
+    let blocked = observations.get(index)?;
+    let mut rest = Vec::<Observation<T>, A>::new();
+    for (other, observation) in observations.iter().enumerate() {
+        if other != index {
+            rest.push(*observation).ok()?;
         }
     }
-    best
+    let fix = solver.solve::<D>(&rest, None).ok()?;
+    let expected = expected_range(&fix.position, solver.height, &blocked.anchor).distance;
+    let excess = blocked.range - expected - fix.common_bias;
+    let is_blocked = excess * excess > blocked.variance * most && excess > T::ZERO;
+    (is_blocked && fix.cost <= most).then_some(fix)
 }

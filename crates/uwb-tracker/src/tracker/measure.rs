@@ -70,11 +70,11 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// one of them `again` after another, before the others.
     pub(super) fn begin(&mut self, now_us: u64, again: bool) -> bool {
         let heard = self.count_heard(now_us);
-        let Some(patience) = self.counters.try_again(heard, self.links.len(), again) else {
+        let Some(tries) = self.counters.try_again(heard, self.links.len(), again) else {
             return false;
         };
         self.estimate =
-            start::<T, D, N, A>(&self.config, &self.links, now_us, self.pace.fresh_us(), patience);
+            start::<T, D, N, A>(&self.config, &self.links, now_us, self.pace.fresh_us(), tries);
         if self.estimate.is_none() {
             return false;
         }

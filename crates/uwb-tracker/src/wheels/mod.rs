@@ -272,12 +272,11 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
 
     fn begin(&mut self, again: bool) -> bool {
         let heard = count_heard(&self.links, &self.pace, self.time_us);
-        let Some(patience) = self.counters.try_again(heard, self.links.len(), again) else {
+        let Some(tries) = self.counters.try_again(heard, self.links.len(), again) else {
             return false;
         };
         let fresh_us = self.pace.fresh_us();
-        let found =
-            start::<T, 2, 5, A>(&self.config, &self.links, self.time_us, fresh_us, patience);
+        let found = start::<T, 2, 5, A>(&self.config, &self.links, self.time_us, fresh_us, tries);
         let Some(found) = found else { return false };
         // The common bias is that of an office; what the place is beyond that makes an excess in proportion.
         let bias = self.config.common_bias_sigma / self.size;
