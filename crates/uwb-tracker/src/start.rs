@@ -52,11 +52,12 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
         huber: config.huber,
     };
     let most = T::from_f64(LARGEST_COST);
-    let fix = solver.solve::<D>(&observations, None).ok();
-    let fix = match fix {
-        Some(fix) if fix.cost <= most => fix,
-        other => without_one(&solver, &observations, most, tries)
-            .or(other.filter(|_| tries >= MOST_TRIES))?,
+    // In turn: all ranges, and all but one. Both at once take longer than a sample may.
+    let fix = if tries % 2 == 1 && tries < MOST_TRIES {
+        without_one(&solver, &observations, most, tries / 2)?
+    } else {
+        let fix = solver.solve::<D>(&observations, None).ok();
+        fix.filter(|fix| fix.cost <= most || tries >= MOST_TRIES)?
     };
     let mut mean = SVector::<T, N>::zeros();
     let mut covariance = SMatrix::<T, N, N>::zeros();
@@ -84,17 +85,17 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
 }
 
 /// The position that the ranges make without one that is too long; none if they do not agree then either. What is left must
-/// have a range to spare. Each try leaves out another one: all of them in turn take longer than a sample may.
+/// have a range to spare. Each turn leaves out another one.
 fn without_one<T: Scalar, const D: usize, const A: usize>(
     solver: &Solver<T>,
     observations: &Vec<Observation<T>, A>,
     most: T,
-    tries: u8,
+    turn: u8,
 ) -> Option<Fix<T, D>> {
     if observations.len() < D + 2 {
         return None;
     }
-    let index = usize::from(tries).checked_rem(observations.len())?;
+    let index = usize::from(turn).checked_rem(observations.len())?;
     let blocked = observations.get(index)?;
     let mut rest = Vec::<Observation<T>, A>::new();
     for (other, observation) in observations.iter().enumerate() {
