@@ -6,9 +6,9 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = Text::unpack("a", bytes.to_vec()) else { return };
-    let _ = Antennas::parse(&text, "TRM59800.00     SCIS");
     let _ = StationLoading::parse(&text, "ESBC", None);
     let texts = [text];
+    let _ = Antennas::parse(&texts, "TRM59800.00     SCIS");
     let _ = Orbits::parse(&texts);
     let _ = Clocks::parse(&texts);
 });
