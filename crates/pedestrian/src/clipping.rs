@@ -226,10 +226,20 @@ impl<T: Scalar> Clipping<T> {
         self.is_open = false;
     }
 
-    /// Whether a step with a `large` rate or without has to be shown.
+    /// Whether a step at this rate, `large` or not, has to be shown: all others change nothing.
     #[inline]
-    pub(crate) fn concerns(&self, large: bool) -> bool {
-        large || self.is_open
+    pub(crate) fn concerns(&self, rate: &SVector<T, 3>, large: bool) -> bool {
+        self.is_open || large && self.is_near(rate)
+    }
+
+    /// Whether an axis is near one of its ends.
+    #[inline(never)] // Few rates are large.
+    fn is_near(&self, rate: &SVector<T, 3>) -> bool {
+        let mut axes = self.axes.iter().zip(rate.as_array());
+        axes.any(|(axis, rate)| {
+            let end = if *rate < T::ZERO { &axis.negative } else { &axis.positive };
+            end.is_near(rate.abs())
+        })
     }
 
     /// Keeps a rate (rad/s), shown or not.

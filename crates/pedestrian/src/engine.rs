@@ -17,13 +17,13 @@ pub(crate) struct Engine<T: Scalar, N> {
     config: Config<T>,
     clock: Clock,
     pub(crate) alignment: Alignment<T>,
-    pub(crate) clipping: Clipping<T>,
     navigator: Option<N>,
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
+    pub(crate) clipping: Clipping<T>,
 }
 
 impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
@@ -61,7 +61,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             if gap {
                 self.clipping.forget();
             }
-            if self.clipping.concerns(size.large_rate) {
+            if self.clipping.concerns(&sample.angular_rate, size.large_rate) {
                 let (rate, pushed) = (&sample.angular_rate, SVector::zeros());
                 self.clipping.show(&Turned { rate, interval, pushed }, |_| ());
             }
@@ -125,7 +125,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 };
                 let before = navigator.velocity();
                 navigator.propagate(&step, verdict.stance);
-                if self.clipping.concerns(size.large_rate) {
+                if self.clipping.concerns(&sample.angular_rate, size.large_rate) {
                     let (rate, health) = (&sample.angular_rate, &mut self.health);
                     bridge(&mut self.clipping, health, navigator, rate, interval, &before);
                 }

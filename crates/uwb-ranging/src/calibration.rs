@@ -1,4 +1,4 @@
-use crate::symmetric::{MOST, NormalEquations};
+use crate::symmetric::NormalEquations;
 use crate::{Error, Observation, Solver, expected_range};
 use heapless::Vec;
 use kestirim_scalar::{Components, Scalar};
@@ -109,23 +109,21 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
         medians: &[Option<T>; A],
         stiffness: T,
     ) -> Result<(), Error> {
-        let mut equations = NormalEquations::new(D);
+        let mut equations = NormalEquations::new();
         for axis in 0..D {
             equations.a[axis][axis] = stiffness;
         }
-        let mut rows: [Option<([T; MOST], T)>; A] = [None; A];
+        let mut rows: [Option<([T; D], T)>; A] = [None; A];
         for ((slot, anchor), median) in rows.iter_mut().zip(&self.anchors).zip(medians) {
             let Some(median) = *median else { continue };
             let expected = expected_range(position, height, anchor);
-            let mut row = [T::ZERO; MOST];
-            row[..D].copy_from_slice(&expected.direction);
-            equations.add(&row, median - expected.distance, T::ONE);
-            *slot = Some((row, median - expected.distance));
+            equations.add(&expected.direction, median - expected.distance, T::ONE);
+            *slot = Some((expected.direction, median - expected.distance));
         }
         if rows.iter().flatten().count() <= 1 {
             return Err(Error::TooFewRanges);
         }
-        let factors = equations.factorised(T::from_f64(1e-4)).ok_or(Error::DegenerateGeometry)?;
+        let factors = equations.factorised().ok_or(Error::DegenerateGeometry)?;
         let moved = factors.solve(&equations.b);
         let mut next = *self;
         for (i, seen) in rows.iter().enumerate() {

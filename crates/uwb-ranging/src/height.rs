@@ -1,5 +1,5 @@
 use crate::calibration::{LINK_SIGMA, solved};
-use crate::symmetric::{MOST, NormalEquations};
+use crate::symmetric::NormalEquations;
 use crate::{Error, Huber, Observation, Solver, expected_range};
 use heapless::Vec;
 use kestirim_scalar::{Components, Scalar};
@@ -392,8 +392,8 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         let (threshold, largest) = (T::from_f64(DOUBT), T::from_f64(LARGEST_COST));
         let variance = T::from_f64(LINK_SIGMA * LINK_SIGMA);
         let per_sigma = T::from_f64(1.0 / LINK_SIGMA);
-        let mut equations = NormalEquations::new(2);
-        let mut rows = Vec::<(usize, [T; MOST], T, T), A>::new();
+        let mut equations = NormalEquations::new();
+        let mut rows = Vec::<(usize, [T; 2], T, T), A>::new();
         for &(index, Observation { anchor, range, .. }) in heard {
             let expected = expected_range(position, self.height, &anchor);
             let excess = range - expected.distance;
@@ -406,12 +406,11 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
                 let cost = (threshold * (T::TWO * deviations - threshold)).min(largest);
                 self.squares += variance * (cost - threshold * deviations);
             }
-            let [east, north] = expected.direction;
-            let row = [east, north, T::ZERO, T::ZERO];
+            let row = expected.direction;
             equations.add(&row, excess, weight);
             let _ = rows.push((index, row, excess, weight));
         }
-        let Some(factors) = equations.factorised(T::from_f64(1e-4)) else { return false };
+        let Some(factors) = equations.factorised() else { return false };
         let moved = factors.solve(&equations.b);
         for &(index, row, excess, weight) in &rows {
             let left = weight * (excess - T::dot(&row, &moved));

@@ -1,4 +1,5 @@
-use crate::symmetric::{MOST, NormalEquations};
+use crate::common_bias::CommonBias;
+use crate::symmetric::NormalEquations;
 use crate::{Error, Room, expected_range};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -147,41 +148,41 @@ impl<T: Scalar> Solver<T> {
         scale: T,
         known: Option<SVector<T, D>>,
     ) -> Result<Option<Fix<T, D>>, Error> {
-        let bias_prior = self.common_bias.filter(|_| observations.len() > D + 1);
-        let unknowns = if bias_prior.is_some() { D + 1 } else { D };
+        let prior = self.common_bias.filter(|_| observations.len() > D + 1);
+        let sigma = scale.sqrt();
+        let noise = Noise { variance: scale, per_sigma: sigma.recip() };
         let mut position = *start;
         let mut bias = T::ZERO;
         for step in 0..Self::MOST_STEPS {
             let robust = self.huber.filter(|_| step >= Self::PLAIN_STEPS);
-            let mut equations = NormalEquations::new(unknowns);
+            let mut equations = NormalEquations::<T, D>::new();
+            let mut common = CommonBias::new();
             let mut cost = T::ZERO;
             for observation in observations {
                 let expected = expected_range(&position, self.height, &observation.anchor);
-                let mut row = [T::ZERO; MOST];
-                row[..D].copy_from_slice(&expected.direction);
-                if let (Some(_), Some(entry)) = (bias_prior, row.get_mut(D)) {
-                    *entry = T::ONE;
-                }
                 let residual = observation.range - expected.distance - bias;
-                let (weight, square) = weighed(residual, observation.variance, scale, robust);
+                let (weight, square) = noise.weighed(residual, observation.variance, robust);
                 cost += square;
-                equations.add(&row, residual, weight);
-            }
-            if let Some(sigma) = bias_prior {
-                let mut row = [T::ZERO; MOST];
-                if let Some(entry) = row.get_mut(D) {
-                    *entry = T::ONE;
+                equations.add(&expected.direction, residual, weight);
+                if prior.is_some() {
+                    common.add(&expected.direction, residual, weight);
                 }
-                equations.add(&row, -bias, scale / (sigma * sigma));
-                cost += (bias / sigma) * (bias / sigma);
             }
-            let factors =
-                equations.factorised(T::from_f64(1e-4)).ok_or(Error::DegenerateGeometry)?;
-            let moved = limited(factors.solve(&equations.b));
+            let least = equations.least_pivot();
+            if let Some(bias_sigma) = prior {
+                let ratio = sigma / bias_sigma;
+                common.add(&[T::ZERO; D], -bias, ratio * ratio);
+                cost += (bias / bias_sigma) * (bias / bias_sigma);
+                common.eliminate_from(&mut equations);
+            }
+            let factors = equations.factorised_above(least).ok_or(Error::DegenerateGeometry)?;
+            let moved = factors.solve(&equations.b);
+            let moved_bias = if prior.is_some() { common.solve(&moved) } else { T::ZERO };
+            let (moved, moved_bias) = limited(moved, moved_bias);
             for axis in 0..D {
                 position.as_array_mut()[axis] += moved[axis];
             }
-            bias += moved.get(D).copied().unwrap_or(T::ZERO);
+            bias += moved_bias;
             if !position.iter().all(|coordinate| coordinate.is_finite()) {
                 return Err(Error::NotConverged);
             }
@@ -193,16 +194,19 @@ impl<T: Scalar> Solver<T> {
             {
                 return Ok(None);
             }
-            let settled = moved.iter().all(|&moved| moved.abs() <= T::from_f64(Self::SETTLED));
+            let settled = moved
+                .iter()
+                .chain([&moved_bias])
+                .all(|&moved| moved.abs() <= T::from_f64(Self::SETTLED));
             if settled {
                 let inverse = factors.inverse();
+                let common_bias_variance =
+                    if prior.is_some() { common.variance(&factors) * scale } else { T::ZERO };
                 return Ok(Some(Fix {
                     position,
                     covariance: SMatrix::from_fn(|i, j| inverse[i][j] * scale),
                     common_bias: bias,
-                    common_bias_variance: inverse
-                        .get(D)
-                        .map_or(T::ZERO, |row| row[D.min(3)] * scale),
+                    common_bias_variance,
                     cost,
                     ambiguous: false,
                 }));
@@ -241,27 +245,45 @@ fn least_variance<T: Scalar, const D: usize>(observations: &[Observation<T>]) ->
     Ok(least)
 }
 
-/// The weight of a residual, relative to that of variance `scale`, and what it costs.
-fn weighed<T: Scalar>(residual: T, variance: T, scale: T, huber: Option<Huber<T>>) -> (T, T) {
-    let weight = scale / variance;
-    let deviations = residual.abs() / variance.sqrt();
-    match huber.map(|huber| huber.threshold(residual)) {
-        Some(threshold) if deviations > threshold => {
-            let cost = threshold * (T::TWO * deviations - threshold);
-            (weight * threshold / deviations, cost)
+/// The noise of the best range, to which all weights are relative.
+struct Noise<T> {
+    variance: T,
+    per_sigma: T,
+}
+
+impl<T: Scalar> Noise<T> {
+    /// The weight of a residual of this variance and what it costs. Roots and divisions only where they
+    /// change something: a processor without a floating-point unit is in here most of a start.
+    fn weighed(&self, residual: T, variance: T, huber: Option<Huber<T>>) -> (T, T) {
+        let alike = variance == self.variance;
+        let weight = if alike { T::ONE } else { self.variance / variance };
+        let mut deviations = residual.abs() * self.per_sigma;
+        let square = deviations * deviations * weight;
+        match huber.map(|huber| huber.threshold(residual)) {
+            Some(threshold) if square > threshold * threshold => {
+                if !alike {
+                    deviations *= weight.sqrt();
+                }
+                let cost = threshold * (T::TWO * deviations - threshold);
+                (weight * threshold / deviations, cost)
+            }
+            _ => (weight, square),
         }
-        _ => (weight, deviations * deviations),
     }
 }
 
 /// A step of no more than 2 m: far from the answer the distances are not linear.
-fn limited<T: Scalar>(step: [T; MOST]) -> [T; MOST] {
-    let length = T::norm(&step);
+fn limited<T: Scalar, const D: usize>(step: [T; D], bias: T) -> ([T; D], T) {
+    let mut length = T::norm(&step);
+    if bias != T::ZERO {
+        length = T::norm(&[length, bias]);
+    }
     if length <= T::TWO {
-        return step;
+        return (step, bias);
     }
     let divisor = length.divisor();
-    step.map(|component| T::TWO * component.divided_by(divisor))
+    let shortened = |component| T::TWO * T::divided_by(component, divisor);
+    (step.map(shortened), shortened(bias))
 }
 
 /// Starting points: the given place, the anchors' centre, and places around it.

@@ -5,6 +5,7 @@ mod antenna;
 mod bias;
 mod calibration;
 mod clock;
+mod common_bias;
 mod dilution;
 mod error;
 mod height;

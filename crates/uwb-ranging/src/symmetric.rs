@@ -1,33 +1,26 @@
-//! Systems of up to four normal equations.
+//! Systems of a few normal equations.
 
 use kestirim_scalar::Scalar;
 
-/// The most unknowns: three coordinates and a common bias.
-pub(crate) const MOST: usize = 4;
+/// A pivot that is no more than this share of the largest diagonal element: as good as singular.
+const LEAST_PIVOT: f64 = 1e-4;
 
-/// Normal equations A x = b of up to [`MOST`] unknowns; only the lower triangle of A is read.
+/// Normal equations A x = b of M unknowns; only the lower triangle of A is read.
 #[derive(Clone, Copy)]
-pub(crate) struct NormalEquations<T> {
-    pub(crate) a: [[T; MOST]; MOST],
-    pub(crate) b: [T; MOST],
+pub(crate) struct NormalEquations<T, const M: usize> {
+    pub(crate) a: [[T; M]; M],
+    pub(crate) b: [T; M],
 }
 
-impl<T: Scalar> NormalEquations<T> {
-    /// Equations of so many unknowns. The others are said to be zero, with a weight of 1: all loops have
-    /// the same length.
-    pub(crate) fn new(unknowns: usize) -> Self {
-        let mut a = [[T::ZERO; MOST]; MOST];
-        for (index, row) in a.iter_mut().enumerate().skip(unknowns) {
-            if let Some(diagonal) = row.get_mut(index) {
-                *diagonal = T::ONE;
-            }
-        }
-        Self { a, b: [T::ZERO; MOST] }
+impl<T: Scalar, const M: usize> NormalEquations<T, M> {
+    /// No equation yet.
+    pub(crate) fn new() -> Self {
+        Self { a: [[T::ZERO; M]; M], b: [T::ZERO; M] }
     }
 
     /// Adds the equation `row · x = value` with this weight.
-    pub(crate) fn add(&mut self, row: &[T; MOST], value: T, weight: T) {
-        for i in 0..MOST {
+    pub(crate) fn add(&mut self, row: &[T; M], value: T, weight: T) {
+        for i in 0..M {
             let weighed = weight * row[i];
             for j in 0..=i {
                 self.a[i][j] += weighed * row[j];
@@ -36,13 +29,20 @@ impl<T: Scalar> NormalEquations<T> {
         }
     }
 
-    /// A = L D Lᵀ, unless a pivot is smaller than `least` of the largest diagonal element: then A is as
-    /// good as singular.
-    pub(crate) fn factorised(&self, least: T) -> Option<Factors<T>> {
-        let (mut l, mut d) = (self.a, [T::ONE; MOST]);
-        let largest = (0..MOST).fold(T::ZERO, |most, i| most.max(self.a[i][i]));
-        let threshold = largest * least;
-        for i in 0..MOST {
+    /// The smallest pivot with which the equations still say something of every unknown.
+    pub(crate) fn least_pivot(&self) -> T {
+        (0..M).fold(T::ZERO, |most, i| most.max(self.a[i][i])) * T::from_f64(LEAST_PIVOT)
+    }
+
+    /// A = L D Lᵀ, unless A is as good as singular.
+    pub(crate) fn factorised(&self) -> Option<Factors<T, M>> {
+        self.factorised_above(self.least_pivot())
+    }
+
+    /// A = L D Lᵀ, unless a pivot is not above `least`.
+    pub(crate) fn factorised_above(&self, least: T) -> Option<Factors<T, M>> {
+        let (mut l, mut d) = (self.a, [T::ONE; M]);
+        for i in 0..M {
             for j in 0..i {
                 let mut sum = self.a[i][j];
                 for k in 0..j {
@@ -55,7 +55,7 @@ impl<T: Scalar> NormalEquations<T> {
                 pivot -= l[i][k] * l[i][k] * d[k];
             }
             // A NaN is not above it either.
-            if !(pivot > threshold && pivot.is_finite()) {
+            if !(pivot > least && pivot.is_finite()) {
                 return None;
             }
             d[i] = pivot;
@@ -65,25 +65,25 @@ impl<T: Scalar> NormalEquations<T> {
 }
 
 /// L D Lᵀ.
-pub(crate) struct Factors<T> {
-    l: [[T; MOST]; MOST],
-    d: [T; MOST],
+pub(crate) struct Factors<T, const M: usize> {
+    l: [[T; M]; M],
+    d: [T; M],
 }
 
-impl<T: Scalar> Factors<T> {
+impl<T: Scalar, const M: usize> Factors<T, M> {
     /// A⁻¹ b.
-    pub(crate) fn solve(&self, b: &[T; MOST]) -> [T; MOST] {
-        let mut x = [T::ZERO; MOST];
-        for i in 0..MOST {
+    pub(crate) fn solve(&self, b: &[T; M]) -> [T; M] {
+        let mut x = [T::ZERO; M];
+        for i in 0..M {
             let mut sum = b[i];
             for k in 0..i {
                 sum -= self.l[i][k] * x[k];
             }
             x[i] = sum;
         }
-        for i in (0..MOST).rev() {
+        for i in (0..M).rev() {
             let mut sum = x[i] / self.d[i];
-            for k in i + 1..MOST {
+            for k in i + 1..M {
                 sum -= self.l[k][i] * x[k];
             }
             x[i] = sum;
@@ -92,10 +92,10 @@ impl<T: Scalar> Factors<T> {
     }
 
     /// A⁻¹.
-    pub(crate) fn inverse(&self) -> [[T; MOST]; MOST] {
-        let mut inverse = [[T::ZERO; MOST]; MOST];
-        for i in 0..MOST {
-            let mut unit = [T::ZERO; MOST];
+    pub(crate) fn inverse(&self) -> [[T; M]; M] {
+        let mut inverse = [[T::ZERO; M]; M];
+        for i in 0..M {
+            let mut unit = [T::ZERO; M];
             unit[i] = T::ONE;
             inverse[i] = self.solve(&unit);
         }

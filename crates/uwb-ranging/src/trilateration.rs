@@ -1,10 +1,7 @@
-use crate::symmetric::{MOST, NormalEquations};
+use crate::symmetric::NormalEquations;
 use crate::{Error, Observation};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
-
-/// A pivot smaller than this share of the largest: the anchors do not determine the position.
-const LEAST_PIVOT: f64 = 1e-4;
 
 /// Linear trilateration (the paper's eqs 3–7): the first anchor's sphere subtracted from the others', and
 /// the pseudo-inverse, which depends on the anchors alone, computed once.
@@ -33,12 +30,11 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
         if !anchors.iter().flat_map(|anchor| anchor.iter()).all(|entry| entry.is_finite()) {
             return Err(Error::NotFinite);
         }
-        let mut equations = NormalEquations::new(D);
+        let mut equations = NormalEquations::new();
         for anchor in &anchors {
             equations.add(&row::<T, D>(anchor, &first), T::ZERO, T::ONE);
         }
-        let least = T::from_f64(LEAST_PIVOT);
-        let factors = equations.factorised(least).ok_or(Error::DegenerateGeometry)?;
+        let factors = equations.factorised().ok_or(Error::DegenerateGeometry)?;
         let mut pseudo_inverse = [[T::ZERO; A]; D];
         for (index, anchor) in anchors.iter().enumerate() {
             let column = factors.solve(&row::<T, D>(anchor, &first));
@@ -83,15 +79,14 @@ pub fn trilaterate<T: Scalar, const D: usize>(
     let Some(first) = observations.first().filter(|_| observations.len() > D) else {
         return Err(Error::TooFewRanges);
     };
-    let mut equations = NormalEquations::new(D);
+    let mut equations = NormalEquations::new();
     for observation in observations {
         if !observation.anchor.iter().all(|entry| entry.is_finite()) {
             return Err(Error::NotFinite);
         }
         equations.add(&row::<T, D>(&observation.anchor, &first.anchor), T::ZERO, T::ONE);
     }
-    let least = T::from_f64(LEAST_PIVOT);
-    let factors = equations.factorised(least).ok_or(Error::DegenerateGeometry)?;
+    let factors = equations.factorised().ok_or(Error::DegenerateGeometry)?;
     let mut sums: [_; D] = core::array::from_fn(|_| T::accumulator());
     for observation in observations {
         let column = factors.solve(&row::<T, D>(&observation.anchor, &first.anchor));
@@ -126,10 +121,6 @@ fn right_side<T: Scalar, const D: usize>(
 }
 
 /// aᵢ − a₀, half of the paper's row: the other half stands on the right.
-fn row<T: Scalar, const D: usize>(anchor: &SVector<T, 3>, first: &SVector<T, 3>) -> [T; MOST] {
-    let mut row = [T::ZERO; MOST];
-    for axis in 0..D {
-        row[axis] = anchor.as_array()[axis] - first.as_array()[axis];
-    }
-    row
+fn row<T: Scalar, const D: usize>(anchor: &SVector<T, 3>, first: &SVector<T, 3>) -> [T; D] {
+    core::array::from_fn(|axis| anchor.as_array()[axis] - first.as_array()[axis])
 }

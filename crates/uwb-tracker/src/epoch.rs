@@ -1,6 +1,6 @@
 //! Positions from the ranges of one moment, without memory: the paper's "unfiltered".
 
-use crate::link::Pace;
+use crate::pace::Pace;
 use crate::{Anchor, Error, RangeSample};
 use heapless::Vec;
 use kestirim_scalar::Scalar;
@@ -48,7 +48,8 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
             anchor.check()?;
         }
         let anchors = Vec::from_slice(anchors).map_err(|_| Error::TooManyAnchors)?;
-        Ok(Self { method, solver, anchors, last: [None; A], pace: Pace::new() })
+        let pace = Pace::new(anchors.len());
+        Ok(Self { method, solver, anchors, last: [None; A], pace })
     }
 
     /// The tag's height in two dimensions, m.
@@ -82,7 +83,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
             Some((heard_us, _)) if *heard_us > sample.time_us => Err(Error::OutOfOrder),
             _ => {
                 *last = Some((sample.time_us, sample.range - anchor.bias));
-                self.pace.hear(sample.time_us, sample.anchor, self.anchors.len());
+                self.pace.hear(sample.time_us);
                 Ok(())
             }
         }

@@ -1,5 +1,6 @@
 use crate::Config;
-use crate::link::{Link, Pace};
+use crate::link::Link;
+use crate::pace::Pace;
 use kestirim_health::Reason;
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
@@ -93,10 +94,11 @@ impl<T: Scalar> Counters<T> {
         self.distrust = self.distrust.saturating_sub(1);
     }
 
-    /// Whether at least one anchor more than the `coordinates` agree beside this one, of so many `heard`.
+    /// Whether at least one anchor more than the `coordinates` agree beside this one (that counts among those `heard` unless it
+    /// is blocked).
     #[inline]
-    pub(crate) fn others_agree(&self, link: &Link<T>, heard: u8, coordinates: usize) -> bool {
-        let others = usize::from(heard).saturating_sub(usize::from(!link.is_blocked));
+    pub(crate) fn others_agree(&self, is_blocked: bool, heard: u8, coordinates: usize) -> bool {
+        let others = usize::from(heard).saturating_sub(usize::from(!is_blocked));
         self.nis < T::from_f64(NIS_OF_AGREEMENT) && others > coordinates
     }
 

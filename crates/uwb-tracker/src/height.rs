@@ -1,6 +1,6 @@
 //! The height of a tag in the plane, from its ranges.
 
-use crate::link::Pace;
+use crate::pace::Pace;
 use crate::{Anchor, Error, RangeSample};
 use heapless::Vec;
 use kestirim_scalar::Scalar;
@@ -93,7 +93,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
             newest_us: None,
             moment_us: None,
             place: None,
-            pace: Pace::new(),
+            pace: Pace::new(A),
         })
     }
 
@@ -117,7 +117,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
         if is_later {
             self.newest_us = Some(sample.time_us);
         }
-        self.pace.hear(sample.time_us, sample.anchor, self.biases.len());
+        self.pace.hear(sample.time_us);
         if let Some(link) = self.links.get_mut(sample.anchor) {
             let last = Some((sample.time_us, sample.range - bias));
             *link = Link { last, before: link.last };
@@ -180,7 +180,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
                 return None;
             }
             // No longer than ranges are ever fresh.
-            let seconds = |us: u64| T::from_micro(us.min(Pace::MOST_US) as i32);
+            let seconds = |us: u64| T::from_micro(us.min(u64::from(Pace::MOST_US)) as i32);
             Some(before + (last - before) * (seconds(since_us) / seconds(interval_us)))
         }))
     }

@@ -9,6 +9,7 @@ mod height;
 mod link;
 mod measurement;
 mod motion;
+mod pace;
 mod published;
 mod sample;
 mod start;

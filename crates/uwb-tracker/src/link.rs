@@ -22,66 +22,6 @@ impl<T: Scalar> Anchor<T> {
     }
 }
 
-/// How often ranges come, and so how old one may be that is still used.
-///
-/// A radio that asks six anchors in turn, five times in two seconds, hears each every 2.6 s: a second, which is right where
-/// ranges come in dozens, would never see three of them together.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pace {
-    /// Time of the newest range (µs); 0 before the first.
-    last_us: u64,
-    /// Anchor of the last range.
-    last: usize,
-    /// Mean time between two ranges of any anchors (µs), mostly over the last sixteen.
-    mean_us: u32,
-    fresh_us: u64,
-}
-
-impl Pace {
-    /// Age up to which a range is always used (µs), …
-    const LEAST_US: u64 = 1_000_000;
-    /// … and beyond which it never is.
-    pub(crate) const MOST_US: u64 = 8_000_000;
-    /// An outage is not slowness: a longer interval counts as this one (µs).
-    const LONGEST_US: u64 = 2_000_000;
-    /// So many rounds of all anchors are fresh: one may be missed.
-    const ROUNDS: u64 = 2;
-
-    pub(crate) const fn new() -> Self {
-        Self { last_us: 0, last: 0, mean_us: 0, fresh_us: Self::LEAST_US }
-    }
-
-    /// Takes notice of a range of an anchor, one of so many `anchors`.
-    #[inline]
-    pub(crate) fn hear(&mut self, time_us: u64, anchor: usize, anchors: usize) {
-        self.last = anchor;
-        let interval_us = time_us.saturating_sub(self.last_us).min(Self::LONGEST_US) as u32;
-        let is_first = self.last_us == 0;
-        self.last_us = self.last_us.max(time_us);
-        if is_first {
-            return;
-        }
-        self.mean_us = if self.mean_us == 0 {
-            interval_us
-        } else {
-            self.mean_us - (self.mean_us >> 4) + (interval_us >> 4)
-        };
-        let round_us = u64::from(self.mean_us).saturating_mul(anchors as u64);
-        self.fresh_us = round_us.saturating_mul(Self::ROUNDS).clamp(Self::LEAST_US, Self::MOST_US);
-    }
-
-    /// Whether the last range was this anchor's: some radios ask each twice.
-    pub(crate) const fn is_last(&self, anchor: usize) -> bool {
-        self.last_us > 0 && self.last == anchor
-    }
-
-    /// Age beyond which a range is not used (µs).
-    #[inline(always)]
-    pub(crate) const fn fresh_us(&self) -> u64 {
-        self.fresh_us
-    }
-}
-
 /// An anchor, its last range, and the noise and gate of its ranges.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<T: Scalar> {

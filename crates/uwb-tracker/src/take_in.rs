@@ -18,7 +18,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     observation: &impl Observation<T, N>,
     config: &Config<T>,
     redundant: bool,
-    others_agree: bool,
+    others_agree: impl Fn() -> bool,
 ) -> Result<(Outcome, Innovation<T>), Error> {
     let weighed = estimate.weigh_observation(observation, link.noise.variance())?;
     let seen = weighed.report();
@@ -38,7 +38,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
             }
         }
         Verdict::Reject => (Outcome::Rejected, believed),
-        Verdict::Recover if others_agree && weighed.innovation() > T::ZERO => {
+        Verdict::Recover if weighed.innovation() > T::ZERO && others_agree() => {
             link.is_blocked = true;
             (Outcome::Rejected, believed)
         }
@@ -65,6 +65,10 @@ fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<
     let huber = config.huber.as_ref()?;
     let threshold = huber.threshold(weighed.innovation());
     let square = threshold * threshold;
+    // The limit is no less than this; most ranges are within it.
+    if !weighed.exceeds(square) {
+        return None;
+    }
     let limit = square * weighed.noise() + square.max(T::ONE) * weighed.spread();
     if !weighed.exceeds(weighed.by_variance(limit)) {
         return None;

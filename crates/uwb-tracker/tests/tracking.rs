@@ -223,7 +223,10 @@ fn check_blocked<T: Scalar>() {
             let range = distance(place, tag) + excess;
             tracker.range(&sample(100_000 * k, anchor, range)).unwrap();
         }
-        let position = tracker.position().expect("a position from the first epoch on");
+        let Some(position) = tracker.position() else {
+            assert!(k < 3, "a position after {k} epochs");
+            continue;
+        };
         let error = (position[0].to_f64() - tag[0]).hypot(position[1].to_f64() - tag[1]);
         assert!(error < 0.3, "{k}: {error}");
     }

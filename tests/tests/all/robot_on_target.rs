@@ -195,7 +195,7 @@ fn cortex_m0() -> Result<()> {
 #[test]
 fn cortex_m4f() -> Result<()> {
     let budgets =
-        Budgets { ekf: [900.0, f64::INFINITY], aekf: [2_000.0; 2], update: [450.0, 700.0] };
+        Budgets { ekf: [900.0, f64::INFINITY], aekf: [2_000.0; 2], update: [320.0, 500.0] };
     check(&CORTEX_M4F, budgets)
 }
 

@@ -15,7 +15,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         sample: &RangeSample<T>,
         range: T,
     ) -> Result<Report<T>, Error> {
-        let anchors = self.links.len();
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Some(estimate) = &mut self.estimate else {
             return Ok(self.collect(sample, range));
@@ -30,11 +29,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             bias_shape: self.bias_shape,
         };
         let redundant = self.heard as usize > D + usize::from(observes_bias);
-        let agree = self.counters.others_agree(link, self.heard, D);
+        let (blocked, heard) = (link.is_blocked, self.heard);
+        let agree = || self.counters.others_agree(blocked, heard, D);
         let (outcome, seen) =
             take_in(estimate, link, &observation, &self.config, redundant, agree)?;
         link.hear(sample.time_us, range);
-        self.pace.hear(sample.time_us, sample.anchor, anchors);
+        self.pace.hear(sample.time_us);
         if outcome == Outcome::Rejected {
             let is_blocked = link.is_blocked;
             self.reject(is_blocked);
@@ -56,11 +56,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     pub(super) fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
         let mut again = false;
         if let Some(link) = self.links.get_mut(sample.anchor) {
-            again = link.fresh(self.time_us, self.pace.fresh_us()).is_some()
-                && !self.pace.is_last(sample.anchor);
+            again = link.fresh(self.time_us, self.pace.fresh_us()).is_some();
             link.hear(sample.time_us, range);
         }
-        self.pace.hear(sample.time_us, sample.anchor, self.links.len());
+        again &= self.pace.collect(sample.time_us, sample.anchor);
         let started = self.begin(self.time_us, again);
         let outcome = if started { Outcome::Started } else { Outcome::Collected };
         Report { outcome, innovation: None }

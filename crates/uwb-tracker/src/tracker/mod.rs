@@ -4,7 +4,8 @@ mod time;
 
 use crate::config::{bias_shape, size};
 use crate::health::Counters;
-use crate::link::{Link, Pace};
+use crate::link::Link;
+use crate::pace::Pace;
 use crate::stillness::Stillness;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
 use heapless::Vec;
@@ -84,7 +85,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             wheels: None,
             doubted_until_us: 0,
             heard: 0,
-            pace: Pace::new(),
+            pace: Pace::new(anchors.len()),
             lost_sigma: size * T::from_f64(LOST_SIGMA),
             bias_shape: bias_shape(size),
             counters: Counters::new(),

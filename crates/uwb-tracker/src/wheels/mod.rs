@@ -8,8 +8,9 @@ use self::course::Course;
 use self::state::{COSINE, COUNT, SINE};
 use crate::config::size;
 use crate::health::{Counters, count_heard};
-use crate::link::{Link, Pace};
+use crate::link::Link;
 use crate::measurement::ProportionalRange;
+use crate::pace::Pace;
 use crate::start::start;
 use crate::take_in::take_in;
 use crate::tracker::{LATE_US, LOST_SIGMA, LOST_US, plausible_wheels};
@@ -79,7 +80,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             time_us: 0,
             wheels: None,
             heard: 0,
-            pace: Pace::new(),
+            pace: Pace::new(anchors.len()),
             size,
             counters: Counters::new(),
         })
@@ -224,7 +225,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let observation =
             ProportionalRange { measured: range, anchor: &place, height: self.config.height };
         let redundant = self.heard > 2;
-        let agree = self.counters.others_agree(link, self.heard, 2);
+        let (blocked, heard) = (link.is_blocked, self.heard);
+        let agree = || self.counters.others_agree(blocked, heard, 2);
         let (mut courses, mut learning) = (self.courses, *link);
         let mut result = None;
         for (index, course) in courses.iter_mut().enumerate() {
@@ -245,7 +247,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         *link = learning;
         link.hear(sample.time_us, range);
         self.courses = decided(courses);
-        self.pace.hear(sample.time_us, sample.anchor, self.links.len());
+        self.pace.hear(sample.time_us);
         if outcome != Outcome::Rejected {
             self.counters.take(seen.nis);
         } else if self.counters.reject(self.heard.max(2), learning.is_blocked) {
@@ -257,14 +259,13 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     /// Keeps a range for a first position, and makes one if it can.
     #[inline(never)] // Rare, and large.
     fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
-        let (fresh_us, anchors) = (self.pace.fresh_us(), self.links.len());
+        let fresh_us = self.pace.fresh_us();
         let mut again = false;
         if let Some(link) = self.links.get_mut(sample.anchor) {
-            again =
-                link.fresh(self.time_us, fresh_us).is_some() && !self.pace.is_last(sample.anchor);
+            again = link.fresh(self.time_us, fresh_us).is_some();
             link.hear(sample.time_us, range);
         }
-        self.pace.hear(sample.time_us, sample.anchor, anchors);
+        again &= self.pace.collect(sample.time_us, sample.anchor);
         let started = self.begin(again);
         let outcome = if started { Outcome::Started } else { Outcome::Collected };
         Report { outcome, innovation: None }
