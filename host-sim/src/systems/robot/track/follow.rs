@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use kestirim_adaptive_kalman::Learning;
 use kestirim_kalman::Covariance;
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_uwb_tracker::{Anchor, Config, EpochMethod};
+use kestirim_uwb_tracker::{Anchor, Config, EpochMethod, Outcome, RangeSample, Report};
 use nalgebra::SVector;
 
 use super::each_epoch::EachEpoch;
@@ -15,7 +15,7 @@ use super::recursive::Recursive;
 use super::wheeled::Wheeled;
 use crate::Error;
 use crate::system::ScalarKind;
-use crate::systems::robot::recording::event::Event;
+use crate::systems::robot::recording::event::{Event, Range};
 use crate::systems::robot::settings::{Dimensions, Setup, TrackerKind};
 
 /// Something that follows a tag.
@@ -52,6 +52,18 @@ impl Reception {
     pub const fn unweighed(taken: bool) -> Self {
         Self { taken, nis: None }
     }
+
+    /// Of a range that was weighed by itself, or refused.
+    pub(super) fn of_range<T: Scalar, E>(answer: Result<Report<T>, E>) -> Self {
+        let Ok(report) = answer else { return Self::unweighed(false) };
+        let nis = report.innovation.map(|innovation| innovation.nis.to_f64());
+        Self { taken: report.outcome != Outcome::Rejected, nis }
+    }
+}
+
+/// A range as a tracker takes it.
+pub(super) fn sample<T: Scalar>(time_us: u64, range: &Range) -> RangeSample<T> {
+    RangeSample { time_us, anchor: range.anchor, range: T::from_f64(range.metres) }
 }
 
 /// Builds what was chosen.

@@ -1,13 +1,13 @@
 //! `kestirim_uwb_tracker::Tracker` behind the trackers' face.
 
 use kestirim_scalar::Scalar;
-use kestirim_uwb_tracker::{Config, InertialSample, OdometrySample, Outcome, RangeSample, Tracker};
+use kestirim_uwb_tracker::{Config, InertialSample, OdometrySample, Tracker};
 use nalgebra::SVector;
 
-use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused};
+use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused, sample};
 use crate::Error;
 use crate::systems::robot::recording::anchors::MOST;
-use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::recording::event::Event;
 use crate::systems::robot::recording::motion::{Inertial, Wheels};
 use crate::systems::robot::settings::{Setup, TrackerKind};
 
@@ -38,17 +38,6 @@ impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
     fn bias_variance(&self) -> f64 {
         self.tracker.health(self.now_us).bias_sigma.to_f64().powi(2) / D as f64
     }
-
-    fn range(&mut self, time_us: u64, range: &Range) -> Reception {
-        let (anchor, range) = (range.anchor, T::from_f64(range.metres));
-        match self.tracker.range(&RangeSample { time_us, anchor, range }) {
-            Ok(report) => Reception {
-                taken: report.outcome != Outcome::Rejected,
-                nis: report.innovation.map(|innovation| innovation.nis.to_f64()),
-            },
-            Err(_) => Reception::unweighed(false),
-        }
-    }
 }
 
 impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
@@ -56,7 +45,9 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
         let number = T::from_f64;
         self.now_us = time_us;
         let taken = match *event {
-            Event::Range(range) => return self.range(time_us, &range),
+            Event::Range(range) => {
+                return Reception::of_range(self.tracker.range(&sample(time_us, &range)));
+            }
             Event::Inertial(Inertial { acceleration, push, .. }) => {
                 let push = push.filter(|_| self.pushed);
                 let sample = InertialSample {

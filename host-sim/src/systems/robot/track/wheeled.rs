@@ -1,12 +1,12 @@
 //! `kestirim_uwb_tracker::WheelTracker` behind the trackers' face.
 
 use kestirim_scalar::Scalar;
-use kestirim_uwb_tracker::{Config, OdometrySample, Outcome, RangeSample, WheelTracker};
+use kestirim_uwb_tracker::{Config, OdometrySample, WheelTracker};
 
-use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused};
+use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused, sample};
 use crate::Error;
 use crate::systems::robot::recording::anchors::MOST;
-use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::recording::event::Event;
 use crate::systems::robot::recording::motion::Wheels;
 use crate::systems::robot::settings::Setup;
 
@@ -29,17 +29,6 @@ impl<T: Scalar> Wheeled<T> {
         let tracker = WheelTracker::new(config, &anchors(setup)).map_err(refused)?;
         Ok(Self { tracker, now_us: 0, height_m: setup.height_m })
     }
-
-    fn range(&mut self, time_us: u64, range: &Range) -> Reception {
-        let (anchor, range) = (range.anchor, T::from_f64(range.metres));
-        match self.tracker.range(&RangeSample { time_us, anchor, range }) {
-            Ok(report) => Reception {
-                taken: report.outcome != Outcome::Rejected,
-                nis: report.innovation.map(|innovation| innovation.nis.to_f64()),
-            },
-            Err(_) => Reception::unweighed(false),
-        }
-    }
 }
 
 impl<T: Scalar> Follow for Wheeled<T> {
@@ -47,7 +36,9 @@ impl<T: Scalar> Follow for Wheeled<T> {
         let number = T::from_f64;
         self.now_us = time_us;
         let taken = match *event {
-            Event::Range(range) => return self.range(time_us, &range),
+            Event::Range(range) => {
+                return Reception::of_range(self.tracker.range(&sample(time_us, &range)));
+            }
             Event::Wheels(Wheels { speed, turn_rate, .. }) => {
                 let (speed, turn_rate) = (number(speed), number(turn_rate));
                 self.tracker.odometry(&OdometrySample { time_us, speed, turn_rate }).is_ok()
