@@ -53,7 +53,7 @@ impl SensorClass {
     #[inline] // As above.
     pub(crate) fn heading_rate<T: Scalar>(self) -> T {
         match self {
-            Self::Industrial => T::from_f64(0.00055),
+            Self::Industrial => T::from_f64(0.00048),
             Self::Consumer => T::from_f64(0.002),
         }
     }
