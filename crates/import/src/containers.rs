@@ -16,6 +16,7 @@ mod imu_message;
 mod join;
 mod mcap;
 mod member;
+mod mimu;
 mod numbered;
 mod own_message;
 mod phones;
@@ -35,6 +36,7 @@ mod zipped;
 
 pub(crate) use ardupilot::ARDUPILOT;
 pub(crate) use mcap::MCAP;
+pub(crate) use mimu::MIMU;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
 pub(crate) use range_message::Label;
@@ -88,6 +90,8 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         (phone.format(), phone.read(options))
     } else if ardupilot_text::is_it(bytes) {
         (Format::ArduPilot, ardupilot::read_text(bytes, options))
+    } else if mimu::is_it(bytes) {
+        (Format::OpenShoeMimu, mimu::read(bytes, options))
     } else {
         return open_text(bytes, options);
     };

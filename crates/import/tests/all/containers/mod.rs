@@ -5,6 +5,7 @@ mod ardupilot;
 mod flights;
 mod imu;
 mod mcap;
+mod openshoe;
 mod phones;
 mod px4;
 mod ranges;
