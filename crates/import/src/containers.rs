@@ -14,9 +14,11 @@ mod definition;
 mod gather;
 mod imu_message;
 mod join;
+mod level_topics;
 mod mcap;
 mod member;
 mod mimu;
+mod number_message;
 mod numbered;
 mod own_message;
 mod phones;
@@ -35,8 +37,10 @@ mod walk;
 mod zipped;
 
 pub(crate) use ardupilot::ARDUPILOT;
+pub(crate) use level_topics::{Entry as LevelEntry, LevelTopics, Role as LevelRole};
 pub(crate) use mcap::MCAP;
 pub(crate) use mimu::MIMU;
+pub(crate) use number_message::ALTITUDE;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
 pub(crate) use range_message::Label;
@@ -114,6 +118,24 @@ pub(crate) fn ranges<'o>(
         mcap::ranges(bytes, options).map(|read| (Format::Mcap, read))
     } else if rosbag::is_it(bytes) {
         rosbag::ranges(bytes, options).map(|read| (Format::Ros1, read))
+    } else {
+        return Ok(None);
+    };
+    read.map(Some)
+}
+
+/// What holds levels in a bag of ROS 1 or an MCAP file; none if the file is another.
+///
+/// # Errors
+/// If it cannot be read, or unpacks to too much.
+pub(crate) fn levels<'o>(
+    bytes: &[u8],
+    options: &'o Options,
+) -> Result<Option<(Format, LevelTopics<'o>)>, Error> {
+    let read = if mcap::is_it(bytes) {
+        mcap::levels(bytes, options).map(|read| (Format::Mcap, read))
+    } else if rosbag::is_it(bytes) {
+        rosbag::levels(bytes, options).map(|read| (Format::Ros1, read))
     } else {
         return Ok(None);
     };

@@ -4,6 +4,7 @@
 mod ardupilot;
 mod flights;
 mod imu;
+mod levels;
 mod mcap;
 mod openshoe;
 mod phones;
