@@ -110,12 +110,12 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Option<Levels>, Error> {
     let left_out = levels.entries.len() - heard.len();
     if left_out > 0 {
         conclusions.push(format!(
-            "{left_out} levels have no place or height within two seconds: left out"
+            "levels left out, as no place or height is within two seconds: {left_out}"
         ));
     }
     let unfixed = fixes.entries.iter().filter(|entry| !is_fix(entry)).count();
     if unfixed > 0 {
-        conclusions.push(format!("{unfixed} places without a fix: left out"));
+        conclusions.push(format!("places left out, as they have no fix: {unfixed}"));
     }
     let damage = topics.losses.damage(Part::Record, levels.entries.len());
     damage.accept(levels.entries.len() + damage.count(), options.strict)?;

@@ -161,6 +161,8 @@ fn meaning(
         let is_sure = !matches!(field.of, Of::Unsigned(_));
         is_sure.then(|| Unit::read(quantity, unit)).flatten()
     };
+    let is_said =
+        [Role::Level, Role::Loss].iter().any(|role| options.columns.of(role.column()).is_some());
     let is_topic = options.topic.as_ref().map(|said| bare(said) == bare(topic));
     for (role, names, quantity, unit) in [
         (Role::Level, &LEVELS[..], Quantity::Level, "dB"),
@@ -173,17 +175,14 @@ fn meaning(
         let is_known = match said {
             Some(pick) => bare(&pick.name) == bare(topic) || pick.name == field.name,
             // Of heights a number alone: images have a height as well.
-            None => of_name.is_some() && (is_plain || !is_height),
+            None => of_name.is_some() && if is_height { is_plain } else { !is_said },
         };
         if is_known && (is_height || is_topic != Some(false)) {
             let unit = of_name.and_then(|named| named.unit).or_else(|| fraction(quantity, unit));
             return Some((role, unit, false));
         }
-        if said.is_some() && !is_height {
-            return None;
-        }
     }
-    let doubtful = named(name, Some(Quantity::Level), &DOUBTFUL)?;
+    let doubtful = named(name, Some(Quantity::Level), &DOUBTFUL).filter(|_| !is_said)?;
     let is_sure = doubtful.unit.is_some() || is_topic == Some(true);
     let unit = doubtful.unit.or_else(|| fraction(Quantity::Level, "dB"));
     (is_topic != Some(false)).then_some((Role::Level, unit, !is_sure))

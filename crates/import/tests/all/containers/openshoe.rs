@@ -95,7 +95,11 @@ fn a_text_is_the_walk() {
     let rows = walk::rows(super::STRIDES);
     let log = read(named(&rows).as_bytes()).unwrap();
     assert_same(&log, &plain(&rows), 1e-10);
-    assert_eq!(told(&log), "time in s, acceleration in g, angular rate in rad/s: OpenShoe text");
+    assert_eq!(
+        told(&log),
+        "time in s, acceleration in g, angular rate in rad/s, columns 11, 2, 3, 4, 5, 6, 7: OpenShoe text; \
+         blanks: from the data"
+    );
     assert_eq!(log.damage.sentences(), [""; 0]);
 }
 
