@@ -53,10 +53,11 @@
     element("alert").textContent = sentence;
     const asked = new Set([...sentence.matchAll(/--([a-z][a-z-]*)/g)].map(([, name]) => name));
     let first = null;
-    for (const part of document.querySelectorAll("[data-setting], [data-option]")) {
+    // A control answers at once, a field of the files when they are opened again.
+    for (const part of document.querySelectorAll("[data-option], [data-setting]")) {
       const is = asked.has(part.dataset.setting ?? part.dataset.option) && !part.classList.contains("disabled");
       part.classList.toggle("asked", is);
-      if (is) first ??= part;
+      if (is && (!first || (part.dataset.setting && !first.dataset.setting))) first = part;
     }
     first?.scrollIntoView({ block: "nearest" });
   }
