@@ -7,6 +7,8 @@ mod browser;
 mod program;
 mod sender;
 
+use std::fmt::Write as _;
+
 use browser::{Page, Server};
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
@@ -166,7 +168,7 @@ fn what_a_refusal_asks_for_is_said_on_the_page() {
             [[2.8, 0.0, 1.3], [0.1, 0.0, 2.0], [1.9, 4.1, 2.1_f64]].iter().enumerate()
         {
             let range = (x - 3.5_f64).hypot(y - 4.7).hypot(*z);
-            log += &format!("{:.1},{index},{range:.3}\n", 0.1 * f64::from(epoch));
+            let _ = writeln!(log, "{:.1},{index},{range:.3}", 0.1 * f64::from(epoch));
         }
     }
     let log = desk.file("ranges.csv", log);
