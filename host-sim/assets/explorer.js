@@ -48,8 +48,18 @@
     }
   }
 
+  // What a refusal asks for by the name of an option is where the page asks for it, and is shown there.
   function complain(sentence) {
     element("alert").textContent = sentence;
+    const asked = new Set([...sentence.matchAll(/--([a-z][a-z-]*)/g)].map(([, name]) => name));
+    let first = null;
+    // A control answers at once, a field of the files when they are opened again.
+    for (const part of document.querySelectorAll("[data-option], [data-setting]")) {
+      const is = asked.has(part.dataset.setting ?? part.dataset.option) && !part.classList.contains("disabled");
+      part.classList.toggle("asked", is);
+      if (is && (!first || (part.dataset.setting && !first.dataset.setting))) first = part;
+    }
+    first?.scrollIntoView({ block: "nearest" });
   }
 
   async function post(path, body) {
@@ -112,7 +122,10 @@
     };
     tell();
     range.addEventListener("input", () => { settings[control.name] = tell(); ask(); });
-    const parts = [make("label", { htmlFor: `control-${control.name}` }, output, control.label), range];
+    // A slider need not move to be answered.
+    const take = make("button", { type: "button", className: "take", textContent: "take this value" });
+    take.addEventListener("click", () => range.dispatchEvent(new Event("input")));
+    const parts = [make("label", { htmlFor: `control-${control.name}` }, output, control.label), range, take];
     if (control.playable) parts.push(player(range));
     return parts;
   }
@@ -188,7 +201,8 @@
   function opened(reply) {
     if (!reply) return;
     [session, settings, windows] = [reply.session, {}, {}];
-    element("figures").replaceChildren();
+    for (const shown of ["facts", "warnings", "findings", "figures"]) element(shown).replaceChildren();
+    element("check").hidden = element("again").hidden = true;
     for (const { place } of places.values()) Figures.forget(place);
     places.clear();
     const kinds = { slider, choice, switch: toggle, set, text };
@@ -212,13 +226,18 @@
     element("bundled").replaceChildren(
       ...source.bundled.map(([value, text]) => make("option", { value, textContent: text })),
       make("option", { value: "", textContent: "your own files …" }));
-    element("files").replaceChildren(...source.files.flatMap((file) => [
+    const option = (name, ...parts) => {
+      const made = make("div", {}, ...parts);
+      made.dataset.option = name;
+      return made;
+    };
+    element("files").replaceChildren(...source.files.map((file) => option(file.name,
       make("label", { htmlFor: `file-${file.name}`, textContent: `${file.label}${file.required ? "" : " (optional)"}` }),
       make("input", { type: "file", id: `file-${file.name}`, name: file.name, required: file.required, multiple: file.several }),
-    ]), ...(source.files.some((file) => file.imported) ? source.reading : []).flatMap(([name, help]) => [
+    )), ...(source.files.some((file) => file.imported) ? source.reading : []).map(([name, help]) => option(name,
       make("label", { htmlFor: `reading-${name}`, textContent: help }),
       make("input", { type: "text", id: `reading-${name}`, name }),
-    ]));
+    )));
     location.hash = source.system;
     choose();
   }

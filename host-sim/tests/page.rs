@@ -7,6 +7,8 @@ mod browser;
 mod program;
 mod sender;
 
+use std::fmt::Write as _;
+
 use browser::{Page, Server};
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
@@ -153,6 +155,54 @@ fn a_razors_log_is_opened_damage_told_and_a_broken_one_refused_with_a_sentence()
     let told = &told[told.find("broken.txt").expect("the file's name")..];
     assert_eq!(sentence, told);
     assert_eq!(path(&page), opened, "what was open stays open");
+}
+
+/// Three anchors do not tell how high the tag beside them is: the page shows where that is said, and goes on when it is.
+#[test]
+fn what_a_refusal_asks_for_is_said_on_the_page() {
+    let desk = Desk::new();
+    let anchors = desk.file("anchors.csv", "anchor,x,y,z\n0,2.8,0,1.3\n1,0.1,0,2\n2,1.9,4.1,2.1\n");
+    let mut log = "t,anchor,range\n".to_owned();
+    for epoch in 0..50 {
+        for (index, [x, y, z]) in
+            [[2.8, 0.0, 1.3], [0.1, 0.0, 2.0], [1.9, 4.1, 2.1_f64]].iter().enumerate()
+        {
+            let range = (x - 3.5_f64).hypot(y - 4.7).hypot(*z);
+            let _ = writeln!(log, "{:.1},{index},{range:.3}", 0.1 * f64::from(epoch));
+        }
+    }
+    let log = desk.file("ranges.csv", log);
+    let server = Server::start(&["serve", "--port", "0"]);
+    let asked = "[...document.querySelectorAll('.asked')].map(p => p.dataset.setting ?? p.dataset.option).join()";
+    for width in WIDTHS {
+        let address = format!("{}#robot", server.address());
+        let Some(page) = Page::open(&address, width) else { return };
+        page.wait_for(DRAWN);
+        page.evaluate(
+            "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",
+        );
+        page.choose_file("#file-anchors", &anchors);
+        page.choose_file("#file-log", &log);
+        page.evaluate("document.getElementById('upload').click()");
+        page.wait_for("document.getElementById('alert').textContent.includes('--height')");
+        let marks = page.evaluate(asked);
+        assert!(marks.as_str().expect("text").split(',').any(|mark| mark == "height"), "{marks}");
+        assert_eq!(page.evaluate("document.getElementById('facts').children.length"), 0);
+        page.screenshot(&format!("explorer-asked-{width}.png"));
+        // Taken as the slider stands, then as it is moved.
+        page.evaluate("document.querySelector('[data-setting=height] .take').click()");
+        page.wait_for(DRAWN);
+        assert_eq!(page.evaluate("document.getElementById('alert').textContent"), "");
+        assert_eq!(page.evaluate(asked), "");
+        let command = "document.getElementById('command').textContent";
+        let first = page.evaluate(command);
+        assert!(first.as_str().expect("text").contains("--height"), "{first}");
+        page.evaluate(&turn("height", "0.5"));
+        page.wait_for(&format!("{command}.includes('--height 0.5')"));
+        // Refusals are no faults of the page, though the browser notes their status.
+        let complaints = page.complaints();
+        assert!(complaints.iter().all(|it| it.contains("422")), "{complaints:?}");
+    }
 }
 
 #[test]

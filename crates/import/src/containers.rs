@@ -14,8 +14,11 @@ mod definition;
 mod gather;
 mod imu_message;
 mod join;
+mod level_topics;
 mod mcap;
 mod member;
+mod mimu;
+mod number_message;
 mod numbered;
 mod own_message;
 mod phones;
@@ -34,7 +37,10 @@ mod walk;
 mod zipped;
 
 pub(crate) use ardupilot::ARDUPILOT;
+pub(crate) use level_topics::{Entry as LevelEntry, LevelTopics, Role as LevelRole};
 pub(crate) use mcap::MCAP;
+pub(crate) use mimu::MIMU;
+pub(crate) use number_message::ALTITUDE;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
 pub(crate) use range_message::Label;
@@ -88,6 +94,8 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
         (phone.format(), phone.read(options))
     } else if ardupilot_text::is_it(bytes) {
         (Format::ArduPilot, ardupilot::read_text(bytes, options))
+    } else if mimu::is_it(bytes) {
+        (Format::OpenShoeMimu, mimu::read(bytes, options))
     } else {
         return open_text(bytes, options);
     };
@@ -110,6 +118,24 @@ pub(crate) fn ranges<'o>(
         mcap::ranges(bytes, options).map(|read| (Format::Mcap, read))
     } else if rosbag::is_it(bytes) {
         rosbag::ranges(bytes, options).map(|read| (Format::Ros1, read))
+    } else {
+        return Ok(None);
+    };
+    read.map(Some)
+}
+
+/// What holds levels in a bag of ROS 1 or an MCAP file; none if the file is another.
+///
+/// # Errors
+/// If it cannot be read, or unpacks to too much.
+pub(crate) fn levels<'o>(
+    bytes: &[u8],
+    options: &'o Options,
+) -> Result<Option<(Format, LevelTopics<'o>)>, Error> {
+    let read = if mcap::is_it(bytes) {
+        mcap::levels(bytes, options).map(|read| (Format::Mcap, read))
+    } else if rosbag::is_it(bytes) {
+        rosbag::levels(bytes, options).map(|read| (Format::Ros1, read))
     } else {
         return Ok(None);
     };

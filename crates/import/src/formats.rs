@@ -2,6 +2,7 @@
 //! be found in the data.
 
 mod openlog_artemis;
+mod openshoe;
 mod razor;
 mod xio;
 mod xsens;
@@ -37,6 +38,12 @@ pub enum Format {
     Phyphox,
     /// Zip file that Sensor Logger exports.
     SensorLogger,
+    /// Text of `OpenShoe`'s first prototype.
+    OpenShoe,
+    /// Text of `OpenShoe`'s module, whose samples are only counted.
+    OpenShoeCounted,
+    /// Packets of `OpenShoe`'s module.
+    OpenShoeMimu,
 }
 
 /// What is known of a format.
@@ -57,8 +64,8 @@ pub(crate) struct Description {
     pub(crate) is_a_guess: bool,
 }
 
-const ALL: [&Description; 10] = [
-    &razor::RAZOR,
+/// The shape alone shows the last one.
+const ALL: [&Description; 13] = [
     &xio::XIO,
     &xsens::XSENS,
     &openlog_artemis::OPENLOG_ARTEMIS,
@@ -68,6 +75,10 @@ const ALL: [&Description; 10] = [
     &containers::MCAP,
     &containers::PHYPHOX,
     &containers::SENSOR_LOGGER,
+    &openshoe::OPENSHOE,
+    &openshoe::OPENSHOE_COUNTED,
+    &containers::MIMU,
+    &razor::RAZOR,
 ];
 
 impl Format {
@@ -104,6 +115,9 @@ impl Format {
             Self::Mcap => &containers::MCAP,
             Self::Phyphox => &containers::PHYPHOX,
             Self::SensorLogger => &containers::SENSOR_LOGGER,
+            Self::OpenShoe => &openshoe::OPENSHOE,
+            Self::OpenShoeCounted => &openshoe::OPENSHOE_COUNTED,
+            Self::OpenShoeMimu => &containers::MIMU,
         }
     }
 }
@@ -142,6 +156,6 @@ mod tests {
             assert_eq!(known.format.name().parse(), Ok(known.format));
         }
         let error = "x".parse::<Format>().unwrap_err().to_string();
-        assert!(error.starts_with("expected one of razor, x-io"), "{error}");
+        assert!(error.starts_with("expected one of x-io, xsens"), "{error}");
     }
 }

@@ -111,7 +111,10 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     let mut damage = std::mem::take(&mut table.damage);
     let total = table.lines.len() + damage.count();
     damage.accept(total, options.strict)?;
-    refuse_other_header(&table)?;
+    // Of a format the places are known.
+    if format.is_none_or(|format| format.description().is_a_guess) {
+        refuse_other_header(&table)?;
+    }
     let columns = Columns::find(&table, format, options)?;
     let mut rows = Rows::of(text.as_ref(), &table, &columns, &mut damage);
     damage.accept(total, options.strict)?;

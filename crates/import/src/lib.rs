@@ -10,6 +10,7 @@ mod formats;
 mod heading;
 pub mod inertial;
 mod layout;
+pub mod levels;
 mod moment;
 mod named;
 mod names;

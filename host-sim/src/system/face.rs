@@ -1,6 +1,7 @@
 //! The one face of a system.
 
 use std::fmt::Display;
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -205,4 +206,10 @@ pub trait Calibration {
     /// # Errors
     /// Whatever is wrong with the options or the files; then nothing is written.
     fn run(&self, matches: &clap::ArgMatches) -> Result<(), Error>;
+
+    /// What looks at a stream while it is made for a calibration, tells what to do next, and writes the calibration to a
+    /// file at its end; none if only a log will do.
+    fn watch(&self, _to: &Path) -> Option<Arc<dyn Plan>> {
+        None
+    }
 }

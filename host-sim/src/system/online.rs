@@ -35,7 +35,12 @@ pub trait Online: Debug {
     fn settle(&mut self) {}
 
     /// The stream has ended.
-    fn finish(&mut self) {}
+    ///
+    /// # Errors
+    /// If something that was to be written at its end cannot be.
+    fn finish(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// The position now, m, z up.
     fn position(&self) -> Option<[f64; 3]> {

@@ -11,10 +11,12 @@ use host_sim::systems::pedestrian::simulate::gait::Pose;
 use host_sim::systems::pedestrian::simulate::kinematics::ideal_imu;
 use host_sim::systems::pedestrian::simulate::scenario::Scenario;
 use host_sim::systems::pedestrian::simulate::sensor::razor_text;
+use kestirim_telemetry::Imu;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde_json::Value;
 
 use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
+use crate::sender;
 
 const RATE_HZ: f64 = 100.0;
 /// How long a position is held, and how long it takes to turn to the next, s.
@@ -298,4 +300,63 @@ fn what_does_not_tell_is_refused_with_what_to_do() {
     let bad = desk.file("bad.csv", "parameter,value\nacc_xx,1\n");
     let replay = ["replay", "pedestrian", "--log", &walk, "--calibration", &bad];
     assert!(refusal(&replay).contains("expected a parameter acc_offset_x, found none"));
+}
+
+/// Samples as a sender sends them.
+fn frames_of(samples: &[Sample]) -> Vec<u8> {
+    sender::frames(samples.iter().map(|sample| Imu {
+        time_us: sample.time_us,
+        specific_force: sample.specific_force.map(|axis| axis as f32),
+        angular_rate: sample.angular_rate.map(|axis| axis as f32),
+    }))
+}
+
+/// What a log holds as samples.
+fn samples_of(log: &str) -> Vec<Sample> {
+    let row = |line: &str| {
+        let values: Vec<f64> = line.split(',').map(|it| it.parse().expect("a number")).collect();
+        Sample {
+            time_us: (values[0] * 1e6).round() as u64,
+            specific_force: [values[1], values[2], values[3]],
+            angular_rate: [values[4], values[5], values[6]],
+        }
+    };
+    log.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn a_stream_of_positions_gives_the_calibration_of_its_log() {
+    let desk = Desk::new();
+    let shown = log(&positions(&UPS), Some(truth()));
+    let (from, of_log) = (desk.file("positions.csv", &shown), desk.named("log.csv"));
+    json(&host_sim(&[&calibrate(&from, &of_log)[..], &["--json"]].concat()));
+    let samples = samples_of(&shown);
+    let stream = desk.file("positions.frames", frames_of(&samples));
+    let out = desk.named("stream.csv");
+    let watch = ["live", "--system", "pedestrian", "--headless", "--calibrate", &out, "--file"];
+    let output = host_sim(&[&watch[..], &[&stream, "--json"]].concat());
+    let told = text(&output.stderr).to_owned();
+    assert_eq!(json(&output)["counts"]["taken"], samples.len());
+    assert!(told.contains("calibration of 12 positions"), "{told}");
+    let values = |path: &str| -> Vec<f64> {
+        let text = fs::read_to_string(path).expect("a calibration");
+        let value = |line: &str| line.split(',').nth(1).and_then(|it| it.parse().ok());
+        text.lines().skip(1).map(|line| value(line).expect("a value")).collect()
+    };
+    // Four bytes hold what the log says to a ten-thousandth of what the sensor's noise leaves.
+    for (of_stream, of_log) in values(&out).iter().zip(values(&of_log)) {
+        assert!((of_stream - of_log).abs() < 1e-5, "{of_stream} is not {of_log}");
+    }
+    // Half of them are too few: what is missing is said, and nothing written.
+    let half = desk.file("half.frames", frames_of(&samples[..samples.len() / 4]));
+    let missing = desk.named("missing.csv");
+    let watch = ["live", "--system", "pedestrian", "--headless", "--calibrate", &missing];
+    let output = host_sim(&[&watch[..], &["--file", &half]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let sentence = text(&output.stderr);
+    assert!(sentence.contains("no calibration: expected at least 6"), "{sentence}");
+    assert!(sentence.contains("z points down"), "{sentence}");
+    assert!(!desk.path("missing.csv").exists());
+    let beside = refusal(&[&watch[..], &["--file", &half, "--tracker", "lite"]].concat());
+    assert!(beside.contains("follows nobody"), "{beside}");
 }

@@ -136,3 +136,113 @@ fn what_is_written_of_a_walk_is_the_same_walk() {
         }
     }
 }
+
+/// A flight round a user: ns, latitude, longitude, height, level.
+fn flight() -> Vec<(u64, [f64; 4])> {
+    let row = |k: u32| {
+        let (angle, radius) = (f64::from(k) * 0.7, 50.0 + 7.0 * f64::from(k));
+        let (x, y) = (radius * angle.cos(), radius * angle.sin());
+        let level = -20.0 - 20.0 * (x - 120.0).hypot(y + 40.0).hypot(40.0).log10();
+        let ns = 1_700_000_000_000_000_000 + u64::from(k) * 1_000_000_000;
+        (ns, [51.5 + y / 111_267.0, 7.25 + x / 69_460.0, 40.0 + 0.1 * f64::from(k), level])
+    };
+    (0..60).map(row).collect()
+}
+
+/// `sensor_msgs/NavSatFix` with two numbers of `std_msgs` in a bag of ROS 1, …
+fn bag_of_levels(rows: &[(u64, [f64; 4])]) -> Vec<u8> {
+    const FIX: &str = "Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\n\
+        float64 altitude\nfloat64[9] position_covariance\nuint8 position_covariance_type\n=====\n\
+        MSG: sensor_msgs/NavSatStatus\nint8 status\nuint16 service\n";
+    let counted = |bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat();
+    let field = |name: &str, value: &[u8]| counted(&[name.as_bytes(), b"=", value].concat());
+    let record =
+        |header: &[Vec<u8>], data: &[u8]| [counted(&header.concat()), counted(data)].concat();
+    let id = |topic: u32| field("conn", &topic.to_le_bytes());
+    let mut bag = b"#ROSBAG V2.0\n".to_vec();
+    for (topic, name, kind, definition) in [
+        (0, "/gps/fix", "sensor_msgs/NavSatFix", FIX),
+        (1, "/rel_alt", "std_msgs/Float64", "float64 data\n"),
+        (2, "/radio/rssi", "std_msgs/Float64", "float64 data\n"),
+    ] {
+        let name = field("topic", name.as_bytes());
+        let data = [
+            name.clone(),
+            field("type", kind.as_bytes()),
+            field("message_definition", definition.as_bytes()),
+        ];
+        bag.extend(record(&[id(topic), name, field("op", &[7])], &data.concat()));
+    }
+    for &(ns, [latitude, longitude, height, level]) in rows {
+        let numbers = [latitude, longitude, height + 90.0].into_iter().chain([1.0; 9]);
+        let numbers: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
+        let fix = [&[0; 4][..], &stamp(ns), &[1, 0, 0, 0], b"g", &[0, 1, 0], &numbers, &[2]];
+        let (height, level) = (height.to_le_bytes(), level.to_le_bytes());
+        for (topic, message) in [(0, &fix.concat()[..]), (1, &height), (2, &level)] {
+            let header = [id(topic), field("op", &[2]), field("time", &stamp(ns))];
+            bag.extend(record(&header, message));
+        }
+    }
+    bag
+}
+
+/// … and in MCAP of ROS 2, whose definitions of `std_msgs` are missing.
+fn mcap_of_levels(rows: &[(u64, [f64; 4])]) -> Vec<u8> {
+    let options = WriteOptions::new().compression(None);
+    let mut file = Writer::with_options(Cursor::new(Vec::new()), options).expect("a file");
+    let mut channel = |name: &str, kind: &str| {
+        let schema = file.add_schema(kind, "ros2msg", b"").expect("a schema");
+        file.add_channel(schema, name, "cdr", &BTreeMap::new()).expect("a channel")
+    };
+    let fix = channel("/gps/fix", "sensor_msgs/msg/NavSatFix");
+    let height_of = channel("/rel_alt", "std_msgs/msg/Float64");
+    let level_of = channel("/radio/rssi", "std_msgs/msg/Float64");
+    for &(ns, [latitude, longitude, height, level]) in rows {
+        let numbers = [latitude, longitude, height + 90.0].into_iter().chain([1.0; 9]);
+        let numbers: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
+        // Behind the first four bytes: stamp, "g" and its end, status and service at 14 and 16, the doubles at 24.
+        let header = [&[0, 1, 0, 0][..], &stamp(ns), &[2, 0, 0, 0], b"g\0", &[0, 0, 1, 0], &[0; 6]];
+        let place = [&header.concat()[..], &numbers, &[2]].concat();
+        let plain = |value: f64| [&[0, 1, 0, 0][..], &value.to_le_bytes()].concat();
+        for (channel_id, message) in
+            [(fix, place), (height_of, plain(height)), (level_of, plain(level))]
+        {
+            let header = MessageHeader { channel_id, sequence: 0, log_time: ns, publish_time: ns };
+            file.write_to_known_channel(&header, &message).expect("a message");
+        }
+    }
+    file.finish().expect("an end");
+    file.into_inner().into_inner()
+}
+
+#[test]
+fn levels_in_messages_give_the_same_place() {
+    let (desk, rows) = (Desk::new(), flight());
+    let line = |(ns, [latitude, longitude, height, level]): &(u64, [f64; 4])| {
+        format!("{},{latitude},{longitude},{height},{level}\n", ns / 1_000_000_000)
+    };
+    let table = "t,lat,lon,h,rssi_db\n".to_owned() + &rows.iter().map(line).collect::<String>();
+    let replay = |log: &str| json(&host_sim(&["replay", "drone", "--log", log, "--json"]));
+    let place = |report: &Value| {
+        ["x", "y"].map(|axis| report["estimate"][axis].as_f64().expect("a number"))
+    };
+    let plain = replay(&desk.file("plain.csv", table));
+    for (name, bytes) in [("ros1.bag", bag_of_levels(&rows)), ("ros2.mcap", mcap_of_levels(&rows))]
+    {
+        let report = replay(&desk.file(name, bytes));
+        assert_eq!(report["measurements"], plain["measurements"], "{name}");
+        let (found, expected) = (place(&report), place(&plain));
+        let off = (found[0] - expected[0]).hypot(found[1] - expected[1]);
+        assert!(off < 1e-3, "{name}: {off} m");
+        let told = report["import"].to_string();
+        assert!(told.contains("/radio/rssi, places of /gps/fix, heights of /rel_alt"), "{told}");
+    }
+    // The altitude is no height above anybody.
+    let mut bag = bag_of_levels(&rows);
+    let name = b"/rel_alt";
+    while let Some(at) = bag.windows(name.len()).position(|it| it == name) {
+        bag[at + 1..at + 8].copy_from_slice(b"nothing");
+    }
+    let sentence = refusal(&["replay", "drone", "--log", &desk.file("flat.bag", bag)]);
+    assert!(sentence.contains("--columns h=TOPIC, or h=altitude"), "{sentence}");
+}

@@ -10,6 +10,7 @@ use super::Decoded;
 use super::bytes::Bytes;
 use super::chunks::{self, Announced, Chunk, Messages, Records, is_cut_chunk};
 use super::imu_message::Encoding;
+use super::level_topics::LevelTopics;
 use super::range_topics::RangeTopics;
 use super::topics::{self, Topics};
 use super::unpack::Compression;
@@ -50,6 +51,15 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
 pub(super) fn ranges<'o>(bytes: &[u8], options: &'o Options) -> Result<RangeTopics<'o>, Error> {
     let records = bytes.get(MAGIC.len()..).unwrap_or_default();
     chunks::read(records, Mcap::default(), RangeTopics::new(options))
+}
+
+/// Reads the levels of a file.
+///
+/// # Errors
+/// If it unpacks to too much.
+pub(super) fn levels<'o>(bytes: &[u8], options: &'o Options) -> Result<LevelTopics<'o>, Error> {
+    let records = bytes.get(MAGIC.len()..).unwrap_or_default();
+    chunks::read(records, Mcap::default(), LevelTopics::new(options))
 }
 
 /// What a schema tells: the name of a type, and its definition if that is a text of ROS or a description of protobuf.

@@ -10,6 +10,7 @@ use super::Decoded;
 use super::bytes::Bytes;
 use super::chunks::{self, Announced, Chunk, Messages, Records, is_cut_chunk};
 use super::imu_message::Encoding;
+use super::level_topics::LevelTopics;
 use super::range_topics::RangeTopics;
 use super::topics::{self, Topics};
 use super::unpack::Compression;
@@ -47,6 +48,14 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
 /// If it is of another version, or unpacks to too much.
 pub(super) fn ranges<'o>(bytes: &[u8], options: &'o Options) -> Result<RangeTopics<'o>, Error> {
     chunks::read(contents(bytes)?, Bag::default(), RangeTopics::new(options))
+}
+
+/// Reads the levels of a bag.
+///
+/// # Errors
+/// If it is of another version, or unpacks to too much.
+pub(super) fn levels<'o>(bytes: &[u8], options: &'o Options) -> Result<LevelTopics<'o>, Error> {
+    chunks::read(contents(bytes)?, Bag::default(), LevelTopics::new(options))
 }
 
 /// The records behind the first line.

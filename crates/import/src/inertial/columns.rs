@@ -96,7 +96,7 @@ impl Columns {
             are_said: picks.picks.iter().any(Option::is_some),
             source,
         };
-        if is_bare(table, options) {
+        if is_bare(table, options) && description.is_none_or(|known| known.is_a_guess) {
             columns.source = Source::Data;
         }
         columns.claims = claims(table, options, description, &columns, &meanings, is_plain);

@@ -55,10 +55,11 @@ impl Feed {
     }
 
     /// Nothing more will come.
-    pub(super) fn finish(&mut self) {
-        if let Some(estimator) = &mut self.estimator {
-            estimator.finish();
-        }
+    ///
+    /// # Errors
+    /// As [`Online::finish`].
+    pub(super) fn finish(&mut self) -> Result<(), Error> {
+        self.estimator.as_mut().map_or(Ok(()), |estimator| estimator.finish())
     }
 
     /// Shows how the estimator is doing.
@@ -188,7 +189,7 @@ mod tests {
             feed.take(&message.into(), &mut state)?;
         }
         assert_eq!(state.position, None);
-        feed.finish();
+        feed.finish()?;
         feed.show(&mut state);
         let [x, y, _] = state.position.unwrap();
         assert!((x - 60.0).hypot(y + 40.0) < 5.0, "{x} {y}");

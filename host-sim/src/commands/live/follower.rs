@@ -109,9 +109,9 @@ impl Decoder {
             let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
             self.sorter.finish(|message| self.feed.take(message, &mut state))?;
         }
-        self.feed.finish();
+        let finished = self.feed.finish();
         self.show(0);
-        Ok(())
+        finished
     }
 
     /// Nothing comes for now.

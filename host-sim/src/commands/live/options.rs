@@ -1,21 +1,24 @@
 //! What the command line of `host-sim live` can choose.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::builder::PossibleValuesParser;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgMatches, Args, Command};
 
-use crate::Error;
 use crate::commands::arguments::{self, find};
 use crate::commands::serve;
 use crate::system::{AnySystem, Files, Panel, Plan, Setting, Settings};
 use crate::systems::ALL;
+use crate::{Error, output};
 
 /// Nobody's estimator: what the sender itself estimates is shown.
 const NONE: &str = "none";
+
+/// The option that looks at a calibration while it is made.
+const CALIBRATE: &str = "calibrate";
 
 /// Where senders find this program if nobody says otherwise: on the same machine.
 const DEFAULT_ADDRESS: &str = "127.0.0.1:5775";
@@ -114,6 +117,19 @@ pub(in crate::commands) fn command(arguments: &[OsString]) -> Command {
         .next_help_heading(format!("Of --system {}", system.name()))
         .args(files.map(|field| field.argument(&settings)))
         .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
+        .args(watches(system).then(calibrate))
+}
+
+/// Whether a calibration of the system can be looked at while it is made.
+fn watches(system: &dyn AnySystem) -> bool {
+    system.calibration().is_some_and(|it| it.watch(Path::new("")).is_some())
+}
+
+fn calibrate() -> Arg {
+    let help = "Follow nobody, but look at a calibration while it is made: tell what to do next, and write it to this file at \
+                the end";
+    let argument = Arg::new(CALIBRATE).long(CALIBRATE).value_name("OUT.csv").help(help);
+    argument.value_parser(clap::value_parser!(PathBuf))
 }
 
 /// Which options each system has beside those that all have.
@@ -124,6 +140,7 @@ fn options_of_systems() -> String {
         let settings = live_settings(system);
         let mut options: Vec<_> = files
             .chain(settings.iter().map(Setting::option))
+            .chain(watches(system).then(|| CALIBRATE.to_owned()))
             .map(|name| format!("--{name}"))
             .collect();
         options.dedup();
@@ -141,6 +158,17 @@ pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
     let mut settings = Settings::matched(live_settings(system), matches);
     let files = Files::matched(system.files(), matches, &mut settings)?;
     system.refuse_idle(&settings)?;
+    if let Ok(Some(to)) = matches.try_get_one::<PathBuf>(CALIBRATE) {
+        let has_file = system.files().iter().any(|field| files.one(field.name).is_some());
+        if has_file || !settings.arguments().is_empty() {
+            let problem = "--calibrate follows nobody: expected no option of the system beside it";
+            return Err(Error::Usage(problem.to_owned()));
+        }
+        output::refuse_overwriting("--calibrate", Some(to), stream.file.as_ref())?;
+        let (name, panels) = (system.name(), system.panels());
+        let plan = system.calibration().and_then(|it| it.watch(to));
+        return Ok((stream, Following { name, panels, plan }));
+    }
     Ok((stream, Following::of(system, &settings, &files)?))
 }
 

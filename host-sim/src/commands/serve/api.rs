@@ -105,13 +105,27 @@ pub(super) async fn open_files(
     let opened = beside(move || {
         let open = || {
             let opened = system.open(Source::Files(files), &settings)?;
-            // What cannot be used is refused when it is opened, not when a control is moved.
-            opened.answer(&Settings::new(opened.settings()))?;
-            Ok(opened)
+            // What cannot be used is refused when it is opened, not when a control is moved; but what a control can say is
+            // asked for beside the controls.
+            match opened.answer(&Settings::new(opened.settings())) {
+                Err(error) if !asks_for_a_setting(&error, &opened.settings()) => Err(error),
+                _ => Ok(opened),
+            }
         };
         open().map_err(|error: Error| error.naming_files_below(folder.path()))
     });
     Ok(keep(&shared, opened.await?, Some(place)))
+}
+
+/// Whether a refusal names the option of a setting.
+fn asks_for_a_setting(error: &Error, settings: &[Setting]) -> bool {
+    let sentence = error.to_string();
+    let is_of_name = |letter: char| letter.is_ascii_lowercase() || letter == '-';
+    let mut named = sentence.split("--").skip(1).map(|rest| {
+        let end = rest.find(|letter| !is_of_name(letter)).unwrap_or(rest.len());
+        rest.get(..end).unwrap_or_default().trim_end_matches('-')
+    });
+    named.any(|name| settings.iter().any(|setting| setting.name == name))
 }
 
 /// How the page stands.

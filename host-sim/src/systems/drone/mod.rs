@@ -44,7 +44,8 @@ impl System for Drone {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "log",
-            "Flight: CSV with columns t,x,y,h and path_loss_db or rssi_db (s, m, dB), or lat,lon (°) instead of x,y",
+            "Flight: CSV with columns t,x,y,h and path_loss_db or rssi_db (s, m, dB), or lat,lon (°) instead of x,y; or a ROS 1 bag or \
+             MCAP file with sensor_msgs/NavSatFix and a number that is called rssi",
         )
         .imported(),
         FileField::optional(

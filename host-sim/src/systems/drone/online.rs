@@ -93,8 +93,9 @@ impl Online for Listener {
         }
     }
 
-    fn finish(&mut self) {
+    fn finish(&mut self) -> Result<(), Error> {
         self.settle();
+        Ok(())
     }
 
     fn position(&self) -> Option<[f64; 3]> {

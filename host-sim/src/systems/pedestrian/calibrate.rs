@@ -1,19 +1,22 @@
 //! `host-sim calibrate pedestrian`: what the IMU measures wrong, from a log in which it is held in several positions.
 
 mod found;
+mod watched;
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use kestirim_imu_calibration::{AccelerometerModel, Error as Refused, GyroscopeModel, Side};
 use serde::Serialize;
 
 use self::found::{Found, HOLD_S, Refusal, SHORTEST_S};
+use self::watched::Watching;
 use super::recording::calibration::{self, Parameter};
 use super::recording::log;
 use super::{Pedestrian, check};
-use crate::system::{Calibration, Finding, Reading, System};
+use crate::system::{Calibration, Finding, Plan, Reading, System};
 use crate::{Error, output};
 
 /// The command.
@@ -59,6 +62,10 @@ impl Calibration for Calibrate {
         let report = Report::new(&found, parameters, log.import, warnings);
         output::show(&report, matches.get_flag("json"))
     }
+
+    fn watch(&self, to: &Path) -> Option<Arc<dyn Plan>> {
+        Some(Arc::new(Watching { to: to.to_path_buf() }))
+    }
 }
 
 /// Why there is no calibration, and what to do.
@@ -96,6 +103,16 @@ fn in_words(missing: &[Side]) -> Option<String> {
         .then(|| format!("turn the sensor so that {sides}, and hold it {HOLD_S:.0} s{each}"))
 }
 
+fn edges() -> String {
+    format!(
+        "for the accelerometer's misalignments, hold the sensor {HOLD_S:.0} s on each of six edges as well"
+    )
+}
+
+fn turns() -> String {
+    "for the gyroscope's scales and misalignments, turn the sensor from position to position about each of its axes".to_owned()
+}
+
 /// What the command prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
@@ -122,15 +139,10 @@ impl Report {
     ) -> Self {
         let mut advice: Vec<_> = in_words(&found.missing).into_iter().collect();
         if found.accelerometer != AccelerometerModel::Full {
-            advice.push(format!(
-                "for the accelerometer's misalignments, hold the sensor {HOLD_S:.0} s on each of six edges as well"
-            ));
+            advice.push(edges());
         }
         if found.gyroscope != Some(GyroscopeModel::Full) {
-            advice.push(
-                "for the gyroscope's scales and misalignments, turn the sensor from position to position about each of its axes"
-                    .to_owned(),
-            );
+            advice.push(turns());
         }
         Self {
             system: Pedestrian::NAME,

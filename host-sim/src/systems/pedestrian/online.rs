@@ -85,8 +85,9 @@ impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online fo
         Outcome::Taken
     }
 
-    fn finish(&mut self) {
+    fn finish(&mut self) -> Result<(), Error> {
         self.strides += u32::from(self.tracker.finish().is_some());
+        Ok(())
     }
 
     fn position(&self) -> Option<[f64; 3]> {
@@ -103,7 +104,15 @@ impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online fo
 
     fn facts(&self) -> Vec<(String, String)> {
         let length = format!("{:.2} m", self.tracker.path_length().to_f64());
-        vec![("path length".to_owned(), length), ("strides".to_owned(), self.strides.to_string())]
+        let mut facts = vec![
+            ("path length".to_owned(), length),
+            ("strides".to_owned(), self.strides.to_string()),
+        ];
+        if self.strides == 0 {
+            let guide = "fasten the sensor to the instep so that it cannot wobble, any way up, stand still for 1 s, and walk";
+            facts.push(("what to do".to_owned(), guide.to_owned()));
+        }
+        facts
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -4,7 +4,9 @@
 mod ardupilot;
 mod flights;
 mod imu;
+mod levels;
 mod mcap;
+mod openshoe;
 mod phones;
 mod px4;
 mod ranges;

@@ -28,17 +28,17 @@ const RANGING: &str =
     "int16 anchorId\nint16 tagId\nint32 range\nint32 seq\nfloat64 errorEstimation\n";
 
 /// Writes a message's fields.
-struct Pen {
+pub(super) struct Pen {
     message: Vec<u8>,
     is_cdr: bool,
 }
 
 impl Pen {
-    fn new(is_cdr: bool) -> Self {
+    pub(super) fn new(is_cdr: bool) -> Self {
         Self { message: if is_cdr { vec![0, 1, 0, 0] } else { Vec::new() }, is_cdr }
     }
 
-    fn put<const N: usize>(mut self, number: [u8; N]) -> Self {
+    pub(super) fn put<const N: usize>(mut self, number: [u8; N]) -> Self {
         if self.is_cdr {
             self.message.resize((self.message.len() - 4).next_multiple_of(N) + 4, 0);
         }
@@ -46,15 +46,19 @@ impl Pen {
         self
     }
 
-    fn single(self, number: f64) -> Self {
+    pub(super) fn single(self, number: f64) -> Self {
         self.put((number as f32).to_le_bytes())
+    }
+
+    pub(super) fn message(self) -> Vec<u8> {
+        self.message
     }
 
     fn singles(self, numbers: &[f64]) -> Self {
         numbers.iter().fold(self, |pen, number| pen.single(*number))
     }
 
-    fn header(mut self, t: f64, frame: &str) -> Self {
+    pub(super) fn header(mut self, t: f64, frame: &str) -> Self {
         if !self.is_cdr {
             self = self.put([0; 4]);
         }
@@ -177,7 +181,7 @@ fn moments() -> impl Iterator<Item = (f64, [f64; 3])> {
 }
 
 /// A bag's connection with a definition.
-fn connection(id: u32, topic: &str, kind: &str, definition: &str) -> Vec<u8> {
+pub(super) fn connection(id: u32, topic: &str, kind: &str, definition: &str) -> Vec<u8> {
     let field = |name: &str, value: &[u8]| {
         let field = [name.as_bytes(), b"=", value].concat();
         [&(field.len() as u32).to_le_bytes()[..], &field].concat()

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use kestirim_import::Options;
+use kestirim_import::{Options, levels};
 
 use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table::{self, Column, Found, Header, Log};
+use crate::text;
 
 /// What was measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,15 +58,21 @@ impl Stop {
     }
 }
 
-/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`.
+/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
+    let bytes = text::bytes(path)?;
+    let levels = levels::read(&bytes, options).map_err(|error| table::refused(path, &error))?;
+    if let Some(levels) = levels {
+        return Ok(of_levels(levels));
+    }
     let mut flight =
         Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0, origin: None };
-    let found = table::read_log(
+    let found = table::parse(
         path,
+        &bytes,
         &Log { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         columns,
         |&(places, [t, h, value], quantity), row| {
@@ -93,6 +100,22 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     )?;
     flight.stops.sort_by(|a, b| a.t.total_cmp(&b.t));
     Ok((flight, found))
+}
+
+fn of_levels(levels: levels::Levels) -> (Flight, Found) {
+    let quantity = if levels.are_losses { Quantity::PathLoss } else { Quantity::Level };
+    let mut flight = Flight { quantity, stops: Vec::new(), unusable: 0, origin: None };
+    for heard in levels.heard {
+        let loss = if levels.are_losses { heard.level } else { -heard.level };
+        let place = Origin::place(&mut flight.origin, heard.latitude, heard.longitude);
+        let t = heard.time_us as f64 * 1e-6;
+        let stop = place.map(|place| Stop { t, place, height: heard.height, loss });
+        match stop.filter(Stop::is_usable) {
+            Some(stop) => flight.stops.push(stop),
+            None => flight.unusable += 1,
+        }
+    }
+    (flight, Found { import: levels.conclusions, warnings: levels.damage.sentences() })
 }
 
 fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity), Error> {

@@ -26,6 +26,13 @@ impl Origin {
         [normal * cosine, meridian].map(f64::to_radians)
     }
 
+    /// A place in the plane; the first one is where it touches the Earth. None if that is nowhere near, or no place.
+    pub fn place(origin: &mut Option<Self>, latitude: f64, longitude: f64) -> Option<[f64; 2]> {
+        let is_place = latitude.abs() <= 89.0 && longitude.abs() <= 360.0;
+        is_place
+            .then(|| origin.get_or_insert(Self { latitude, longitude }).plane(latitude, longitude))
+    }
+
     /// A place in the plane, m to the east and north. Within 10 km it is right to a metre.
     fn plane(&self, latitude: f64, longitude: f64) -> [f64; 2] {
         let [east, north] = self.metres_a_degree();
@@ -91,11 +98,8 @@ impl Places {
             Self::Plane([x, y]) => Ok([row.coordinate("x", x)?, row.coordinate("y", y)?]),
             Self::Earth([lat, lon]) => {
                 let (latitude, longitude) = (row.number("lat", lat)?, row.number("lon", lon)?);
-                if latitude.abs() > 89.0 || longitude.abs() > 360.0 {
-                    return Err(row.line.error("expected latitude and longitude in degrees"));
-                }
-                let origin = origin.get_or_insert(Origin { latitude, longitude });
-                Ok(origin.plane(latitude, longitude))
+                Origin::place(origin, latitude, longitude)
+                    .ok_or_else(|| row.line.error("expected latitude and longitude in degrees"))
             }
         }
     }
