@@ -26,8 +26,6 @@ const UNSEEN: &[(&str, &str, &str)] = &[
     ("trek_m1l", "room mirrored", "the same"),
     ("esp32_los2", "ranges 10 % long", "three anchors: one range to spare cannot tell"),
     ("kinematic", "orbits a kilometre off", "all orbits moved alike move the position, and fit"),
-    ("kalman", "outputs 50 ms late", "not told yet: innovations grow by less than half"),
-    ("luenberger", "inputs 100 ms late", "the same"),
 ];
 
 /// One run of a system: its error, m (UAV: mrad), and what the user was told.
