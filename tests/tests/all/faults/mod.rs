@@ -94,6 +94,17 @@ fn run(
     settings: &[(&str, &str)],
     measure: fn(&Value) -> Option<f64>,
 ) -> Result<Answer> {
+    run_writing(system, files, settings, measure, &Wanted::default())
+}
+
+/// The same, with files written.
+fn run_writing(
+    system: &dyn AnySystem,
+    files: &[(&str, &Path)],
+    settings: &[(&str, &str)],
+    measure: fn(&Value) -> Option<f64>,
+    wanted: &Wanted,
+) -> Result<Answer> {
     let mut given = Settings::new(system.settings());
     for (name, value) in settings {
         given.set(name, value)?;
@@ -102,9 +113,8 @@ fn run(
     for (field, path) in files {
         read.add(*field, *path);
     }
-    let account = system
-        .open(Source::Files(read), &given)
-        .and_then(|opened| opened.replay(&given, &Wanted::default()));
+    let account =
+        system.open(Source::Files(read), &given).and_then(|opened| opened.replay(&given, wanted));
     Ok(match account {
         Err(error) => {
             let told =
