@@ -273,7 +273,7 @@ fn replay(day: &Day, clocks: &Path, mode: &str) -> Result<(Answer, Option<Farthe
     Ok((answer, farthest.as_ref().map(Farthest::of)))
 }
 
-/// Faults after which an epoch of the moving receiver is farther than ten deviations although nothing speaks against it,
+/// Faults after which an epoch is farther than ten deviations although nothing speaks against it,
 /// and why.
 const UNTOLD: [(&str, &str); 4] = [
     ("orbits a kilometre off", "all orbits moved alike move the position, and fit"),
