@@ -20,7 +20,7 @@ pub enum Reason {
     Rejected,
     /// What the estimate needs cannot be seen in the data.
     NotObservable,
-    /// Times run too fast or too slow, or products belong to another time.
+    /// Times run too fast or too slow, some data are later than others, or products belong to another time.
     Time,
     /// Data seem to be in another unit, or of another sign.
     Units,

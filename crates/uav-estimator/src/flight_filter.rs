@@ -1,9 +1,10 @@
-use kestirim_health::Health;
+use kestirim_health::{Health, Reason};
 use kestirim_kalman::Innovation;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
 use crate::gate::Gate;
+use crate::lateness::Lateness;
 use crate::monitor::Monitor;
 use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
@@ -30,6 +31,7 @@ pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     /// How many times each output was left out.
     rejected: [u32; P],
     monitor: Monitor,
+    lateness: Lateness<P>,
     transitions: Transitions<Transition<T>, L>,
     /// Time (µs) and input of the sample before.
     before: Option<(i64, SVector<f64, 2>)>,
@@ -50,9 +52,15 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         let filter =
             KalmanFilter::new(c, &noise.outputs, &SVector::zeros(), &SVector::from(UNKNOWN))?;
         let transitions = Transitions::new(*dynamics, usual, noise.inputs);
-        let gates = [Gate::default(); P];
-        let monitor = Monitor::default();
-        Ok(Self { filter, gates, rejected: [0; P], monitor, transitions, before: None })
+        Ok(Self {
+            filter,
+            gates: [Gate::default(); P],
+            rejected: [0; P],
+            monitor: Monitor::default(),
+            lateness: Lateness::NONE,
+            transitions,
+            before: None,
+        })
     }
 
     /// Says how long an interval usually is, s.
@@ -72,9 +80,10 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
 
     /// Whether the estimate can be relied upon: `innovations` if over about 200 samples the normalised innovations
     /// squared are more than 2.25 on average, each counted for no more than 10; `rejected` if over about 50 more
-    /// than a tenth of the measurements were left out.
+    /// than a tenth of the measurements were left out; `time` if over about 1000 the innovations follow the movement of
+    /// the outputs, as they do if outputs come late or inputs do, by four samples or so.
     pub fn health(&self) -> Health {
-        self.monitor.health()
+        self.monitor.health().with(Reason::Time, self.lateness.is_told())
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
@@ -107,6 +116,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         let of = || judged.innovations.iter().flatten().map(|innovation| innovation.nis);
         let left_out = judged.is_left_out.iter().filter(|is_left_out| **is_left_out).count();
         self.monitor.count(of().count(), left_out, of());
+        self.lateness.count(&sample.measured, &judged.innovations);
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, transition)) = &moved {
             self.transitions.keep(*interval_us, transition);

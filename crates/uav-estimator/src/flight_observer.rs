@@ -71,8 +71,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
     }
 
     /// Whether the estimate can be relied upon: `rejected` if over about 50 samples more than a tenth of the
-    /// measurements were left out. An observer knows no variances: whether its innovations are too large, only a
-    /// [`FlightFilter`](crate::FlightFilter) beside it can tell.
+    /// measurements were left out. An observer knows no variances: whether its innovations are too large, or its
+    /// inputs late, only a [`FlightFilter`](crate::FlightFilter) beside it can tell.
     pub fn health(&self) -> Health {
         self.monitor.health()
     }

@@ -10,6 +10,7 @@ mod gain;
 mod gate;
 mod innovation_gate;
 mod kalman_filter;
+mod lateness;
 mod monitor;
 mod sample;
 mod transitions;

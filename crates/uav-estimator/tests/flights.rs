@@ -3,7 +3,7 @@
 use kestirim_kalman::{Covariance, Gaussian, LinearObservation, SparseRow};
 use kestirim_observer_design::{Complex, zero_order_hold};
 use kestirim_uav_estimator::{
-    Dynamics, Error, Estimator, FlightFilter, FlightObserver, KalmanFilter, Noise, Sample,
+    Dynamics, Error, Estimator, FlightFilter, FlightObserver, KalmanFilter, Noise, Reason, Sample,
 };
 use kestirim_uav_longitudinal::{airspeed_and_pitch, navion, rate_airspeed_and_pitch, thesis_like};
 use nalgebra::{SMatrix, SVector, Vector2, Vector3, Vector4};
@@ -263,4 +263,30 @@ fn what_has_changed_is_followed() {
     let expected = samples.last().unwrap().measured[1].unwrap();
     let found = [filter.filter().estimate()[2], observer.estimate()[2]];
     assert!(found.iter().all(|found| (found - expected).abs() < 10.0), "{found:?} {expected}");
+}
+
+/// Whether it is told that inputs and outputs are not of one time, at any sample of thirty seconds.
+fn is_told<T: kestirim_scalar::Scalar>(outputs_late: usize, inputs_late: usize) -> bool {
+    let (samples, _) = flight(&(0..3000).collect::<Vec<_>>());
+    let c = rate_airspeed_and_pitch();
+    let mut filter = FlightFilter::<T, 3>::new(&dynamics(), &c, &noise(), USUAL_S).unwrap();
+    let mut is_told = false;
+    for (index, sample) in samples.iter().enumerate() {
+        let late = |by: usize| samples[index.saturating_sub(by)];
+        let (input, measured) = (late(inputs_late).input, late(outputs_late).measured);
+        filter.take(&Sample { time_us: sample.time_us, input, measured }).unwrap();
+        is_told |= filter.health().has(Reason::Time);
+    }
+    is_told
+}
+
+#[test]
+fn what_comes_late_is_told() {
+    fn check<T: kestirim_scalar::Scalar>() {
+        assert!(!is_told::<T>(0, 0));
+        assert!(is_told::<T>(5, 0) && is_told::<T>(0, 10));
+    }
+    check::<f32>();
+    check::<f64>();
+    check::<kestirim_scalar::Q16_16>();
 }

@@ -3,7 +3,8 @@ use kestirim_air_to_ground::{FreeSpace, Measurement};
 use kestirim_particle_filter::{Error as FilterError, Moments, PointMass, Region};
 use kestirim_scalar::Scalar;
 
-use crate::Error;
+use crate::level_step::health;
+use crate::{Error, Health};
 
 /// The power of the likelihood that gives credible regions their nominal coverage: (1 − ρ)/(1 + ρ) for hovers whose shadowing
 /// correlates by 0.82, as it does 20 m apart if it decays over 100 m.
@@ -114,6 +115,12 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         probability: T,
     ) -> bool {
         estimate.is_credible(&self.measurements, place, probability)
+    }
+
+    /// Whether an estimate from these measurements can be relied upon: `innovations` where their levels step
+    /// ([`LevelStep`](crate::LevelStep)), seen from its place.
+    pub fn health<const L: usize>(&self, estimate: &BeaconEstimate<T, L>) -> Health {
+        health(&self.measurements, estimate.place)
     }
 }
 

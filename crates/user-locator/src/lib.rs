@@ -4,6 +4,7 @@
 mod area;
 mod beacon;
 mod error;
+mod level_step;
 mod locator;
 mod orbit;
 mod published;
@@ -14,6 +15,8 @@ mod tracker;
 pub use area::{Area, Within};
 pub use beacon::{Beacon, BeaconEstimate};
 pub use error::Error;
+pub use kestirim_health::{Health, Reason};
+pub use level_step::LevelStep;
 pub use locator::Locator;
 pub use orbit::{Height, Orbit, Waypoint};
 pub use published::{PublishedLocator, PublishedSettings};

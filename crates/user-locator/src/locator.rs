@@ -3,7 +3,8 @@ use kestirim_air_to_ground::{Channel, Likelihood, Measurement};
 use kestirim_particle_filter::{Moments, PointMass, Region, Update};
 use kestirim_scalar::Scalar;
 
-use crate::Error;
+use crate::level_step::health;
+use crate::{Error, Health};
 
 /// Depth below the largest log-density, 10, beyond which points are given up when the lattice is laid anew.
 const DEPTH: f64 = 10.0;
@@ -117,6 +118,13 @@ where
         let heaviest = self.posterior.point(self.posterior.heaviest())?;
         let level = self.posterior.density_level(probability);
         Some(density(state) - density(&heaviest) >= level)
+    }
+
+    /// Whether the place can be relied upon: `innovations` where the levels of the stored measurements step
+    /// ([`LevelStep`](crate::LevelStep)), seen from it.
+    pub fn health(&self) -> Health {
+        let mean = self.moments().mean();
+        health(&self.measurements, [mean[0], mean[1]])
     }
 }
 

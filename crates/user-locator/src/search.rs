@@ -1,7 +1,8 @@
 use kestirim_air_to_ground::{FreeSpace, Measurement};
 use kestirim_scalar::Scalar;
 
-use crate::{Area, BeaconEstimate, Error, Thinned};
+use crate::level_step::health;
+use crate::{Area, BeaconEstimate, Error, Health, Thinned};
 
 /// Searches an area of up to N corners, over open ground, for a transmitter from any number of measurements, of which
 /// up to M are kept.
@@ -73,5 +74,11 @@ impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
         probability: T,
     ) -> bool {
         estimate.is_credible(self.measurements(), place, probability)
+    }
+
+    /// Whether an estimate from these measurements can be relied upon: `innovations` where their levels step
+    /// ([`LevelStep`](crate::LevelStep)), seen from its place.
+    pub fn health<const L: usize>(&self, estimate: &BeaconEstimate<T, L>) -> Health {
+        health(self.measurements(), estimate.place)
     }
 }

@@ -22,6 +22,7 @@ mod ppp_on_target;
 mod robot_on_target;
 mod robot_recordings;
 mod robot_robust;
+mod robot_sigmas;
 mod robot_table;
 mod surface_is_complete;
 mod target_costs;

@@ -1,13 +1,15 @@
 //! What came of a flight.
 
 mod accuracy;
-mod step;
 
+use kestirim_air_to_ground::Measurement;
+use kestirim_user_locator::LevelStep;
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Drone;
 use super::recording::Recording;
+use super::recording::flight::Stop;
 use super::settings::expected_loss_db;
 use super::track::trace::{Estimate, Track};
 use crate::Error;
@@ -91,7 +93,7 @@ pub(super) fn account(
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
     match recording {
         Recording::Flight(recorded) => {
-            if let Some((t, by)) = step::step(&track.stops[..=shown.stop], shown.place) {
+            if let Some((t, by)) = level_step(&track.stops[..=shown.stop], shown.place) {
                 account.warn(format!(
                     "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
                 ));
@@ -112,6 +114,17 @@ pub(super) fn account(
         }
     }
     Ok(account)
+}
+
+/// When the levels step, s, and by how much, dB, as seen from the estimated place.
+fn level_step(stops: &[Stop], place: [f64; 2]) -> Option<(f64, f64)> {
+    let measured = |stop: &Stop| {
+        let measurement = Measurement::new(stop.place, stop.height, stop.loss).ok()?;
+        Some((stop.t, measurement))
+    };
+    let (times, measurements): (Vec<_>, Vec<_>) = stops.iter().filter_map(measured).unzip();
+    let LevelStep { at, by } = LevelStep::find(&measurements, place)?;
+    Some((times[at], by))
 }
 
 /// What is known of a flight whose user and channel are.

@@ -139,6 +139,10 @@ fn doubted(followed: &Followed) -> impl Iterator<Item = (Reason, String)> {
             Reason::Rejected,
             "more than a tenth of the measurements contradict the estimate and are left out",
         ),
+        (
+            Reason::Time,
+            "inputs and measurements do not belong together in time: measurements come late, or inputs do",
+        ),
     ];
     sentences.into_iter().filter_map(move |(reason, sentence)| {
         let place = healths.iter().position(|health| health.has(reason))?;

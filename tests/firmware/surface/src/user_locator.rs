@@ -8,7 +8,7 @@ use kestirim_air_to_ground::{
 use kestirim_particle_filter::{Region, Resampler};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{
-    Area, Beacon, BeaconEstimate, BeaconSearch, Error, Height, Locator, Motion, Orbit,
+    Area, Beacon, BeaconEstimate, BeaconSearch, Error, Height, LevelStep, Locator, Motion, Orbit,
     PublishedLocator, PublishedSettings, Thinned, TrackEstimate, Tracker, Within,
 };
 
@@ -49,6 +49,7 @@ fn locates<
     keep(Locator::posterior(&locator));
     keep(Locator::log_posterior(&locator, &numbers()));
     keep(Locator::credible(&locator, &numbers(), number()));
+    keep(Locator::health(&locator));
     Some(())
 }
 
@@ -95,6 +96,7 @@ fn finds<T: Scalar, const M: usize, const L: usize>() -> Option<()> {
     let estimate = any(Beacon::estimate::<L>(&beacon, &region, inside)).ok()?;
     keep(BeaconEstimate::moments(&estimate));
     keep(Beacon::credible(&beacon, &estimate, numbers(), number()));
+    keep(Beacon::health(&beacon, &estimate));
     Some(())
 }
 
@@ -130,6 +132,8 @@ fn searches<T: Scalar, const N: usize, const L: usize>(area: Area<T, N>) -> Opti
     keep(BeaconSearch::area(&search));
     let estimate = any(BeaconSearch::estimate::<L>(&search)).ok()?;
     keep(BeaconSearch::credible(&search, &estimate, numbers(), number()));
+    keep(BeaconSearch::health(&search, &estimate));
+    keep(LevelStep::find(BeaconSearch::measurements(&search), numbers()));
     Some(())
 }
 

@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use flate2::read::GzDecoder;
+use host_sim::system::Wanted;
 use host_sim::systems::gnss::Gnss;
 use kestirim_tests::recordings::folder_of;
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::{Answer, Case, desk, judge, run};
+use super::table::Table;
+use super::{Answer, Case, desk, judge, run_writing};
 
 const TRUTH: &str = "3582104.7657,532590.1785,5232755.1390";
 /// Up to here there are orbits, s of the day.
@@ -225,31 +227,90 @@ fn measure(report: &Value) -> Option<f64> {
     report["accuracy"]["rms_3d_m"].as_f64()
 }
 
-fn replay(day: &Day, clocks: &Path, mode: &str) -> Result<Answer> {
+/// Of an epoch that nothing speaks against: how far it is from the truth, in standard deviations.
+struct Farthest {
+    second: f64,
+    error_m: f64,
+    deviations: f64,
+    /// How many such epochs are farther than ten.
+    beyond: usize,
+}
+
+impl Farthest {
+    /// Of a track as it was written.
+    fn of(track: &Table) -> Self {
+        let [t, x, y, z, east, north, up, health] =
+            ["t", "x", "y", "z", "sde", "sdn", "sdu", "health"].map(|name| track.column(name));
+        let truth: Vec<f64> = TRUTH.split(',').filter_map(|it| it.trim().parse().ok()).collect();
+        let mut farthest = Self { second: 0.0, error_m: 0.0, deviations: 0.0, beyond: 0 };
+        for row in (0..track.rows.len()).filter(|&row| track.rows[row][health] != "bad") {
+            let of = |columns: [usize; 3]| columns.map(|column| track.number(row, column));
+            let length = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+            let [x, y, z] = of([x, y, z]);
+            let error_m = length([x - truth[0], y - truth[1], z - truth[2]]);
+            let deviations = error_m / length(of([east, north, up]));
+            farthest.beyond += usize::from(deviations > 10.0);
+            if deviations > farthest.deviations {
+                let second = track.number(row, t);
+                farthest = Self { second, error_m, deviations, ..farthest };
+            }
+        }
+        farthest
+    }
+}
+
+fn replay(day: &Day, clocks: &Path, mode: &str) -> Result<(Answer, Option<Farthest>)> {
     let desk = desk()?;
     let mut files = day.write(desk.path())?;
     files.push(("clk", clocks.to_owned()));
     let files: Vec<_> = files.iter().map(|(field, path)| (*field, path.as_path())).collect();
     let settings = [("mode", mode), ("truth", TRUTH)];
-    run(&Gnss, &files, &settings, measure)
+    let track = desk.path().join("track.csv");
+    let wanted = Wanted { tables: vec![("track", track.clone())], mcap: None };
+    let answer = run_writing(&Gnss, &files, &settings, measure, &wanted)?;
+    let is_written = answer.error.is_some() && track.exists();
+    let farthest = is_written.then(|| Table::read(&track)).transpose()?;
+    Ok((answer, farthest.as_ref().map(Farthest::of)))
 }
+
+/// Faults after which an epoch is farther than ten deviations although nothing speaks against it,
+/// and why.
+const UNTOLD: [(&str, &str); 4] = [
+    ("orbits a kilometre off", "all orbits moved alike move the position, and fit"),
+    ("the clock jumps by 1 ms", "told at once; later ambiguities take in what a millisecond moves"),
+    ("the codes' clock jumps by 1 ms", "the same"),
+    ("codes 30 m long in 20 %", "five epochs among those that are told, at a deviation of 11 m"),
+];
 
 #[test]
 fn a_receiver() -> Result<()> {
     let Some(folder) = folder_of("gnss") else { return Ok(()) };
     let day = Day::read(&folder)?;
     let clocks = folder.join("esbc2020177/grg177_gps.clk.gz");
-    let mut cases = Vec::new();
+    let (mut cases, mut beyond) = (Vec::new(), Vec::new());
     for mode in ["static", "kinematic"] {
-        let clean = replay(&day, &clocks, mode)?;
+        let (clean, _) = replay(&day, &clocks, mode)?;
         let case = |(fault, harm): &Fault| {
             let mut day = day.clone();
             harm(&mut day);
-            let faulty = replay(&day, &clocks, mode)?;
-            Ok(Case { recording: mode.to_owned(), fault, clean: clean.clone(), faulty })
+            let (faulty, farthest) = replay(&day, &clocks, mode)?;
+            let recording = mode.to_owned();
+            Ok((Case { recording, fault, clean: clean.clone(), faulty }, farthest))
         };
-        cases.extend(FAULTS.par_iter().map(case).collect::<Result<Vec<_>>>()?);
+        for (case, farthest) in FAULTS.par_iter().map(case).collect::<Result<Vec<_>>>()? {
+            if let Some(Farthest { second, error_m, deviations, beyond: count }) = farthest {
+                let fault = case.fault;
+                println!(
+                    "{mode}, {fault}: at most {error_m:.3} m, {deviations:.1} σ, at {second} s; {count} epochs beyond 10 σ untold"
+                );
+                if count > 0 && !UNTOLD.iter().any(|(known, _)| *known == fault) {
+                    beyond.push(format!("{mode}, {fault}"));
+                }
+            }
+            cases.push(case);
+        }
     }
     judge(&cases);
+    assert!(beyond.is_empty(), "beyond 10 σ, and not told: {beyond:?}");
     Ok(())
 }

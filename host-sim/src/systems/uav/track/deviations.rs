@@ -82,7 +82,9 @@ impl Deviations {
                 // not depend on it: the filter beside it tells.
                 if let Ok(judge) = kalman(ScalarKind::F64) {
                     for (health, judged) in followed.healths.iter_mut().zip(&judge.healths) {
-                        *health = health.with(Reason::Innovations, judged.has(Reason::Innovations));
+                        for reason in [Reason::Innovations, Reason::Time] {
+                            *health = health.with(reason, judged.has(reason));
+                        }
                     }
                 }
                 Ok(followed)

@@ -1,0 +1,169 @@
+//! Errors of a tag over the standard deviations that were told of them. With `--nocapture` each recording is printed.
+//!
+//! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
+//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
+
+use std::path::Path;
+
+use host_sim::metrics::mean;
+use host_sim::system::{Files, Settings, System};
+use host_sim::systems::robot::Robot;
+use host_sim::systems::robot::settings::Setup;
+use host_sim::systems::robot::track::{self, follow};
+use kestirim_tests::recordings::folder_of;
+use kestirim_tests::robot::{BLOCKED, Points, Recording};
+
+/// A tag that moves, with a dense truth: the recording, and its dimensions.
+const MOVING: [(&str, &str); 13] = [
+    ("esp32_los2", "2"),
+    ("esp32_wall2", "2"),
+    ("labyrinth", "2"),
+    ("lias_mid_tag0", "2"),
+    ("lias_mid_tag1", "2"),
+    ("lias_mid_tag2", "2"),
+    ("trek_m1l", "2"),
+    ("trek_m2r", "2"),
+    ("trek_m3s", "2"),
+    ("isas_walk1", "2"),
+    ("plaza1", "2"),
+    ("inrol_env1", "3"),
+    ("miluv_obst_random3_tag10", "3"),
+];
+
+/// A tag that stands, some with a person before an anchor; and one that mostly stands behind walls.
+const STANDING: [(&str, &str); 12] = [
+    ("trek_4vnm", "2"),
+    ("trek_4vnm2", "2"),
+    ("trek_4vba0", "2"),
+    ("trek_4vba02", "2"),
+    ("trek_4vba1", "2"),
+    ("trek_4vba12", "2"),
+    ("trek_4vba22", "2"),
+    ("trek_4vba2s", "2"),
+    ("trek_4vba32", "2"),
+    ("trek_4vba3s", "2"),
+    ("esp32_nlos1", "2"),
+    ("lias_static_814", "2"),
+];
+
+/// χ² of two degrees of freedom that 90 % are below.
+const NINE_TENTHS: f64 = 4.605;
+
+/// What the positions of a recording, or of some, were worth.
+#[derive(Clone, Copy)]
+struct Told {
+    /// Mean square of the error and of its standard deviation, m².
+    squares: [f64; 2],
+    /// The share of true places that the 90 % regions hold.
+    held: f64,
+}
+
+impl Told {
+    fn ratio(&self) -> f64 {
+        (self.squares[0] / self.squares[1]).sqrt()
+    }
+
+    /// Each recording alike.
+    fn together(all: &[Self]) -> Self {
+        let of = |part: fn(&Self) -> f64| mean(&all.iter().map(part).collect::<Vec<_>>());
+        Self { squares: [of(|it| it.squares[0]), of(|it| it.squares[1])], held: of(|it| it.held) }
+    }
+
+    fn print(&self, name: &str) {
+        let [error, sigma] = self.squares.map(|square| 100.0 * square.sqrt());
+        let held = 100.0 * self.held;
+        println!("| `{name}` | {error:.1} | {sigma:.1} | {:.2} | {held:.0} % |", self.ratio());
+    }
+}
+
+/// Tracks a recording as `host-sim replay robot` does, at the true height.
+fn told(folder: &Path, name: &str, dimensions: &str, biases: Option<Vec<f64>>) -> Told {
+    let folder = folder.join(name);
+    let mut files = Files::default();
+    for (field, name) in [
+        ("anchors", "anchors.csv"),
+        ("log", "ranges.csv"),
+        ("truth", "truth.csv"),
+        ("points", "points.csv"),
+        ("imu", "imu.csv"),
+        ("odom", "odom.csv"),
+    ] {
+        let path = folder.join(name);
+        if !path.exists() {
+            continue;
+        }
+        if dimensions == "2" && matches!(field, "truth" | "points") {
+            files.add("height", path.clone());
+        }
+        files.add(field, path);
+    }
+    let recording = Robot::read(&files, &Settings::new(Robot::settings(None))).expect(name);
+    let mut settings = Settings::new(Robot::settings(Some(&recording)));
+    settings.set("dim", dimensions).expect("a dimension");
+    let mut setup = Setup::of_recording(&recording, &settings).expect("a setup");
+    setup.biases = biases.or(setup.biases);
+    let traces = track::track(&recording, &setup, follow::build).expect("a track");
+    let (mut errors, mut sigmas, mut held) = (Vec::new(), Vec::new(), Vec::new());
+    for (part, trace) in recording.parts.iter().zip(&traces) {
+        // Of a tag put down what counts is the last position.
+        let last = if folder.join("points.csv").exists() { trace.epochs.len() - 1 } else { 0 };
+        for epoch in &trace.epochs[last..] {
+            let truth = part.truth.as_ref().and_then(|truth| truth.at(epoch.time_us));
+            let Some(((position, [xx, xy, yy]), truth)) =
+                epoch.position.zip(epoch.spread).zip(truth)
+            else {
+                continue;
+            };
+            let (x, y) = (position[0] - truth[0], position[1] - truth[1]);
+            errors.push(x * x + y * y);
+            sigmas.push(xx + yy);
+            let squared = (yy * x * x - 2.0 * xy * x * y + xx * y * y) / (xx * yy - xy * xy);
+            held.push(f64::from(squared <= NINE_TENTHS));
+        }
+    }
+    let told = Told { squares: [mean(&errors), mean(&sigmas)], held: mean(&held) };
+    told.print(name);
+    told
+}
+
+#[test]
+fn standard_deviations_are_honest() {
+    let Some(folder) = folder_of("robot") else { return };
+    let of = |names: &[(&str, &str)]| -> Vec<Told> {
+        names.iter().map(|(name, dimensions)| told(&folder, name, dimensions, None)).collect()
+    };
+    println!(
+        "| | RMSE, cm | told, cm | error over it | 90 % regions hold |\n|---|---|---|---|---|"
+    );
+    let moving = of(&MOVING);
+    let together = Told::together(&moving);
+    together.print("moving, together");
+    let standing = of(&STANDING);
+    Told::together(&standing).print("standing, together");
+    let each = moving.iter().chain(&standing);
+    assert!(each.clone().all(|told| (0.3..2.5).contains(&told.ratio())));
+    assert!((0.7..1.5).contains(&together.ratio()), "{}", together.ratio());
+    assert!((0.8..0.98).contains(&together.held), "{}", together.held);
+}
+
+#[test]
+fn standard_deviations_of_calibrated_anchors_are_honest() {
+    let Some(folder) = folder_of("robot") else { return };
+    let points = Points::read(&folder, false).biases();
+    let trolleys = ["lias_mid_tag0", "lias_mid_tag1", "lias_mid_tag2"];
+    let mut moving: Vec<Told> =
+        trolleys.map(|name| told(&folder, name, "2", Some(points.clone()))).into();
+    let maze = Recording::read(&folder, "labyrinth").biases(10.0);
+    moving.push(told(&folder, "labyrinth", "2", Some(maze)));
+    let together = Told::together(&moving);
+    together.print("moving, together");
+    let standing = BLOCKED.map(|(name, free)| {
+        let biases = Recording::read(&folder, free).biases(f64::INFINITY);
+        told(&folder, name, "2", Some(biases))
+    });
+    Told::together(&standing).print("standing, together");
+    assert!((0.7..1.5).contains(&together.ratio()), "{}", together.ratio());
+    assert!((0.8..0.98).contains(&together.held), "{}", together.held);
+    let mut each = moving.iter().chain(&standing);
+    assert!(each.all(|told| (0.3..2.5).contains(&told.ratio())));
+}
