@@ -24,9 +24,18 @@ pub use uav::*;
 pub use uwb::*;
 pub use wheels::*;
 
+use core::mem::MaybeUninit;
+
 use kestirim_scalar::Scalar;
 
 /// Numbers as C has them.
 fn floats<T: Scalar, const N: usize>(numbers: &[T; N]) -> [f32; N] {
     numbers.map(T::to_f32)
+}
+
+/// Writes numbers as C has them. A call of its own, where the compiler knows both places apart: inlined, it links
+/// `memmove`.
+#[inline(never)]
+fn write<T: Scalar, const N: usize>(place: &mut MaybeUninit<[f32; N]>, numbers: &[T; N]) {
+    place.write(floats(numbers));
 }

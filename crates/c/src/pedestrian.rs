@@ -10,7 +10,7 @@ use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 use crate::memory::{self, Handle, argument, held, held_mut, place, status, wanted};
-use crate::{Health, Status, floats};
+use crate::{Health, Status, floats, write};
 
 #[cfg(not(feature = "fixed"))]
 type Number = f32;
@@ -260,7 +260,8 @@ pub unsafe extern "C" fn kestirim_pedestrian_position(
     status(|| {
         // SAFETY: the caller keeps what the header asks for.
         let (walk, answer) = unsafe { (held(tracker)?, place(position)?) };
-        answer.write(floats(walk.last.as_ref().ok_or(Status::NoEstimate)?.position.as_array()));
+        let last = walk.last.as_ref().ok_or(Status::NoEstimate)?;
+        write(answer, last.position.as_array());
         Ok(())
     })
 }
@@ -274,7 +275,7 @@ pub unsafe extern "C" fn kestirim_pedestrian_sigma(
     status(|| {
         // SAFETY: the caller keeps what the header asks for.
         let (walk, answer) = unsafe { (held(tracker)?, place(sigma)?) };
-        answer.write(floats(walk.uncertainty.standard_deviation().as_array()));
+        write(answer, walk.uncertainty.standard_deviation().as_array());
         Ok(())
     })
 }

@@ -7,7 +7,9 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, ensure};
 use kestirim_scalar::{Q12_20, Q16_16};
 
-use crate::tools::{arguments, have, include, library, output_folder, program, recordings, run};
+use crate::tools::{
+    arguments, crate_folder, have, include, library, output_folder, program, recordings, run,
+};
 use crate::{reference, streams};
 
 /// All of them; each stands in `tests/programs`.
@@ -82,6 +84,22 @@ fn c_on_this_computer_tells_the_bits_of_the_crates() -> Result<()> {
         let told = run(Command::new(&binary).stdin(File::open(&stream)?))?;
         case.check(std::str::from_utf8(&told.stdout)?, name)?;
     }
+    Ok(())
+}
+
+#[test]
+fn cmake_finds_the_library() -> Result<()> {
+    if !have("the CMake package", &["cmake", "cc", "cargo", "make"])? {
+        return Ok(());
+    }
+    let example = crate_folder().join("contrib/cmake/example");
+    let build = output_folder().join("cmake");
+    run(Command::new("cmake").args(arguments(&[&"-S", &example, &"-B", &build])))?;
+    run(Command::new("cmake").arg("--build").arg(&build))?;
+    let told = run(&mut Command::new(build.join("standing")))?;
+    let told = String::from_utf8(told.stdout)?;
+    assert!(told.starts_with("0.00") || told.starts_with("-0.00"), "{told}");
+    assert!(told.ends_with("good\n"), "{told}");
     Ok(())
 }
 
@@ -172,15 +190,16 @@ impl Target {
         Ok(object)
     }
 
-    /// Links a program; where it is.
-    fn link(&self, name: &str, library: &Path) -> Result<PathBuf> {
+    /// Links a program, and these functions of the library whether it calls them or not; where it is.
+    fn link(&self, name: &str, library: &Path, functions: &[String]) -> Result<PathBuf> {
         let folder = output_folder().join(format!("images-{}", self.triple));
         fs::create_dir_all(&folder)?;
         let main = self.compile(&format!("{name}.c"), &folder)?;
         let port = self.compile("port_bare.c", &folder)?;
-        let image = folder.join(name);
+        let image = folder.join(if functions.is_empty() { name } else { "all" });
         let mut linker = Command::new("ld.lld");
         linker.current_dir(program("")).args(["--gc-sections", "--nmagic", "-T", self.board]);
+        linker.args(functions.iter().map(|name| format!("--undefined={name}")));
         run(linker.args(arguments(&[&"-T", &"bare.ld", &main, &port, &library, &"-o", &image])))?;
         Ok(image)
     }
@@ -208,10 +227,14 @@ impl Target {
         }
         let Some(data) = recordings(self.triple)? else { return Ok(()) };
         let Some(library) = self.library()? else { return Ok(()) };
-        let empty = flash(&self.link("empty", &library)?)?;
+        let empty = flash(&self.link("empty", &library, &[])?)?;
+        let functions = functions()?;
+        let all = self.link("empty", &library, &functions)?;
+        assert_eq!(missing(&all, &functions)?, Vec::<&String>::new(), "{}", self.triple);
+        assert_eq!(panics(&all)?, Vec::<String>::new(), "{}: a function can panic", self.triple);
         for name in self.programs {
             let of = format!("{name} on {}", self.triple);
-            let image = self.link(name, &library)?;
+            let image = self.link(name, &library, &[])?;
             let case = Case::of(name, &data, self.fixed)?;
             case.check(&self.emulate(&image, &case.stream)?, &of)?;
             assert_eq!(panics(&image)?, Vec::<String>::new(), "{of} can panic");
@@ -229,6 +252,28 @@ fn flash(image: &Path) -> Result<u64> {
     let mut numbers = sizes.lines().nth(1).context("sizes")?.split_whitespace();
     let (text, data) = (numbers.next().context("text")?, numbers.next().context("data")?);
     Ok(text.parse::<u64>()? + data.parse::<u64>()?)
+}
+
+/// The functions of the header.
+fn functions() -> Result<Vec<String>> {
+    let header = fs::read_to_string(include().join("kestirim.h"))?;
+    let is_in_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+    let declared = header.lines().filter(|line| !line.starts_with([' ', '/', '#']));
+    let name = |line: &str| {
+        let name = line.split_once('(')?.0.rsplit(|letter| !is_in_name(letter)).next()?;
+        name.starts_with("kestirim_").then(|| name.to_owned())
+    };
+    let functions: Vec<_> = declared.filter_map(name).collect();
+    ensure!(functions.len() > 40, "the header declares {functions:?}");
+    Ok(functions)
+}
+
+/// Functions that an image does not have.
+fn missing<'a>(image: &Path, functions: &'a [String]) -> Result<Vec<&'a String>> {
+    let symbols = String::from_utf8(run(Command::new("llvm-nm").arg(image))?.stdout)?;
+    let names: std::collections::BTreeSet<_> =
+        symbols.lines().filter_map(|line| line.split(' ').next_back()).collect();
+    Ok(functions.iter().filter(|name| !names.contains(name.as_str())).collect())
 }
 
 /// The parts of the panic machinery that an image links.
