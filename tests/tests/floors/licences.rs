@@ -52,7 +52,13 @@ fn licence(package: &Package) -> Result<Option<String>> {
 #[test]
 fn everything_may_be_given_away_and_comes_from_the_registry() -> Result<()> {
     let allowed = Allowed::read()?;
-    for manifest in ["Cargo.toml", "tests/firmware/Cargo.toml", "tests/fuzz/Cargo.toml"] {
+    let workspaces = [
+        "Cargo.toml",
+        "crates/c/staticlib/Cargo.toml",
+        "tests/firmware/Cargo.toml",
+        "tests/fuzz/Cargo.toml",
+    ];
+    for manifest in workspaces {
         let metadata = MetadataCommand::new().manifest_path(super::root().join(manifest)).exec()?;
         for package in &metadata.packages {
             let (name, licence) = (&package.name, &package.license);

@@ -18,7 +18,7 @@ use anyhow::{Context, Result, ensure};
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// The floors of crates, and what stands on each may depend on.
-const FLOORS: [(&str, &[&str]); 6] = [
+const FLOORS: [(&str, &[&str]); 7] = [
     ("numbers", &["numbers"]),
     // Know no sensor: no model.
     ("estimator", &["numbers", "estimator"]),
@@ -28,6 +28,8 @@ const FLOORS: [(&str, &[&str]); 6] = [
     // With the standard library, so nothing that runs on a target may depend on them.
     ("files", &["numbers", "files"]),
     ("system", &["numbers", "estimator", "model", "frames"]),
+    // Of another language: feeds systems, as programs do, and no crate stands on it.
+    ("interface", &["numbers", "estimator", "model", "frames", "system"]),
 ];
 
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
@@ -73,6 +75,7 @@ fn height(floor: &str) -> u32 {
     match floor {
         "numbers" => 1,
         "system" => 3,
+        "interface" => 4,
         _ => 2,
     }
 }

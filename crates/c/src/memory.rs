@@ -1,0 +1,186 @@
+//! Where C's pointers become references: all `unsafe` code of this crate's inside.
+//!
+//! What is checked: that a pointer is not null, that it is aligned, that memory is large enough, and that it holds what
+//! its handle says. What cannot be checked is said at the beginning of the header: that memory belongs to the caller, is
+//! as large as was said, and is not used by another call at the same time.
+#![allow(unsafe_code)] // C hands over pointers, and nothing but a pointer.
+
+use core::ffi::c_void;
+use core::mem::{MaybeUninit, size_of};
+use core::slice;
+
+use crate::Status;
+
+/// More of anything than an array of C's may have here.
+const MOST: usize = 4096;
+
+/// A type of handles: what C calls an object, and what there is behind it.
+pub(crate) trait Handle {
+    /// What the memory holds.
+    type Value;
+    /// Tells the objects of one type from all others, and from memory that holds none.
+    const TAG: u32;
+}
+
+/// An object in the caller's memory.
+#[repr(C)]
+struct Held<V> {
+    tag: u32,
+    value: V,
+}
+
+/// Bytes of an object.
+pub(crate) const fn size<H: Handle>() -> usize {
+    size_of::<Held<H::Value>>()
+}
+
+/// Its alignment.
+pub(crate) const fn align<H: Handle>() -> usize {
+    align_of::<Held<H::Value>>()
+}
+
+fn check<T>(pointer: *const T) -> Result<(), Status> {
+    if pointer.is_null() {
+        Err(Status::NullPointer)
+    } else if !pointer.is_aligned() {
+        Err(Status::Misaligned)
+    } else {
+        Ok(())
+    }
+}
+
+/// Makes an object in memory, and its handle.
+///
+/// # Safety
+/// `memory` is the caller's, for `size` bytes, and `handle` may be written.
+#[inline]
+pub(crate) unsafe fn init<H: Handle>(
+    memory: *mut c_void,
+    given: usize,
+    handle: *mut *mut H,
+    make: impl FnOnce() -> Result<H::Value, Status>,
+) -> Status {
+    let held = memory.cast::<Held<H::Value>>();
+    if let Err(status) = check(held).and_then(|()| check(handle)) {
+        return status;
+    }
+    if given < size::<H>() {
+        return Status::TooSmall;
+    }
+    match make() {
+        Ok(value) => {
+            // SAFETY: checked to be neither null nor misaligned, and large enough; the rest is the caller's word.
+            unsafe {
+                held.write(Held { tag: H::TAG, value });
+                handle.write(held.cast());
+            }
+            Status::Ok
+        }
+        Err(status) => status,
+    }
+}
+
+/// The object of a handle.
+///
+/// # Safety
+/// `handle` is null or one that [`init`] made, whose memory nobody changes meanwhile.
+#[inline]
+pub(crate) unsafe fn held<'a, H: Handle>(handle: *const H) -> Result<&'a H::Value, Status> {
+    let held = handle.cast::<Held<H::Value>>();
+    check(held)?;
+    // SAFETY: neither null nor misaligned, so it is what `init` made, unless the caller's word does not hold: then the
+    // tag, a number that any memory may be read as, most likely tells.
+    if unsafe { (&raw const (*held).tag).read() } != H::TAG {
+        return Err(Status::NotInitialised);
+    }
+    // SAFETY: the tag says that `init` wrote the whole object.
+    Ok(unsafe { &(*held).value })
+}
+
+/// The same, to be changed.
+///
+/// # Safety
+/// As [`held`], and nobody reads the memory meanwhile.
+#[inline]
+pub(crate) unsafe fn held_mut<'a, H: Handle>(handle: *mut H) -> Result<&'a mut H::Value, Status> {
+    // SAFETY: the caller's word is the same.
+    unsafe { held(handle.cast_const()) }?;
+    // SAFETY: it is an object, and the caller's word is that nobody else uses it.
+    Ok(unsafe { &mut (*handle.cast::<Held<H::Value>>()).value })
+}
+
+/// An argument, copied.
+///
+/// # Safety
+/// `pointer` is null or may be read. `T` is plain numbers, of which all bits are valid.
+#[inline]
+pub(crate) unsafe fn argument<T: Copy>(pointer: *const T) -> Result<T, Status> {
+    check(pointer)?;
+    // SAFETY: neither null nor misaligned; that it may be read is the caller's word.
+    Ok(unsafe { pointer.read() })
+}
+
+/// An argument that may be left out, by a null pointer.
+///
+/// # Safety
+/// As [`argument`].
+#[inline]
+pub(crate) unsafe fn optional<T: Copy>(pointer: *const T) -> Result<Option<T>, Status> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's word is the same.
+    unsafe { argument(pointer) }.map(Some)
+}
+
+/// An array; of none, the pointer is not looked at.
+///
+/// # Safety
+/// `pointer` may be read for so many, which nobody changes meanwhile. `T` is plain numbers.
+#[inline]
+pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize) -> Result<&'a [T], Status> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(pointer)?;
+    if count > MOST {
+        return Err(Status::TooMany);
+    }
+    // SAFETY: neither null nor misaligned, and not too long; that it may be read is the caller's word.
+    Ok(unsafe { slice::from_raw_parts(pointer, count) })
+}
+
+/// A place for an answer.
+///
+/// # Safety
+/// `pointer` is null or may be written, and nobody uses the place meanwhile.
+#[inline]
+pub(crate) unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<T>, Status> {
+    check(pointer)?;
+    // SAFETY: neither null nor misaligned; whatever is there is nothing yet.
+    Ok(unsafe { &mut *pointer.cast() })
+}
+
+/// A place for an answer that is not wanted if the pointer is null.
+///
+/// # Safety
+/// As [`place`].
+#[inline]
+pub(crate) unsafe fn wanted<'a, T>(
+    pointer: *mut T,
+) -> Result<Option<&'a mut MaybeUninit<T>>, Status> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's word is the same.
+    unsafe { place(pointer) }.map(Some)
+}
+
+/// What a call answers with.
+#[inline]
+pub(crate) fn status(run: impl FnOnce() -> Result<(), Status>) -> Status {
+    match run() {
+        Ok(()) => Status::Ok,
+        Err(status) => status,
+    }
+}

@@ -1,0 +1,186 @@
+use core::ffi::{CStr, c_char};
+
+/// Outcome of a call. If it is not `KESTIRIM_STATUS_OK`, nothing was changed, and no answer was written.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Done.
+    Ok = 0,
+    /// A pointer is null.
+    NullPointer = 1,
+    /// A pointer is not aligned as its type wants it.
+    Misaligned = 2,
+    /// The memory is smaller than the object.
+    TooSmall = 3,
+    /// The memory holds no object of this type: it was not initialised, or overwritten.
+    NotInitialised = 4,
+    /// A choice is none of those that there are, or a setting is out of its range.
+    InvalidArgument = 5,
+    /// There is no estimate: none yet, or it was lost.
+    NoEstimate = 6,
+    /// A number is NaN, infinite, or beyond what fixed point holds.
+    NotFinite = 7,
+    /// No sensor can have measured this.
+    Implausible = 8,
+    /// The time is before that of the last sample.
+    OutOfOrder = 9,
+    /// The same measurement came before.
+    Duplicate = 10,
+    /// No anchor has this number.
+    NoSuchAnchor = 11,
+    /// More anchors, corners, satellites or samples than there is room for.
+    TooMany = 12,
+    /// Fewer than are needed: anchors, satellites, corners.
+    TooFew = 13,
+    /// The measurements contradict each other, or nothing explains them.
+    Contradictory = 14,
+    /// The time since the last sample is too long for the estimate to be carried over it, or no multiple of the model's
+    /// interval.
+    Gap = 15,
+    /// The geometry determines no position, the corners enclose nothing, or a matrix has no inverse.
+    Geometry = 16,
+    /// The estimator refused the step for another reason.
+    Refused = 17,
+}
+
+impl Status {
+    /// All of them, and their names.
+    const NAMES: [(Self, &'static CStr); 18] = [
+        (Self::Ok, c"ok"),
+        (Self::NullPointer, c"a pointer is null"),
+        (Self::Misaligned, c"a pointer is not aligned"),
+        (Self::TooSmall, c"the memory is too small"),
+        (Self::NotInitialised, c"the memory holds no such object"),
+        (Self::InvalidArgument, c"a choice or a setting is not valid"),
+        (Self::NoEstimate, c"there is no estimate"),
+        (Self::NotFinite, c"a number is not finite"),
+        (Self::Implausible, c"no sensor measures this"),
+        (Self::OutOfOrder, c"the sample is older than the one before"),
+        (Self::Duplicate, c"the same measurement came before"),
+        (Self::NoSuchAnchor, c"there is no anchor of this number"),
+        (Self::TooMany, c"there are more than there is room for"),
+        (Self::TooFew, c"there are fewer than are needed"),
+        (Self::Contradictory, c"the measurements contradict each other"),
+        (Self::Gap, c"the interval is too long, or not the model's"),
+        (Self::Geometry, c"the geometry determines nothing"),
+        (Self::Refused, c"the estimator refused the step"),
+    ];
+}
+
+/// The name of a status, in plain English: a text that lives as long as the program. Of a number that is none,
+/// "unknown status".
+#[allow(unsafe_code)] // The symbol is this library's: all begin with its name.
+#[unsafe(no_mangle)]
+pub extern "C" fn kestirim_status_name(status: i32) -> *const c_char {
+    let mut names = Status::NAMES.iter();
+    let name = names.find(|(of, _)| *of as i32 == status);
+    name.map_or(c"unknown status", |(_, name)| *name).as_ptr()
+}
+
+impl From<kestirim_kalman::Error> for Status {
+    fn from(error: kestirim_kalman::Error) -> Self {
+        match error {
+            kestirim_kalman::Error::NotFinite => Self::NotFinite,
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_pedestrian::Error> for Status {
+    fn from(error: kestirim_pedestrian::Error) -> Self {
+        use kestirim_pedestrian::Error;
+        match error {
+            Error::NotFinite => Self::NotFinite,
+            Error::Implausible => Self::Implausible,
+            Error::TimeBackwards => Self::OutOfOrder,
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_uwb_tracker::Error> for Status {
+    fn from(error: kestirim_uwb_tracker::Error) -> Self {
+        use kestirim_uwb_tracker::Error;
+        match error {
+            Error::NotFinite => Self::NotFinite,
+            Error::ImplausibleRange | Error::ImplausibleMotion => Self::Implausible,
+            Error::NoSuchAnchor => Self::NoSuchAnchor,
+            Error::TooManyAnchors => Self::TooMany,
+            Error::TooFewAnchors => Self::TooFew,
+            Error::Duplicate => Self::Duplicate,
+            Error::OutOfOrder => Self::OutOfOrder,
+            Error::Estimate(error) => error.into(),
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_uav_estimator::Error> for Status {
+    fn from(error: kestirim_uav_estimator::Error) -> Self {
+        use kestirim_uav_estimator::Error;
+        match error {
+            Error::NotFinite
+            | Error::Design(kestirim_observer_design::Error::NotFinite)
+            | Error::Observer(kestirim_luenberger::Error::NotFinite) => Self::NotFinite,
+            Error::OutOfOrder => Self::OutOfOrder,
+            Error::Gap(_) | Error::WrongInterval { .. } => Self::Gap,
+            Error::Singular => Self::Geometry,
+            Error::Estimate(error) => error.into(),
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_uav_longitudinal::Error> for Status {
+    fn from(error: kestirim_uav_longitudinal::Error) -> Self {
+        use kestirim_uav_longitudinal::Error;
+        match error {
+            Error::NotFinite => Self::NotFinite,
+            Error::NotPositive => Self::InvalidArgument,
+            Error::Singular => Self::Geometry,
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_air_to_ground::Error> for Status {
+    fn from(error: kestirim_air_to_ground::Error) -> Self {
+        use kestirim_air_to_ground::Error;
+        match error {
+            Error::NotFinite => Self::NotFinite,
+            Error::NotPositive => Self::InvalidArgument,
+            Error::ImplausibleLoss => Self::Implausible,
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_user_locator::Error> for Status {
+    fn from(error: kestirim_user_locator::Error) -> Self {
+        use kestirim_particle_filter::Error as FilterError;
+        use kestirim_user_locator::Error;
+        match error {
+            Error::Channel(error) => error.into(),
+            Error::NotFinite | Error::Filter(FilterError::NotFinite) => Self::NotFinite,
+            Error::TooManyCorners | Error::Filter(FilterError::TooMany) => Self::TooMany,
+            Error::NoArea => Self::Geometry,
+            Error::Filter(FilterError::Degenerate) => Self::Contradictory,
+            _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_ppp_filter::Error> for Status {
+    fn from(error: kestirim_ppp_filter::Error) -> Self {
+        use kestirim_ppp_filter::Error;
+        match error {
+            Error::TooFewSatellites => Self::TooFew,
+            Error::PoorGeometry => Self::Geometry,
+            Error::TimeNotAdvancing => Self::OutOfOrder,
+            Error::Contradictory => Self::Contradictory,
+            Error::InvalidConfiguration => Self::InvalidArgument,
+            Error::NotFinite => Self::NotFinite,
+            _ => Self::Refused,
+        }
+    }
+}

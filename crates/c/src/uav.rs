@@ -1,0 +1,196 @@
+//! An aircraft's longitudinal motion: the flight filter of `kestirim-uav-estimator`.
+#![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
+
+use core::ffi::c_void;
+
+use kestirim_scalar::Components;
+use kestirim_uav_estimator::{Dynamics, FlightFilter, Noise, Sample};
+use kestirim_uav_longitudinal::{StateSpace, aerosonde, rate_airspeed_and_pitch};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+
+use crate::memory::{self, Handle, argument, held, held_mut, place, status};
+use crate::{Health, Status};
+
+#[cfg(not(feature = "fixed"))]
+type Number = f32;
+#[cfg(feature = "fixed")]
+type Number = kestirim_scalar::Q16_16;
+
+/// Outputs of a filter.
+pub const UAV_OUTPUTS: usize = 3;
+
+/// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
+///
+/// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle (rad). Inputs: elevator (rad), throttle
+/// (0 to 1). All are deviations from the steady flight at which the model was linearised: subtract it from what is
+/// measured and applied, and add it to the estimate. Axes are the body's, in a vertical plane.
+#[derive(Debug)]
+pub struct Uav {
+    _private: [u8; 0],
+}
+
+type Filter = FlightFilter<Number, UAV_OUTPUTS>;
+
+impl Handle for Uav {
+    type Value = Filter;
+    const TAG: u32 = 0x6B50_5501;
+}
+
+/// Bytes that a filter takes at most, on any target.
+pub const UAV_SIZE: usize = 2048;
+const _: () = assert!(memory::size::<Uav>() <= UAV_SIZE);
+
+/// The model of an aircraft near its steady flight and of its sensors: x' = A x + B u, y = C x. Rows one after another.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UavModel {
+    /// A: 4 rows of 4.
+    pub a: [[f64; 4]; 4],
+    /// B: 4 rows of 2.
+    pub b: [[f64; 2]; 4],
+    /// C: a row of 4 an output, in whatever unit the output has.
+    pub c: [[f64; 4]; UAV_OUTPUTS],
+    /// Standard deviations of what reaches the aircraft beside elevator (rad) and throttle, a sample.
+    pub input_sigma: [f64; 2],
+    /// Standard deviation of each output, in its unit.
+    pub output_sigma: [f64; UAV_OUTPUTS],
+    /// How long an interval between two samples usually is, s.
+    pub usual_interval: f64,
+}
+
+/// Inputs and outputs of one time, in deviations from the model's steady flight.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UavSample {
+    /// Time of the sample, µs since any moment.
+    pub time_us: i64,
+    /// Elevator (rad) and throttle (0 to 1), applied from this time until the next sample.
+    pub input: [f64; 2],
+    /// The outputs, in the order and the units of C's rows.
+    pub measured: [f64; UAV_OUTPUTS],
+    /// A bit an output: 1 if it was measured. The first row's is bit 0; 7 is all three.
+    pub present: u32,
+}
+
+impl Uav {
+    fn filter(model: &UavModel) -> Result<Filter, Status> {
+        let UavModel { a, b, c, input_sigma, output_sigma, usual_interval } = *model;
+        if !(usual_interval > 0.0 && usual_interval.is_finite()) {
+            return Err(Status::InvalidArgument);
+        }
+        // Rows of C are columns of nalgebra's.
+        let a = SMatrix::<f64, 4, 4>::from_data(ArrayStorage(a));
+        let b = SMatrix::<f64, 2, 4>::from_data(ArrayStorage(b)).transpose();
+        let c = SMatrix::<f64, 4, UAV_OUTPUTS>::from_data(ArrayStorage(c)).transpose();
+        let dynamics = Dynamics::Continuous(StateSpace { a: a.transpose(), b });
+        let noise =
+            Noise { inputs: SVector::from(input_sigma), outputs: SVector::from(output_sigma) };
+        Ok(Filter::new(&dynamics, &c, &noise, usual_interval)?)
+    }
+}
+
+/// Bytes that a filter takes on this target.
+#[unsafe(no_mangle)]
+pub extern "C" fn kestirim_uav_size() -> usize {
+    memory::size::<Uav>()
+}
+
+/// Alignment of its memory, bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn kestirim_uav_align() -> usize {
+    memory::align::<Uav>()
+}
+
+/// The Aerosonde, a small unmanned aircraft, with a pitch gyroscope, a Pitot tube and an attitude reference at 100 Hz: a
+/// model to begin with. Outputs are pitch rate (rad/s), airspeed (m/s) and pitch angle (rad).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_aerosonde(model: *mut UavModel) -> Status {
+    status(|| {
+        // SAFETY: the caller keeps what the header asks for.
+        let answer = unsafe { place(model)? };
+        let plant = aerosonde()?;
+        let (a, b) = (plant.a.transpose(), plant.b.transpose());
+        answer.write(UavModel {
+            a: a.data.0,
+            b: b.data.0,
+            c: rate_airspeed_and_pitch().transpose().data.0,
+            input_sigma: [0.009, 0.02],
+            output_sigma: [0.009, 0.5, 0.009],
+            usual_interval: 0.01,
+        });
+        Ok(())
+    })
+}
+
+/// Makes a filter in memory of at least `kestirim_uav_size()` bytes, of which nothing is known yet but the model.
+///
+/// Errors: `NOT_FINITE`; `INVALID_ARGUMENT` if the usual interval is not positive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_init(
+    memory: *mut c_void,
+    size: usize,
+    model: *const UavModel,
+    filter: *mut *mut Uav,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::init(memory, size, filter, || Uav::filter(&argument(model)?)) }
+}
+
+/// Takes in a sample. One that is more than a second older than the one before is not late: the clock was set back, and
+/// the filter begins anew.
+///
+/// Errors: `OUT_OF_ORDER`; `GAP` of more than a million usual intervals; `NOT_FINITE`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_update(filter: *mut Uav, sample: *const UavSample) -> Status {
+    status(|| {
+        // SAFETY: the caller keeps what the header asks for.
+        let (filter, sample) = unsafe { (held_mut(filter)?, argument(sample)?) };
+        let mut measured = [None; UAV_OUTPUTS];
+        let mut bit = 1;
+        for (measured, value) in measured.iter_mut().zip(sample.measured) {
+            *measured = (sample.present & bit != 0).then_some(value);
+            bit <<= 1;
+        }
+        let input = SVector::from(sample.input);
+        filter.take(&Sample { time_us: sample.time_us, input, measured })?;
+        Ok(())
+    })
+}
+
+/// The estimate at the time of the last sample: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle
+/// (rad), as deviations.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_estimate(
+    filter: *const Uav,
+    estimate: *mut [f64; 4],
+) -> Status {
+    status(|| {
+        // SAFETY: the caller keeps what the header asks for.
+        let (filter, answer) = unsafe { (held(filter)?, place(estimate)?) };
+        answer.write(*filter.filter().estimate().as_array());
+        Ok(())
+    })
+}
+
+/// Standard deviations of the estimate: rad, rad/s, m/s, rad.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_sigma(filter: *const Uav, sigma: *mut [f64; 4]) -> Status {
+    status(|| {
+        // SAFETY: the caller keeps what the header asks for.
+        let (filter, answer) = unsafe { (held(filter)?, place(sigma)?) };
+        answer.write(*filter.filter().sigma().as_array());
+        Ok(())
+    })
+}
+
+/// Whether the estimate can be relied upon: `INNOVATIONS` if measurements and model have contradicted each other over
+/// about 200 samples, `REJECTED` if more than a tenth of about 50 samples' measurements were left out.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_health(filter: *const Uav, health: *mut Health) -> Status {
+    status(|| {
+        // SAFETY: the caller keeps what the header asks for.
+        let (filter, answer) = unsafe { (held(filter)?, place(health)?) };
+        answer.write(filter.health().into());
+        Ok(())
+    })
+}
