@@ -54,7 +54,7 @@ impl Reception {
     }
 
     /// Of a range that was weighed by itself, or refused.
-    pub(super) fn of_range<T: Scalar, E>(answer: Result<Report<T>, E>) -> Self {
+    pub(super) fn of_range<T: Scalar, E>(answer: &Result<Report<T>, E>) -> Self {
         let Ok(report) = answer else { return Self::unweighed(false) };
         let nis = report.innovation.map(|innovation| innovation.nis.to_f64());
         Self { taken: report.outcome != Outcome::Rejected, nis }

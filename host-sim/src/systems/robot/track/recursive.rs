@@ -46,7 +46,7 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
         self.now_us = time_us;
         let taken = match *event {
             Event::Range(range) => {
-                return Reception::of_range(self.tracker.range(&sample(time_us, &range)));
+                return Reception::of_range(&self.tracker.range(&sample(time_us, &range)));
             }
             Event::Inertial(Inertial { acceleration, push, .. }) => {
                 let push = push.filter(|_| self.pushed);

@@ -37,7 +37,7 @@ impl<T: Scalar> Follow for Wheeled<T> {
         self.now_us = time_us;
         let taken = match *event {
             Event::Range(range) => {
-                return Reception::of_range(self.tracker.range(&sample(time_us, &range)));
+                return Reception::of_range(&self.tracker.range(&sample(time_us, &range)));
             }
             Event::Wheels(Wheels { speed, turn_rate, .. }) => {
                 let (speed, turn_rate) = (number(speed), number(turn_rate));
