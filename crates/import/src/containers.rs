@@ -8,6 +8,7 @@
 mod ardupilot;
 mod ardupilot_text;
 mod bytes;
+mod catalogue;
 mod chunks;
 mod dataflash;
 mod definition;

@@ -1,7 +1,8 @@
 //! Topics of ROS that hold a drone's places, its height, and the level of a radio on board.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
+use super::catalogue::{Catalogue, MOST_NAMES};
 use super::chunks::{Announced, Messages};
 use super::gather::Losses;
 use super::imu_message::Encoding;
@@ -10,9 +11,6 @@ use crate::damage::Fault;
 use crate::error::{Error, listed};
 use crate::options::Options;
 use crate::unit::Unit;
-
-/// More topics are not told of.
-const MOST_NAMES: usize = 100;
 
 /// What a topic holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,10 +62,7 @@ pub(crate) struct Topic {
 /// What topics there are, and what they say.
 pub(crate) struct LevelTopics<'o> {
     options: &'o Options,
-    topics: Vec<Topic>,
-    /// Places of topics by name and type.
-    places: BTreeMap<(String, String), usize>,
-    others: BTreeSet<String>,
+    catalogue: Catalogue<Topic>,
     /// Those that may be levels, but nothing says so.
     doubtful: BTreeSet<String>,
     pub(crate) losses: Losses,
@@ -77,9 +72,7 @@ impl<'o> LevelTopics<'o> {
     pub(super) fn new(options: &'o Options) -> Self {
         Self {
             options,
-            topics: Vec::new(),
-            places: BTreeMap::new(),
-            others: BTreeSet::new(),
+            catalogue: Catalogue::default(),
             doubtful: BTreeSet::new(),
             losses: Losses::default(),
         }
@@ -95,7 +88,7 @@ impl<'o> LevelTopics<'o> {
             [only] => Ok(only),
             [] => Err(Error::log(format!(
                 "expected places as a topic of sensor_msgs/NavSatFix, found {}",
-                self.others()
+                self.catalogue.listed_others()
             ))),
             [first, ..] => Err(several("sensor_msgs/NavSatFix", &found, first, "--columns lat=")),
         }
@@ -123,7 +116,7 @@ impl<'o> LevelTopics<'o> {
             [only] => Ok(only),
             [] if self.options.topic.is_some() => Err(Error::options(format!(
                 "expected a level on the topic that --topic says, found {}",
-                self.others()
+                self.catalogue.listed_others()
             ))),
             [] => Err(match self.doubtful.first() {
                 Some(first) => Error::undecided(
@@ -136,7 +129,7 @@ impl<'o> LevelTopics<'o> {
                 None => Error::log(format!(
                     "expected levels as a topic of a number that is called rssi, rx_power or level_dbm, and whose definition \
                      is in the file, found {}",
-                    self.others()
+                    self.catalogue.listed_others()
                 )),
             }),
             [first, ..] => Err(several("levels", &found, first, "--topic ")),
@@ -161,26 +154,26 @@ impl<'o> LevelTopics<'o> {
 
     fn of<'t>(&'t self, roles: &'t [Role]) -> impl Iterator<Item = &'t Topic> {
         let is_heard = |topic: &&Topic| !topic.entries.is_empty() && roles.contains(&topic.role);
-        self.topics.iter().filter(is_heard)
+        self.catalogue.topics.iter().filter(is_heard)
     }
+}
 
-    fn others(&self) -> String {
-        listed(self.others.iter().map(String::as_str))
-    }
-
-    /// What a topic is to its messages' definition and the options.
-    fn known(&mut self, topic: &Announced<'_>) -> Option<Topic> {
-        topic.encoding.filter(|encoding| *encoding != Encoding::Protobuf)?;
-        let found = NumberMessage::of(topic.name, topic.kind, topic.definition, self.options)?;
-        if found.is_doubtful {
-            if self.doubtful.len() < MOST_NAMES {
-                self.doubtful.insert(topic.name.to_owned());
-            }
-            return None;
+/// What a topic is to its messages' definition and the options.
+fn known(
+    topic: &Announced<'_>,
+    options: &Options,
+    doubtful: &mut BTreeSet<String>,
+) -> Option<Topic> {
+    topic.encoding.filter(|encoding| *encoding != Encoding::Protobuf)?;
+    let found = NumberMessage::of(topic.name, topic.kind, topic.definition, options)?;
+    if found.is_doubtful {
+        if doubtful.len() < MOST_NAMES {
+            doubtful.insert(topic.name.to_owned());
         }
-        let (role, field, unit, message) = (found.role, found.field, found.unit, found.message);
-        Some(Topic { name: topic.name.to_owned(), role, field, unit, message, entries: Vec::new() })
+        return None;
     }
+    let (role, field, unit, message) = (found.role, found.field, found.unit, found.message);
+    Some(Topic { name: topic.name.to_owned(), role, field, unit, message, entries: Vec::new() })
 }
 
 /// Several topics where one is wanted.
@@ -192,20 +185,8 @@ fn several(what: &str, found: &[&Topic], first: &Topic, option: &str) -> Error {
 
 impl Messages for LevelTopics<'_> {
     fn topic(&mut self, topic: &Announced<'_>) -> Option<usize> {
-        let key = (topic.name.to_owned(), topic.kind.to_owned());
-        if let Some(&place) = self.places.get(&key) {
-            return Some(place);
-        }
-        let Some(known) = self.known(topic) else {
-            if self.others.len() < MOST_NAMES {
-                self.others.insert(format!("{} ({})", topic.name, topic.kind));
-            }
-            return None;
-        };
-        let place = self.topics.len();
-        self.topics.push(known);
-        self.places.insert(key, place);
-        Some(place)
+        let Self { options, catalogue, doubtful, .. } = self;
+        catalogue.place(topic, || known(topic, options, doubtful))
     }
 
     fn message(
@@ -216,7 +197,7 @@ impl Messages for LevelTopics<'_> {
         receipt: u64,
         message: &[u8],
     ) {
-        let Some(topic) = self.topics.get_mut(place) else { return };
+        let Some(topic) = self.catalogue.topics.get_mut(place) else { return };
         match topic.message.read(encoding, message) {
             Some((stamp, values)) => {
                 topic.entries.push(Entry { stamp, receipt: receipt as f64 / 1e3, values });

@@ -1,7 +1,6 @@
 //! Topics of ROS in a file that hold ranges.
 
-use std::collections::{BTreeMap, BTreeSet};
-
+use super::catalogue::Catalogue;
 use super::chunks::{Announced, Messages};
 use super::gather::Losses;
 use super::imu_message::Encoding;
@@ -9,9 +8,6 @@ use super::range_message::{Heard, RangeMessage};
 use crate::damage::Fault;
 use crate::error::{Error, listed};
 use crate::options::Options;
-
-/// More topics are not told of.
-const MOST_NAMES: usize = 100;
 
 /// A topic that may hold ranges.
 #[derive(Debug)]
@@ -35,11 +31,8 @@ pub(crate) struct Entry {
 /// What topics there are, and what they say.
 pub(crate) struct RangeTopics<'o> {
     options: &'o Options,
-    pub(crate) topics: Vec<Topic>,
+    catalogue: Catalogue<Topic>,
     pub(crate) entries: Vec<Entry>,
-    /// Places of topics by name and type.
-    places: BTreeMap<(String, String), usize>,
-    others: BTreeSet<String>,
     pub(crate) losses: Losses,
 }
 
@@ -47,12 +40,15 @@ impl<'o> RangeTopics<'o> {
     pub(super) fn new(options: &'o Options) -> Self {
         Self {
             options,
-            topics: Vec::new(),
+            catalogue: Catalogue::default(),
             entries: Vec::new(),
-            places: BTreeMap::new(),
-            others: BTreeSet::new(),
             losses: Losses::default(),
         }
+    }
+
+    /// A topic by its place.
+    pub(crate) fn name(&self, place: usize) -> &str {
+        &self.catalogue.topics[place].name
     }
 
     /// The topics that are wanted: the one or those below the one that is said, all that hold `sensor_msgs/Range`, or the
@@ -62,13 +58,13 @@ impl<'o> RangeTopics<'o> {
     /// If there is none, or several and nobody says which.
     pub(crate) fn wanted(&self) -> Result<Vec<usize>, Error> {
         let bare = |name: &str| name.trim().trim_matches('/').to_owned();
-        let heard: Vec<_> = (0..self.topics.len()).filter(|&it| self.topics[it].is_heard).collect();
-        let names =
-            |places: &[usize]| listed(places.iter().map(|&it| self.topics[it].name.as_str()));
+        let topics = &self.catalogue.topics;
+        let heard: Vec<_> = (0..topics.len()).filter(|&it| topics[it].is_heard).collect();
+        let names = |places: &[usize]| listed(places.iter().map(|&it| self.name(it)));
         if let Some(said) = &self.options.topic {
             let (own, below) = (bare(said), bare(said) + "/");
             let is_said = |place: &usize| {
-                let name = bare(&self.topics[*place].name);
+                let name = bare(self.name(*place));
                 name == own || name.starts_with(&below)
             };
             let found: Vec<_> = heard.iter().copied().filter(is_said).collect();
@@ -81,9 +77,9 @@ impl<'o> RangeTopics<'o> {
             return self.alike(found);
         }
         if heard.is_empty() {
-            let others = listed(self.others.iter().map(String::as_str));
-            let silent = listed(self.topics.iter().map(|topic| topic.name.as_str()));
-            return Err(Error::log(if self.topics.is_empty() {
+            let others = self.catalogue.listed_others();
+            let silent = listed(topics.iter().map(|topic| topic.name.as_str()));
+            return Err(Error::log(if topics.is_empty() {
                 format!(
                     "expected a topic of ranges, such as sensor_msgs/Range, whose definition is in the file, found {others}"
                 )
@@ -96,12 +92,12 @@ impl<'o> RangeTopics<'o> {
 
     /// One topic, or several that each are of an anchor.
     fn alike(&self, places: Vec<usize>) -> Result<Vec<usize>, Error> {
-        let names_anchors = |place: &usize| self.topics[*place].message.names_anchors();
+        let names_anchors = |place: &usize| self.catalogue.topics[*place].message.names_anchors();
         if places.len() == 1 || !places.iter().any(names_anchors) {
             return Ok(places);
         }
-        let names = listed(places.iter().map(|&it| self.topics[it].name.as_str()));
-        let first = listed(places.first().map(|&it| self.topics[it].name.as_str()));
+        let names = listed(places.iter().map(|&it| self.name(it)));
+        let first = listed(places.first().map(|&it| self.name(it)));
         let problem = format!("expected one topic of ranges, found {names}");
         Err(Error::undecided(problem, format!("--topic {first}")))
     }
@@ -111,7 +107,7 @@ impl<'o> RangeTopics<'o> {
     /// # Errors
     /// If nobody says the unit.
     pub(crate) fn scale(&self, place: usize) -> Result<(f64, String), Error> {
-        let message = &self.topics[place].message;
+        let message = &self.catalogue.topics[place].message;
         let said = self.options.units.of("range");
         let unit = said.or_else(|| message.unit.clone()).ok_or_else(|| {
             let problem = format!("expected a unit of {}, found whole numbers", message.field);
@@ -123,23 +119,11 @@ impl<'o> RangeTopics<'o> {
 
 impl Messages for RangeTopics<'_> {
     fn topic(&mut self, topic: &Announced<'_>) -> Option<usize> {
-        let key = (topic.name.to_owned(), topic.kind.to_owned());
-        if let Some(&place) = self.places.get(&key) {
-            return Some(place);
-        }
-        let encoding = topic.encoding.filter(|encoding| *encoding != Encoding::Protobuf);
-        let message =
-            encoding.and_then(|_| RangeMessage::of(topic.kind, topic.definition, self.options));
-        let Some(message) = message else {
-            if self.others.len() < MOST_NAMES {
-                self.others.insert(format!("{} ({})", topic.name, topic.kind));
-            }
-            return None;
-        };
-        let place = self.topics.len();
-        self.topics.push(Topic { name: topic.name.to_owned(), message, is_heard: false });
-        self.places.insert(key, place);
-        Some(place)
+        self.catalogue.place(topic, || {
+            topic.encoding.filter(|encoding| *encoding != Encoding::Protobuf)?;
+            let message = RangeMessage::of(topic.kind, topic.definition, self.options)?;
+            Some(Topic { name: topic.name.to_owned(), message, is_heard: false })
+        })
     }
 
     fn message(
@@ -150,7 +134,7 @@ impl Messages for RangeTopics<'_> {
         receipt: u64,
         message: &[u8],
     ) {
-        let read = self.topics.get_mut(place).and_then(|topic| {
+        let read = self.catalogue.topics.get_mut(place).and_then(|topic| {
             let read = topic.message.read(encoding, message)?;
             topic.is_heard = true;
             Some(read)

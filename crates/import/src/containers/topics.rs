@@ -1,8 +1,7 @@
 //! Topics of ROS in a file, of which one is an inertial sensor's that is wanted.
 
-use std::collections::BTreeMap;
-
 use super::Decoded;
+use super::catalogue::Catalogue;
 use super::chunks::{Announced, Messages};
 use super::gather::{Losses, Stream};
 use super::imu_message::Encoding;
@@ -58,11 +57,7 @@ struct Topic {
 /// What topics there are.
 #[derive(Debug, Default)]
 pub(super) struct Topics {
-    inertial: Vec<Topic>,
-    /// Their places.
-    by_name: BTreeMap<String, usize>,
-    /// The others, each with its type.
-    others: Vec<String>,
+    inertial: Catalogue<Topic>,
     losses: Losses,
 }
 
@@ -77,7 +72,7 @@ impl Topics {
         options: &Options,
     ) -> Result<Decoded, Error> {
         let place = self.wanted(options)?;
-        let Topic { name, mut stream, receipts, .. } = self.inertial.swap_remove(place);
+        let Topic { name, mut stream, receipts, .. } = self.inertial.topics.swap_remove(place);
         let name: String =
             name.chars().map(|c| if c.is_control() { '?' } else { c }).take(80).collect();
         let mut notes = vec![format!("topic {name}")];
@@ -91,20 +86,22 @@ impl Topics {
 
     fn wanted(&self, options: &Options) -> Result<usize, Error> {
         let bare = |name: &str| name.trim().trim_start_matches('/').to_owned();
-        let names = || self.inertial.iter().map(|topic| topic.name.as_str());
+        let names = || self.inertial.topics.iter().map(|topic| topic.name.as_str());
         if let Some(said) = &options.topic {
             let place = names().position(|name| bare(name) == bare(said));
-            return place.filter(|&place| self.inertial[place].stream.len() > 0).ok_or_else(|| {
-                let said = listed([said.as_str()]);
-                let problem = format!("expected messages of sensor_msgs/Imu on topic {said}");
-                Error::options(format!("{problem}, found topics {} (--topic)", listed(names())))
-            });
+            return place.filter(|&place| self.inertial.topics[place].stream.len() > 0).ok_or_else(
+                || {
+                    let said = listed([said.as_str()]);
+                    let problem = format!("expected messages of sensor_msgs/Imu on topic {said}");
+                    Error::options(format!("{problem}, found topics {} (--topic)", listed(names())))
+                },
+            );
         }
-        let filled = |&place: &usize| self.inertial[place].stream.len() > 0;
-        let places: Vec<_> = (0..self.inertial.len()).filter(filled).collect();
+        let filled = |&place: &usize| self.inertial.topics[place].stream.len() > 0;
+        let places: Vec<_> = (0..self.inertial.topics.len()).filter(filled).collect();
         match places[..] {
             [place] => Ok(place),
-            [] if self.inertial.is_empty() => Err(self.none()),
+            [] if self.inertial.topics.is_empty() => Err(self.none()),
             [] => {
                 let found = listed(names());
                 Err(Error::log(format!(
@@ -112,10 +109,11 @@ impl Topics {
                 )))
             }
             [first, ..] => {
-                let names = places.iter().map(|&place| self.inertial[place].name.as_str());
+                let names = places.iter().map(|&place| self.inertial.topics[place].name.as_str());
                 let problem =
                     format!("expected one topic of sensor_msgs/Imu, found {}", listed(names));
-                let option = format!("--topic {}", listed([self.inertial[first].name.as_str()]));
+                let option =
+                    format!("--topic {}", listed([self.inertial.topics[first].name.as_str()]));
                 Err(Error::undecided(problem, option))
             }
         }
@@ -123,13 +121,13 @@ impl Topics {
 
     /// A file without an inertial sensor.
     fn none(&self) -> Error {
-        let is_own = |other: &String| other.contains("(kestirim.") || other.contains("(foxglove.");
-        if !self.others.is_empty() && self.others.iter().all(is_own) {
+        let is_own = |other: &str| other.contains("(kestirim.") || other.contains("(foxglove.");
+        if self.inertial.others().len() > 0 && self.inertial.others().all(is_own) {
             return Error::log(
                 "expected a recording of sensors, found results of host-sim, which hold no inertial sensor's samples",
             );
         }
-        let found = listed(self.others.iter().map(String::as_str));
+        let found = self.inertial.listed_others();
         Error::log(format!(
             "expected a topic of sensor_msgs/Imu in ROS 1's encoding or CDR, found {found}"
         ))
@@ -146,22 +144,10 @@ impl Messages for Topics {
             Some(_) => is_of_ros,
             None => false,
         };
-        if !is_inertial {
-            let other = format!("{name} ({kind})");
-            // More are not told of.
-            if self.others.len() < 100 && !self.others.contains(&other) {
-                self.others.push(other);
-            }
-            return None;
-        }
-        if let Some(&place) = self.by_name.get(name) {
-            return Some(place);
-        }
-        let place = self.inertial.len();
-        let (stream, receipts) = (Stream::default(), Vec::new());
-        self.inertial.push(Topic { name: name.to_owned(), stream, receipts, own });
-        self.by_name.insert(name.to_owned(), place);
-        Some(place)
+        self.inertial.place(topic, || {
+            let (stream, receipts) = (Stream::default(), Vec::new());
+            is_inertial.then(|| Topic { name: name.to_owned(), stream, receipts, own })
+        })
     }
 
     fn message(
@@ -173,7 +159,7 @@ impl Messages for Topics {
         message: &[u8],
     ) {
         let receipt = receipt as f64 / 1e3;
-        let topic = self.inertial.get_mut(place);
+        let topic = self.inertial.topics.get_mut(place);
         let own = topic.as_ref().and_then(|topic| topic.own);
         let row = match (encoding, own) {
             (Encoding::Protobuf, Some(own)) => {

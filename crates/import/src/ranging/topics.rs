@@ -40,7 +40,7 @@ pub(super) fn read(
             tags.extend(entry.heard.tag.clone());
         }
     }
-    let names = listed(wanted.iter().map(|&it| topics.topics[it].name.as_str()));
+    let names = listed(wanted.iter().map(|&it| topics.name(it)));
     let noun = if wanted.len() == 1 { "topic" } else { "topics" };
     let times = if has_stamps { "" } else { ", times of receipt, as there are no stamps" };
     let tags = match tags.len() {
@@ -75,7 +75,7 @@ fn names_by_topic(
         return Ok(None);
     }
     let segment = |&topic: &usize| {
-        let name = topics.topics[topic].name.as_str();
+        let name = topics.name(topic);
         let parts = name.rsplit('/');
         let own = parts.clone().find(|part| place(part, anchors).is_some());
         own.unwrap_or(name).to_owned()
