@@ -15,7 +15,7 @@ const FEWEST: usize = 3;
 pub(crate) enum ClockJump {
     /// By whole milliseconds.
     Milliseconds(i32),
-    /// By anything else: all ambiguities begin anew.
+    /// By anything else, of nearly all: all ambiguities begin anew.
     Other,
 }
 
@@ -30,7 +30,12 @@ impl ClockJump {
         let whole = (middle - milliseconds * MILLISECOND).abs() < SMALLEST;
         // Clocks that are seconds off jump by anything.
         let near = milliseconds.abs() < 1e6;
-        Some(if whole && near { Self::Milliseconds(milliseconds as i32) } else { Self::Other })
+        if whole && near {
+            return Some(Self::Milliseconds(milliseconds as i32));
+        }
+        // Outliers of many codes may be alike by chance, and every ambiguity would be lost for them. A real jump stays,
+        // so that the next epoch tells as well.
+        (8 * (jumps.len() - like) <= jumps.len()).then_some(Self::Other)
     }
 }
 
@@ -47,6 +52,8 @@ mod tests {
         assert_eq!(of(&most, 299_792.0), Some(ClockJump::Milliseconds(1)));
         assert_eq!(of(&[-599_585.0; 5], -599_585.0), Some(ClockJump::Milliseconds(-2)));
         assert_eq!(of(&[100.0, 101.0, 99.0], 100.0), Some(ClockJump::Other));
+        assert_eq!(of(&[17.0, 17.0, 17.0, 0.0, 0.0], 17.0), None, "outliers of codes");
+        assert_eq!(of(&[100.0; 7], 100.0), Some(ClockJump::Other));
         assert_eq!(of(&[100.0, 300.0, 600.0], 300.0), None, "each by its own");
         assert_eq!(of(&[1e20; 4], 1e20), Some(ClockJump::Other));
         assert_eq!(of(&[f64::NAN; 4], f64::NAN), None);

@@ -226,8 +226,12 @@ impl Recording {
     }
 }
 
-/// Satellites as they are named in files.
+/// Satellites as they are named in files; of many, the first and how many more.
 pub fn names(satellites: impl IntoIterator<Item = u8>) -> String {
-    let names: Vec<_> = satellites.into_iter().map(satellite_name).collect();
-    names.join(" ")
+    const MOST: usize = 12;
+    let mut names: Vec<_> = satellites.into_iter().map(satellite_name).collect();
+    let more = names.len().saturating_sub(MOST);
+    names.truncate(MOST);
+    let named = names.join(" ");
+    if more == 0 { named } else { format!("{named} and {more} more") }
 }

@@ -28,6 +28,9 @@ const UNSEEN: &[(&str, &str, &str)] = &[
     ("kinematic", "orbits a kilometre off", "all orbits moved alike move the position, and fit"),
 ];
 
+/// More characters nobody reads while something is wrong.
+const LONGEST_SENTENCE: usize = 200;
+
 /// One run of a system: its error, m (UAV: mrad), and what the user was told.
 #[derive(Debug, Clone)]
 struct Answer {
@@ -172,6 +175,15 @@ fn judge(cases: &[Case]) {
     for case in cases {
         assert!(case.clean.error.is_some(), "{} is refused without a fault", case.recording);
         assert!(case.clean.is_good, "false alarm for {}: {:?}", case.recording, case.clean);
+    }
+    let sentences = cases.iter().flat_map(|Case { faulty, .. }| {
+        faulty.warnings.iter().chain(faulty.error.is_none().then_some(&faulty.told))
+    });
+    for sentence in sentences {
+        // A path is as long as its folder's.
+        let own = sentence.split_whitespace().filter(|word| !word.contains('/'));
+        let length: usize = own.map(|word| word.chars().count() + 1).sum();
+        assert!(length <= LONGEST_SENTENCE, "{length} characters: {sentence}");
     }
     for case in cases {
         let is_known = UNSEEN.iter().any(|(recording, fault, _)| {

@@ -64,8 +64,8 @@ fn contradictions(followed: &Followed) -> Option<String> {
         }
     };
     Some(format!(
-        "in {count} of {of} epochs, the first at {first} s, {why} ({share:.0} % rejected in all): positions and standard \
-         deviations there {therefore} wrong; check times, products, codes and antennas"
+        "in {count} of {of} epochs from {first} s on {why} ({share:.0} % rejected): positions and σ there {therefore} wrong; \
+         check times, products, codes and antennas"
     ))
 }
 

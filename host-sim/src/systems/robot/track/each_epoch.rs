@@ -2,13 +2,13 @@
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Solver;
-use kestirim_uwb_tracker::{EpochMethod, EpochSolver, RangeSample};
+use kestirim_uwb_tracker::{EpochMethod, EpochSolver};
 use nalgebra::SVector;
 
-use super::follow::{Follow, Reception, anchors, place, refused};
+use super::follow::{Follow, Reception, anchors, place, refused, sample};
 use crate::Error;
 use crate::systems::robot::recording::anchors::MOST;
-use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::recording::event::Event;
 use crate::systems::robot::settings::Setup;
 
 /// The freshest range of each anchor, and the position that they make.
@@ -34,10 +34,7 @@ impl<T: Scalar, const D: usize> EachEpoch<T, D> {
 impl<T: Scalar, const D: usize> Follow for EachEpoch<T, D> {
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         let taken = match *event {
-            Event::Range(Range { anchor, metres, .. }) => {
-                let sample = RangeSample { time_us, anchor, range: T::from_f64(metres) };
-                self.solver.range(&sample).is_ok()
-            }
+            Event::Range(ref range) => self.solver.range(&sample(time_us, range)).is_ok(),
             Event::Height { metres, .. } => {
                 let set = self.solver.set_height(T::from_f64(metres)).is_ok();
                 if set {

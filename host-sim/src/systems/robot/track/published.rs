@@ -1,14 +1,12 @@
 //! `kestirim_uwb_tracker::PublishedTracker` behind the trackers' face.
 
 use kestirim_scalar::Scalar;
-use kestirim_uwb_tracker::{
-    Anchor, PublishedConfig, PublishedOutcome, PublishedTracker, RangeSample,
-};
+use kestirim_uwb_tracker::{Anchor, PublishedConfig, PublishedOutcome, PublishedTracker};
 use nalgebra::SVector;
 
-use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused};
+use super::follow::{Follow, Reception, anchors, of_the_plane, place, refused, sample};
 use crate::Error;
-use crate::systems::robot::recording::event::{Event, Range};
+use crate::systems::robot::recording::event::Event;
 use crate::systems::robot::settings::Setup;
 
 /// Which noise the filter works with.
@@ -85,12 +83,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Publi
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         let number = T::from_f64;
         let taken = match *event {
-            Event::Range(Range { anchor, metres, .. }) => {
-                self.tracker.range(&RangeSample { time_us, anchor, range: number(metres) }).is_ok()
-            }
-            Event::Inertial(sample) => {
+            Event::Range(ref range) => self.tracker.range(&sample(time_us, range)).is_ok(),
+            Event::Inertial(inertial) => {
                 let push = |push: [f64; 3]| std::array::from_fn(|axis| number(push[axis]));
-                self.tracker.push(sample.push.map(push));
+                self.tracker.push(inertial.push.map(push));
                 true
             }
             Event::Height { metres, .. } => {
