@@ -15,7 +15,7 @@ mod region;
 mod resample;
 mod sequence;
 #[cfg(feature = "serde")]
-mod serialize;
+mod snapshot;
 mod uniform;
 mod weights;
 
