@@ -13,7 +13,7 @@ pub struct AdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     predicted: Gaussian<T, N>,
     process_noise: ProcessNoise<T, N>,
     /// The noise of each measurement, beside how it is learnt: both are looked up at once.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     measurements: [(MeasurementNoise<T>, Learning<T>); M],
 }
 

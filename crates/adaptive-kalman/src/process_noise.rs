@@ -18,9 +18,9 @@ use nalgebra::SVector;
     ))
 )]
 pub struct ProcessNoise<T: Scalar, const N: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     variances: [T; N],
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     learning: [Learning<T>; N],
 }
 

@@ -18,9 +18,9 @@ const LEAST_PIVOT: f64 = 1e-5;
     ))
 )]
 pub(crate) struct Normal<T, const N: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays::rows"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     pub(crate) a: [[T; N]; N],
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(crate) b: [T; N],
     /// bᵀ b.
     pub(crate) squares: T,

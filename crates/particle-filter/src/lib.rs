@@ -3,6 +3,8 @@
 
 mod blocks;
 mod error;
+#[cfg(feature = "serde")]
+pub mod generator;
 mod kld;
 mod mode;
 mod moments;

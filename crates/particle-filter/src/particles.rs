@@ -22,7 +22,7 @@ use crate::{Error, Moments, Region, Resample, Start, Update};
     ))
 )]
 pub struct Particles<T, const D: usize, const N: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays::rows"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     pub(crate) states: [[T; N]; D],
     pub(crate) weights: Weights<T, N>,
     /// Integer weights, then numbers of offspring; or occupied bins.

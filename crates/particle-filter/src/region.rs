@@ -17,9 +17,9 @@ use crate::Error;
     )
 )]
 pub struct Region<T, const D: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     low: [T; D],
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     high: [T; D],
 }
 
@@ -28,9 +28,9 @@ pub struct Region<T, const D: usize> {
 #[derive(serde::Deserialize)]
 #[serde(bound(deserialize = "T: Scalar + serde::Deserialize<'de>"))]
 struct Bounds<T, const D: usize> {
-    #[serde(with = "kestirim_scalar::arrays")]
+    #[serde(with = "kestirim_snapshot::arrays")]
     low: [T; D],
-    #[serde(with = "kestirim_scalar::arrays")]
+    #[serde(with = "kestirim_snapshot::arrays")]
     high: [T; D],
 }
 

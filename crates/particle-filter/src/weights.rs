@@ -28,7 +28,7 @@ pub struct Update<T> {
     ))
 )]
 pub(crate) struct Weights<T, const N: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     log: [T; N],
     #[cfg_attr(feature = "serde", serde(deserialize_with = "used::<_, N>"))]
     count: usize,
@@ -42,7 +42,7 @@ pub(crate) struct Weights<T, const N: usize> {
 fn used<'de, D: serde::Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<usize, D::Error> {
-    let count = kestirim_scalar::arrays::count::<D, N>(deserializer)?;
+    let count = kestirim_snapshot::arrays::count::<D, N>(deserializer)?;
     if count > 0 { Ok(count) } else { Err(serde::de::Error::custom("no points")) }
 }
 

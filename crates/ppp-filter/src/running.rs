@@ -52,7 +52,7 @@ pub(crate) struct Running<const N: usize> {
     /// The shortest time between two epochs so far, s.
     pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     channels: [Option<Channel>; N],
     /// The state that is the clock of Galileo beside that of GPS, both as the receiver has them, from the first
     /// satellite of Galileo on.

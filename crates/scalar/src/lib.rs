@@ -1,8 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-#[cfg(feature = "serde")]
-pub mod arrays;
 mod components;
 mod double;
 mod fixed;

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+pub mod arrays;
 mod error;
 mod finite;
 mod header;

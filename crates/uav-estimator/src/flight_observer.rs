@@ -35,10 +35,10 @@ use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
     observer: CurrentObserver<T, 4, 2, P>,
     c: SMatrix<f64, P, 4>,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     gates: [InnovationGate; P],
     /// How many times each output was left out.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     rejected: [u32; P],
     monitor: Monitor,
     usual_us: i64,

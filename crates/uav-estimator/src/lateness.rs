@@ -25,7 +25,7 @@ const LATE: f32 = 0.75;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Lateness<const P: usize> {
     /// Expected outputs, averaged.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     usual: [f32; P],
     /// Sums of innovation by movement, of its square, of movements squared, in units of the innovations' variances, …
     product: f32,

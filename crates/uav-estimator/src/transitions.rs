@@ -25,7 +25,7 @@ pub(crate) struct Transitions<S, const L: usize> {
     usual: f64,
     /// Standard deviations of the inputs' noise a usual interval.
     noise: SVector<f64, 2>,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     known: [Option<(i64, S)>; L],
 }
 

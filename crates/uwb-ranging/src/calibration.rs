@@ -23,12 +23,12 @@ use nalgebra::SVector;
     ))
 )]
 pub struct Calibration<T: Scalar, const A: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     anchors: [SVector<T, 3>; A],
     /// Normal equations of the biases, times the variance of a range.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays::rows"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     normal: [[T; A]; A],
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     right: [T; A],
 }
 

@@ -41,7 +41,7 @@ pub struct Height<T, const A: usize> {
 pub struct HeightSearch<T: Scalar, const A: usize> {
     anchors: Vec<SVector<T, 3>, A>,
     prior: Prior<T>,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     candidates: [Candidate<T, A>; CANDIDATES],
     /// Weight of the places, and of the ranges beyond two a place.
     places: T,
@@ -71,9 +71,9 @@ struct Prior<T> {
 struct Candidate<T, const A: usize> {
     height: T,
     /// Normal equations of the biases, without what they may be, times the variance of a range.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays::rows"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     normal: [[T; A]; A],
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     right: [T; A],
     /// Squares that are left without biases, m².
     squares: T,

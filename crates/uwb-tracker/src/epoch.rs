@@ -28,7 +28,7 @@ pub struct EpochSolver<T: Scalar, const A: usize> {
     solver: Solver<T>,
     anchors: Vec<Anchor<T>, A>,
     /// Time of the last range of each anchor (µs), and the range without its bias, m.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     last: [Option<(u64, T)>; A],
     pace: Pace,
 }

@@ -22,7 +22,7 @@ pub struct HeightFinder<T: Scalar, const A: usize> {
     search: HeightSearch<T, A>,
     biases: Vec<T, A>,
     /// The last range of each anchor without its bias, and the one before it.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     links: [Link<T>; A],
     /// Time of the newest range (µs).
     newest_us: Option<u64>,
@@ -51,9 +51,9 @@ struct Link<T> {
     ))
 )]
 struct Place<T, const A: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     first: [Option<T>; A],
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     ranges: [Quartiles<T>; A],
     moments: u32,
 }

@@ -81,12 +81,12 @@ pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: 
     /// The anchors' ranges, and the first position.
     ranges: EpochSolver<T, A>,
     /// Anchors that were heard in this epoch.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     heard: [bool; A],
     filter: Option<PublishedAdaptiveKalman<T, N, A>>,
     /// Time of the filter's estimate (µs).
     time_us: u64,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays::optional"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::optional"))]
     push: Option<[T; D]>,
 }
 

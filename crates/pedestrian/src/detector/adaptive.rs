@@ -74,7 +74,7 @@ pub(crate) struct RecentMinimum<T> {
     bins: [T; CAPACITY],
     #[cfg_attr(
         feature = "serde",
-        serde(deserialize_with = "kestirim_scalar::arrays::index::<_, CAPACITY>")
+        serde(deserialize_with = "kestirim_snapshot::arrays::index::<_, CAPACITY>")
     )]
     newest: usize,
     begun_us: Option<u32>,
@@ -82,7 +82,7 @@ pub(crate) struct RecentMinimum<T> {
     older: T,
     #[cfg_attr(
         feature = "serde",
-        serde(deserialize_with = "kestirim_scalar::arrays::count::<_, { CAPACITY - 1 }>")
+        serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, { CAPACITY - 1 }>")
     )]
     memory: usize,
 }

@@ -21,15 +21,15 @@ pub(crate) struct SlidingMean<T, const K: usize> {
     ring: [(u32, [T; K]); CAPACITY],
     #[cfg_attr(
         feature = "serde",
-        serde(deserialize_with = "kestirim_scalar::arrays::index::<_, CAPACITY>")
+        serde(deserialize_with = "kestirim_snapshot::arrays::index::<_, CAPACITY>")
     )]
     newest: usize,
     #[cfg_attr(
         feature = "serde",
-        serde(deserialize_with = "kestirim_scalar::arrays::count::<_, CAPACITY>")
+        serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, CAPACITY>")
     )]
     count: usize,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_scalar::arrays"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     sums: [T; K],
     span_us: u32,
     /// 1/count, kept because a division is expensive and the count seldom changes.
@@ -40,14 +40,15 @@ pub(crate) struct SlidingMean<T, const K: usize> {
 #[cfg(feature = "serde")]
 mod ring {
     use super::CAPACITY;
-    use kestirim_scalar::{Scalar, arrays};
+    use kestirim_scalar::Scalar;
+    use kestirim_snapshot::arrays;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     #[derive(Clone, Copy, Serialize, Deserialize)]
     #[serde(bound(serialize = "T: Serialize", deserialize = "T: Scalar + Deserialize<'de>"))]
     struct Sample<T, const K: usize> {
         time_us: u32,
-        #[serde(with = "kestirim_scalar::arrays")]
+        #[serde(with = "kestirim_snapshot::arrays")]
         features: [T; K],
     }
 

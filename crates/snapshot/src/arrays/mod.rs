@@ -1,7 +1,10 @@
 //! Arrays of any length, of any element: serde itself has them up to 32 only, and of no generic length.
 //!
-//! `#[serde(with = "kestirim_scalar::arrays")]` is for `[E; N]`, [`rows`] for `[[E; N]; M]` and [`optional`] for
+//! `#[serde(with = "kestirim_snapshot::arrays")]` is for `[E; N]`, [`rows`] for `[[E; N]; M]` and [`optional`] for
 //! `Option<[E; N]>`. Another number of elements than the type has is an error of the format, never a panic.
+
+pub mod optional;
+pub mod rows;
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -74,66 +77,6 @@ struct Row<E, const N: usize>([E; N]);
 impl<'de, E: Deserialize<'de> + Copy, const N: usize> Deserialize<'de> for Row<E, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserialize(deserializer).map(Self)
-    }
-}
-
-/// Arrays of arrays: `[[E; N]; M]`.
-pub mod rows {
-    use super::{Deserialize, Deserializer, Row, RowOf, Serialize, SerializeTuple, Serializer};
-
-    /// Writes the elements, row by row.
-    ///
-    /// # Errors
-    /// Those of the format.
-    pub fn serialize<S: Serializer, E: Serialize, const N: usize, const M: usize>(
-        rows: &[[E; N]; M],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        let mut tuple = serializer.serialize_tuple(M)?;
-        for row in rows {
-            tuple.serialize_element(&RowOf(row))?;
-        }
-        tuple.end()
-    }
-
-    /// Reads the elements, row by row.
-    ///
-    /// # Errors
-    /// Those of the format, and if there are not `M` rows of `N`.
-    pub fn deserialize<'de, D, E, const N: usize, const M: usize>(
-        deserializer: D,
-    ) -> Result<[[E; N]; M], D::Error>
-    where
-        D: Deserializer<'de>,
-        E: Deserialize<'de> + Copy,
-    {
-        super::deserialize::<D, Row<E, N>, M>(deserializer).map(|rows| rows.map(|row| row.0))
-    }
-}
-
-/// Arrays that may be missing: `Option<[E; N]>`.
-pub mod optional {
-    use super::{Deserialize, Deserializer, Row, RowOf, Serialize, Serializer};
-
-    /// Writes the elements, if there are any.
-    ///
-    /// # Errors
-    /// Those of the format.
-    pub fn serialize<S: Serializer, E: Serialize, const N: usize>(
-        array: &Option<[E; N]>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        array.as_ref().map(RowOf).serialize(serializer)
-    }
-
-    /// Reads the elements, if there are any.
-    ///
-    /// # Errors
-    /// Those of the format, and if there are not `N` elements.
-    pub fn deserialize<'de, D: Deserializer<'de>, E: Deserialize<'de> + Copy, const N: usize>(
-        deserializer: D,
-    ) -> Result<Option<[E; N]>, D::Error> {
-        Ok(Option::<Row<E, N>>::deserialize(deserializer)?.map(|row| row.0))
     }
 }
 
