@@ -54,7 +54,8 @@ impl Digest {
 
     /// With one more.
     pub fn and(self, bits: u64) -> Self {
-        let step = |digest: u64, byte: &u8| (digest ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        let step =
+            |digest: u64, byte: &u8| (digest ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         Self(bits.to_le_bytes().iter().fold(self.0, step))
     }
 
@@ -71,7 +72,8 @@ where
 {
     fn take(&mut self, sample: &Sample) -> u64 {
         let &Sample::Inertial(time_us, force, rate) = sample else { return 0 };
-        let [specific_force, angular_rate] = [force, rate].map(|it| SVector::from(it.map(T::from_f32)));
+        let [specific_force, angular_rate] =
+            [force, rate].map(|it| SVector::from(it.map(T::from_f32)));
         let estimate = self.update(&ImuSample { time_us, specific_force, angular_rate });
         let said = Digest::NONE.and(u64::from(self.warnings().gaps)).all(&[self.path_length()]);
         estimate.map_or(said.0, |estimate| {
@@ -99,7 +101,8 @@ where
     fn take(&mut self, sample: &Sample) -> u64 {
         let taken = range(sample).map(|sample| self.range(&sample).is_ok());
         let driven = wheels(sample).map(|sample| self.odometry(&sample).is_ok());
-        let said = Digest::NONE.and(u64::from(taken == Some(true))).and(u64::from(driven == Some(true)));
+        let said =
+            Digest::NONE.and(u64::from(taken == Some(true))).and(u64::from(driven == Some(true)));
         self.estimate().map_or(said, |estimate| said.all(estimate.mean.as_slice())).0
     }
 }
@@ -111,7 +114,8 @@ where
     fn take(&mut self, sample: &Sample) -> u64 {
         let taken = range(sample).map(|sample| self.range(&sample).is_ok());
         let driven = wheels(sample).map(|sample| self.odometry(&sample).is_ok());
-        let said = Digest::NONE.and(u64::from(taken == Some(true))).and(u64::from(driven == Some(true)));
+        let said =
+            Digest::NONE.and(u64::from(taken == Some(true))).and(u64::from(driven == Some(true)));
         self.estimate().map_or(said, |estimate| said.all(estimate.mean.as_slice())).0
     }
 }
@@ -254,11 +258,23 @@ where
 impl<const N: usize> Sleeper for PppFilter<N> {
     fn take(&mut self, sample: &Sample) -> u64 {
         let Sample::Epoch(time, satellites) = sample else { return 0 };
-        let observe = |&(satellite, code, phase, state): &(u8, [f64; 2], [f64; 2], SatelliteState)| {
-            let carriers = Carriers::L1L2;
-            SatelliteObservation { satellite, carriers, code, phase, lock_lost: false, state, antenna: None }
-        };
-        let observations: Vec<_, SATELLITES> = satellites.iter().map(observe).collect();
+        let observe =
+            |&(satellite, code, phase, state): &(u8, [f64; 2], [f64; 2], SatelliteState)| {
+                let carriers = Carriers::L1L2;
+                SatelliteObservation {
+                    satellite,
+                    carriers,
+                    code,
+                    phase,
+                    lock_lost: false,
+                    state,
+                    antenna: None,
+                }
+            };
+        let mut observations = Vec::<_, SATELLITES>::new();
+        for satellite in satellites {
+            let _ = observations.push(observe(satellite)); // There is room for as many.
+        }
         let solution = self.process(*time, &Default::default(), &observations);
         solution.map_or(0, |solution| {
             let said = Digest::NONE.all(solution.position.as_slice());
