@@ -1,4 +1,4 @@
-//! Whether all floats of a value are finite: a format that stores nothing and stops at the first that is not.
+//! Whether all floats of a value are numbers: a format that stores nothing and stops at the first that is not.
 
 use core::fmt;
 
@@ -8,8 +8,9 @@ use serde::ser::{
     SerializeTupleStruct, SerializeTupleVariant, Serializer,
 };
 
-pub(crate) fn is_finite(value: &impl Serialize) -> bool {
-    value.serialize(Finite).is_ok()
+/// Whether all are finite, or −∞ where that is allowed.
+pub(crate) fn is_finite(value: &impl Serialize, or_never: bool) -> bool {
+    value.serialize(Finite { or_never }).is_ok()
 }
 
 /// A float that is not finite.
@@ -30,7 +31,11 @@ impl serde::ser::Error for NotFinite {
     }
 }
 
-struct Finite;
+#[derive(Clone, Copy)]
+struct Finite {
+    /// −∞ is the logarithm of a probability: never.
+    or_never: bool,
+}
 
 type Checked = Result<(), NotFinite>;
 
@@ -91,11 +96,13 @@ impl Serializer for Finite {
     }
 
     fn serialize_f32(self, value: f32) -> Checked {
-        if value.is_finite() { Ok(()) } else { Err(NotFinite) }
+        let never = self.or_never && value == f32::NEG_INFINITY;
+        if value.is_finite() || never { Ok(()) } else { Err(NotFinite) }
     }
 
     fn serialize_f64(self, value: f64) -> Checked {
-        if value.is_finite() { Ok(()) } else { Err(NotFinite) }
+        let never = self.or_never && value == f64::NEG_INFINITY;
+        if value.is_finite() || never { Ok(()) } else { Err(NotFinite) }
     }
 
     fn serialize_some<V: Serialize + ?Sized>(self, value: &V) -> Checked {
@@ -137,7 +144,7 @@ macro_rules! collection {
             type Error = NotFinite;
 
             fn $method<V: Serialize + ?Sized>(&mut self $(, _: $key)*, value: &V) -> Checked {
-                value.serialize(Self)
+                value.serialize(*self)
             }
 
             fn end(self) -> Checked {
@@ -161,11 +168,11 @@ impl SerializeMap for Finite {
     type Error = NotFinite;
 
     fn serialize_key<V: Serialize + ?Sized>(&mut self, key: &V) -> Checked {
-        key.serialize(Self)
+        key.serialize(*self)
     }
 
     fn serialize_value<V: Serialize + ?Sized>(&mut self, value: &V) -> Checked {
-        value.serialize(Self)
+        value.serialize(*self)
     }
 
     fn end(self) -> Checked {

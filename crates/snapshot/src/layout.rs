@@ -10,7 +10,8 @@ pub trait Layout {
     const NAME: &'static str;
     /// Raised with each change of what is stored.
     const VERSION: u16;
-    /// Whether all its floats are finite, always: then none is loaded that is not.
+    /// Whether all its floats are finite, always. Otherwise it has logarithms of probabilities, and −∞ is loaded, too; NaN
+    /// and +∞ never are.
     const IS_FINITE: bool = true;
 
     /// The numbers that it computes in.
@@ -65,7 +66,7 @@ impl fmt::Display for Number {
 }
 
 /// Implements [`Layout`]: `[parameters] for estimator as name, version, scalar, [sizes]`, and `, infinite` where
-/// floats may be infinite.
+/// floats may be −∞.
 ///
 /// ```
 /// # use kestirim_scalar::Scalar;

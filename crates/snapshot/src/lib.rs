@@ -89,7 +89,7 @@ pub fn load<E: Layout + DeserializeOwned + Serialize>(bytes: &[u8]) -> Result<E,
     if !rest.is_empty() {
         return Err(Error::Invalid);
     }
-    if E::IS_FINITE && !finite::is_finite(&estimator) {
+    if !finite::is_finite(&estimator, !E::IS_FINITE) {
         return Err(Error::NotFinite);
     }
     Ok(estimator)

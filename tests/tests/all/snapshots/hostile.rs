@@ -13,7 +13,7 @@ use super::{Awake, Visit};
 const HEADER: usize = 42;
 const CHECKSUM: usize = 4;
 /// How often each estimator's snapshot is spoilt.
-const ROUNDS: usize = 300;
+const ROUNDS: usize = 100;
 /// Samples that an estimator takes after that.
 const SAMPLES: usize = 60;
 
