@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use kestirim_air_to_ground::Measurement;
-use kestirim_gnss_ppp::{Carriers, GpsTime, SatelliteState};
+use kestirim_gnss_ppp::{Carriers, GpsTime, Receiver, SatelliteState};
 use kestirim_luenberger::Predictor;
 use kestirim_particle_filter::Xoshiro128PlusPlus;
 use kestirim_pedestrian::{ImuSample, Navigator, Tracker as Walk};
@@ -275,7 +275,7 @@ impl<const N: usize> Sleeper for PppFilter<N> {
         for satellite in satellites {
             let _ = observations.push(observe(satellite)); // There is room for as many.
         }
-        let solution = self.process(*time, &Default::default(), &observations);
+        let solution = self.process(*time, &Receiver::default(), &observations);
         solution.map_or(0, |solution| {
             let said = Digest::NONE.all(solution.position.as_slice());
             said.all(solution.covariance.as_slice()).all(&[solution.clock, solution.wet_delay]).0

@@ -15,7 +15,7 @@ impl Visit for Sizes {
         let mut largest = 0;
         for (index, sample) in samples.iter().enumerate() {
             estimator.take(sample);
-            if index % 10 == 0 || index + 1 == samples.len() {
+            if index.is_multiple_of(10) || index + 1 == samples.len() {
                 largest = largest.max(stored(&estimator).len());
             }
         }

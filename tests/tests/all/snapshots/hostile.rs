@@ -29,7 +29,7 @@ struct Spoils;
 impl Visit for Spoils {
     fn visit<E: Sleeper>(&mut self, kind: &Kind, estimator: E, samples: &[Sample]) {
         let middle = samples.len() / 2;
-        let awake = Awake::over(estimator, &samples[..middle + 1], &[middle]);
+        let awake = Awake::over(estimator, &samples[..=middle], &[middle]);
         let [(place, snapshot)] = &awake.snapshots[..] else { panic!("a snapshot") };
         let mut rng = host_sim::random::stream(kind.seed, 23);
         let mut refused = 0;

@@ -28,6 +28,15 @@ fn a_recorded_walk() {
     sleep("fixed", Walk::<Q12_20, Ekf<Q12_20>>::new(WalkConfig::default()), &samples, 3);
 }
 
+fn tracker<T: Scalar>(places: &[[f64; 3]]) -> Robot<T, 2, 4, 8> {
+    let anchor = |place: &[f64; 3]| Anchor {
+        position: SVector::from(place.map(T::from_f64)),
+        bias: T::ZERO,
+    };
+    let anchors: Vec<_> = places.iter().map(anchor).collect();
+    Robot::new(Config::calibrated(T::ONE), &anchors).expect("they fit")
+}
+
 #[test]
 fn a_recorded_drive() {
     let Some(folder) = folder_of("robot") else { return };
@@ -40,14 +49,6 @@ fn a_recorded_drive() {
         Some(Sample::Range(row.time_us as u64, row.anchor as u32, row.range? as f32))
     };
     let samples: Vec<_> = log.rows.iter().filter_map(sample).collect();
-    fn tracker<T: Scalar>(places: &[[f64; 3]]) -> Robot<T, 2, 4, 8> {
-        let anchor = |place: &[f64; 3]| Anchor {
-            position: SVector::from(place.map(T::from_f64)),
-            bias: T::ZERO,
-        };
-        let anchors: Vec<_> = places.iter().map(anchor).collect();
-        Robot::new(Config::calibrated(T::ONE), &anchors).expect("they fit")
-    }
     sleep("robot", tracker::<f32>(&places.positions), &samples, 4);
     sleep("robot in fixed point", tracker::<Q12_20>(&places.positions), &samples, 5);
 }
