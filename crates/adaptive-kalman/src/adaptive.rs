@@ -6,12 +6,14 @@ use kestirim_scalar::Scalar;
 /// form: see [`MeasurementNoise`] and [`ProcessNoise`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     estimate: Gaussian<T, N>,
     /// The mean after the last prediction, from which eq. 19 measures Δx.
     predicted: Gaussian<T, N>,
     process_noise: ProcessNoise<T, N>,
     /// The noise of each measurement, beside how it is learnt: both are looked up at once.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     measurements: [(MeasurementNoise<T>, Learning<T>); M],
 }
 

@@ -7,6 +7,8 @@ mod learning;
 mod measurement_noise;
 mod process_noise;
 mod published;
+#[cfg(feature = "serde")]
+mod snapshot;
 
 pub use adaptive::AdaptiveKalman;
 pub use error::Error;

@@ -9,8 +9,18 @@ use nalgebra::SVector;
 /// diagonal), each entry within its limits: with a floor, the filter never stops listening.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct ProcessNoise<T: Scalar, const N: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     variances: [T; N],
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     learning: [Learning<T>; N],
 }
 

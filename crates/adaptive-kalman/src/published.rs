@@ -17,6 +17,7 @@ use nalgebra::{SMatrix, SVector};
 /// healthy NIS. That is how a filter started at the surveyed point "measures" it to 2 cm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PublishedAdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     estimate: Gaussian<T, N>,
     process_noise: Covariance<T, N>,

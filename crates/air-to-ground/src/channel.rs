@@ -6,6 +6,7 @@ use crate::{Environment, Error, Likelihood, Measurement, Propagation};
 /// without a line of sight (Al-Hourani's model; the thesis' section 2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Channel<T> {
     /// b per radian of elevation.
     b: T,
@@ -18,6 +19,7 @@ pub struct Channel<T> {
 /// One kind of propagation in the form in which a likelihood needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Shadowing<T> {
     /// Mean loss at a distance of one metre, dB.
     loss_at_one_metre: T,

@@ -8,6 +8,7 @@ use crate::{Channel, Error, Likelihood, Measurement};
 /// than ln(100/ε) however far it is from all that the channel expects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contaminated<T> {
     channel: Channel<T>,
     /// ln(1 − ε) and ln(ε/100 dB).

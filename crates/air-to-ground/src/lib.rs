@@ -9,6 +9,8 @@ mod free_space;
 mod likelihood;
 mod measurement;
 mod rotor;
+#[cfg(feature = "serde")]
+mod snapshot;
 
 pub use channel::{Channel, PathLoss};
 pub use contaminated::Contaminated;

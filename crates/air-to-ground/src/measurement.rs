@@ -5,11 +5,39 @@ use crate::Error;
 /// A path loss measured from the air, checked to be plausible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "Unchecked<T>",
+        bound(
+            serialize = "T: serde::Serialize",
+            deserialize = "T: Scalar + serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct Measurement<T> {
     place: [T; 2],
     height: T,
     loss: T,
+}
+
+/// A measurement as it was stored, which may be none.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Unchecked<T> {
+    place: [T; 2],
+    height: T,
+    loss: T,
+}
+
+#[cfg(feature = "serde")]
+impl<T: Scalar> TryFrom<Unchecked<T>> for Measurement<T> {
+    type Error = Error;
+
+    fn try_from(stored: Unchecked<T>) -> Result<Self, Error> {
+        Self::new(stored.place, stored.height, stored.loss)
+    }
 }
 
 impl<T: Scalar> Measurement<T> {

@@ -3,6 +3,8 @@
 
 mod ahrs;
 mod orientation;
+#[cfg(feature = "serde")]
+mod snapshot;
 
 pub use ahrs::{Ahrs, Error, Gains};
 pub use orientation::Orientation;

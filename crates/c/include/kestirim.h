@@ -28,11 +28,17 @@
 // Bytes that a search takes at most, on any target.
 #define KESTIRIM_DRONE_SIZE 1024
 
+// Bytes that a snapshot takes at most, on any target.
+#define KESTIRIM_DRONE_SNAPSHOT (((KESTIRIM_DRONE_SIZE / 4) * 5) + 64)
+
 // Most satellites of an epoch.
 #define KESTIRIM_MOST_SATELLITES 12
 
 // Bytes that a filter takes at most, on any target.
 #define KESTIRIM_GNSS_SIZE 10240
+
+// Bytes that a snapshot takes at most, on any target.
+#define KESTIRIM_GNSS_SNAPSHOT (((KESTIRIM_GNSS_SIZE / 4) * 5) + 64)
 
 // Most samples of an orbit or a clock: four hours of an orbit every quarter of an hour.
 #define KESTIRIM_MOST_PRODUCTS 16
@@ -40,11 +46,17 @@
 // Bytes that a pedestrian's tracker takes at most, on any target: for memory that is set aside by the compiler.
 #define KESTIRIM_PEDESTRIAN_SIZE 2048
 
+// Bytes that a snapshot takes at most, on any target.
+#define KESTIRIM_PEDESTRIAN_SNAPSHOT (((KESTIRIM_PEDESTRIAN_SIZE / 4) * 5) + 64)
+
 // Most anchors of a tracker.
 #define KESTIRIM_MOST_ANCHORS 8
 
 // Bytes that a tracker takes at most, on any target.
 #define KESTIRIM_ROBOT_SIZE 1536
+
+// Bytes that a snapshot takes at most, on any target.
+#define KESTIRIM_ROBOT_SNAPSHOT (((KESTIRIM_ROBOT_SIZE / 4) * 5) + 64)
 
 // Outputs of a filter.
 #define KESTIRIM_UAV_OUTPUTS 3
@@ -52,8 +64,14 @@
 // Bytes that a filter takes at most, on any target.
 #define KESTIRIM_UAV_SIZE 2048
 
+// Bytes that a snapshot takes at most, on any target.
+#define KESTIRIM_UAV_SNAPSHOT (((KESTIRIM_UAV_SIZE / 4) * 5) + 64)
+
 // Bytes that a tracker takes at most, on any target.
 #define KESTIRIM_WHEELS_SIZE 2048
+
+// Bytes that a snapshot takes at most, on any target.
+#define KESTIRIM_WHEELS_SNAPSHOT (((KESTIRIM_WHEELS_SIZE / 4) * 5) + 64)
 
 // Outcome of a call. If it is not `KESTIRIM_STATUS_OK`, nothing was changed, and no answer was written.
 enum kestirim_status
@@ -98,6 +116,12 @@ enum kestirim_status
   KESTIRIM_STATUS_GEOMETRY = 16,
   // The estimator refused the step for another reason.
   KESTIRIM_STATUS_REFUSED = 17,
+  // The bytes are no snapshot of an object.
+  KESTIRIM_STATUS_NO_SNAPSHOT = 18,
+  // A snapshot of another object, of another version of this library, or of other numbers (`float` or fixed point).
+  KESTIRIM_STATUS_FOREIGN_SNAPSHOT = 19,
+  // A snapshot that was not written whole, or was changed.
+  KESTIRIM_STATUS_DAMAGED_SNAPSHOT = 20,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -644,6 +668,25 @@ kestirim_status kestirim_drone_estimate(const struct kestirim_drone *search,
 kestirim_status kestirim_drone_health(const struct kestirim_drone *search,
                                       struct kestirim_health *health);
 
+// Stores the search in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_DRONE_SNAPSHOT` bytes are
+// enough, `length` tells how many it took.
+//
+// Errors: `TOO_SMALL` for the buffer.
+kestirim_status kestirim_drone_snapshot(const struct kestirim_drone *search,
+                                        uint8_t *buffer,
+                                        size_t capacity,
+                                        size_t *length);
+
+// Makes the search in memory of at least `kestirim_drone_size()` bytes that `kestirim_drone_snapshot` stored: it goes on
+// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+//
+// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+kestirim_status kestirim_drone_restore(void *memory,
+                                       size_t size,
+                                       const uint8_t *snapshot,
+                                       size_t length,
+                                       struct kestirim_drone **search);
+
 // Bytes that a filter takes on this target. An epoch needs 96 kB of stack at most.
 size_t kestirim_gnss_size(void);
 
@@ -687,6 +730,25 @@ kestirim_status kestirim_gnss_sigma(const struct kestirim_gnss *filter, double (
 // Errors: `NO_ESTIMATE`.
 kestirim_status kestirim_gnss_health(const struct kestirim_gnss *filter,
                                      struct kestirim_health *health);
+
+// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_GNSS_SNAPSHOT` bytes are
+// enough, `length` tells how many it took.
+//
+// Errors: `TOO_SMALL` for the buffer.
+kestirim_status kestirim_gnss_snapshot(const struct kestirim_gnss *filter,
+                                       uint8_t *buffer,
+                                       size_t capacity,
+                                       size_t *length);
+
+// Makes the filter in memory of at least `kestirim_gnss_size()` bytes that `kestirim_gnss_snapshot` stored: it goes on
+// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+//
+// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+kestirim_status kestirim_gnss_restore(void *memory,
+                                      size_t size,
+                                      const uint8_t *snapshot,
+                                      size_t length,
+                                      struct kestirim_gnss **filter);
 
 // Where a satellite was when it sent what was received at `time` by the receiver's clock, with this code (m): by the
 // polynomial through eleven samples of its orbit, and the line between two of its clock. Samples are in the order of
@@ -754,6 +816,25 @@ kestirim_status kestirim_pedestrian_path_length(const struct kestirim_pedestrian
 kestirim_status kestirim_pedestrian_health(const struct kestirim_pedestrian *tracker,
                                            struct kestirim_health *health);
 
+// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_PEDESTRIAN_SNAPSHOT` bytes are
+// enough, `length` tells how many it took.
+//
+// Errors: `TOO_SMALL` for the buffer.
+kestirim_status kestirim_pedestrian_snapshot(const struct kestirim_pedestrian *tracker,
+                                             uint8_t *buffer,
+                                             size_t capacity,
+                                             size_t *length);
+
+// Makes the tracker in memory of at least `kestirim_pedestrian_size()` bytes that `kestirim_pedestrian_snapshot` stored: it goes on
+// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+//
+// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+kestirim_status kestirim_pedestrian_restore(void *memory,
+                                            size_t size,
+                                            const uint8_t *snapshot,
+                                            size_t length,
+                                            struct kestirim_pedestrian **tracker);
+
 // Bytes that a tracker takes on this target.
 size_t kestirim_robot_size(void);
 
@@ -820,6 +901,25 @@ kestirim_status kestirim_robot_health(const struct kestirim_robot *tracker,
                                       struct kestirim_health *health,
                                       struct kestirim_tag_health *details);
 
+// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_ROBOT_SNAPSHOT` bytes are
+// enough, `length` tells how many it took.
+//
+// Errors: `TOO_SMALL` for the buffer.
+kestirim_status kestirim_robot_snapshot(const struct kestirim_robot *tracker,
+                                        uint8_t *buffer,
+                                        size_t capacity,
+                                        size_t *length);
+
+// Makes the tracker in memory of at least `kestirim_robot_size()` bytes that `kestirim_robot_snapshot` stored: it goes on
+// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+//
+// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+kestirim_status kestirim_robot_restore(void *memory,
+                                       size_t size,
+                                       const uint8_t *snapshot,
+                                       size_t length,
+                                       struct kestirim_robot **tracker);
+
 // The name of a status, in plain English: a text that lives as long as the program. Of a number that is none,
 // "unknown status".
 const char *kestirim_status_name(int32_t status);
@@ -861,6 +961,25 @@ kestirim_status kestirim_uav_sigma(const struct kestirim_uav *filter, double (*s
 // about 200 samples, `REJECTED` if more than a tenth of about 50 samples' measurements were left out.
 kestirim_status kestirim_uav_health(const struct kestirim_uav *filter,
                                     struct kestirim_health *health);
+
+// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_UAV_SNAPSHOT` bytes are
+// enough, `length` tells how many it took.
+//
+// Errors: `TOO_SMALL` for the buffer.
+kestirim_status kestirim_uav_snapshot(const struct kestirim_uav *filter,
+                                      uint8_t *buffer,
+                                      size_t capacity,
+                                      size_t *length);
+
+// Makes the filter in memory of at least `kestirim_uav_size()` bytes that `kestirim_uav_snapshot` stored: it goes on
+// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+//
+// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+kestirim_status kestirim_uav_restore(void *memory,
+                                     size_t size,
+                                     const uint8_t *snapshot,
+                                     size_t length,
+                                     struct kestirim_uav **filter);
 
 // Bytes that a tracker takes on this target.
 size_t kestirim_wheels_size(void);
@@ -922,6 +1041,25 @@ kestirim_status kestirim_wheels_health(const struct kestirim_wheels *tracker,
 //
 // Errors: `NO_ESTIMATE` before it is known.
 kestirim_status kestirim_wheels_scale(const struct kestirim_wheels *tracker, float *scale);
+
+// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_WHEELS_SNAPSHOT` bytes are
+// enough, `length` tells how many it took.
+//
+// Errors: `TOO_SMALL` for the buffer.
+kestirim_status kestirim_wheels_snapshot(const struct kestirim_wheels *tracker,
+                                         uint8_t *buffer,
+                                         size_t capacity,
+                                         size_t *length);
+
+// Makes the tracker in memory of at least `kestirim_wheels_size()` bytes that `kestirim_wheels_snapshot` stored: it goes on
+// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+//
+// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+kestirim_status kestirim_wheels_restore(void *memory,
+                                        size_t size,
+                                        const uint8_t *snapshot,
+                                        size_t length,
+                                        struct kestirim_wheels **tracker);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -44,6 +44,8 @@ impl Handle for Drone {
 /// Bytes that a search takes at most, on any target.
 pub const DRONE_SIZE: usize = 1024;
 const _: () = assert!(memory::size::<Drone>() <= DRONE_SIZE);
+/// Bytes that a snapshot takes at most, on any target.
+pub const DRONE_SNAPSHOT: usize = DRONE_SIZE / 4 * 5 + 64;
 
 /// A level that the drone received.
 #[repr(C)]
@@ -161,4 +163,35 @@ pub unsafe extern "C" fn kestirim_drone_health(
         answer.write(kestirim_health::Health::GOOD.with(Reason::Dropout, few).into());
         Ok(())
     })
+}
+
+/// Stores the search in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_DRONE_SNAPSHOT` bytes are
+/// enough, `length` tells how many it took.
+///
+/// Errors: `TOO_SMALL` for the buffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_drone_snapshot(
+    search: *const Drone,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::snapshot(search, buffer, capacity, length) }
+}
+
+/// Makes the search in memory of at least `kestirim_drone_size()` bytes that `kestirim_drone_snapshot` stored: it goes on
+/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+///
+/// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_drone_restore(
+    memory: *mut c_void,
+    size: usize,
+    snapshot: *const u8,
+    length: usize,
+    search: *mut *mut Drone,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::restore(memory, size, snapshot, length, search) }
 }

@@ -9,6 +9,7 @@ use kestirim_ppp_filter::{
     Config, Health as Quality, Motion, PppFilter, SatelliteObservation, Solution, states,
 };
 use kestirim_scalar::Components;
+use kestirim_snapshot::layout;
 use nalgebra::SVector;
 
 use crate::memory::{
@@ -31,11 +32,16 @@ pub struct Gnss {
 }
 
 /// What the memory holds.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Positioning {
     filter: PppFilter<STATES>,
     ut1_minus_gps: f64,
     eccentricity: [f64; 3],
     last: Option<GnssSolution>,
+}
+
+layout! {
+    [] for Positioning as "c/gnss", 1, f64, [STATES]
 }
 
 impl Handle for Gnss {
@@ -46,6 +52,8 @@ impl Handle for Gnss {
 /// Bytes that a filter takes at most, on any target.
 pub const GNSS_SIZE: usize = 10240;
 const _: () = assert!(memory::size::<Gnss>() <= GNSS_SIZE);
+/// Bytes that a snapshot takes at most, on any target.
+pub const GNSS_SNAPSHOT: usize = GNSS_SIZE / 4 * 5 + 64;
 
 /// Settings of the filter.
 #[repr(C)]
@@ -164,7 +172,7 @@ pub struct GnssObservation {
 
 /// Solution of one epoch.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GnssSolution {
     /// The marker, ECEF, m, free of tides.
     pub position: [f64; 3],
@@ -372,4 +380,35 @@ pub unsafe extern "C" fn kestirim_gnss_health(filter: *const Gnss, health: *mut 
         answer.write(filter.last.as_ref().ok_or(Status::NoEstimate)?.health);
         Ok(())
     })
+}
+
+/// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_GNSS_SNAPSHOT` bytes are
+/// enough, `length` tells how many it took.
+///
+/// Errors: `TOO_SMALL` for the buffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_gnss_snapshot(
+    filter: *const Gnss,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::snapshot(filter, buffer, capacity, length) }
+}
+
+/// Makes the filter in memory of at least `kestirim_gnss_size()` bytes that `kestirim_gnss_snapshot` stored: it goes on
+/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+///
+/// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_gnss_restore(
+    memory: *mut c_void,
+    size: usize,
+    snapshot: *const u8,
+    length: usize,
+    filter: *mut *mut Gnss,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::restore(memory, size, snapshot, length, filter) }
 }

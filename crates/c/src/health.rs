@@ -2,7 +2,7 @@ use kestirim_health::Reason;
 
 /// How far an estimate can be relied upon.
 #[repr(u32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum State {
     /// As its standard deviation says.
     Good = 0,
@@ -50,7 +50,7 @@ const _: () = assert!(1 << Reason::NotObservable as u32 == HealthReason::NotObse
 
 /// Whether an estimate can be relied upon, and all reasons why not.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Health {
     /// How far: the state of the worst reason.
     pub state: State,

@@ -9,10 +9,17 @@ use core::ffi::c_void;
 use core::mem::{MaybeUninit, size_of};
 use core::slice;
 
+use kestirim_snapshot::{Layout, load, store};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use crate::Status;
 
 /// More of anything than an array of C's may have here.
 const MOST: usize = 4096;
+
+/// More bytes than any snapshot has.
+const LONGEST: usize = 1 << 16;
 
 /// A type of handles: what C calls an object, and what there is behind it.
 pub(crate) trait Handle {
@@ -107,6 +114,55 @@ pub(crate) unsafe fn held_mut<'a, H: Handle>(handle: *mut H) -> Result<&'a mut H
     unsafe { held(handle.cast_const()) }?;
     // SAFETY: it is an object, and the caller's word is that nobody else uses it.
     Ok(unsafe { &mut (*handle.cast::<Held<H::Value>>()).value })
+}
+
+/// Stores an object in a buffer, and how many bytes it takes there.
+///
+/// # Safety
+/// As [`held`]; `buffer` is the caller's for `capacity` bytes, and `length` may be written.
+#[inline]
+pub(crate) unsafe fn snapshot<H: Handle>(
+    handle: *const H,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status
+where
+    H::Value: Layout + Serialize,
+{
+    status(|| {
+        // SAFETY: the caller's word is the same.
+        let (object, length) = unsafe { (held(handle)?, place(length)?) };
+        check(buffer)?;
+        // SAFETY: not null, and not longer than the caller says. Bytes are written before they are read.
+        let buffer = unsafe { slice::from_raw_parts_mut(buffer, capacity.min(LONGEST)) };
+        length.write(store(object, buffer)?.len());
+        Ok(())
+    })
+}
+
+/// Makes an object in memory of what [`snapshot`] stored, and its handle.
+///
+/// # Safety
+/// As [`init`]; `bytes` may be read for `length`.
+#[inline]
+pub(crate) unsafe fn restore<H: Handle>(
+    memory: *mut c_void,
+    given: usize,
+    bytes: *const u8,
+    length: usize,
+    handle: *mut *mut H,
+) -> Status
+where
+    H::Value: Layout + Serialize + DeserializeOwned,
+{
+    // SAFETY: the caller's word is the same; what is beyond the longest snapshot is not looked at.
+    unsafe {
+        init(memory, given, handle, || {
+            check(bytes)?;
+            Ok(load(slice::from_raw_parts(bytes, length.min(LONGEST)))?)
+        })
+    }
 }
 
 /// An argument, copied.

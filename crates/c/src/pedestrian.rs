@@ -7,6 +7,7 @@ use kestirim_pedestrian::{
     Config, EkfTracker, Estimate, ImuSample, PathUncertainty, SensorClass, Stride,
 };
 use kestirim_scalar::{Components, Scalar};
+use kestirim_snapshot::layout;
 use nalgebra::SVector;
 
 use crate::memory::{self, Handle, argument, held, held_mut, place, status, wanted};
@@ -27,10 +28,15 @@ pub struct Pedestrian {
 }
 
 /// What the memory holds.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Walk {
     tracker: EkfTracker<Number>,
     uncertainty: PathUncertainty<Number>,
     last: Option<Estimate<Number>>,
+}
+
+layout! {
+    [] for Walk as "c/pedestrian", 1, Number, []
 }
 
 impl Handle for Pedestrian {
@@ -41,6 +47,8 @@ impl Handle for Pedestrian {
 /// Bytes that a pedestrian's tracker takes at most, on any target: for memory that is set aside by the compiler.
 pub const PEDESTRIAN_SIZE: usize = 2048;
 const _: () = assert!(memory::size::<Pedestrian>() <= PEDESTRIAN_SIZE);
+/// Bytes that a snapshot takes at most, on any target.
+pub const PEDESTRIAN_SNAPSHOT: usize = PEDESTRIAN_SIZE / 4 * 5 + 64;
 
 /// Class of an IMU.
 #[repr(u32)]
@@ -308,4 +316,35 @@ pub unsafe extern "C" fn kestirim_pedestrian_health(
         answer.write(walk.tracker.warnings().health().into());
         Ok(())
     })
+}
+
+/// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_PEDESTRIAN_SNAPSHOT` bytes are
+/// enough, `length` tells how many it took.
+///
+/// Errors: `TOO_SMALL` for the buffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_pedestrian_snapshot(
+    tracker: *const Pedestrian,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::snapshot(tracker, buffer, capacity, length) }
+}
+
+/// Makes the tracker in memory of at least `kestirim_pedestrian_size()` bytes that `kestirim_pedestrian_snapshot` stored: it goes on
+/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+///
+/// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_pedestrian_restore(
+    memory: *mut c_void,
+    size: usize,
+    snapshot: *const u8,
+    length: usize,
+    tracker: *mut *mut Pedestrian,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::restore(memory, size, snapshot, length, tracker) }
 }

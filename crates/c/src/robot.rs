@@ -33,6 +33,8 @@ impl Handle for Robot {
 /// Bytes that a tracker takes at most, on any target.
 pub const ROBOT_SIZE: usize = 1536;
 const _: () = assert!(memory::size::<Robot>() <= ROBOT_SIZE);
+/// Bytes that a snapshot takes at most, on any target.
+pub const ROBOT_SNAPSHOT: usize = ROBOT_SIZE / 4 * 5 + 64;
 
 /// One sample of an IMU on the tag.
 #[repr(C)]
@@ -223,4 +225,35 @@ pub unsafe extern "C" fn kestirim_robot_health(
         }
         Ok(())
     })
+}
+
+/// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_ROBOT_SNAPSHOT` bytes are
+/// enough, `length` tells how many it took.
+///
+/// Errors: `TOO_SMALL` for the buffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_robot_snapshot(
+    tracker: *const Robot,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::snapshot(tracker, buffer, capacity, length) }
+}
+
+/// Makes the tracker in memory of at least `kestirim_robot_size()` bytes that `kestirim_robot_snapshot` stored: it goes on
+/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+///
+/// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_robot_restore(
+    memory: *mut c_void,
+    size: usize,
+    snapshot: *const u8,
+    length: usize,
+    tracker: *mut *mut Robot,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::restore(memory, size, snapshot, length, tracker) }
 }

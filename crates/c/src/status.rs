@@ -41,11 +41,17 @@ pub enum Status {
     Geometry = 16,
     /// The estimator refused the step for another reason.
     Refused = 17,
+    /// The bytes are no snapshot of an object.
+    NoSnapshot = 18,
+    /// A snapshot of another object, of another version of this library, or of other numbers (`float` or fixed point).
+    ForeignSnapshot = 19,
+    /// A snapshot that was not written whole, or was changed.
+    DamagedSnapshot = 20,
 }
 
 impl Status {
     /// All of them, and their names.
-    const NAMES: [(Self, &'static CStr); 18] = [
+    const NAMES: [(Self, &'static CStr); 21] = [
         (Self::Ok, c"ok"),
         (Self::NullPointer, c"a pointer is null"),
         (Self::Misaligned, c"a pointer is not aligned"),
@@ -64,6 +70,9 @@ impl Status {
         (Self::Gap, c"the interval is too long, or not the model's"),
         (Self::Geometry, c"the geometry determines nothing"),
         (Self::Refused, c"the estimator refused the step"),
+        (Self::NoSnapshot, c"the bytes are no snapshot"),
+        (Self::ForeignSnapshot, c"the snapshot is of another object, version or number format"),
+        (Self::DamagedSnapshot, c"the snapshot is damaged"),
     ];
 }
 
@@ -181,6 +190,18 @@ impl From<kestirim_ppp_filter::Error> for Status {
             Error::InvalidConfiguration => Self::InvalidArgument,
             Error::NotFinite => Self::NotFinite,
             _ => Self::Refused,
+        }
+    }
+}
+
+impl From<kestirim_snapshot::Error> for Status {
+    fn from(error: kestirim_snapshot::Error) -> Self {
+        use kestirim_snapshot::Error;
+        match error {
+            Error::BufferTooShort => Self::TooSmall,
+            Error::NoSnapshot => Self::NoSnapshot,
+            Error::Foreign(_) => Self::ForeignSnapshot,
+            _ => Self::DamagedSnapshot,
         }
     }
 }

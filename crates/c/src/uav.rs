@@ -39,6 +39,8 @@ impl Handle for Uav {
 /// Bytes that a filter takes at most, on any target.
 pub const UAV_SIZE: usize = 2048;
 const _: () = assert!(memory::size::<Uav>() <= UAV_SIZE);
+/// Bytes that a snapshot takes at most, on any target.
+pub const UAV_SNAPSHOT: usize = UAV_SIZE / 4 * 5 + 64;
 
 /// The model of an aircraft near its steady flight and of its sensors: x' = A x + B u, y = C x. Rows one after another.
 #[repr(C)]
@@ -193,4 +195,35 @@ pub unsafe extern "C" fn kestirim_uav_health(filter: *const Uav, health: *mut He
         answer.write(filter.health().into());
         Ok(())
     })
+}
+
+/// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_UAV_SNAPSHOT` bytes are
+/// enough, `length` tells how many it took.
+///
+/// Errors: `TOO_SMALL` for the buffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_snapshot(
+    filter: *const Uav,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::snapshot(filter, buffer, capacity, length) }
+}
+
+/// Makes the filter in memory of at least `kestirim_uav_size()` bytes that `kestirim_uav_snapshot` stored: it goes on
+/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+///
+/// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_uav_restore(
+    memory: *mut c_void,
+    size: usize,
+    snapshot: *const u8,
+    length: usize,
+    filter: *mut *mut Uav,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::restore(memory, size, snapshot, length, filter) }
 }

@@ -30,6 +30,8 @@ impl Handle for Wheels {
 /// Bytes that a tracker takes at most, on any target.
 pub const WHEELS_SIZE: usize = 2048;
 const _: () = assert!(memory::size::<Wheels>() <= WHEELS_SIZE);
+/// Bytes that a snapshot takes at most, on any target.
+pub const WHEELS_SNAPSHOT: usize = WHEELS_SIZE / 4 * 5 + 64;
 
 /// Bytes that a tracker takes on this target.
 #[unsafe(no_mangle)]
@@ -186,4 +188,35 @@ pub unsafe extern "C" fn kestirim_wheels_scale(tracker: *const Wheels, scale: *m
         answer.write(tracker.scale().ok_or(Status::NoEstimate)?.to_f32());
         Ok(())
     })
+}
+
+/// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_WHEELS_SNAPSHOT` bytes are
+/// enough, `length` tells how many it took.
+///
+/// Errors: `TOO_SMALL` for the buffer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_wheels_snapshot(
+    tracker: *const Wheels,
+    buffer: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::snapshot(tracker, buffer, capacity, length) }
+}
+
+/// Makes the tracker in memory of at least `kestirim_wheels_size()` bytes that `kestirim_wheels_snapshot` stored: it goes on
+/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+///
+/// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn kestirim_wheels_restore(
+    memory: *mut c_void,
+    size: usize,
+    snapshot: *const u8,
+    length: usize,
+    tracker: *mut *mut Wheels,
+) -> Status {
+    // SAFETY: the caller keeps what the header asks for.
+    unsafe { memory::restore(memory, size, snapshot, length, tracker) }
 }

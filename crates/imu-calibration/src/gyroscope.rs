@@ -46,6 +46,7 @@ const LARGEST: f64 = 0.5;
 /// 3 % its entries come out within 0.4 %. Turns integrated again with the result lead to the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gyroscope<T: Scalar> {
     assumed: Triad<T>,
     normal: Normal<T, UNKNOWNS>,

@@ -33,6 +33,7 @@ const MOST_SIGMA: f64 = 0.05;
 /// small beside the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Magnetometer<T: Scalar> {
     centre: [T; 3],
     radius: T,

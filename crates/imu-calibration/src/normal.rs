@@ -9,8 +9,18 @@ const LEAST_PIVOT: f64 = 1e-5;
 /// Aᵀ A x = Aᵀ b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub(crate) struct Normal<T, const N: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     pub(crate) a: [[T; N]; N],
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(crate) b: [T; N],
     /// bᵀ b.
     pub(crate) squares: T,

@@ -93,6 +93,7 @@ pub struct GyroscopeBias<T: Scalar> {
 /// Up to N static poses.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Poses<T: Scalar, const N: usize> {
     pub(crate) poses: Vec<Pose<T>, N>,
 }

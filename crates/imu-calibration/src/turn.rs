@@ -9,6 +9,7 @@ use nalgebra::SVector;
 /// is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Turn<T: Scalar> {
     assumed: Triad<T>,
     /// Columns of the turn from the sensor's frame now to that at the beginning.

@@ -18,9 +18,25 @@ use nalgebra::{SMatrix, SVector};
 )]
 pub struct Gaussian<T: Scalar, const N: usize> {
     /// x, the estimate.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "finite"))]
     pub mean: SVector<T, N>,
     /// P, its uncertainty.
     pub covariance: Covariance<T, N>,
+}
+
+/// A stored estimate.
+#[cfg(feature = "serde")]
+fn finite<'de, D, T, const N: usize>(deserializer: D) -> Result<SVector<T, N>, D::Error>
+where
+    D: serde::Deserializer<'de>,
+    T: Scalar + serde::Deserialize<'de>,
+{
+    let mean = <SVector<T, N> as serde::Deserialize>::deserialize(deserializer)?;
+    if T::all_finite(mean.as_array()) {
+        Ok(mean)
+    } else {
+        Err(serde::de::Error::custom("an estimate that is not finite"))
+    }
 }
 
 impl<T: Scalar, const N: usize> Gaussian<T, N> {

@@ -11,6 +11,8 @@ mod innovation;
 mod model;
 mod motion;
 mod row;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod steady_state;
 
 pub use block::BlockInnovation;

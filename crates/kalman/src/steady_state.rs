@@ -7,6 +7,7 @@ use nalgebra::{SMatrix, SVector};
 /// Gain and covariances at which a time-invariant filter settles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyState<T: Scalar, const N: usize, const M: usize> {
     /// K of x ← x⁻ + K (z − H x⁻), N × M.
     pub gain: SMatrix<T, N, M>,

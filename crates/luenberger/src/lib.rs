@@ -15,6 +15,8 @@ mod predictor;
 mod reduced;
 mod rows;
 mod saturation;
+#[cfg(feature = "serde")]
+mod snapshot;
 
 pub use current::{CurrentGains, CurrentObserver};
 pub use disturbance::{DisturbanceGains, DisturbanceObserver};

@@ -3,6 +3,8 @@
 
 mod blocks;
 mod error;
+#[cfg(feature = "serde")]
+pub mod generator;
 mod kld;
 mod mode;
 mod moments;
@@ -15,7 +17,7 @@ mod region;
 mod resample;
 mod sequence;
 #[cfg(feature = "serde")]
-mod serialize;
+mod snapshot;
 mod uniform;
 mod weights;
 

@@ -9,11 +9,14 @@ use crate::weights::{Weights, never};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(bound(serialize = "T: serde::Serialize")))]
 pub struct Moments<T, const D: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::array"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "kestirim_snapshot::arrays::serialize"))]
     mean: [T; D],
     /// Lower triangular F with F·Fᵀ the covariance: in the unit of the state, where a square of metres would
     /// not fit into fixed point.
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::matrix"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "kestirim_snapshot::arrays::rows::serialize")
+    )]
     factor: [[T; D]; D],
 }
 

@@ -13,10 +13,20 @@ use crate::{Error, Moments, Region, Resample, Start, Update};
 /// Coordinates are stored one after the other and weights as logarithms, the largest of them zero: N·(4·D + 8)
 /// bytes in single precision. Every step is O(N) and allocates nothing.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Particles<T, const D: usize, const N: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     pub(crate) states: [[T; N]; D],
     pub(crate) weights: Weights<T, N>,
     /// Integer weights, then numbers of offspring; or occupied bins.
+    #[cfg_attr(feature = "serde", serde(skip, default = "no_scratch"))]
     pub(crate) scratch: [u32; N],
 }
 
@@ -222,6 +232,12 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
             }
         }
     }
+}
+
+/// What resampling counts in is no state.
+#[cfg(feature = "serde")]
+fn no_scratch<const N: usize>() -> [u32; N] {
+    [0; N]
 }
 
 /// Whether so many points can be kept.

@@ -14,6 +14,14 @@ use crate::{Error, Moments, Region, Update};
 /// posterior. When it no longer is, [`PointMass::finer`] lays another where the weight is; that takes the
 /// measurements once more. Points are computed, not stored: 4·N bytes in single precision.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct PointMass<T, const D: usize, const N: usize> {
     region: Region<T, D>,
     weights: Weights<T, N>,

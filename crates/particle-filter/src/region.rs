@@ -5,13 +5,42 @@ use crate::Error;
 /// A box with its sides along the axes: the support of a prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(bound(serialize = "T: serde::Serialize")))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "Bounds<T, D>",
+        bound(
+            serialize = "T: serde::Serialize",
+            deserialize = "T: Scalar + serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct Region<T, const D: usize> {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::array"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     low: [T; D],
-    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::array"))]
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     high: [T; D],
+}
+
+/// A region as it was stored, which may be none.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(bound(deserialize = "T: Scalar + serde::Deserialize<'de>"))]
+struct Bounds<T, const D: usize> {
+    #[serde(with = "kestirim_snapshot::arrays")]
+    low: [T; D],
+    #[serde(with = "kestirim_snapshot::arrays")]
+    high: [T; D],
+}
+
+#[cfg(feature = "serde")]
+impl<T: Scalar, const D: usize> TryFrom<Bounds<T, D>> for Region<T, D> {
+    type Error = Error;
+
+    fn try_from(bounds: Bounds<T, D>) -> Result<Self, Error> {
+        Self::new(bounds.low, bounds.high)
+    }
 }
 
 impl<T: Scalar, const D: usize> Region<T, D> {

@@ -19,12 +19,31 @@ pub struct Update<T> {
 
 /// Logarithms of weights, the largest of them zero; of those that are zero, −∞ or the lower rail.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub(crate) struct Weights<T, const N: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     log: [T; N],
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "used::<_, N>"))]
     count: usize,
     /// Σw, Σw².
     sum: T,
     square_sum: T,
+}
+
+/// A count of points that are in use: at least one, and no more than there are.
+#[cfg(feature = "serde")]
+fn used<'de, D: serde::Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<usize, D::Error> {
+    let count = kestirim_snapshot::arrays::count::<D, N>(deserializer)?;
+    if count > 0 { Ok(count) } else { Err(serde::de::Error::custom("no points")) }
 }
 
 /// ln 0.

@@ -13,6 +13,7 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 /// its own spread against what the class of the sensor promises: people sway, and a good gyroscope knows
 /// its zero better than a swaying foot shows it, whereas a bare chip's may be off by a hundred times that.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
     /// Variance of the bias of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20
@@ -29,6 +30,7 @@ pub struct Alignment<T: Scalar> {
 
 /// Sums over an eighth of a second.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Block<T: Scalar> {
     begun_us: Option<u32>,
     count: i32,
@@ -40,6 +42,7 @@ struct Block<T: Scalar> {
 
 /// Deviations of a run of blocks from the first of them.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Standstill<T: Scalar> {
     blocks: i32,
     rate: SVector<T, 3>,

@@ -28,6 +28,7 @@ pub(crate) struct Turned<'a, T: Scalar> {
 /// mille, and each axis has two ends of its own. What tells a plateau from the top of a swing is its corners: going on
 /// with the slopes by which it is entered and left, the curve would have risen far above it.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clipping<T: Scalar> {
     axes: [Axis<T>; 3],
     /// The rates before the newest (rad/s).
@@ -38,6 +39,7 @@ pub(crate) struct Clipping<T: Scalar> {
 
 /// The two ends of an axis.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Axis<T: Scalar> {
     positive: End<T>,
     negative: End<T>,
@@ -46,6 +48,7 @@ struct Axis<T: Scalar> {
 
 /// One end of an axis.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct End<T> {
     /// The largest rate that two samples in a row have reached (rad/s).
     level: T,
@@ -55,6 +58,7 @@ struct End<T> {
 
 /// A stretch of samples at an end.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Run<T: Scalar> {
     /// Samples; zero between two stretches.
     count: u8,

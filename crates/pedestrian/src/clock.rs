@@ -14,6 +14,7 @@ pub(crate) enum Tick<T> {
 
 /// Real time steps from time stamps.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
     last_us: Option<u64>,
 }

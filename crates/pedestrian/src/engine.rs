@@ -13,6 +13,7 @@ use nalgebra::SVector;
 
 /// All of a tracker but the decision when the foot stands, which the caller brings.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Engine<T: Scalar, N> {
     config: Config<T>,
     clock: Clock,

@@ -55,6 +55,7 @@ impl Warnings {
 
 /// Checks of a stream for faults that no filter can correct.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Health<T: Scalar> {
     warnings: Warnings,
     force: Repeats<T>,
@@ -66,6 +67,7 @@ pub(crate) struct Health<T: Scalar> {
 
 /// Number of times in a row that each axis has shown the same value, and number of runs of three.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Repeats<T: Scalar> {
     last: SVector<T, 3>,
     counts: [u8; 3],

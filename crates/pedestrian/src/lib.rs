@@ -13,6 +13,8 @@ mod navigator;
 mod offline;
 mod sample;
 mod sensor;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod stride;
 mod tracker;
 mod uncertainty;

@@ -15,6 +15,7 @@ use nalgebra::SVector;
 /// A heading error no larger than two stands at the same place differ by is none. Who corrects a recorded path turns each
 /// step of it back by [`MagneticHeading::rate`] times the time since the start.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MagneticHeading<T: Scalar> {
     stands: [Option<Stand<T>>; CAPACITY],
     now: Option<Stand<T>>,
@@ -29,6 +30,7 @@ const CAPACITY: usize = 8;
 
 /// A stand of the foot.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Stand<T: Scalar> {
     begun_us: u64,
     ended_us: u64,

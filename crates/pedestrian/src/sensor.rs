@@ -23,6 +23,7 @@ pub(crate) struct Prior {
 
 /// Process noise of an error-state filter.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Noise<T> {
     /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.
     pub(crate) velocity_variance: T,

@@ -28,6 +28,7 @@ pub struct Stride<T: Scalar> {
 
 /// A stance of the foot.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Footprint<T: Scalar> {
     time_us: u64,
     position: SVector<T, 3>,
@@ -35,6 +36,7 @@ struct Footprint<T: Scalar> {
 
 /// Finds the strides in a stream of positions and stances.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Strides<T: Scalar> {
     standing: Option<Footprint<T>>,
     last: Option<Footprint<T>>,

@@ -57,6 +57,14 @@ pub struct Estimate<T: Scalar> {
 
 /// Tracks a foot, strictly causally: an estimate knows the samples up to its own and no later one.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, N: serde::Serialize, D: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>, N: serde::Deserialize<'de>, D: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Tracker<T: Scalar, N, D = Adaptive<T>> {
     engine: Engine<T, N>,
     detector: D,

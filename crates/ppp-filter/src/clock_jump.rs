@@ -12,6 +12,7 @@ const FEWEST: usize = 3;
 
 /// A jump of all satellites' phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum ClockJump {
     /// By whole milliseconds.
     Milliseconds(i32),

@@ -8,6 +8,7 @@ use kestirim_gnss_ppp::{GpsTime, Receiver};
 ///
 /// It starts by itself from the first epoch's codes.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PppFilter<const N: usize> {
     config: Config,
     running: Option<Running<N>>,

@@ -15,6 +15,8 @@ mod phase_monitor;
 mod report;
 mod rest;
 mod running;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod solution;
 mod start;
 mod states;

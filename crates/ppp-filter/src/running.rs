@@ -45,15 +45,18 @@ pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a SatelliteObservation<'b
 pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Running<const N: usize> {
     pub(crate) estimate: Gaussian<f64, N>,
     pub(crate) time: GpsTime,
     /// The shortest time between two epochs so far, s.
     pub(crate) interval: Option<f64>,
     /// By the state that is their ambiguity.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     channels: [Option<Channel>; N],
     /// The state that is the clock of Galileo beside that of GPS, both as the receiver has them, from the first
     /// satellite of Galileo on.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "state::<_, N>"))]
     offset: Option<usize>,
     pub(crate) consistency: Consistency,
     pub(crate) rest: Rest,
@@ -61,6 +64,19 @@ pub(crate) struct Running<const N: usize> {
     ahead: i32,
     /// The jump of the present epoch.
     pub(crate) jump: Option<ClockJump>,
+}
+
+/// A state that there is, or none.
+#[cfg(feature = "serde")]
+fn state<'de, D: serde::Deserializer<'de>, const N: usize>(
+    deserializer: D,
+) -> Result<Option<usize>, D::Error> {
+    let state = <Option<usize> as serde::Deserialize>::deserialize(deserializer)?;
+    if state.is_none_or(|index| index < N) {
+        Ok(state)
+    } else {
+        Err(serde::de::Error::custom("a state that there is not"))
+    }
 }
 
 impl<const N: usize> Running<N> {

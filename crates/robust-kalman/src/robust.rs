@@ -14,8 +14,30 @@ pub enum Reweighting {
     /// measurement is treated once.
     WorstFirst {
         /// Largest number of measurements that are treated.
+        #[cfg_attr(feature = "serde", serde(with = "limit"))]
         most: usize,
     },
+}
+
+/// A limit means the same where a `usize` has fewer bits: none stays none.
+#[cfg(feature = "serde")]
+mod limit {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // As serde wants it.
+    pub(super) fn serialize<S: Serializer>(
+        limit: &usize,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let limit = if *limit == usize::MAX { u64::MAX } else { *limit as u64 };
+        limit.serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<usize, D::Error> {
+        u64::deserialize(deserializer).map(|limit| usize::try_from(limit).unwrap_or(usize::MAX))
+    }
 }
 
 /// A robust, and maybe adaptive, Kalman update for any measurements: how it finds outliers and what it

@@ -9,6 +9,14 @@ use crate::{Error, KalmanFilter, Step, Transition};
 /// sample is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+    ))
+)]
 pub enum Estimator<T: Scalar, const P: usize> {
     /// With a constant gain: a Luenberger observer or a steady-state Kalman filter.
     ConstantGain(Predictor<T, 4, 2, P>),

@@ -25,10 +25,13 @@ const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
 /// bytes each in `f64`. With regular samples one is enough; other intervals are computed anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     filter: KalmanFilter<T, P>,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     gates: [Gate; P],
     /// How many times each output was left out.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     rejected: [u32; P],
     monitor: Monitor,
     lateness: Lateness<P>,

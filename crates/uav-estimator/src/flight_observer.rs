@@ -24,11 +24,21 @@ use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 /// Steps of L other intervals than the usual one are kept: see [`FlightFilter`](crate::FlightFilter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, T::Accumulator: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, T::Accumulator: serde::Deserialize<'de>"
+    ))
+)]
 pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
     observer: CurrentObserver<T, 4, 2, P>,
     c: SMatrix<f64, P, 4>,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     gates: [InnovationGate; P],
     /// How many times each output was left out.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     rejected: [u32; P],
     monitor: Monitor,
     usual_us: i64,

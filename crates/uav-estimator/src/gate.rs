@@ -7,6 +7,7 @@ const PATIENCE: u8 = 5;
 /// agrees, as if there were no gate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gate {
     /// In a row.
     rejected: u8,

@@ -14,6 +14,7 @@ const FIRST: u8 = 16;
 /// While an estimate converges its innovations shrink, and none is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct InnovationGate {
     gate: Gate,
     usual: f64,

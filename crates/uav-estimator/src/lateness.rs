@@ -22,8 +22,10 @@ const LATE: f32 = 0.75;
 /// sum of products is a martingale, whose variance is the sum of their squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Lateness<const P: usize> {
     /// Expected outputs, averaged.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     usual: [f32; P],
     /// Sums of innovation by movement, of its square, of movements squared, in units of the innovations' variances, …
     product: f32,

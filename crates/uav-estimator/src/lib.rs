@@ -13,6 +13,8 @@ mod kalman_filter;
 mod lateness;
 mod monitor;
 mod sample;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod transitions;
 
 pub use dynamics::{Dynamics, Step};

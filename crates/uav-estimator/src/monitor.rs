@@ -17,6 +17,7 @@ const LEFT_OUT: f32 = 0.1;
 /// Whether measurements and model agree: averages over the last seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Monitor {
     nis: Share,
     left_out: Share,
@@ -50,6 +51,7 @@ impl Monitor {
 /// A sum over a number of things, both fading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Share {
     sum: f32,
     of: f32,

@@ -11,12 +11,21 @@ const LONGEST_GAP: f64 = 1e6;
 /// Intervals that jitter by less than L µs have a place each, so that nothing is computed twice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "S: serde::Serialize",
+        deserialize = "S: Copy + serde::Deserialize<'de>"
+    ))
+)]
 pub(crate) struct Transitions<S, const L: usize> {
     dynamics: Dynamics,
     /// s.
     usual: f64,
     /// Standard deviations of the inputs' noise a usual interval.
     noise: SVector<f64, 2>,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     known: [Option<(i64, S)>; L],
 }
 

@@ -11,6 +11,14 @@ use crate::Error;
 /// fills, [`Area::contains`] says which of its points count. 8·N bytes in single precision. Edges must be shorter
 /// than the largest number of the format (32 km in Q16.16).
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Area<T, const N: usize> {
     corners: Vec<[T; 2], N>,
     region: Region<T, 2>,

@@ -15,6 +15,14 @@ const COMPOSITE_POWER: f64 = 0.1;
 /// Up to M measurements are stored; the posterior is computed from all of them on a lattice of L points when
 /// it is asked for. 16·M bytes in single precision.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Beacon<T, const M: usize> {
     channel: FreeSpace<T>,
     measurements: Vec<Measurement<T>, M>,
@@ -22,6 +30,14 @@ pub struct Beacon<T, const M: usize> {
 
 /// Estimate of a [`Beacon`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct BeaconEstimate<T, const L: usize> {
     /// The place, m: the mean of the posterior that takes measurements for independent. That is the sharper
     /// one, whose mean is not drawn to parts without measurements; its width has no meaning.

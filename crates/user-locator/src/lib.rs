@@ -9,6 +9,8 @@ mod locator;
 mod orbit;
 mod published;
 mod search;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod thinned;
 mod tracker;
 

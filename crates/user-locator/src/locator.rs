@@ -22,6 +22,14 @@ const ROUNDS: usize = 4;
 /// The state is the place (m, in the plane of the measurements); with D = 3 its third coordinate is by how much
 /// (dB) the transmitter is weaker than the measurements assume.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, C: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>, C: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Locator<T, const L: usize, const M: usize, const D: usize = 2, C = Channel<T>> {
     channel: C,
     posterior: PointMass<T, D, L>,

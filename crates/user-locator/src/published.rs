@@ -8,6 +8,7 @@ use crate::Error;
 /// Parameters of the published filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PublishedSettings<T> {
     /// Resampling scheme.
     pub resampler: Resampler,
@@ -31,6 +32,14 @@ impl<T: Scalar> PublishedSettings<T> {
 
 /// The published particle filter (the thesis' Table 2.1).
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct PublishedLocator<T, const L: usize> {
     channel: Channel<T>,
     settings: PublishedSettings<T>,

@@ -24,6 +24,14 @@ use crate::{Area, BeaconEstimate, Error, Health, Thinned};
 /// # Ok::<(), kestirim_user_locator::Error>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct BeaconSearch<T, const M: usize, const N: usize> {
     channel: FreeSpace<T>,
     area: Area<T, N>,

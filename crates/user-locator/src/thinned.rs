@@ -5,15 +5,28 @@ use heapless::Vec;
 /// Measurements of a flight that are close together say much the same: of a long one, few tell where the user is. When
 /// the room is full every other value is dropped, and from then on half as many are kept.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Thinned<V, const M: usize> {
     /// One in `stride`, and the last value of all, whether or not it is one of these.
     kept: Vec<V, M>,
     /// Whether the last value is to make room for the next.
     is_passing: bool,
     /// A power of two.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "power_of_two"))]
     stride: u64,
     /// Number of values so far.
     count: u64,
+}
+
+/// A stride that there can be.
+#[cfg(feature = "serde")]
+fn power_of_two<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+    let stride = <u64 as serde::Deserialize>::deserialize(deserializer)?;
+    if stride.is_power_of_two() {
+        Ok(stride)
+    } else {
+        Err(serde::de::Error::custom("a stride that is no power of two"))
+    }
 }
 
 impl<V: Copy, const M: usize> Thinned<V, M> {

@@ -61,6 +61,14 @@ impl<T: Scalar> Motion<T> {
 /// velocities would need many times as many particles, and diverges from a start in which neither is known.
 /// 28·L bytes in single precision.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize, C: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>, C: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Tracker<T, const L: usize, C = Channel<T>> {
     channel: C,
     motion: Motion<T>,
@@ -78,6 +86,7 @@ pub struct Tracker<T, const L: usize, C = Channel<T>> {
 /// Place and velocity of a user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TrackEstimate<T> {
     /// Place at the time of the last measurement, m.
     pub place: [T; 2],

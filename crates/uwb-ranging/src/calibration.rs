@@ -14,10 +14,21 @@ use nalgebra::SVector;
 /// bias 9.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Calibration<T: Scalar, const A: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     anchors: [SVector<T, 3>; A],
     /// Normal equations of the biases, times the variance of a range.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     normal: [[T; A]; A],
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     right: [T; A],
 }
 

@@ -37,9 +37,11 @@ pub struct Height<T, const A: usize> {
 ///
 /// In fixed point, distances of up to 40 m.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightSearch<T: Scalar, const A: usize> {
     anchors: Vec<SVector<T, 3>, A>,
     prior: Prior<T>,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     candidates: [Candidate<T, A>; CANDIDATES],
     /// Weight of the places, and of the ranges beyond two a place.
     places: T,
@@ -49,6 +51,7 @@ pub struct HeightSearch<T: Scalar, const A: usize> {
 /// What is known of biases beforehand: times the variance of a range, the inverse of their covariance is
 /// `own` on the diagonal less `shared` everywhere among the anchors.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Prior<T> {
     own: T,
     shared: T,
@@ -57,10 +60,20 @@ struct Prior<T> {
 
 /// One height, and how well it explains the ranges.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 struct Candidate<T, const A: usize> {
     height: T,
     /// Normal equations of the biases, without what they may be, times the variance of a range.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     normal: [[T; A]; A],
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     right: [T; A],
     /// Squares that are left without biases, m².
     squares: T,

@@ -22,11 +22,13 @@ pub enum EpochMethod {
 ///
 /// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EpochSolver<T: Scalar, const A: usize> {
     method: EpochMethod,
     solver: Solver<T>,
     anchors: Vec<Anchor<T>, A>,
     /// Time of the last range of each anchor (µs), and the range without its bias, m.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     last: [Option<(u64, T)>; A],
     pace: Pace,
 }

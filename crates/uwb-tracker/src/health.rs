@@ -71,6 +71,7 @@ const NIS_OF_AGREEMENT: f64 = 4.0;
 
 /// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Counters<T> {
     pub(crate) nis: T,
     pub(crate) taken: u32,

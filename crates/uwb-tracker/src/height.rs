@@ -17,10 +17,12 @@ use nalgebra::SVector;
 ///
 /// 2.3 kB for four anchors in `f32`, 6.4 kB for eight.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightFinder<T: Scalar, const A: usize> {
     search: HeightSearch<T, A>,
     biases: Vec<T, A>,
     /// The last range of each anchor without its bias, and the one before it.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     links: [Link<T>; A],
     /// Time of the newest range (µs).
     newest_us: Option<u64>,
@@ -32,6 +34,7 @@ pub struct HeightFinder<T: Scalar, const A: usize> {
 
 /// Two ranges (m) and their times (µs).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Link<T> {
     last: Option<(u64, T)>,
     before: Option<(u64, T)>,
@@ -39,8 +42,18 @@ struct Link<T> {
 
 /// The ranges of all moments at which the tag was within a place.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 struct Place<T, const A: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     first: [Option<T>; A],
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     ranges: [Quartiles<T>; A],
     moments: u32,
 }

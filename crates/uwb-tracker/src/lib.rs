@@ -12,6 +12,8 @@ mod motion;
 mod pace;
 mod published;
 mod sample;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod start;
 mod stillness;
 mod take_in;

@@ -7,6 +7,7 @@ use nalgebra::SVector;
 /// An anchor: where it is, and by how much it measures too long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor<T: Scalar> {
     /// Position in the room's axes (right-handed, z up), m.
     pub position: SVector<T, 3>,
@@ -24,6 +25,7 @@ impl<T: Scalar> Anchor<T> {
 
 /// An anchor, its last range, and the noise and gate of its ranges.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Link<T: Scalar> {
     pub(crate) anchor: Anchor<T>,
     pub(crate) noise: MeasurementNoise<T>,

@@ -5,6 +5,7 @@
 ///
 /// Times are of 32 bits, because each range goes through here: they go round after 71 minutes.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pace {
     /// Time of the newest range (µs).
     newest_us: u32,

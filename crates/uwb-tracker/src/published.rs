@@ -10,6 +10,7 @@ use nalgebra::{SMatrix, SVector};
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PublishedConfig<T: Scalar, const D: usize> {
     /// The first position, m; without one the filter begins at its first trilateration.
     pub start: Option<SVector<T, D>>,
@@ -67,15 +68,25 @@ pub enum PublishedOutcome {
 ///
 /// The states are D coordinates (m) in the room's axes and their velocities (m/s): N = 2 D.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     config: PublishedConfig<T, D>,
     /// The anchors' ranges, and the first position.
     ranges: EpochSolver<T, A>,
     /// Anchors that were heard in this epoch.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     heard: [bool; A],
     filter: Option<PublishedAdaptiveKalman<T, N, A>>,
     /// Time of the filter's estimate (µs).
     time_us: u64,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::optional"))]
     push: Option<[T; D]>,
 }
 

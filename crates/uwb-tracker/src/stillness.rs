@@ -8,6 +8,7 @@ use nalgebra::SVector;
 /// shake it by half a metre per second squared even at walking snails' pace; a standing one shows
 /// the sensor's noise.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stillness<T: Scalar> {
     last_us: Option<u64>,
     mean: SVector<T, 3>,

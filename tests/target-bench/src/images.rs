@@ -30,6 +30,9 @@ const WORKLOADS: Packages = &["images", "peers"];
 /// The package of the programs that call everything; apart, because it takes long and one test needs it.
 const SURFACE: Packages = &["surface"];
 
+/// The package of the image in which estimators wake; apart, because its crates have another feature.
+const SNAPSHOTS: Packages = &["snapshots"];
+
 /// Packages that one call of cargo builds together.
 pub(crate) type Packages = &'static [&'static str];
 
@@ -93,6 +96,14 @@ impl Images {
     /// As [`Images::of`].
     pub fn of_surface(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
         Self::of_form(SURFACE, target, profile)
+    }
+
+    /// The same for the image in which estimators wake that slept on the host.
+    ///
+    /// # Errors
+    /// As [`Images::of`].
+    pub fn of_snapshots(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
+        Self::of_form(SNAPSHOTS, target, profile)
     }
 
     fn of_form(

@@ -24,6 +24,7 @@ mod robot_recordings;
 mod robot_robust;
 mod robot_sigmas;
 mod robot_table;
+mod snapshots;
 mod surface_is_complete;
 mod target_costs;
 mod uav_design_cases;

@@ -18,7 +18,11 @@ const NOT_ASKED_FOR: [&str; 6] =
     ["Debug", "Deserialize", "Display", "Error", "Format", "Serialize"];
 
 /// Macros by which crates define items: this test does not see what they expand to.
-const MACROS: [(&str, &str); 5] = [
+const MACROS: [(&str, &str); 9] = [
+    ("begun", "of a type that is not public"),
+    ("collection", "the same"),
+    ("layout", "`Layout` for an estimator: two constants and two functions of one line"),
+    ("passed", "of a type that is not public"),
     ("impl_scalar_for_float", "the functions of `Scalar`, which the trait asks for"),
     ("impl_assign", "the assigning operators of `Fixed`, called by `scalar.rs`"),
     ("assign", "the same of a type that is not public"),
@@ -82,6 +86,19 @@ fn is_public(visibility: &Visibility) -> bool {
     matches!(visibility, Visibility::Public(_))
 }
 
+/// What only a stored estimator has: an optional feature that no program here has. `tests/all/snapshots` calls it.
+fn is_stored(attributes: &[Attribute]) -> bool {
+    let feature = |attribute: &Attribute| {
+        let condition = attribute.parse_args::<syn::MetaNameValue>();
+        let is_serde = |condition: syn::MetaNameValue| {
+            let syn::Expr::Lit(value) = condition.value else { return false };
+            matches!(value.lit, syn::Lit::Str(name) if name.value() == "serde")
+        };
+        attribute.path().is_ident("cfg") && condition.is_ok_and(is_serde)
+    };
+    attributes.iter().any(feature)
+}
+
 fn is_for_tests(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         attribute.path().is_ident("cfg")
@@ -119,7 +136,7 @@ impl Offer {
         for item in parsed(file)?.items {
             match item {
                 Item::Use(item) if is_public(&item.vis) => self.export_tree(&item.tree),
-                Item::Mod(item) if is_public(&item.vis) => {
+                Item::Mod(item) if is_public(&item.vis) && !is_stored(&item.attrs) => {
                     let directory = file.with_file_name(item.ident.to_string());
                     let beside = directory.with_extension("rs");
                     let within = directory.join("mod.rs");
@@ -169,6 +186,7 @@ impl Offer {
                     }
                 }
                 Item::Trait(item) => drop(self.private_traits.insert(item.ident.to_string())),
+                Item::Impl(item) if is_stored(&item.attrs) => {}
                 Item::Impl(item) => self.take_impl(item),
                 Item::Mod(item) if !is_for_tests(&item.attrs) => {
                     let inner = item.content.as_ref().map(|(_, items)| items.as_slice());

@@ -6,10 +6,11 @@ use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use kestirim_c::{
-    Health, PEDESTRIAN_SIZE, Pedestrian, PedestrianConfig, PedestrianSample, Robot, Status,
-    kestirim_pedestrian_align, kestirim_pedestrian_health, kestirim_pedestrian_init,
-    kestirim_pedestrian_position, kestirim_pedestrian_size, kestirim_pedestrian_update,
-    kestirim_robot_position, kestirim_status_name,
+    Health, PEDESTRIAN_SIZE, PEDESTRIAN_SNAPSHOT, Pedestrian, PedestrianConfig, PedestrianSample,
+    Robot, Status, kestirim_pedestrian_align, kestirim_pedestrian_health, kestirim_pedestrian_init,
+    kestirim_pedestrian_position, kestirim_pedestrian_restore, kestirim_pedestrian_size,
+    kestirim_pedestrian_snapshot, kestirim_pedestrian_update, kestirim_robot_position,
+    kestirim_robot_restore, kestirim_status_name,
 };
 
 const CONFIG: PedestrianConfig = PedestrianConfig { sensor: 1, contact_height: 0.07 };
@@ -90,8 +91,46 @@ fn every_status_has_a_name() {
         // SAFETY: the function answers with a text that lives as long as the program.
         unsafe { CStr::from_ptr(kestirim_status_name(status)) }.to_str().expect("English")
     };
-    let names: std::collections::BTreeSet<_> = (0..=Status::Refused as i32).map(name).collect();
-    assert_eq!(names.len(), Status::Refused as usize + 1);
+    let names: std::collections::BTreeSet<_> =
+        (0..=Status::DamagedSnapshot as i32).map(name).collect();
+    assert_eq!(names.len(), Status::DamagedSnapshot as usize + 1);
     assert!(!names.contains("unknown status"));
-    assert_eq!([name(-1), name(18)], ["unknown status"; 2]);
+    assert_eq!([name(-1), name(21)], ["unknown status"; 2]);
+}
+
+#[test]
+fn a_snapshot_is_restored_or_refused() {
+    let (mut memory, mut other) = (Memory::new(), Memory::new());
+    let (_, tracker) = init(memory.at(0), PEDESTRIAN_SIZE, &CONFIG);
+    let mut page = [0xff_u8; PEDESTRIAN_SNAPSHOT];
+    let (mut length, mut woken) = (0, null_mut());
+    let page_size = page.len();
+    // SAFETY: all pointers are null, of memory that is there, or handles; each wrong one is to be found.
+    unsafe {
+        let store = |page: *mut u8, capacity, length| {
+            kestirim_pedestrian_snapshot(tracker, page, capacity, length)
+        };
+        assert_eq!(store(null_mut(), page_size, &raw mut length), Status::NullPointer);
+        assert_eq!(store(page.as_mut_ptr(), 100, &raw mut length), Status::TooSmall);
+        assert_eq!(store(page.as_mut_ptr(), page_size, &raw mut length), Status::Ok);
+        assert!(length > 100 && length < page_size);
+        let place = other.at(0);
+        let mut restore = |page: *const u8, length| {
+            kestirim_pedestrian_restore(place, PEDESTRIAN_SIZE, page, length, &raw mut woken)
+        };
+        assert_eq!(restore(null(), page_size), Status::NullPointer);
+        assert_eq!(restore(page.as_ptr(), length - 1), Status::DamagedSnapshot);
+        assert_eq!(restore(page.as_ptr(), length), Status::Ok);
+        assert_eq!(restore(page.as_ptr(), page_size), Status::Ok);
+        page[length - 9] ^= 1;
+        assert_eq!(restore(page.as_ptr(), length), Status::DamagedSnapshot);
+        page[0] = 0xff;
+        assert_eq!(restore(page.as_ptr(), length), Status::NoSnapshot);
+        assert_eq!(store(page.as_mut_ptr(), page_size, &raw mut length), Status::Ok);
+        let (mut robot, place) = (null_mut(), other.at(0));
+        let foreign =
+            kestirim_robot_restore(place, PEDESTRIAN_SIZE, page.as_ptr(), length, &raw mut robot);
+        assert_eq!((foreign, robot), (Status::ForeignSnapshot, null_mut()));
+    }
+    assert!(!woken.is_null());
 }

@@ -65,11 +65,12 @@ fn c_on_this_computer_tells_the_bits_of_the_crates() -> Result<()> {
     let library = library(&mut Command::new("cargo"), None, false)?;
     let folder = output_folder().join("host");
     fs::create_dir_all(&folder)?;
-    for name in PROGRAMS {
-        let binary = folder.join(name);
+    for (name, sleep) in PROGRAMS.into_iter().flat_map(|name| [(name, ""), (name, "-DSLEEP")]) {
+        let binary = folder.join(format!("{name}{sleep}"));
         let (source, port) = (program(&format!("{name}.c")), program("port_host.c"));
         let mut command = Command::new("cc");
         command.args(["-std=c99", "-O1", "-Wall", "-Wextra", "-Werror"]);
+        command.args([sleep].iter().filter(|argument| !argument.is_empty()));
         run(command.args(arguments(&[
             &"-I",
             &include(),
@@ -83,7 +84,7 @@ fn c_on_this_computer_tells_the_bits_of_the_crates() -> Result<()> {
         let stream = folder.join(format!("{name}.bin"));
         fs::write(&stream, &case.stream)?;
         let told = run(Command::new(&binary).stdin(File::open(&stream)?))?;
-        case.check(std::str::from_utf8(&told.stdout)?, name)?;
+        case.check(std::str::from_utf8(&told.stdout)?, &format!("{name} {sleep}"))?;
     }
     Ok(())
 }
@@ -182,22 +183,30 @@ impl Target {
         library(&mut cargo, Some(self.triple), self.fixed).map(Some)
     }
 
-    fn compile(&self, file: &str, folder: &Path) -> Result<PathBuf> {
-        let object = folder.join(file).with_extension("o");
+    fn compile(&self, file: &str, sleep: &[&str], folder: &Path) -> Result<PathBuf> {
+        let object =
+            folder.join(file).with_extension(if sleep.is_empty() { "o" } else { "sleep.o" });
         let mut command = Command::new("clang");
         command.args(self.clang).args(["-std=c99", "-Os", "-ffreestanding", "-Wall", "-Wextra"]);
-        command.args(["-ffunction-sections", "-fdata-sections", "-Werror", "-c"]);
+        command.args(["-ffunction-sections", "-fdata-sections", "-Werror", "-c"]).args(sleep);
         run(command.args(arguments(&[&"-I", &include(), &program(file), &"-o", &object])))?;
         Ok(object)
     }
 
     /// Links a program, and these functions of the library whether it calls them or not; where it is.
-    fn link(&self, name: &str, library: &Path, functions: &[String]) -> Result<PathBuf> {
+    fn link(
+        &self,
+        name: &str,
+        sleep: &[&str],
+        library: &Path,
+        functions: &[String],
+    ) -> Result<PathBuf> {
         let folder = output_folder().join(format!("images-{}", self.triple));
         fs::create_dir_all(&folder)?;
-        let main = self.compile(&format!("{name}.c"), &folder)?;
-        let port = self.compile("port_bare.c", &folder)?;
-        let image = folder.join(if functions.is_empty() { name } else { "all" });
+        let main = self.compile(&format!("{name}.c"), sleep, &folder)?;
+        let port = self.compile("port_bare.c", &[], &folder)?;
+        let name = if functions.is_empty() { name } else { "all" };
+        let image = folder.join(format!("{name}{}", sleep.concat()));
         let mut linker = Command::new("ld.lld");
         linker.current_dir(program("")).args(["--gc-sections", "--nmagic", "-T", self.board]);
         linker.args(functions.iter().map(|name| format!("--undefined={name}")));
@@ -228,19 +237,25 @@ impl Target {
         }
         let Some(data) = recordings(self.triple)? else { return Ok(()) };
         let Some(library) = self.library()? else { return Ok(()) };
-        let empty = flash(&self.link("empty", &library, &[])?)?;
+        let empty = flash(&self.link("empty", &[], &library, &[])?)?;
         let functions = functions()?;
-        let all = self.link("empty", &library, &functions)?;
+        let all = self.link("empty", &[], &library, &functions)?;
         assert_eq!(missing(&all, &functions)?, Vec::<&String>::new(), "{}", self.triple);
         assert_eq!(panics(&all)?, Vec::<String>::new(), "{}: a function can panic", self.triple);
         for name in self.programs {
             let of = format!("{name} on {}", self.triple);
-            let image = self.link(name, &library, &[])?;
+            let image = self.link(name, &[], &library, &[])?;
             let case = Case::of(name, &data, self.fixed)?;
             case.check(&self.emulate(&image, &case.stream)?, &of)?;
             assert_eq!(panics(&image)?, Vec::<String>::new(), "{of} can panic");
-            let flash = flash(&image)?;
-            println!("{of}: {flash} bytes of flash, {} over C without it", flash - empty);
+            let awake = flash(&image)?;
+            let over = awake - empty;
+            let sleeping = self.link(name, &["-DSLEEP"], &library, &[])?;
+            case.check(&self.emulate(&sleeping, &case.stream)?, &format!("{of}, asleep"))?;
+            let sleep = flash(&sleeping)? - awake;
+            println!(
+                "{of}: {awake} bytes of flash, {over} over C without it, {sleep} more that sleeps"
+            );
         }
         Ok(())
     }

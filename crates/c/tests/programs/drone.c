@@ -1,8 +1,10 @@
 /* Replays the levels that a drone received: how many corners the area has, the corners, and a record a measurement. */
 #include "kestirim.h"
 #include "port.h"
+#include "sleep.h"
 
 static uint64_t memory[KESTIRIM_DRONE_SIZE / 8];
+SLEEP_BYTES(KESTIRIM_DRONE_SNAPSHOT);
 static float corners[KESTIRIM_MOST_CORNERS][2];
 
 int main(void)
@@ -17,6 +19,7 @@ int main(void)
     port_check(kestirim_drone_init(memory, sizeof memory, (const float(*)[2])corners, count, &search));
     while (port_read(&measurement, sizeof measurement)) {
         port_check(kestirim_drone_update(search, &measurement));
+        SLEEP_NOW(drone, search);
     }
     kestirim_drone_place place;
     kestirim_health health;

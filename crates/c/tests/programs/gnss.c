@@ -1,6 +1,7 @@
 /* Replays epochs of a GNSS receiver: a head, and so many observations. The antennas are those of the stream's maker. */
 #include "kestirim.h"
 #include "port.h"
+#include "sleep.h"
 
 struct head {
     int32_t day;
@@ -27,6 +28,7 @@ static const kestirim_gnss_pattern receiver[2] = {
 };
 
 static uint64_t memory[KESTIRIM_GNSS_SIZE / 8];
+SLEEP_BYTES(KESTIRIM_GNSS_SNAPSHOT);
 static kestirim_gnss_observation observations[KESTIRIM_MOST_SATELLITES];
 
 int main(void)
@@ -52,6 +54,7 @@ int main(void)
         const kestirim_gnss_time time = {head.day, head.second};
         kestirim_gnss_solution solution;
         port_check(kestirim_gnss_update(filter, &time, &receiver, observations, head.count, &solution));
+        SLEEP_NOW(gnss, filter);
         port_tell("position", solution.position, 6);
         port_tell("sigma", solution.sigma, 6);
         port_tell("clock", &solution.clock, 4);

@@ -1,6 +1,7 @@
 /* Replays the samples of a foot's IMU: a record is the time since the one before (µs) and six floats. */
 #include "kestirim.h"
 #include "port.h"
+#include "sleep.h"
 
 struct record {
     uint32_t elapsed_us;
@@ -8,6 +9,7 @@ struct record {
 };
 
 static uint64_t memory[KESTIRIM_PEDESTRIAN_SIZE / 8];
+SLEEP_BYTES(KESTIRIM_PEDESTRIAN_SNAPSHOT);
 
 static void tell(const kestirim_pedestrian *tracker)
 {
@@ -32,6 +34,7 @@ int main(void)
             sample.angular_rate[axis] = record.angular_rate[axis];
         }
         port_check(kestirim_pedestrian_update(tracker, &sample));
+        SLEEP_NOW(pedestrian, tracker);
         if (count % 50 == 0) {
             tell(tracker);
         }

@@ -1,7 +1,9 @@
 /* Replays ranges, an IMU and wheels through the tracker of a tag in the plane. */
 #include "robot.h"
+#include "sleep.h"
 
 static uint64_t memory[KESTIRIM_ROBOT_SIZE / 8];
+SLEEP_BYTES(KESTIRIM_ROBOT_SNAPSHOT);
 
 static kestirim_status take(kestirim_robot *tracker, const struct record *record)
 {
@@ -28,6 +30,7 @@ int main(void)
     for (uint32_t taken = 1; port_read(&record, sizeof record); ++taken) {
         now_us += record.elapsed_us;
         tell_status(take(tracker, &record));
+        SLEEP_NOW(robot, tracker);
         float position[2], velocity[2], sigma;
         if (taken % 100 == 0 && kestirim_robot_position(tracker, &position) == KESTIRIM_STATUS_OK) {
             port_tell("position", position, 2);

@@ -1,6 +1,7 @@
 /* Replays a flight of an Aerosonde through its filter: a record is inputs, outputs, and which of them there are. */
 #include "kestirim.h"
 #include "port.h"
+#include "sleep.h"
 
 struct record {
     uint32_t elapsed_us, present;
@@ -8,6 +9,7 @@ struct record {
 };
 
 static uint64_t memory[KESTIRIM_UAV_SIZE / 8];
+SLEEP_BYTES(KESTIRIM_UAV_SNAPSHOT);
 static kestirim_uav_model model;
 
 int main(void)
@@ -27,6 +29,7 @@ int main(void)
             sample.measured[i] = (double)record.measured[i];
         }
         port_check(kestirim_uav_update(filter, &sample));
+        SLEEP_NOW(uav, filter);
         double numbers[4];
         if (count % 20 == 0) {
             port_check(kestirim_uav_estimate(filter, &numbers));

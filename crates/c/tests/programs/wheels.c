@@ -1,7 +1,9 @@
 /* Replays ranges and wheels through the tracker of a robot with wheels. */
 #include "robot.h"
+#include "sleep.h"
 
 static uint64_t memory[KESTIRIM_WHEELS_SIZE / 8];
+SLEEP_BYTES(KESTIRIM_WHEELS_SNAPSHOT);
 
 static kestirim_status take(kestirim_wheels *tracker, const struct record *record)
 {
@@ -26,6 +28,7 @@ int main(void)
     for (uint32_t taken = 1; port_read(&record, sizeof record); ++taken) {
         now_us += record.elapsed_us;
         tell_status(take(tracker, &record));
+        SLEEP_NOW(wheels, tracker);
         float position[2], sigma;
         if (taken % 100 == 0 && kestirim_wheels_position(tracker, &position) == KESTIRIM_STATUS_OK) {
             port_tell("position", position, 2);

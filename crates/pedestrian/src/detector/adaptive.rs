@@ -7,6 +7,14 @@ use kestirim_scalar::Scalar;
 /// stands where T < max(T₀, 2·min T). Where no stance comes for a while, the walker has begun to run or the
 /// minimum was a standstill's, and the bound grows with the time since.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Copy + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Adaptive<T> {
     shoe: Shoe<T>,
     minimum: RecentMinimum<T>,
@@ -61,12 +69,21 @@ const CAPACITY: usize = 16;
 
 /// The smallest value of the recent past, in bins of a tenth of a second.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RecentMinimum<T> {
     bins: [T; CAPACITY],
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "kestirim_snapshot::arrays::index::<_, CAPACITY>")
+    )]
     newest: usize,
     begun_us: Option<u32>,
     /// The smallest of all bins but the newest.
     older: T,
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, { CAPACITY - 1 }>")
+    )]
     memory: usize,
 }
 

@@ -7,6 +7,14 @@ use kestirim_scalar::{Components, Scalar};
 /// T = mean |ω|² + κ·mean |f − f̄/|f̄||², with f in units of g: how far the last 50 ms are from a foot that
 /// does not turn and feels gravity alone. Its unit is (rad/s)²; κ = 2.9 (rad/s)² weighs 0.1 g like 0.17 rad/s.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Copy + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Shoe<T> {
     window: SlidingMean<T, 5>,
 }
@@ -48,6 +56,14 @@ impl<T: Scalar> Shoe<T> {
 /// Right for one walker on one day: on other walks the same threshold loses stances or finds them in
 /// slow swings. [`Adaptive`](super::Adaptive) needs none.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Copy + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct FixedShoe<T> {
     shoe: Shoe<T>,
     threshold: T,

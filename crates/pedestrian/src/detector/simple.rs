@@ -8,6 +8,7 @@ use kestirim_scalar::{Components, Scalar};
 /// As published, and here, it fires many times inside every swing, where |f| passes through 1 g, and
 /// loses most of the path. It is offered for comparison.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Magnitude<T> {
     threshold_g: T,
 }
@@ -33,6 +34,14 @@ impl<T: Scalar> StanceDetector<T> for Magnitude<T> {
 
 /// Stance where the variance of |f| over 100 ms is below a threshold (acceleration moving variance).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Copy + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct MovingVariance<T> {
     window: SlidingMean<T, 2>,
     threshold_g2: T,
@@ -65,6 +74,14 @@ impl<T: Scalar> StanceDetector<T> for MovingVariance<T> {
 
 /// Stance where the mean of |ω|² over 50 ms is below a threshold (angular rate energy).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Copy + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct AngularRateEnergy<T> {
     window: SlidingMean<T, 1>,
     threshold: T,

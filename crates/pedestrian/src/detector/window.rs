@@ -8,14 +8,67 @@ const CAPACITY: usize = 32;
 /// Taking the oldest sample off a running sum leaves a float's rounding behind for ever, so each time the
 /// ring comes round the sum is made anew.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Copy + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub(crate) struct SlidingMean<T, const K: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "ring"))]
     ring: [(u32, [T; K]); CAPACITY],
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "kestirim_snapshot::arrays::index::<_, CAPACITY>")
+    )]
     newest: usize,
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, CAPACITY>")
+    )]
     count: usize,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     sums: [T; K],
     span_us: u32,
     /// 1/count, kept because a division is expensive and the count seldom changes.
     reciprocal: T,
+}
+
+/// The samples of a window: serde has no arrays of generic length inside tuples.
+#[cfg(feature = "serde")]
+mod ring {
+    use super::CAPACITY;
+    use kestirim_scalar::Scalar;
+    use kestirim_snapshot::arrays;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[derive(Clone, Copy, Serialize, Deserialize)]
+    #[serde(bound(serialize = "T: Serialize", deserialize = "T: Scalar + Deserialize<'de>"))]
+    struct Sample<T, const K: usize> {
+        time_us: u32,
+        #[serde(with = "kestirim_snapshot::arrays")]
+        features: [T; K],
+    }
+
+    pub(super) fn serialize<S: Serializer, T: Serialize + Copy, const K: usize>(
+        ring: &[(u32, [T; K]); CAPACITY],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        arrays::serialize(&ring.map(|(time_us, features)| Sample { time_us, features }), serializer)
+    }
+
+    pub(super) fn deserialize<'de, D, T, const K: usize>(
+        deserializer: D,
+    ) -> Result<[(u32, [T; K]); CAPACITY], D::Error>
+    where
+        D: Deserializer<'de>,
+        T: Scalar + Deserialize<'de>,
+    {
+        let ring: [Sample<T, K>; CAPACITY] = arrays::deserialize(deserializer)?;
+        Ok(ring.map(|sample| (sample.time_us, sample.features)))
+    }
 }
 
 impl<T: Scalar, const K: usize> SlidingMean<T, K> {

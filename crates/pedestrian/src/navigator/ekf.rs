@@ -20,6 +20,7 @@ use nalgebra::SVector;
 ///   position is corrected by, and a third of the filter's work is saved.
 /// - **Gyro bias.** Standstills show it ([`Alignment`](crate::Alignment)), walking hardly does.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ekf<T: Scalar> {
     error: Gaussian<T, 6>,
     strapdown: Strapdown<T>,

@@ -12,6 +12,7 @@ use nalgebra::SVector;
 /// A velocity that is wrong by e at the end of a swing of T seconds drifted there linearly: the position
 /// is e·T/2 too far, and the tilt was wrong by about e/(g·T). Both are put right, the latter by half.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lite<T: Scalar> {
     ahrs: Ahrs<T>,
     strapdown: Strapdown<T>,

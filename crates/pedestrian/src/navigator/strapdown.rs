@@ -6,6 +6,7 @@ use nalgebra::SVector;
 
 /// Position and velocity by integration of the specific force (earth axes).
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Strapdown<T: Scalar> {
     pub(super) position: SVector<T, 3>,
     pub(super) velocity: SVector<T, 3>,

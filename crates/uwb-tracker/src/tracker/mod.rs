@@ -27,6 +27,7 @@ pub type CalibratedSpaceTracker<T, const A: usize> = Tracker<T, 3, 6, A>;
 /// The states are D coordinates (m), their velocities (m/s) and, if N = 2 D + 1, what all ranges are too
 /// long by (m).
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     config: Config<T>,
     links: Vec<Link<T>, A>,

@@ -9,6 +9,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// An estimate, the turns that the wheels have counted, and what the ranges say of it.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Course<T: Scalar> {
     pub(super) estimate: Gaussian<T, COUNT>,
     /// φ, rad, within ±π.

@@ -29,6 +29,7 @@ use nalgebra::SVector;
 /// The eight states are the position (m), k cos θ and k sin θ of the wheels' scale k and the heading θ in which their
 /// count began, the turns' drift (rad in 100 s) and gain, the bias of all ranges (m) and their excess in 10 m (m).
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WheelTracker<T: Scalar, const A: usize> {
     config: Config<T>,
     links: Vec<Link<T>, A>,

@@ -86,7 +86,8 @@ impl Epochs {
         Self { station, next: 0, wind_up: [None; SATELLITES], noise: Noise(1) }
     }
 
-    fn epoch(&mut self, index: usize) -> Option<Epoch> {
+    /// The epoch of this number, of which none before must be left out: winds go round.
+    pub fn epoch(&mut self, index: usize) -> Option<Epoch> {
         let elapsed = index as f64 * INTERVAL;
         let time = START.plus(elapsed);
         let site = Site::new(&receiver(), &self.station, time);

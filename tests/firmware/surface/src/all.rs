@@ -16,6 +16,7 @@ pub mod ppp_filter;
 pub mod robust_kalman;
 pub mod scalar;
 pub mod scalar_f64;
+pub mod snapshot;
 pub mod telemetry;
 pub mod uav_estimator;
 pub mod uav_longitudinal;

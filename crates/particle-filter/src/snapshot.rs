@@ -1,0 +1,10 @@
+//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+
+use crate::{Particles, PointMass};
+use kestirim_scalar::Scalar;
+use kestirim_snapshot::layout;
+
+layout! {
+    [T: Scalar, const D: usize, const N: usize] for Particles<T, D, N> as "particles", 1, T, [D, N], infinite;
+    [T: Scalar, const D: usize, const N: usize] for PointMass<T, D, N> as "point-mass", 1, T, [D, N], infinite;
+}

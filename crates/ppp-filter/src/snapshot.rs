@@ -1,0 +1,8 @@
+//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+
+use crate::PppFilter;
+use kestirim_snapshot::layout;
+
+layout! {
+    [const N: usize] for PppFilter<N> as "ppp", 1, f64, [N];
+}

@@ -1,0 +1,12 @@
+//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+
+use crate::{Estimator, FlightFilter, FlightObserver, KalmanFilter};
+use kestirim_scalar::Scalar;
+use kestirim_snapshot::layout;
+
+layout! {
+    [T: Scalar, const P: usize] for Estimator<T, P> as "uav/estimator", 1, T, [P];
+    [T: Scalar, const P: usize] for KalmanFilter<T, P> as "uav/kalman", 1, T, [P];
+    [T: Scalar, const P: usize, const L: usize] for FlightFilter<T, P, L> as "uav/filter", 1, T, [P, L];
+    [T: Scalar, const P: usize, const L: usize] for FlightObserver<T, P, L> as "uav/observer", 1, T, [P, L];
+}

@@ -1,0 +1,16 @@
+//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+
+use crate::{Beacon, BeaconEstimate, BeaconSearch, Locator, PublishedLocator, Tracker};
+use kestirim_scalar::Scalar;
+use kestirim_snapshot::{Layout, Name, layout};
+
+layout! {
+    [T: Scalar, const L: usize, const M: usize, const D: usize, C: Layout] for Locator<T, L, M, D, C>
+        as "user/locator", 1, T, [L, M, D, Name::new(C::NAME).code()], infinite;
+    [T: Scalar, const L: usize, C: Layout] for Tracker<T, L, C>
+        as "user/tracker", 1, T, [L, Name::new(C::NAME).code()], infinite;
+    [T: Scalar, const L: usize] for PublishedLocator<T, L> as "user/published", 1, T, [L], infinite;
+    [T: Scalar, const M: usize] for Beacon<T, M> as "beacon", 1, T, [M];
+    [T: Scalar, const L: usize] for BeaconEstimate<T, L> as "beacon/estimate", 1, T, [L], infinite;
+    [T: Scalar, const M: usize, const N: usize] for BeaconSearch<T, M, N> as "beacon/search", 1, T, [M, N];
+}

@@ -1,0 +1,148 @@
+//! Estimators that sleep: a stream is cut at twenty random places, the estimator is stored there and loaded, and all that
+//! it estimates afterwards is what it would have been, to the bit. `cargo test -p kestirim-tests --test all snapshots::`
+
+mod bytes;
+mod hostile;
+mod layouts;
+mod on_target;
+mod recorded;
+mod shape;
+mod streams;
+#[allow(unreachable_pub)] // The image's.
+#[path = "../../../firmware/snapshots/src/systems.rs"]
+mod systems;
+
+use std::error::Error;
+
+use kestirim_snapshot::{Layout, load, size, store};
+use rand_core::Rng;
+
+use streams::Kind;
+use systems::{Sample, Sleeper};
+
+/// How often a stream is cut.
+const CUTS: usize = 20;
+
+/// What is done with each estimator.
+trait Visit {
+    /// With an estimator that has not begun, and what it is fed with.
+    fn visit<E: Sleeper>(&mut self, kind: &Kind, estimator: E, samples: &[Sample]);
+}
+
+/// A snapshot in as many bytes as it takes.
+fn stored<E: Sleeper>(estimator: &E) -> Vec<u8> {
+    let mut bytes = vec![0; size(estimator).expect("a size")];
+    let length = store(estimator, &mut bytes).expect("there is room").len();
+    assert_eq!(length, bytes.len(), "{}: the size is what is written", E::NAME);
+    bytes
+}
+
+/// Random places of a stream, each once, in its order.
+fn places(seed: u64, length: usize) -> Vec<usize> {
+    let mut rng = host_sim::random::stream(seed, 22);
+    let mut places = Vec::new();
+    while places.len() < CUTS {
+        let place = (rng.next_u64() % length as u64) as usize;
+        if !places.contains(&place) {
+            places.push(place);
+        }
+    }
+    places.sort_unstable();
+    places
+}
+
+/// An estimator that did not sleep.
+struct Awake {
+    /// What it said after each sample.
+    said: Vec<u64>,
+    /// Where it was stored, with its snapshot.
+    snapshots: Vec<(usize, Vec<u8>)>,
+    /// What it is in the end.
+    end: Vec<u8>,
+}
+
+impl Awake {
+    fn over<E: Sleeper>(mut estimator: E, samples: &[Sample], places: &[usize]) -> Self {
+        let (mut said, mut snapshots) = (Vec::new(), Vec::new());
+        for (place, sample) in samples.iter().enumerate() {
+            if places.contains(&place) {
+                snapshots.push((place, stored(&estimator)));
+            }
+            said.push(estimator.take(sample));
+        }
+        Self { said, snapshots, end: stored(&estimator) }
+    }
+}
+
+/// An estimator that sleeps at each place goes on as one that did not; how large its largest snapshot is, in bytes.
+fn sleep<E: Sleeper>(name: &str, estimator: E, samples: &[Sample], seed: u64) -> usize {
+    let awake = Awake::over(estimator, samples, &places(seed, samples.len()));
+    assert_eq!(awake.snapshots.len(), CUTS);
+    let distinct: std::collections::BTreeSet<_> = awake.said.iter().collect();
+    assert!(distinct.len() > samples.len() / 100, "{name}: something is estimated");
+    for (place, snapshot) in &awake.snapshots {
+        let mut woken: E =
+            load(snapshot).unwrap_or_else(|error| panic!("{name} at {place}: {error}"));
+        for (index, sample) in samples.iter().enumerate().skip(*place) {
+            let said = woken.take(sample);
+            assert_eq!(
+                said, awake.said[index],
+                "{name}: slept before {place}, other after {index}"
+            );
+        }
+        assert_eq!(stored(&woken), awake.end, "{name}: slept before {place}");
+    }
+    let sizes = awake.snapshots.iter().map(|(_, bytes)| bytes.len());
+    sizes.chain([awake.end.len()]).max().unwrap_or(0)
+}
+
+struct Sleeps;
+
+impl Visit for Sleeps {
+    fn visit<E: Sleeper>(&mut self, kind: &Kind, estimator: E, samples: &[Sample]) {
+        let name = format!("{} in {}", E::NAME, E::number());
+        let bytes = sleep(&name, estimator, samples, kind.seed);
+        println!("{name}: {bytes} bytes, {} of {} samples", size_of::<E>(), samples.len());
+    }
+}
+
+#[test]
+fn what_slept_goes_on_to_the_bit() {
+    streams::visit_all(&mut Sleeps);
+}
+
+/// The same estimator, had its layout changed.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Newer<E>(E);
+
+impl<E: Layout> Layout for Newer<E> {
+    const NAME: &'static str = E::NAME;
+    const VERSION: u16 = E::VERSION + 1;
+
+    fn number() -> kestirim_snapshot::Number {
+        E::number()
+    }
+
+    fn sizes() -> [u32; 4] {
+        E::sizes()
+    }
+}
+
+struct Refuses;
+
+impl Visit for Refuses {
+    fn visit<E: Sleeper>(&mut self, _: &Kind, estimator: E, _: &[Sample]) {
+        let bytes = stored(&estimator);
+        let error =
+            load::<Newer<E>>(&bytes).err().map(|error| Box::<dyn Error>::from(error).to_string());
+        let (name, number, sizes) = (E::NAME, E::number(), E::sizes());
+        let of = |version| format!("{name} layout {version} in {number}, sizes {sizes:?}");
+        let both = format!("a snapshot of {}, expected {}", of(E::VERSION), of(E::VERSION + 1));
+        assert_eq!(error, Some(both));
+    }
+}
+
+#[test]
+fn old_layouts_are_refused_by_name() {
+    streams::visit_all(&mut Refuses);
+}
