@@ -1,0 +1,31 @@
+//! `kestirim._kestirim`: what Python calls. It feeds the systems' crates and the building blocks from NumPy arrays and
+//! knows no estimator itself; shapes are checked by the package around it, `python/kestirim`.
+//!
+//! Every function reads its arrays in place, lets other Python threads run while it computes, and hands its results over
+//! without a copy.
+#![allow(unsafe_code, reason = "PyO3's macros write the functions that the interpreter calls; none is written by hand")]
+
+mod arrays;
+mod error;
+mod pedestrian;
+mod robot;
+
+use pyo3::prelude::*;
+
+/// The module.
+#[pymodule]
+mod _kestirim {
+    use super::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_export]
+    use super::error::KestirimError;
+    #[pymodule_export]
+    use super::pedestrian::pedestrian;
+    #[pymodule_export]
+    use super::robot::robot;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
