@@ -3,12 +3,18 @@
 //!
 //! Every function reads its arrays in place, lets other Python threads run while it computes, and hands its results over
 //! without a copy.
-#![allow(unsafe_code, reason = "PyO3's macros write the functions that the interpreter calls; none is written by hand")]
+#![allow(
+    unsafe_code,
+    reason = "PyO3's macros write the functions that the interpreter calls; none is written by hand"
+)]
 
 mod arrays;
+mod drone;
 mod error;
+mod gnss;
 mod pedestrian;
 mod robot;
+mod uav;
 
 use pyo3::prelude::*;
 
@@ -18,11 +24,17 @@ mod _kestirim {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
     #[pymodule_export]
+    use super::drone::drone;
+    #[pymodule_export]
     use super::error::KestirimError;
+    #[pymodule_export]
+    use super::gnss::gnss;
     #[pymodule_export]
     use super::pedestrian::pedestrian;
     #[pymodule_export]
     use super::robot::robot;
+    #[pymodule_export]
+    use super::uav::{uav, uav_model};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

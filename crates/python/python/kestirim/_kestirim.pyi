@@ -47,6 +47,42 @@ class _TagTrack(TypedDict):
     height_sigma: Optional[float]
     reasons: list[str]
 
+class _UserTrack(TypedDict):
+    t: Floats
+    position: Floats
+    sigma: Floats
+    level: Floats
+    health: Codes
+    measurements: int
+    reasons: list[str]
+
+class _UavModel(TypedDict):
+    a: Floats
+    b: Floats
+    trim: Optional[tuple[list[float], list[float]]]
+
+class _FlightTrack(TypedDict):
+    t: Floats
+    state: Floats
+    sigma: Floats
+    innovations: Floats
+    rejected: Ints
+    health: Codes
+    reasons: list[str]
+
+class _ReceiverTrack(TypedDict):
+    t: Floats
+    position: Floats
+    sigma: Floats
+    clock: Floats
+    wet_delay: Floats
+    satellites: Ints
+    converged: Bools
+    health: Codes
+    epochs: int
+    warnings: list[str]
+    reasons: list[str]
+
 def pedestrian(
     t: Floats,
     accel: Floats,
@@ -71,3 +107,43 @@ def robot(
     dim: int,
     scalar: str,
 ) -> _TagTrack: ...
+def drone(
+    t: Floats,
+    place: Floats,
+    height: Floats,
+    value: Floats,
+    levels: bool,
+    area: Optional[Floats],
+    environment: Optional[str],
+    every: bool,
+) -> _UserTrack: ...
+def uav_model(name: str) -> _UavModel: ...
+def uav(
+    t: Floats,
+    inputs: Floats,
+    measured: Floats,
+    a: Floats,
+    b: Floats,
+    c: Floats,
+    interval: Optional[float],
+    trim: Optional[tuple[list[float], list[float]]],
+    estimator: str,
+    poles: list[tuple[float, float]],
+    input_noise: Optional[tuple[float, float]],
+    output_noise: Optional[Floats],
+    ratio: float,
+    scalar: str,
+) -> _FlightTrack: ...
+def gnss(
+    obs: str,
+    sp3: list[str],
+    antex: list[str],
+    clk: list[str],
+    bias: list[str],
+    blq: Optional[str],
+    process_noise: Optional[float],
+    filter: str,
+    systems: str,
+    mask: Optional[float],
+    until: Optional[float],
+) -> _ReceiverTrack: ...

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from ._check import Bools, Codes, Floats
+from ._check import Bools, Codes, Floats, Ints
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,44 +27,42 @@ class Health(IntEnum):
     """It may be wrong by far more than anything says."""
 
 
-_AXES: dict[int, tuple[str, ...]] = {2: ("x", "y"), 3: ("x", "y", "z"), 4: ("w", "x", "y", "z")}
+_AXES = ("x", "y", "z")
 
 
-def _columns(result: object, names: tuple[str, ...]) -> dict[str, npt.NDArray[Any]]:
-    columns: dict[str, npt.NDArray[Any]] = {}
-    for name in names:
-        value: npt.NDArray[Any] = getattr(result, name)
-        if value.ndim == 1:
-            columns[name] = value
-        else:
-            for axis, letter in enumerate(_AXES[value.shape[1]]):
-                columns[f"{name}_{letter}"] = value[:, axis]
-    return columns
-
-
+@dataclass(frozen=True)
 class Frame:
     """What has a row a sample."""
+
+    t: Floats
+    """(n,) s: of each row."""
 
     def to_dataframe(self) -> pd.DataFrame:
         """All arrays with a row a sample as columns (``position_x`` …); needs pandas."""
         import pandas
 
-        names = tuple(
-            field.name
-            for field in dataclasses.fields(self)  # type: ignore[arg-type]
-            if isinstance(getattr(self, field.name), np.ndarray)
-            and len(getattr(self, field.name)) == len(getattr(self, "t"))
-            and field.metadata.get("rows", True)
-        )
-        return pandas.DataFrame(_columns(self, names))
+        columns: dict[str, npt.NDArray[Any]] = {}
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if not isinstance(value, np.ndarray) or not field.metadata.get("rows", True):
+                continue
+            if value.ndim == 1:
+                columns[field.name] = value
+                continue
+            axes = field.metadata.get("axes", _AXES)
+            for axis in range(value.shape[1]):
+                columns[f"{field.name}_{axes[axis] if axis < len(axes) else axis}"] = value[:, axis]
+        return pandas.DataFrame(columns)
+
+
+def _axes(*names: str) -> Any:
+    return dataclasses.field(metadata={"axes": names})
 
 
 @dataclass(frozen=True)
 class Strides(Frame):
-    """The strides of a walk, m of them."""
+    """The strides of a walk, m of them; `t` is the end of the stance that each arrived at."""
 
-    t: Floats
-    """(m,) s: end of the stance that each arrived at."""
     position: Floats
     """(m, 3) m, earth: where that is."""
     length: Floats
@@ -84,13 +82,11 @@ class Strides(Frame):
 class Walk(Frame):
     """Where a foot walked: n samples. Earth has z up, its origin is where the foot stood first."""
 
-    t: Floats
-    """(n,) s."""
     position: Floats
     """(n, 3) m, earth."""
     velocity: Floats
     """(n, 3) m/s, earth."""
-    orientation: Floats
+    orientation: Floats = _axes("w", "x", "y", "z")
     """(n, 4) quaternion w, x, y, z: body to earth."""
     stance: Bools
     """(n,) whether the foot stands."""
@@ -112,8 +108,6 @@ class Walk(Frame):
 class TagTrack(Frame):
     """Where a tag was: m times at which there were ranges, of n ranges."""
 
-    t: Floats
-    """(m,) s."""
     position: Floats
     """(m, 3) m, room; not a number while it is not known."""
     sigma: Floats
@@ -132,3 +126,66 @@ class TagTrack(Frame):
     """m: its standard deviation."""
     reasons: tuple[str, ...]
     """Why the track is not good, in words; empty if it is."""
+
+
+@dataclass(frozen=True)
+class UserTrack(Frame):
+    """Where a drone's user was thought to be after each of m measurements, or after the last one alone."""
+
+    position: Floats
+    """(m, 2) m, as the drone's places."""
+    sigma: Floats
+    """(m,) m: root mean square distance from the position that is expected."""
+    level: Floats
+    """(m,) dB: what the transmitter sends (over open ground: what is received at one metre); not a number where
+    losses were measured."""
+    health: Codes
+    """(m,) values of `Health`."""
+    measurements: int
+    """How many were used."""
+    reasons: tuple[str, ...]
+    """Why the last estimate is not good, in words; empty if it is."""
+
+
+@dataclass(frozen=True)
+class FlightTrack(Frame):
+    """How an aircraft flew: n samples."""
+
+    state: Floats = _axes("alpha", "q", "V", "theta")
+    """(n, 4) angle of attack rad, pitch rate rad/s, airspeed m/s, pitch rad."""
+    sigma: Floats = _axes("alpha", "q", "V", "theta")
+    """(n, 4) their standard deviations; not a number of an observer, which knows none."""
+    innovations: Floats = _axes()
+    """(n, p) measured less expected, in the outputs' units; not a number where nothing was measured."""
+    rejected: Ints = dataclasses.field(metadata={"rows": False})
+    """(p,) how many times each output contradicted the estimate and was left out."""
+    health: Codes
+    """(n,) values of `Health`."""
+    reasons: tuple[str, ...]
+    """Why not all of it is good, in words; empty if it is."""
+
+
+@dataclass(frozen=True)
+class ReceiverTrack(Frame):
+    """Where a receiver was: m epochs with a solution; `t` counts from the midnight before the first one."""
+
+    position: Floats
+    """(m, 3) m, ECEF: the marker, free of tides."""
+    sigma: Floats = _axes("east", "north", "up")
+    """(m, 3) m: standard deviations to the east, north and up."""
+    clock: Floats
+    """(m,) m: the receiver's clock minus GPS time."""
+    wet_delay: Floats
+    """(m,) m: zenith delay of the wet troposphere."""
+    satellites: Ints
+    """(m,) how many each solution is from."""
+    converged: Bools
+    """(m,) whether ambiguities are known: the standard deviation is below 10 cm."""
+    health: Codes
+    """(m,) values of `Health`."""
+    epochs: int
+    """How many epochs there were."""
+    warnings: tuple[str, ...]
+    """What the readers found suspicious in the files."""
+    reasons: tuple[str, ...]
+    """Why not all of it is good, in words; empty if it is."""

@@ -57,12 +57,13 @@ pub(super) fn find(setup: &Setup, rows: &Rows<'_>) -> PyResult<Found> {
         return Ok(found);
     }
     let times_us = rows.times_us();
-    let start_us = times_us.iter().copied().min().unwrap_or_default();
-    for ((time_us, anchor), &range) in times_us.iter().zip(rows.anchor).zip(rows.range) {
+    let start_us = times_us.iter().map(|(us, _)| *us).min().unwrap_or_default();
+    for (time_us, row) in times_us {
+        let (anchor, range) = (rows.anchor[row] as usize, rows.range[row]);
         if !range.is_nan() {
             let time_us = (time_us - start_us) as u64;
             // What a tracker refuses says nothing here either.
-            let _ = finder.range(&RangeSample { time_us, anchor: *anchor as usize, range });
+            let _ = finder.range(&RangeSample { time_us, anchor, range });
         }
     }
     finder.end_place();

@@ -62,7 +62,8 @@ impl Setup {
     fn origin(&self) -> Option<[f64; 2]> {
         let is_far = self.anchors.iter().any(|[x, y, _]| x.abs().max(y.abs()) > NEAR);
         let count = self.anchors.len() as f64;
-        let mean = |axis: usize| self.anchors.iter().map(|anchor| anchor[axis]).sum::<f64>() / count;
+        let mean =
+            |axis: usize| self.anchors.iter().map(|anchor| anchor[axis]).sum::<f64>() / count;
         is_far.then(|| [0, 1].map(|axis| mean(axis).round()))
     }
 
@@ -115,7 +116,9 @@ fn with_scalar<T: Scalar>(setup: &Setup) -> PyResult<Box<dyn Tag>> {
         2 => Box::new(Recursive::<T, 2, 5>::new(setup)?),
         3 if is_calibrated => Box::new(Recursive::<T, 3, 6>::new(setup)?),
         3 => Box::new(Recursive::<T, 3, 7>::new(setup)?),
-        other => return Err(KestirimError::new_err(format!("dim: expected 2 or 3, found {other}"))),
+        other => {
+            return Err(KestirimError::new_err(format!("dim: expected 2 or 3, found {other}")));
+        }
     })
 }
 

@@ -40,31 +40,28 @@ pub(super) struct Trace {
 /// Feeds a tracker in the order of times: at one time motion, height, ranges.
 pub(super) fn follow(tag: &mut dyn Tag, rows: &Rows<'_>, motion: &Motion) -> Trace {
     let times_us = rows.times_us();
-    let earliest = times_us.iter().copied().chain(motion.samples.iter().map(|(us, _)| *us)).min();
+    let moved_us = motion.samples.iter().map(|(us, _)| *us);
+    let earliest = times_us.iter().map(|(us, _)| *us).chain(moved_us).min();
     let start_us = earliest.unwrap_or_default();
     let since = |time_us: i64| time_us.saturating_sub(start_us).max(0) as u64;
     let mut moved = motion.samples.iter().peekable();
     let (mut trace, mut recent, mut latest_us) = (Trace::default(), Recent::default(), i64::MIN);
-    let mut row = 0;
-    for epoch in times_us.chunk_by(|a, b| a == b) {
-        let time_us = epoch[0];
+    (trace.taken, trace.nis) = (vec![false; rows.t.len()], vec![f64::NAN; rows.t.len()]);
+    for epoch in times_us.chunk_by(|a, b| a.0 == b.0) {
+        let time_us = epoch[0].0;
         while let Some((us, moved)) = moved.next_if(|(us, _)| *us <= time_us) {
             tag.moved(since(*us), *moved);
         }
         if let Some(metres) = rows.height_at(time_us) {
             tag.set_height(since(time_us), metres);
         }
-        for index in row..row + epoch.len() {
-            let mut reception = (false, f64::NAN);
-            if !rows.range[index].is_nan() {
-                let anchor = rows.anchor[index] as usize;
-                reception = tag.range(since(time_us), anchor, rows.range[index]);
-                trace.ranges.push((time_us, reception.0));
+        for &(_, row) in epoch {
+            let (anchor, range) = (rows.anchor[row] as usize, rows.range[row]);
+            if !range.is_nan() {
+                (trace.taken[row], trace.nis[row]) = tag.range(since(time_us), anchor, range);
+                trace.ranges.push((time_us, trace.taken[row]));
             }
-            trace.taken.push(reception.0);
-            trace.nis.push(reception.1);
         }
-        row += epoch.len();
         // Ranges that come late end no epoch.
         if time_us > latest_us {
             latest_us = time_us;
