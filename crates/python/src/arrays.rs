@@ -3,9 +3,7 @@
 use kestirim_health::{Health, State};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
-use numpy::{
-    Element, IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
-};
+use numpy::{Element, IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -17,8 +15,6 @@ pub(crate) type Line<'py> = PyReadonlyArray1<'py, f64>;
 pub(crate) type Counts<'py> = PyReadonlyArray1<'py, i64>;
 /// (n, k)
 pub(crate) type Table<'py> = PyReadonlyArray2<'py, f64>;
-/// (n, k, l)
-pub(crate) type Stack<'py> = PyReadonlyArray3<'py, f64>;
 
 /// The numbers of an array in the order of its rows; the package has made it contiguous and of this shape.
 pub(crate) fn values<'a, T: Element, D: numpy::ndarray::Dimension>(

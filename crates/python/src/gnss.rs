@@ -55,7 +55,8 @@ pub(crate) fn gnss<'py>(
     let (track, warnings) = py.detach(|| {
         let run = move || -> PyResult<(Track, Vec<String>)> {
             let recording = Recording::read(&files)?;
-            let track = follow(&recording, config, systems, until)?;
+            let mut track = follow(&recording, config, systems, until)?;
+            track.doubt(recording.doubts());
             Ok((track, recording.warnings))
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(run);
@@ -189,6 +190,13 @@ impl Track {
         self.converged.push(solution.health == Quality::Converged);
         self.health.push(code(health.state()));
         self.doubts = self.doubts.and(health);
+    }
+
+    /// With what the files show, which concerns every epoch.
+    fn doubt(&mut self, doubts: Health) {
+        let least = code(doubts.state());
+        self.health.iter_mut().for_each(|health| *health = least.max(*health));
+        self.doubts = self.doubts.and(doubts);
     }
 
     fn results(self, py: Python<'_>, warnings: Vec<String>) -> PyResult<Bound<'_, PyDict>> {

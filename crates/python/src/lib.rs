@@ -9,6 +9,7 @@
 )]
 
 mod arrays;
+mod blocks;
 mod drone;
 mod error;
 mod gnss;
@@ -23,6 +24,16 @@ use pyo3::prelude::*;
 mod _kestirim {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
+    #[pymodule_export]
+    use super::blocks::attitude::attitude;
+    #[pymodule_export]
+    use super::blocks::design::{c2d, dare, place};
+    #[pymodule_export]
+    use super::blocks::filters::Filter;
+    #[pymodule_export]
+    use super::blocks::observer::Observer;
+    #[pymodule_export]
+    use super::blocks::particles::Cloud;
     #[pymodule_export]
     use super::drone::drone;
     #[pymodule_export]

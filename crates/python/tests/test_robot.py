@@ -103,7 +103,7 @@ def test_refusals() -> None:
         ((anchors[:, :2], t, anchor, distance), {"height": 1.0}, r"anchors: expected an array of shape \(a, 3\), found \(3, 2\)"),
         ((anchors, t, [0, 3], distance), {"height": 1.0}, "sample 1: expected an anchor from 0 to 2, found 3"),
         ((anchors, t, [0, 0.5], distance), {"height": 1.0}, "anchor: expected whole numbers"),
-        ((anchors[:2], t, anchor, distance), {"height": 1.0}, "these anchors cannot be used: there are fewer than three anchors"),
+        ((anchors[:2], t, anchor, distance), {}, "these anchors cannot be used: there are fewer than three anchors"),
         ((anchors, t, anchor, distance), {"height": 1.0, "dim": 4}, "dim: expected 2 or 3, found 4"),
         ((anchors, t, anchor, distance), {"height": None}, "the ranges do not tell the tag's height"),
         ((anchors, t, anchor, distance), {"height": 1.0, "biases": [0.1]}, r"biases: expected an array of shape \(3,\), found \(1,\)"),

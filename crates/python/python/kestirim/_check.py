@@ -13,6 +13,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 Codes = npt.NDArray[np.uint8]
+Complexes = npt.NDArray[np.complex128]
 Shape = tuple[Union[int, str], ...]
 
 

@@ -55,8 +55,8 @@ class Frame:
         return pandas.DataFrame(columns)
 
 
-def _axes(*names: str) -> Any:
-    return dataclasses.field(metadata={"axes": names})
+def _axes(*names: str) -> dict[str, tuple[str, ...]]:
+    return {"axes": names}
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Walk(Frame):
     """(n, 3) m, earth."""
     velocity: Floats
     """(n, 3) m/s, earth."""
-    orientation: Floats = _axes("w", "x", "y", "z")
+    orientation: Floats = dataclasses.field(metadata=_axes("w", "x", "y", "z"))
     """(n, 4) quaternion w, x, y, z: body to earth."""
     stance: Bools
     """(n,) whether the foot stands."""
@@ -151,11 +151,11 @@ class UserTrack(Frame):
 class FlightTrack(Frame):
     """How an aircraft flew: n samples."""
 
-    state: Floats = _axes("alpha", "q", "V", "theta")
+    state: Floats = dataclasses.field(metadata=_axes("alpha", "q", "V", "theta"))
     """(n, 4) angle of attack rad, pitch rate rad/s, airspeed m/s, pitch rad."""
-    sigma: Floats = _axes("alpha", "q", "V", "theta")
+    sigma: Floats = dataclasses.field(metadata=_axes("alpha", "q", "V", "theta"))
     """(n, 4) their standard deviations; not a number of an observer, which knows none."""
-    innovations: Floats = _axes()
+    innovations: Floats = dataclasses.field(metadata=_axes())
     """(n, p) measured less expected, in the outputs' units; not a number where nothing was measured."""
     rejected: Ints = dataclasses.field(metadata={"rows": False})
     """(p,) how many times each output contradicted the estimate and was left out."""
@@ -171,7 +171,7 @@ class ReceiverTrack(Frame):
 
     position: Floats
     """(m, 3) m, ECEF: the marker, free of tides."""
-    sigma: Floats = _axes("east", "north", "up")
+    sigma: Floats = dataclasses.field(metadata=_axes("east", "north", "up"))
     """(m, 3) m: standard deviations to the east, north and up."""
     clock: Floats
     """(m,) m: the receiver's clock minus GPS time."""

@@ -272,7 +272,7 @@ def _rows(outputs: Union[Sequence[str], npt.ArrayLike]) -> Floats:
         if unknown:
             raise KestirimError(f"outputs: expected names of {', '.join(_STATES)}, found {unknown[0]!r}")
         return np.eye(4)[[_STATES.index(name) for name in outputs]]
-    return floats("outputs", outputs, "p", 4)  # type: ignore[arg-type]
+    return floats("outputs", outputs, "p", 4)
 
 
 Path = Union[str, "os.PathLike[str]"]
@@ -333,8 +333,8 @@ def gnss(
 
 
 def _paths(given: Union[Path, Sequence[Path]]) -> list[str]:
-    one = isinstance(given, (str, os.PathLike))
-    return [os.fspath(path) for path in ([given] if one else given)]  # type: ignore[list-item]
+    paths = (given,) if isinstance(given, (str, os.PathLike)) else given
+    return [os.fspath(path) for path in paths]
 
 
 def _over_time(

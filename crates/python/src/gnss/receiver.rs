@@ -6,11 +6,16 @@ use kestirim_gnss_files::{
     Antenna, Antennas, Biases, Clocks, Observations, Observed, Orbits, StationLoading, Warning,
 };
 use kestirim_gnss_ppp::{Carriers, Corrections, GpsTime, OceanLoading, Receiver};
+use kestirim_health::{Health, Reason};
 use pyo3::PyResult;
 
 use super::products::{Products, carriers, patterns, time};
 use crate::error::{KestirimError, refused};
 
+/// Fewer satellites give no position, …
+const FEWEST: usize = 4;
+/// … and so many epochs with fewer make a poor day.
+const POOR: f64 = 0.1;
 /// The number of the first satellite of Galileo, `E01`.
 const FIRST_GALILEO: u8 = 101;
 
@@ -41,6 +46,7 @@ pub(super) struct Recording {
     loading: Option<OceanLoading>,
     utc_minus_gps: f64,
     midnight: GpsTime,
+    orbits_span: [f64; 2],
     pub(super) warnings: Vec<String>,
 }
 
@@ -86,6 +92,7 @@ impl Recording {
             Epoch { time: time(epoch.time), power_failure, satellites }
         });
         let loading = loading.and_then(|station| station.loading);
+        let midnight = GpsTime::new(start.day(), 0.0);
         Ok(Self {
             epochs: epochs.collect(),
             products,
@@ -94,7 +101,8 @@ impl Recording {
             galileo,
             loading: loading.map(|it| OceanLoading { amplitude: it.amplitude, lag: it.lag }),
             utc_minus_gps: -start.leap_seconds(),
-            midnight: GpsTime::new(start.day(), 0.0),
+            midnight,
+            orbits_span: span(&orbits, midnight),
             warnings,
         })
     }
@@ -109,6 +117,17 @@ impl Recording {
     /// Seconds since the midnight before the first epoch.
     pub(super) fn seconds(&self, epoch: &Epoch) -> f64 {
         epoch.time.since(self.midnight)
+    }
+
+    /// What the files show before anything is solved, as `host-sim check` tells it.
+    pub(super) fn doubts(&self) -> Health {
+        let ends = [self.epochs.first(), self.epochs.last()];
+        let [first, last] = ends.map(|epoch| epoch.map_or(0.0, |epoch| self.seconds(epoch)));
+        let [begin, end] = self.orbits_span;
+        let few = self.epochs.iter().filter(|epoch| epoch.satellites.len() < FEWEST).count();
+        Health::GOOD
+            .with(Reason::Dropout, few as f64 > POOR * self.epochs.len() as f64)
+            .with(Reason::Time, begin > first || end < last)
     }
 
     pub(super) const fn has_galileo(&self) -> bool {
@@ -129,6 +148,18 @@ impl Recording {
             corrections,
         }
     }
+}
+
+/// From when to when there are orbits, s since midnight.
+fn span(orbits: &Orbits, midnight: GpsTime) -> [f64; 2] {
+    let times = orbits.satellites().filter_map(|prn| {
+        let samples = orbits.satellite(prn);
+        let ends = [samples.first()?.time, samples.last()?.time];
+        Some(ends.map(|at| time(at).since(midnight)))
+    });
+    times.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [first, last]| {
+        [a.min(first), b.max(last)]
+    })
 }
 
 /// Galileo satellites whose orbits or antennas are not known: a metre off is worse than nothing, where GPS serves without.
