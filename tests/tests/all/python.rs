@@ -1,6 +1,6 @@
 //! The Python package, built, installed into an environment of its own, and tested there.
 //!
-//! Without Python, its `venv`, or a way to PyPI this test says SKIPPED and passes; with `KESTIRIM_REQUIRE_PYTHON=1` it
+//! Without Python, its `venv`, or a way to `PyPI` this test says SKIPPED and passes; with `KESTIRIM_REQUIRE_PYTHON=1` it
 //! fails instead, and so it does if other packages, whose speed ours is compared with, cannot be had.
 
 use std::env;
@@ -56,9 +56,9 @@ fn done(what: &str, output: &Output) -> Result<()> {
 fn the_package_is_installed_and_tested() -> Result<()> {
     std::fs::create_dir_all(target())?;
     if !target().join("venv/bin/pip").exists() {
-        let mut make = Command::new("python3");
-        make.args(["-m", "venv", "--clear"]).arg(target().join("venv"));
-        let made = make.output();
+        let mut venv = Command::new("python3");
+        venv.args(["-m", "venv", "--clear"]).arg(target().join("venv"));
+        let made = venv.output();
         if !made.is_ok_and(|made| made.status.success()) {
             return skipped("there is no python3 with venv");
         }
