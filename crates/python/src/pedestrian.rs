@@ -1,5 +1,7 @@
 //! Where a foot walked.
 
+mod heading;
+
 use kestirim_health::{Health, Reason, State};
 use kestirim_pedestrian::{
     Config, Ekf, Error, Estimate, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty,
@@ -16,12 +18,13 @@ use crate::error::{KestirimError, refused_at, unknown};
 
 /// A walk.
 #[pyfunction]
-#[pyo3(signature = (t, accel, gyro, sensor, causal, tracker, contact_height, scalar))]
+#[pyo3(signature = (t, accel, gyro, mag, sensor, causal, tracker, contact_height, scalar))]
 pub(crate) fn pedestrian<'py>(
     py: Python<'py>,
     t: Line<'py>,
     accel: Table<'py>,
     gyro: Table<'py>,
+    mag: Option<Table<'py>>,
     sensor: &str,
     causal: bool,
     tracker: &str,
@@ -36,7 +39,10 @@ pub(crate) fn pedestrian<'py>(
     let log = Log { t: values(&t)?, accel: rows(&accel)?, gyro: rows(&gyro)? };
     let options = Options { sensor, causal, contact_height };
     let scalar = ScalarKind::named(scalar)?;
-    let walk = py.detach(|| match (tracker, scalar) {
+    let field = mag.as_ref().map(rows::<3>).transpose()?;
+    // A heading is corrected afterwards, and that of the other trackers does not drift at a constant rate.
+    let field = field.filter(|_| !causal && tracker == "ekf");
+    let found = || match (tracker, scalar) {
         ("ekf", ScalarKind::F32) => walk::<f32, Ekf<f32>>(&log, options),
         ("ekf", ScalarKind::F64) => walk::<f64, Ekf<f64>>(&log, options),
         ("ekf", ScalarKind::Fixed) => walk::<Q12_20, Ekf<Q12_20>>(&log, options),
@@ -44,6 +50,13 @@ pub(crate) fn pedestrian<'py>(
         ("lite", ScalarKind::F64) => walk::<f64, Lite<f64>>(&log, options),
         ("lite", ScalarKind::Fixed) => walk::<Q12_20, Lite<Q12_20>>(&log, options),
         _ => Err(unknown("tracker", tracker, "'ekf' or 'lite'")),
+    };
+    let walk = py.detach(|| -> PyResult<Walk> {
+        let mut walk = found()?;
+        if let Some(rate) = field.and_then(|field| heading::rate(&log, field, options)) {
+            walk.turn_back(rate);
+        }
+        Ok(walk)
     })?;
     walk.results(py)
 }
@@ -84,11 +97,16 @@ struct Options {
     contact_height: Option<f64>,
 }
 
-fn walk<T: Scalar, N: Navigator<T>>(log: &Log<'_>, options: Options) -> PyResult<Walk> {
-    let mut config = Config { sensor: options.sensor, ..Config::<T>::default() };
-    if let Some(height) = options.contact_height {
-        config.contact_height = T::from_f64(height);
+impl Options {
+    fn config<T: Scalar>(self) -> Config<T> {
+        let config = Config { sensor: self.sensor, ..Config::default() };
+        let contact_height = self.contact_height.map_or(config.contact_height, T::from_f64);
+        Config { contact_height, ..config }
     }
+}
+
+fn walk<T: Scalar, N: Navigator<T>>(log: &Log<'_>, options: Options) -> PyResult<Walk> {
+    let config = options.config::<T>();
     let samples = log.samples::<T>()?;
     let mut walk = Walk::with_room_for(samples.len());
     if options.causal {
@@ -124,6 +142,8 @@ struct Walk {
     health: Vec<u8>,
     doubts: Health,
     path_length: f64,
+    /// At which the heading drifted, rad/s, as a magnetometer showed it.
+    heading_rate: Option<f64>,
 }
 
 impl Walk {
@@ -212,6 +232,7 @@ impl Walk {
             .with("strides", strides)?
             .with("path_length", self.path_length)?
             .with("closure", closure)?
+            .with("heading_rate", self.heading_rate)?
             .with("reasons", reasons(self.doubts))?
             .done())
     }

@@ -35,10 +35,23 @@ def walked(data: Path, walk: int, **options: Any) -> kestirim.Walk:
     ],
 )
 def test_equals_replay(data: Path, replay: Replay, walk: int, options: Any, arguments: list[str]) -> None:
-    ours = walked(data, walk, **options)
     log = data / f"pedestrian/gcp/exp{walk}_imu.csv"
-    theirs, track = replay("pedestrian", "--log", log, *arguments)
+    equal(walked(data, walk, **options), *replay("pedestrian", "--log", log, *arguments))
 
+
+def test_equals_replay_with_a_magnetometer(data: Path, replay: Replay) -> None:
+    path = sorted((data / "pedestrian/openshoe").glob("*.csv"))[0]
+    log = table(path)
+    accel, gyro = vectors(log, "ax", "ay", "az"), vectors(log, "gx", "gy", "gz")
+    mag = vectors(log, "mx_G", "my_G", "mz_G")
+    ours = kestirim.pedestrian(log["t"], accel, gyro, "consumer", mag=mag)
+    theirs, track = replay("pedestrian", "--log", path, "--sensor", "consumer")
+    equal(ours, theirs, track)
+    assert ours.heading_rate is not None
+    assert 60 * np.degrees(ours.heading_rate) == pytest.approx(theirs["heading_rate_deg_per_min"], rel=1e-14)
+
+
+def equal(ours: kestirim.Walk, theirs: Any, track: list[dict[str, str]]) -> None:
     assert ours.path_length == theirs["path_length_m"]
     assert ours.closure == theirs["closure_m"]
     assert list(ours.reasons) == [reason.replace("-", " ") for reason in theirs["health"]["reasons"]]

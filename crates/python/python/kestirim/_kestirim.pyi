@@ -52,6 +52,7 @@ class _Walk(TypedDict):
     strides: _Strides
     path_length: float
     closure: float
+    heading_rate: Optional[float]
     reasons: list[str]
 
 class _TagTrack(TypedDict):
@@ -190,6 +191,7 @@ def pedestrian(
     t: _Floats,
     accel: _Floats,
     gyro: _Floats,
+    mag: Optional[_Floats],
     sensor: str,
     causal: bool,
     tracker: str,

@@ -100,6 +100,8 @@ class Walk(Frame):
     """m: horizontal, from stance to stance."""
     closure: float
     """m: horizontal distance from start to end."""
+    heading_rate: Optional[float]
+    """rad/s: at which the heading drifted, as a magnetometer showed it and as the path was corrected by."""
     reasons: tuple[str, ...]
     """Why the walk is not good, in words; empty if it is."""
 

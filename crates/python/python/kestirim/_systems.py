@@ -24,6 +24,7 @@ def pedestrian(
     gyro: npt.ArrayLike,
     sensor: Literal["industrial", "consumer"] = "industrial",
     *,
+    mag: Optional[npt.ArrayLike] = None,
     causal: bool = False,
     tracker: Literal["ekf", "lite"] = "ekf",
     contact_height: Optional[float] = None,
@@ -34,6 +35,9 @@ def pedestrian(
     t: (n,) s, from 0 on. accel: (n, 3) m/s², specific force in the sensor's axes: +9.8 upwards at rest.
     gyro: (n, 3) rad/s, the same axes.
 
+    mag: (n, 3) in any unit, the same axes, not a number where it was not measured: corrects the heading where the foot stands
+    twice in the same field. Not causally, and with "ekf" alone.
+
     sensor: "industrial" for calibrated units (Xsens, NGIMU, 3DM-GX), whose gyroscope starts within 3 mrad/s of zero;
     "consumer" for bare chips (MPU-6050, the Razor).
     causal: look only backwards, as firmware must; else the whole recording serves every sample.
@@ -41,7 +45,7 @@ def pedestrian(
     contact_height: m from the ball of the foot, about which it rolls, up to the sensor; 0.07 unless it is said.
     scalar: the number type of the estimator.
 
-    The same as `host-sim replay pedestrian --sensor … --no-magnetometer`, to the bit.
+    The same as `host-sim replay pedestrian --sensor …`, to the bit.
     """
     times = floats("t", t, "n")
     count = len(times)
@@ -49,6 +53,7 @@ def pedestrian(
         times,
         floats("accel", accel, count, 3),
         floats("gyro", gyro, count, 3),
+        maybe_floats("mag", mag, count, 3),
         sensor,
         causal,
         tracker,
@@ -66,6 +71,7 @@ def pedestrian(
         strides=Strides(**results["strides"]),
         path_length=results["path_length"],
         closure=results["closure"],
+        heading_rate=results["heading_rate"],
         reasons=tuple(results["reasons"]),
     )
 
