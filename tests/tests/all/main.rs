@@ -19,6 +19,7 @@ mod pedestrian_on_target;
 mod pedestrian_recordings;
 mod pedestrian_table;
 mod ppp_on_target;
+mod python;
 mod robot_on_target;
 mod robot_recordings;
 mod robot_robust;

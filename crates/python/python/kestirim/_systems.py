@@ -1,0 +1,371 @@
+"""The five systems: a recording in, what was estimated out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _kestirim
+from ._check import Floats, floats, ints, maybe_floats
+from ._kestirim import KestirimError
+from ._results import FlightTrack, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
+
+Scalar = Literal["f32", "f64", "fixed"]
+
+
+def pedestrian(
+    t: npt.ArrayLike,
+    accel: npt.ArrayLike,
+    gyro: npt.ArrayLike,
+    sensor: Literal["industrial", "consumer"] = "industrial",
+    *,
+    mag: Optional[npt.ArrayLike] = None,
+    causal: bool = False,
+    tracker: Literal["ekf", "lite"] = "ekf",
+    contact_height: Optional[float] = None,
+    scalar: Scalar = "f32",
+) -> Walk:
+    """Where a foot walked, from an IMU on it.
+
+    t: (n,) s, from 0 on. accel: (n, 3) m/s², specific force in the sensor's axes: +9.8 upwards at rest.
+    gyro: (n, 3) rad/s, the same axes.
+
+    mag: (n, 3) in any unit, the same axes, not a number where it was not measured: corrects the heading where the foot stands
+    twice in the same field. Not causally, and with "ekf" alone.
+
+    sensor: "industrial" for calibrated units (Xsens, NGIMU, 3DM-GX), whose gyroscope starts within 3 mrad/s of zero;
+    "consumer" for bare chips (MPU-6050, the Razor).
+    causal: look only backwards, as firmware must; else the whole recording serves every sample.
+    tracker: "ekf", an error-state Kalman filter, or "lite", the paper's architecture.
+    contact_height: m from the ball of the foot, about which it rolls, up to the sensor; 0.07 unless it is said.
+    scalar: the number type of the estimator.
+
+    The same as `host-sim replay pedestrian --sensor …`, to the bit.
+    """
+    times = floats("t", t, "n")
+    count = len(times)
+    results = _kestirim.pedestrian(
+        times,
+        floats("accel", accel, count, 3),
+        floats("gyro", gyro, count, 3),
+        maybe_floats("mag", mag, count, 3),
+        sensor,
+        causal,
+        tracker,
+        contact_height,
+        scalar,
+    )
+    return Walk(
+        t=results["t"],
+        position=results["position"],
+        velocity=results["velocity"],
+        orientation=results["orientation"],
+        stance=results["stance"],
+        sigma=results["sigma"],
+        health=results["health"],
+        strides=Strides(**results["strides"]),
+        path_length=results["path_length"],
+        closure=results["closure"],
+        heading_rate=results["heading_rate"],
+        reasons=tuple(results["reasons"]),
+    )
+
+
+def robot(
+    anchors: npt.ArrayLike,
+    t: npt.ArrayLike,
+    anchor: npt.ArrayLike,
+    range: npt.ArrayLike,
+    *,
+    height: Optional[float] = None,
+    heights: Optional[tuple[npt.ArrayLike, npt.ArrayLike]] = None,
+    biases: Optional[npt.ArrayLike] = None,
+    imu: Optional[tuple[npt.ArrayLike, npt.ArrayLike]] = None,
+    wheels: Optional[tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike]] = None,
+    room: Optional[tuple[float, float, float, float]] = None,
+    dim: Literal[2, 3] = 2,
+    scalar: Scalar = "f32",
+) -> TagTrack:
+    """Where a tag was, from ranges to ultra-wideband anchors.
+
+    anchors: (a, 3) m, room: right-handed with z up. t: (n,) s. anchor: (n,) rows of `anchors`. range: (n,) m; not a number
+    where none came.
+
+    height: m, of the tag, in the plane; or heights: times (k,) s and heights (k,) m. Of neither the ranges tell it, if
+    they can.
+    biases: (a,) m that each anchor measures too long, if they are calibrated.
+    imu: times (k,) s and accelerations (k, 3) m/s², body, with or without gravity: tells standing from moving.
+    wheels: times (k,) s, speeds (k,) m/s and turn rates (k,) rad/s.
+    room: x0, y0, x1, y1, m: two opposite corners in which the tag is.
+    dim: 2 in the plane at a known height, 3 in space.
+
+    The same as `host-sim replay robot`, to the bit.
+    """
+    places = floats("anchors", anchors, "a", 3)
+    times = floats("t", t, "n")
+    count = len(times)
+    if height is not None and heights is not None:
+        raise KestirimError("height: expected one height or heights over time, found both")
+    results = _kestirim.robot(
+        places,
+        times,
+        ints("anchor", anchor, count),
+        floats("range", range, count),
+        height,
+        _over_time("heights", heights),
+        maybe_floats("biases", biases, len(places)),
+        _imu(imu),
+        _wheels(wheels),
+        room,
+        dim,
+        scalar,
+    )
+    return TagTrack(
+        t=results["t"],
+        position=results["position"],
+        sigma=results["sigma"],
+        health=results["health"],
+        taken=results["taken"],
+        nis=results["nis"],
+        lost=results["lost"],
+        height=results["height"],
+        height_sigma=results["height_sigma"],
+        reasons=tuple(results["reasons"]),
+    )
+
+
+def drone(
+    t: npt.ArrayLike,
+    position: npt.ArrayLike,
+    height: npt.ArrayLike,
+    *,
+    path_loss: Optional[npt.ArrayLike] = None,
+    rssi: Optional[npt.ArrayLike] = None,
+    area: Optional[npt.ArrayLike] = None,
+    environment: Literal["open", "suburban", "urban", "dense-urban", "high-rise"] = "open",
+    every: bool = True,
+) -> UserTrack:
+    """Where the user of a drone is, from path losses or levels alone.
+
+    t: (n,) s. position: (n, 2) m to the east and north. height: (n,) m above the user.
+    path_loss: (n,) dB, or rssi: (n,) dB of unknown offset; one of the two, not a number where none came.
+
+    area: (k, 2) m, the corners of where the user can be, one after the other; else up to 500 m beyond the flight.
+    environment: what is built on the ground; "open" is nothing.
+    every: an estimate after each measurement; else one, after the last.
+
+    The same as `host-sim replay drone`, to the bit.
+    """
+    if (path_loss is None) == (rssi is None):
+        raise KestirimError("drone: expected path_loss or rssi, one of the two")
+    times = floats("t", t, "n")
+    count = len(times)
+    name, value = ("path_loss", path_loss) if rssi is None else ("rssi", rssi)
+    assert value is not None
+    results = _kestirim.drone(
+        times,
+        floats("position", position, count, 2),
+        floats("height", height, count),
+        floats(name, value, count),
+        rssi is not None,
+        maybe_floats("area", area, "k", 2),
+        None if environment == "open" else environment,
+        every,
+    )
+    return UserTrack(
+        t=results["t"],
+        position=results["position"],
+        sigma=results["sigma"],
+        level=results["level"],
+        health=results["health"],
+        measurements=results["measurements"],
+        reasons=tuple(results["reasons"]),
+    )
+
+
+@dataclass(frozen=True)
+class UavModel:
+    """A linear model of an aircraft near its steady flight: states α (rad), q (rad/s), V (m/s), θ (rad); inputs δe (rad)
+    and δt (0 to 1)."""
+
+    a: Floats
+    """(4, 4) of dx/dt = A x + B u, 1/s …; with an `interval`, of x⁺ = A x + B u."""
+    b: Floats
+    """(4, 2)."""
+    interval: Optional[float] = None
+    """s between steps, of a model in discrete time."""
+    trim: Optional[tuple[list[float], list[float]]] = None
+    """State (4) and input (2) of the steady flight, which is taken from absolute values."""
+
+    @classmethod
+    def named(cls, name: Literal["P1", "P2", "P3"]) -> UavModel:
+        """A known aircraft: "P1" the Aerosonde, "P2" what the thesis says of its own, "P3" the Navion."""
+        found = _kestirim.uav_model(name)
+        return cls(found["a"], found["b"], trim=found["trim"])
+
+
+_STATES = ("alpha", "q", "V", "theta")
+
+
+def uav(
+    t: npt.ArrayLike,
+    inputs: npt.ArrayLike,
+    measured: npt.ArrayLike,
+    outputs: Union[Sequence[str], npt.ArrayLike] = _STATES,
+    *,
+    model: Union[Literal["P1", "P2", "P3"], UavModel] = "P2",
+    absolute: bool = False,
+    estimator: Literal["kalman", "luenberger"] = "kalman",
+    poles: Sequence[complex] = (-3.0, -3.5, -4.0, -4.5),
+    input_noise: Optional[tuple[float, float]] = None,
+    output_noise: Optional[npt.ArrayLike] = None,
+    ratio: float = 1.0,
+    scalar: Scalar = "f64",
+) -> FlightTrack:
+    """How an aircraft flies: angle of attack, pitch rate, airspeed and pitch from some sensors, with gaps.
+
+    t: (n,) s, at a regular interval. inputs: (n, 2) elevator rad and throttle 0 to 1. measured: (n, p), not a number where
+    nothing was measured. outputs: which states those are, of "alpha", "q", "V", "theta"; or C itself, (p, 4).
+
+    model: of the aircraft. absolute: values are absolute, and the model's trim is taken from them; else deviations.
+    estimator: a Kalman filter or a Luenberger observer, with `poles` in 1/s.
+    input_noise, output_noise: standard deviations of what reaches the aircraft beside its inputs, a sample, and of the
+    outputs (p,); those of usual sensors unless they are said. ratio: Q/R of the filter, times that of the noise.
+
+    The same as `host-sim replay uav`, to the bit.
+    """
+    aircraft = model if isinstance(model, UavModel) else UavModel.named(model)
+    if absolute and aircraft.trim is None:
+        raise KestirimError("absolute: expected a model with a trim, P1 or one that has it")
+    rows = _rows(outputs)
+    times = floats("t", t, "n")
+    count = len(times)
+    results = _kestirim.uav(
+        times,
+        floats("inputs", inputs, count, 2),
+        floats("measured", measured, count, len(rows)),
+        floats("model.a", aircraft.a, 4, 4),
+        floats("model.b", aircraft.b, 4, 2),
+        rows,
+        aircraft.interval,
+        aircraft.trim if absolute else None,
+        estimator,
+        [(complex(pole).real, complex(pole).imag) for pole in poles],
+        input_noise,
+        maybe_floats("output_noise", output_noise, len(rows)),
+        ratio,
+        scalar,
+    )
+    return FlightTrack(
+        t=results["t"],
+        state=results["state"],
+        sigma=results["sigma"],
+        innovations=results["innovations"],
+        rejected=results["rejected"],
+        health=results["health"],
+        reasons=tuple(results["reasons"]),
+    )
+
+
+def _rows(outputs: Union[Sequence[str], npt.ArrayLike]) -> Floats:
+    if isinstance(outputs, (list, tuple)) and outputs and isinstance(outputs[0], str):
+        unknown = [name for name in outputs if name not in _STATES]
+        if unknown:
+            raise KestirimError(f"outputs: expected names of {', '.join(_STATES)}, found {unknown[0]!r}")
+        return np.eye(4)[[_STATES.index(name) for name in outputs]]
+    return floats("outputs", outputs, "p", 4)
+
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def gnss(
+    obs: Path,
+    sp3: Union[Path, Sequence[Path]],
+    antex: Union[Path, Sequence[Path]],
+    *,
+    clk: Union[Path, Sequence[Path]] = (),
+    bias: Union[Path, Sequence[Path]] = (),
+    blq: Optional[Path] = None,
+    process_noise: Optional[float] = None,
+    filter: Literal["default", "gkf", "rkf", "skf", "ikf", "adaptive"] = "default",
+    systems: Literal["all", "gps", "galileo"] = "all",
+    mask: Optional[float] = None,
+    until: Optional[float] = None,
+) -> ReceiverTrack:
+    """Where a GPS and Galileo receiver is, to a centimetre, from files; any may be packed with gzip.
+
+    obs: what the receiver observed, RINEX 2, 3 or 4 or Compact RINEX. sp3: precise orbits. antex: phase centres of
+    antennas. clk: precise clocks, RINEX; else those of the orbit files. bias: biases of codes, Bias-SINEX.
+    blq: ocean loading of the station.
+
+    process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
+    for one at rest. filter: what is done about observations that do not fit.
+    systems: satellites that serve. mask: rad, lowest elevation, 8° unless it is said. until: s, the last epoch.
+
+    The same as `host-sim replay gnss`, to the bit.
+    """
+    results = _kestirim.gnss(
+        os.fspath(obs),
+        _paths(sp3),
+        _paths(antex),
+        _paths(clk),
+        _paths(bias),
+        None if blq is None else os.fspath(blq),
+        process_noise,
+        filter,
+        systems,
+        mask,
+        until,
+    )
+    return ReceiverTrack(
+        t=results["t"],
+        position=results["position"],
+        sigma=results["sigma"],
+        clock=results["clock"],
+        wet_delay=results["wet_delay"],
+        satellites=results["satellites"],
+        converged=results["converged"],
+        health=results["health"],
+        epochs=results["epochs"],
+        warnings=tuple(results["warnings"]),
+        reasons=tuple(results["reasons"]),
+    )
+
+
+def _paths(given: Union[Path, Sequence[Path]]) -> list[str]:
+    paths = (given,) if isinstance(given, (str, os.PathLike)) else given
+    return [os.fspath(path) for path in paths]
+
+
+def _over_time(
+    name: str, value: Optional[tuple[npt.ArrayLike, npt.ArrayLike]]
+) -> Optional[tuple[Floats, Floats]]:
+    if value is None:
+        return None
+    times = floats(f"{name}, times", value[0], "k")
+    return times, floats(f"{name}", value[1], len(times))
+
+
+def _imu(
+    value: Optional[tuple[npt.ArrayLike, npt.ArrayLike]],
+) -> Optional[tuple[Floats, Floats]]:
+    if value is None:
+        return None
+    times = floats("imu, times", value[0], "k")
+    return times, floats("imu, accelerations", value[1], len(times), 3)
+
+
+def _wheels(
+    value: Optional[tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike]],
+) -> Optional[tuple[Floats, Floats, Floats]]:
+    if value is None:
+        return None
+    times = floats("wheels, times", value[0], "k")
+    count = len(times)
+    return times, floats("wheels, speeds", value[1], count), floats("wheels, turn rates", value[2], count)

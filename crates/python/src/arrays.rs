@@ -1,0 +1,124 @@
+//! Arrays in and out.
+
+use kestirim_health::{Health, State};
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+use numpy::{Element, IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{KestirimError, unknown};
+
+/// (n,)
+pub(crate) type Line<'py> = PyReadonlyArray1<'py, f64>;
+/// (n,) of integers
+pub(crate) type Counts<'py> = PyReadonlyArray1<'py, i64>;
+/// (n, k)
+pub(crate) type Table<'py> = PyReadonlyArray2<'py, f64>;
+
+/// The numbers of an array in the order of its rows; the package has made it contiguous and of this shape.
+pub(crate) fn values<'a, T: Element, D: numpy::ndarray::Dimension>(
+    array: &'a numpy::PyReadonlyArray<'_, T, D>,
+) -> PyResult<&'a [T]> {
+    array.as_slice().map_err(|_| KestirimError::new_err("expected a contiguous array"))
+}
+
+/// The same as rows of a length that is known.
+pub(crate) fn rows<'a, const K: usize>(array: &'a Table<'_>) -> PyResult<&'a [[f64; K]]> {
+    match values(array)?.as_chunks() {
+        (rows, []) => Ok(rows),
+        _ => Err(KestirimError::new_err(format!("expected rows of {K} numbers"))),
+    }
+}
+
+/// Results by name, as they come.
+pub(crate) struct Results<'py>(Bound<'py, PyDict>);
+
+impl<'py> Results<'py> {
+    pub(crate) fn new(py: Python<'py>) -> Self {
+        Self(PyDict::new(py))
+    }
+
+    pub(crate) fn with(self, name: &str, value: impl IntoPyObject<'py>) -> PyResult<Self> {
+        self.0.set_item(name, value)?;
+        Ok(self)
+    }
+
+    /// An array (n,), which takes the memory over.
+    pub(crate) fn line<T: Element>(self, name: &str, values: Vec<T>) -> PyResult<Self> {
+        let array = values.into_pyarray(self.0.py());
+        self.with(name, array)
+    }
+
+    /// An array (n, K), which takes the memory over.
+    pub(crate) fn table<const K: usize>(self, name: &str, rows: Vec<[f64; K]>) -> PyResult<Self> {
+        let count = rows.len();
+        let array = rows.into_flattened().into_pyarray(self.0.py()).reshape([count, K])?;
+        self.with(name, array)
+    }
+
+    /// An array of any shape, which takes the memory over.
+    pub(crate) fn shaped<const D: usize>(
+        self,
+        name: &str,
+        values: Vec<f64>,
+        shape: [usize; D],
+    ) -> PyResult<Self>
+    where
+        numpy::ndarray::Dim<[usize; D]>: numpy::ndarray::Dimension,
+        [usize; D]: numpy::ndarray::IntoDimension<Dim = numpy::ndarray::Dim<[usize; D]>>,
+    {
+        let array = values.into_pyarray(self.0.py()).reshape(shape)?;
+        self.with(name, array)
+    }
+
+    pub(crate) fn done(self) -> Bound<'py, PyDict> {
+        self.0
+    }
+}
+
+/// Number types by name.
+#[derive(Clone, Copy)]
+pub(crate) enum ScalarKind {
+    F32,
+    F64,
+    Fixed,
+}
+
+impl ScalarKind {
+    pub(crate) fn named(name: &str) -> PyResult<Self> {
+        match name {
+            "f32" => Ok(Self::F32),
+            "f64" => Ok(Self::F64),
+            "fixed" => Ok(Self::Fixed),
+            _ => Err(unknown("scalar", name, "'f32', 'f64' or 'fixed'")),
+        }
+    }
+}
+
+pub(crate) fn vector<T: Scalar, const K: usize>(numbers: &[f64; K]) -> SVector<T, K> {
+    SVector::from(numbers.map(T::from_f64))
+}
+
+pub(crate) fn doubles<T: Scalar, const K: usize>(vector: &SVector<T, K>) -> [f64; K] {
+    vector.as_array().map(T::to_f64)
+}
+
+/// Seconds in microseconds, as logs are read.
+pub(crate) fn microseconds(seconds: f64) -> i64 {
+    (seconds * 1e6).round() as i64
+}
+
+/// 0 good, 1 degraded, 2 bad.
+pub(crate) const fn code(state: State) -> u8 {
+    match state {
+        State::Good => 0,
+        State::Degraded => 1,
+        State::Bad => 2,
+    }
+}
+
+/// The words for what speaks against an estimate.
+pub(crate) fn reasons(health: Health) -> Vec<&'static str> {
+    health.reasons().map(kestirim_health::Reason::words).collect()
+}
