@@ -23,6 +23,7 @@ pub const SATELLITES: usize = 12;
 
 /// What an estimator is fed with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(clippy::large_enum_variant, reason = "nothing to box with where there is no allocator")]
 pub enum Sample {
     /// µs, m/s² and rad/s.
     Inertial(u64, [f32; 3], [f32; 3]),

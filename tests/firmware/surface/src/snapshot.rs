@@ -57,12 +57,10 @@ kestirim_snapshot::layout! {
 }
 
 fn estimator() -> Estimator {
-    let mode = if yes_or_no() {
-        Mode::Moving(whole())
-    } else if yes_or_no() {
-        Mode::Resting { since: whole::<u64>() as i64 }
-    } else {
-        Mode::Waiting
+    let mode = match (yes_or_no(), yes_or_no()) {
+        (true, _) => Mode::Moving(whole()),
+        (_, true) => Mode::Resting { since: whole::<u64>() as i64 },
+        _ => Mode::Waiting,
     };
     any(Estimator {
         row: Row(numbers()),

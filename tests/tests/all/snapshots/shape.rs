@@ -116,15 +116,15 @@ impl<'a> Serializer for Shape<'a> {
     }
 
     fn serialize_seq(self, _: Option<usize>) -> Result<Parts<'a>, Failure> {
-        Ok(Parts { types: self.0, kind: Of::Sequence, parts: Vec::new() })
+        Ok(Parts { types: self.0, kind: Of::Sequence, found: Vec::new() })
     }
 
     fn serialize_tuple(self, _: usize) -> Result<Parts<'a>, Failure> {
-        Ok(Parts { types: self.0, kind: Of::Tuple, parts: Vec::new() })
+        Ok(Parts { types: self.0, kind: Of::Tuple, found: Vec::new() })
     }
 
     fn serialize_tuple_struct(self, name: &'static str, _: usize) -> Result<Parts<'a>, Failure> {
-        Ok(Parts { types: self.0, kind: Of::Struct(name), parts: Vec::new() })
+        Ok(Parts { types: self.0, kind: Of::Struct(name), found: Vec::new() })
     }
 
     fn serialize_tuple_variant(
@@ -134,7 +134,7 @@ impl<'a> Serializer for Shape<'a> {
         variant: &'static str,
         _: usize,
     ) -> Result<Parts<'a>, Failure> {
-        Ok(Parts { types: self.0, kind: Of::Variant(name, index, variant), parts: Vec::new() })
+        Ok(Parts { types: self.0, kind: Of::Variant(name, index, variant), found: Vec::new() })
     }
 
     fn serialize_map(self, _: Option<usize>) -> Result<Self::SerializeMap, Failure> {
@@ -142,7 +142,7 @@ impl<'a> Serializer for Shape<'a> {
     }
 
     fn serialize_struct(self, name: &'static str, _: usize) -> Result<Parts<'a>, Failure> {
-        Ok(Parts { types: self.0, kind: Of::Struct(name), parts: Vec::new() })
+        Ok(Parts { types: self.0, kind: Of::Struct(name), found: Vec::new() })
     }
 
     fn serialize_struct_variant(
@@ -152,7 +152,7 @@ impl<'a> Serializer for Shape<'a> {
         variant: &'static str,
         _: usize,
     ) -> Result<Parts<'a>, Failure> {
-        Ok(Parts { types: self.0, kind: Of::Variant(name, index, variant), parts: Vec::new() })
+        Ok(Parts { types: self.0, kind: Of::Variant(name, index, variant), found: Vec::new() })
     }
 
     fn collect_str<V: Display + ?Sized>(self, _: &V) -> Shaped {
@@ -175,7 +175,7 @@ enum Of {
 struct Parts<'a> {
     types: &'a mut Types,
     kind: Of,
-    parts: Vec<String>,
+    found: Vec<String>,
 }
 
 impl Parts<'_> {
@@ -185,17 +185,17 @@ impl Parts<'_> {
         value: &V,
     ) -> Result<(), Failure> {
         let shape = value.serialize(Shape(self.types))?;
-        self.parts.push(name.map_or(shape.clone(), |name| format!("{name}: {shape}")));
+        self.found.push(name.map_or(shape.clone(), |name| format!("{name}: {shape}")));
         Ok(())
     }
 
-    fn all(self) -> Shaped {
-        let Self { types, kind, parts } = self;
+    fn all(self) -> String {
+        let Self { types, kind, found: parts } = self;
         let known = |parts: &[String]| parts.iter().find(|part| !part.contains(UNKNOWN)).cloned();
         let first = known(&parts).or_else(|| parts.first().cloned()).unwrap_or(UNKNOWN.into());
         // Of an array, some options may have a value now.
         let is_array = parts.iter().all(|part| *part == first || part.contains(UNKNOWN));
-        Ok(match kind {
+        match kind {
             Of::Sequence => format!("up to so many {first}"),
             Of::Tuple if is_array => format!("[{first}; {}]", parts.len()),
             Of::Tuple => format!("({})", parts.join(", ")),
@@ -208,7 +208,7 @@ impl Parts<'_> {
                 );
                 name.into()
             }
-        })
+        }
     }
 }
 
@@ -223,7 +223,7 @@ macro_rules! parts {
             }
 
             fn end(self) -> Shaped {
-                self.all()
+                Ok(self.all())
             }
         })*
     };
@@ -244,7 +244,7 @@ macro_rules! fields {
             }
 
             fn end(self) -> Shaped {
-                self.all()
+                Ok(self.all())
             }
         })*
     };
