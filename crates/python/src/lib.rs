@@ -1,4 +1,4 @@
-//! `kestirim._kestirim`: what Python calls. It feeds the systems' crates and the building blocks from NumPy arrays and
+//! `kestirim._kestirim`: what Python calls. It feeds the systems' crates and the building blocks from `NumPy` arrays and
 //! knows no estimator itself; shapes are checked by the package around it, `python/kestirim`.
 //!
 //! Every function reads its arrays in place, lets other Python threads run while it computes, and hands its results over

@@ -77,7 +77,7 @@ impl Log<'_> {
             return Err(KestirimError::new_err(sentence));
         }
         let rows = self.t.iter().zip(self.accel).zip(self.gyro).enumerate();
-        let sample = |(index, ((&t, accel), gyro)): (usize, ((&f64, &[f64; 3]), &[f64; 3]))| {
+        let sample = |(index, ((&t, accel), gyro))| {
             if !(0.0..=1e12).contains(&t) {
                 let sentence = format!("expected a time from 0 s on, found {t}");
                 return Err(refused_at(index, sentence));

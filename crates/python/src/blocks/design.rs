@@ -25,6 +25,9 @@ fn sizes(square: &[f64], other: &[f64]) -> (usize, usize) {
     (states, other.len() / states.max(1))
 }
 
+/// A gain by rows, and the poles that it places.
+type Placed = (Vec<f64>, Vec<(f64, f64)>);
+
 /// L that places the eigenvalues of A − L C, and those that it really places.
 #[pyfunction]
 pub(crate) fn place<'py>(
@@ -37,7 +40,7 @@ pub(crate) fn place<'py>(
         a: &[f64],
         c: &[f64],
         poles: &[Complex<f64>],
-    ) -> PyResult<(Vec<f64>, Vec<(f64, f64)>)> {
+    ) -> PyResult<Placed> {
         let wanted = <[Complex<f64>; N]>::try_from(poles)
             .map_err(|_| refused(format!("poles: expected {N}, found {}", poles.len())))?;
         let found = design::place(&matrix::<N, N>(a)?, &matrix::<P, N>(c)?, &wanted);

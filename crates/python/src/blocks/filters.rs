@@ -101,7 +101,9 @@ impl<const N: usize> Plain<N> {
     fn at_once<const M: usize>(&mut self, rows: &[Row], innovation: &[f64]) -> Answer {
         let mut h = SMatrix::<f64, M, N>::zeros();
         for (line, row) in rows.iter().enumerate() {
-            row.iter().for_each(|(column, number)| h[(line, *column)] = *number);
+            for (column, number) in row {
+                h[(line, *column)] = *number;
+            }
         }
         let r = Covariance::from_lower_triangle(&matrix::<M, M>(&self.r)?);
         let innovation = SVector::<f64, M>::from_column_slice(innovation);
@@ -214,7 +216,12 @@ impl<const N: usize> AnyFilter for Adaptive<N> {
 
     fn tell(&self, measurements: usize, r: &mut Vec<f64>, q: &mut Vec<f64>) {
         let noise = self.filter.measurement_noise();
-        r.extend(noise.iter().take(measurements).map(|noise| noise.variance()));
+        r.extend(
+            noise
+                .iter()
+                .take(measurements)
+                .map(kestirim_adaptive_kalman::MeasurementNoise::variance),
+        );
         q.extend(self.filter.process_noise().variances());
     }
 
@@ -428,7 +435,7 @@ impl Filter {
         let record = py.detach(|| next.run(rows, zs));
         let record = record.map_err(|(index, error)| refused_at(index, error.value(py)))?;
         self.filter = next;
-        let extra = |numbers: &Vec<f64>| if count == 0 { 0 } else { numbers.len() / count };
+        let extra = |numbers: &Vec<f64>| numbers.len().checked_div(count).unwrap_or(0);
         let (first, second) = (extra(&record.first), extra(&record.second));
         Ok(Results::new(py)
             .shaped("x", record.x, [count, states])?

@@ -68,7 +68,7 @@ fn build<const N: usize>(
 /// x̂⁺ = A x̂ + B u + L (y − C x̂).
 #[pyclass]
 pub(crate) struct Observer {
-    observer: Box<dyn AnyObserver>,
+    kind: Box<dyn AnyObserver>,
     inputs: usize,
     outputs: usize,
 }
@@ -93,12 +93,12 @@ impl Observer {
             return Err(too_many("outputs", outputs, &[1, MOST]));
         }
         let sizes = [inputs, outputs];
-        let observer = of_size!("states", states, [1 2 3 4 5 6 7 8], build(all, sizes))?;
-        Ok(Self { observer, inputs, outputs })
+        let kind = of_size!("states", states, [1 2 3 4 5 6 7 8], build(all, sizes))?;
+        Ok(Self { kind, inputs, outputs })
     }
 
     fn x(&self) -> Vec<f64> {
-        self.observer.estimate().to_vec()
+        self.kind.estimate().to_vec()
     }
 
     /// us: (n, m), ys: (n, p), not a number where nothing was measured. All rows, or none.
@@ -109,7 +109,7 @@ impl Observer {
         ys: Table<'py>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (us, ys) = (values(&us)?, values(&ys)?);
-        let (inputs, outputs, mut next) = (self.inputs, self.outputs, self.observer.copy());
+        let (inputs, outputs, mut next) = (self.inputs, self.outputs, self.kind.copy());
         let states = next.estimate().len();
         let count = ys.len() / outputs;
         let (x, innovations) = py.detach(|| -> PyResult<_> {
@@ -131,7 +131,7 @@ impl Observer {
             }
             Ok((x, innovations))
         })?;
-        self.observer = next;
+        self.kind = next;
         Ok(Results::new(py)
             .shaped("x", x, [count, states])?
             .shaped("innovation", innovations, [count, outputs])?
