@@ -32,7 +32,10 @@ pub(crate) fn refusal(arguments: &[&str]) -> String {
     assert!(output.stdout.is_empty(), "{arguments:?}");
     assert_eq!(sentence.trim_end().lines().count(), 1, "{sentence}");
     // A path is as long as its folder's.
-    let own = sentence.split_whitespace().filter(|word| !word.contains('/'));
+    let own = sentence
+        .trim_start_matches("host-sim: ")
+        .split_whitespace()
+        .filter(|word| !word.contains('/'));
     let length: usize = own.map(|word| word.chars().count() + 1).sum();
     assert!(length <= 200, "{length} characters: {sentence}");
     sentence.to_owned()

@@ -3,8 +3,6 @@
 pub mod followed;
 pub mod outage;
 
-use std::fmt::Write;
-
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -70,20 +68,17 @@ impl Track {
 
 /// The complaint that there is no position at all.
 fn unsolved(recording: &Recording, epochs: &[Epoch], filters: &[(FilterKind, Followed)]) -> Error {
-    let mut problem = format!("none of its {} epochs has a solution", epochs.len());
-    if let Some(outage) = filters.last().and_then(|(_, followed)| followed.outages.first()) {
-        // Writing to a text does not fail.
-        let _ = write!(problem, ": {outage}");
-    }
     let [from, to] = recording.orbits_span;
     let ends = [epochs.first(), epochs.last()];
     let [begin, last] = ends.map(|epoch| epoch.map_or(0.0, |epoch| recording.seconds(epoch)));
-    if last < from || begin > to {
-        let _ = write!(
-            problem,
-            "; the orbits are of another time, from {from} s to {to} s where the observations are from {begin} s \
-             to {last} s"
-        );
-    }
+    let why = if last < from || begin > to {
+        format!(
+            ": the orbits are of another time, from {from} s to {to} s, the observations from {begin} s to {last} s"
+        )
+    } else {
+        let outage = filters.last().and_then(|(_, followed)| followed.outages.first());
+        outage.map_or_else(String::new, |outage| format!(": {outage}"))
+    };
+    let problem = format!("none of its {} epochs has a solution{why}", epochs.len());
     Error::File { path: recording.path.clone(), problem }
 }

@@ -92,13 +92,14 @@ fn sentence(Refusal { error, poses, missing }: &Refusal) -> String {
 
 /// What to do about the sides that were not shown.
 fn in_words(missing: &[Side]) -> Option<String> {
-    let side = |side: &Side| {
+    let side = |(place, side): (usize, &Side)| {
         let axis = ["x", "y", "z"].get(usize::from(side.axis)).unwrap_or(&"z");
-        format!("{axis} points {}", if side.is_up { "up" } else { "down" })
+        let points = if place == 0 { " points" } else { "" };
+        format!("{axis}{points} {}", if side.is_up { "up" } else { "down" })
     };
-    let sides: Vec<_> = missing.iter().map(side).collect();
+    let sides: Vec<_> = missing.iter().enumerate().map(side).collect();
     let each = if sides.len() > 1 { " each time" } else { "" };
-    let sides = sides.join(", that ");
+    let sides = sides.join(", ");
     (!missing.is_empty())
         .then(|| format!("turn the sensor so that {sides}, and hold it {HOLD_S:.0} s{each}"))
 }
