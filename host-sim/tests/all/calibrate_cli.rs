@@ -283,8 +283,7 @@ fn what_does_not_tell_is_refused_with_what_to_do() {
         sentence.contains("at least 6 positions held still for 1 s or more, found 4"),
         "{sentence}"
     );
-    let next =
-        "turn the sensor so that x points down, that y points down, and hold it 2 s each time";
+    let next = "turn the sensor so that x points down, y down, and hold it 2 s each time";
     assert!(sentence.contains(next), "{sentence}");
     let flat: Vec<_> =
         (0..8).map(|i| [0.2 * f64::from(i % 3), 0.2 * f64::from(i / 3), 1.0]).collect();
@@ -355,7 +354,7 @@ fn a_stream_of_positions_gives_the_calibration_of_its_log() {
     assert_eq!(output.status.code(), Some(2));
     let sentence = text(&output.stderr);
     assert!(sentence.contains("no calibration: expected at least 6"), "{sentence}");
-    assert!(sentence.contains("z points down"), "{sentence}");
+    assert!(sentence.contains("z down"), "{sentence}");
     assert!(!desk.path("missing.csv").exists());
     let beside = refusal(&[&watch[..], &["--file", &half, "--tracker", "lite"]].concat());
     assert!(beside.contains("follows nobody"), "{beside}");

@@ -205,10 +205,12 @@ impl Target {
         fs::create_dir_all(&folder)?;
         let main = self.compile(&format!("{name}.c"), sleep, &folder)?;
         let port = self.compile("port_bare.c", &[], &folder)?;
-        let name = if functions.is_empty() { name } else { "all" };
+        // No board needs to hold all functions at once.
+        let (name, board) =
+            if functions.is_empty() { (name, self.board) } else { ("all", "roomy.ld") };
         let image = folder.join(format!("{name}{}", sleep.concat()));
         let mut linker = Command::new("ld.lld");
-        linker.current_dir(program("")).args(["--gc-sections", "--nmagic", "-T", self.board]);
+        linker.current_dir(program("")).args(["--gc-sections", "--nmagic", "-T", board]);
         linker.args(functions.iter().map(|name| format!("--undefined={name}")));
         run(linker.args(arguments(&[&"-T", &"bare.ld", &main, &port, &library, &"-o", &image])))?;
         Ok(image)
