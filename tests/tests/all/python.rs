@@ -5,6 +5,7 @@
 
 use std::env;
 use std::io::{self, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -32,8 +33,13 @@ fn crate_folder() -> PathBuf {
 
 /// Runs a program of the environment.
 fn run(program: &str, arguments: &[&str]) -> io::Result<Output> {
-    let build = target().join("target");
-    Command::new(target().join("venv/bin").join(program))
+    let (build, programs) = (target().join("target"), target().join("venv/bin"));
+    // The builder of wheels calls `maturin` by its name.
+    let others = env::var_os("PATH").unwrap_or_default();
+    let path = env::join_paths(iter::once(programs.clone()).chain(env::split_paths(&others)))
+        .map_err(io::Error::other)?;
+    Command::new(programs.join(program))
+        .env("PATH", path)
         .args(arguments)
         .current_dir(crate_folder())
         .env("CARGO_TARGET_DIR", build)
