@@ -10,8 +10,9 @@ use clap::{Parser, ValueEnum};
 use host_sim::random::{normal, stream};
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
 use host_sim::systems::robot::simulate::scenario::{Office, line};
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, SAMPLES, fly};
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, SAMPLES, fly};
+use kestirim_replay::robot::RangeRow;
+use kestirim_replay::uav::{Noise, Plant};
 use kestirim_telemetry::{CAPACITY, Flight, Imu, Message, PathLoss, Range, encode};
 
 #[derive(Parser)]
@@ -58,7 +59,7 @@ fn measurements(system: System, seed: u64) -> Vec<(u64, Message)> {
         }
         System::Robot => {
             let rows = Office::draw(&mut rng).measure(&mut rng, &line());
-            let range = |row: host_sim::systems::robot::recording::ranges::RangeRow| {
+            let range = |row: RangeRow| {
                 let (time_us, anchor) = (row.time_us as u64, row.anchor as u16);
                 Some((time_us, Range { time_us, anchor, range: row.range? as f32 }.into()))
             };

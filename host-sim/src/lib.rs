@@ -11,9 +11,7 @@ pub mod commands;
 mod error;
 pub mod figure;
 pub mod mcap;
-pub mod metrics;
 pub mod output;
-pub mod random;
 pub mod report;
 pub mod stream;
 pub mod system;
@@ -22,6 +20,8 @@ pub mod table;
 pub mod text;
 
 pub use error::Error;
+pub use kestirim_replay::metrics;
+pub use kestirim_simulate::random;
 
 /// Stack of a thread that estimates: a filter of thousands of particles is moved about a few times before it
 /// lies on the heap.

@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use host_sim::system::Files;
-use host_sim::systems::gnss::account::accuracy::{Accuracy, Fix};
-use host_sim::systems::gnss::recording::Recording;
-use host_sim::systems::gnss::settings::STATES_WITH_GALILEO;
+use host_sim::systems::gnss::recording;
 use kestirim_gnss_ppp::{Corrections, sagnac};
 use kestirim_ppp_filter::{Config, PppFilter, SatelliteObservation};
+use kestirim_replay::gnss::{Accuracy, Fix, Recording, STATES_WITH_GALILEO};
 use nalgebra::Vector3;
 
 /// A station's day.
@@ -92,7 +91,7 @@ impl Station {
                 files.add(field, folder.join(name));
             }
         }
-        Recording::read(&files).expect("files that can be read")
+        recording::read(&files).expect("files that can be read")
     }
 
     /// Follows a receiver that is `away(t)` (ECEF, m) from the marker at second t of the day, and whose other

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use host_sim::systems::pedestrian::account::accuracy::against_footprints;
 use host_sim::systems::pedestrian::recording::{log, resample, truth};
-use host_sim::systems::pedestrian::settings::Options;
-use host_sim::systems::pedestrian::track::walk;
+use kestirim_replay::pedestrian::{Options, walk};
 
 /// The walks with footprints measured by a ruler that are not fast …
 pub const GCP: [u32; 8] = [31, 36, 41, 46, 48, 57, 72, 81];

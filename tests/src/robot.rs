@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use host_sim::system::ScalarKind;
 use host_sim::systems::robot::account::accuracy::Accuracy;
-use host_sim::systems::robot::recording::anchors::{self, Anchors};
+use host_sim::systems::robot::recording::anchors;
 use host_sim::systems::robot::recording::calibration::Residuals;
-use host_sim::systems::robot::recording::event::Sensors;
 use host_sim::systems::robot::recording::motion;
-use host_sim::systems::robot::recording::points::{self, Course};
-use host_sim::systems::robot::recording::ranges::{self, RangeRow};
-use host_sim::systems::robot::settings::{Setup, TrackerKind};
-use host_sim::systems::robot::track::follow::{self, Follow};
-use host_sim::systems::robot::track::{self, Trace};
+use host_sim::systems::robot::recording::points;
+use host_sim::systems::robot::recording::ranges;
 use kestirim_import::Options;
+use kestirim_replay::ScalarKind;
+use kestirim_replay::robot::{
+    Anchors, Course, Follow, RangeRow, Sensors, Setup, Trace, TrackerKind, build, build_changed,
+    follow,
+};
 use kestirim_uwb_tracker::Config;
 
 /// A change of the default tracker's constants.
@@ -46,8 +46,8 @@ impl Method {
 
     fn build(self, setup: &Setup) -> Box<dyn Follow> {
         match self.change {
-            Some(change) => follow::build_changed(setup, change),
-            None => follow::build(setup),
+            Some(change) => build_changed(setup, change),
+            None => build(setup),
         }
         .expect("a tracker")
     }
@@ -121,7 +121,7 @@ impl Recording {
     pub fn track(&self, method: Method, biases: Option<Vec<f64>>) -> (Accuracy, Trace) {
         let setup = method.setup(&self.anchors, self.height_m, biases);
         let mut tracker = method.build(&setup);
-        let trace = track::follow(tracker.as_mut(), &self.sensors.events());
+        let trace = follow(tracker.as_mut(), &self.sensors.events());
         let pairs: Vec<_> = trace
             .epochs
             .iter()
@@ -201,7 +201,7 @@ impl Points {
         let found = self.points.iter().map(|(_, [x, y, z], rows)| {
             let setup = method.setup(&self.anchors, *z, biases.map(<[f64]>::to_vec));
             let mut tracker = method.build(&setup);
-            let trace = track::follow(tracker.as_mut(), &Sensors::ranges(rows.clone()).events());
+            let trace = follow(tracker.as_mut(), &Sensors::ranges(rows.clone()).events());
             (trace.last(), [*x, *y])
         });
         Accuracy::of(&found.collect::<Vec<_>>()).expect("positions")

@@ -65,6 +65,15 @@ const LARGEST_ANGULAR_RATE: f64 = 1e5 * std::f64::consts::PI / 180.0;
 /// Beyond any clock, s: three centuries, within which a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
 
+/// Names of a magnetometer's columns. Any unit will do: only its directions and ratios are used.
+const FIELD_COLUMNS: [[&str; 3]; 5] = [
+    ["mx_G", "my_G", "mz_G"],
+    ["mx_uT", "my_uT", "mz_uT"],
+    ["mx", "my", "mz"],
+    ["magx", "magy", "magz"],
+    ["mag_x", "mag_y", "mag_z"],
+];
+
 /// What a sensor says at one moment, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
@@ -98,6 +107,16 @@ impl Inertial {
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let found = self.other.iter().find(|(known, _)| known == name);
         found.map(|(_, values)| values.as_slice())
+    }
+
+    /// The magnetic field at each sample (body, in the log's unit, not a number where it was not measured), if columns of
+    /// a usual name have it.
+    pub fn magnetic_field(&self) -> Option<Vec<[f64; 3]>> {
+        FIELD_COLUMNS.iter().find_map(|names| {
+            let [x, y, z] = names.map(|name| self.column(name));
+            let (x, y, z) = (x?, y?, z?);
+            Some(x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect())
+        })
     }
 }
 

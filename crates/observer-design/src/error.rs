@@ -119,3 +119,48 @@ impl Mode {
         self.state == other.state && distance <= 1e-6 * libm::hypot(self.re, self.im).max(1e-6)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::collections::BTreeSet;
+    use std::string::ToString;
+
+    use super::*;
+
+    const SLOW: Mode = Mode { re: -0.125, im: 1e-12, state: 2 };
+
+    #[test]
+    fn modes_are_rounded_to_what_can_be_read() {
+        assert_eq!(SLOW.to_string(), "-0.125 (mostly state 2)");
+        let fast = Mode { re: -1.0 / 3.0, im: -2.0e9, state: 0 };
+        assert_eq!(fast.to_string(), "0 ± 2000000000i (mostly state 0)");
+        assert_eq!(Mode { re: 0.0, im: 0.0, state: 1 }.to_string(), "0 (mostly state 1)");
+    }
+
+    #[test]
+    fn every_reason_is_a_sentence_of_its_own() {
+        let all = [
+            Error::NotFinite,
+            Error::Interval,
+            Error::NotConjugate,
+            Error::Unobservable(SLOW),
+            Error::Uncontrollable(SLOW),
+            Error::Undetectable(SLOW),
+            Error::Undriven(SLOW),
+            Error::Unstable(SLOW),
+            Error::NotSymmetric,
+            Error::NotPositive,
+            Error::Singular,
+            Error::IllConditioned(0.25),
+            Error::NotConverged,
+        ];
+        let sentences: BTreeSet<_> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(sentences.len(), all.len());
+        for sentence in &sentences {
+            assert!(sentence.starts_with(char::is_lowercase) && !sentence.ends_with('.'));
+            assert!(sentence.len() < 120, "{sentence}");
+        }
+    }
+}

@@ -1,11 +1,12 @@
 //! Arrays in and out.
 
 use kestirim_health::{Health, State};
+use kestirim_replay::ScalarKind;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 use numpy::{Element, IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::error::{KestirimError, unknown};
 
@@ -72,32 +73,26 @@ impl<'py> Results<'py> {
         self.with(name, array)
     }
 
+    /// Words, as a tuple.
+    pub(crate) fn words(
+        self,
+        name: &str,
+        words: impl IntoIterator<Item = impl Into<String>>,
+    ) -> PyResult<Self> {
+        let words: Vec<String> = words.into_iter().map(Into::into).collect();
+        let words = PyTuple::new(self.0.py(), words)?;
+        self.with(name, words)
+    }
+
     pub(crate) fn done(self) -> Bound<'py, PyDict> {
         self.0
     }
 }
 
-/// Number types by name.
-#[derive(Clone, Copy)]
-pub(crate) enum ScalarKind {
-    F32,
-    F64,
-    Fixed,
-}
-
-impl ScalarKind {
-    pub(crate) fn named(name: &str) -> PyResult<Self> {
-        match name {
-            "f32" => Ok(Self::F32),
-            "f64" => Ok(Self::F64),
-            "fixed" => Ok(Self::Fixed),
-            _ => Err(unknown("scalar", name, "'f32', 'f64' or 'fixed'")),
-        }
-    }
-}
-
-pub(crate) fn vector<T: Scalar, const K: usize>(numbers: &[f64; K]) -> SVector<T, K> {
-    SVector::from(numbers.map(T::from_f64))
+/// A number type by name.
+pub(crate) fn scalar(name: &str) -> PyResult<ScalarKind> {
+    let known = ScalarKind::ALL.into_iter().find(|kind| kind.name() == name);
+    known.ok_or_else(|| unknown("scalar", name, "'f32', 'f64' or 'fixed'"))
 }
 
 pub(crate) fn doubles<T: Scalar, const K: usize>(vector: &SVector<T, K>) -> [f64; K] {

@@ -13,6 +13,7 @@ mod blocks;
 mod drone;
 mod error;
 mod gnss;
+mod logs;
 mod pedestrian;
 mod robot;
 mod uav;
@@ -40,6 +41,8 @@ mod _kestirim {
     use super::error::KestirimError;
     #[pymodule_export]
     use super::gnss::gnss;
+    #[pymodule_export]
+    use super::logs::read_imu;
     #[pymodule_export]
     use super::pedestrian::pedestrian;
     #[pymodule_export]

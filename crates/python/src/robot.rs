@@ -1,22 +1,19 @@
 //! Where a tag is, from ranges to anchors.
 
-mod events;
-mod height;
-mod tag;
-mod trace;
-
+use kestirim_replay::robot::{
+    Course, Dimensions, Epoch, Error, FoundHeight, Inertial, MOST, RangeRow, Sensors, Setup, Trace,
+    Wheels, doubts, track,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use self::events::{Motion, Rows};
-use self::height::Found;
-use self::tag::Setup;
-use self::trace::{Trace, follow};
-use crate::arrays::{Counts, Line, Results, ScalarKind, Table, reasons, rows, values};
-use crate::error::KestirimError;
+use crate::arrays::{
+    Counts, Line, Results, Table, code, microseconds, reasons, rows, scalar, values,
+};
+use crate::error::{KestirimError, refused_at};
 
-/// Most anchors of a tracker.
-pub(crate) const MOST: usize = 32;
+/// What helps if the ranges do not tell the height.
+const MISSING: &str = "expected height, metres above the floor (or dim=3)";
 
 /// A tag's track.
 #[pyfunction]
@@ -36,59 +33,136 @@ pub(crate) fn robot<'py>(
     dim: usize,
     scalar: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scalar = ScalarKind::named(scalar)?;
-    let anchors = rows::<3>(&anchors)?;
-    let biases = biases.as_ref().map(values).transpose()?;
-    let mut motion = Motion::default();
+    let places = rows::<3>(&anchors)?;
+    if places.len() > MOST {
+        let sentence = format!("expected at most {MOST} anchors, found {}", places.len());
+        return Err(KestirimError::new_err(sentence));
+    }
+    let log = ranges(values(&t)?, values(&anchor)?, values(&range)?, places.len())?;
+    let mut sensors = Sensors::ranges(log.clone());
     if let Some((t, accel)) = &imu {
-        motion.add_imu(values(t)?, rows(accel)?);
+        let rows = values(t)?.iter().zip(rows::<3>(accel)?);
+        let sample = |(t, &acceleration): (&f64, &[f64; 3])| Inertial {
+            time_us: microseconds(*t),
+            acceleration,
+            push: None,
+        };
+        sensors.inertial = rows.map(sample).collect();
     }
     if let Some((t, speed, turn_rate)) = &wheels {
-        motion.add_wheels(values(t)?, values(speed)?, values(turn_rate)?);
-    }
-    let heights = heights.as_ref();
-    let heights = heights.map(|(t, z)| PyResult::Ok((values(t)?, values(z)?))).transpose()?;
-    let ranges = Rows { t: values(&t)?, anchor: values(&anchor)?, range: values(&range)?, heights };
-    let (trace, found) = py.detach(|| -> PyResult<(Trace, Option<Found>)> {
-        if anchors.len() > MOST {
-            let sentence = format!("expected at most {MOST} anchors, found {}", anchors.len());
-            return Err(KestirimError::new_err(sentence));
-        }
-        ranges.check(anchors.len())?;
-        let mut setup = Setup {
-            anchors: anchors.to_vec(),
-            biases: biases.map(<[f64]>::to_vec),
-            height: height.unwrap_or_default(),
-            room,
-            has_wheels: motion.has_wheels(),
-            dim,
-            found: None,
+        let rows = values(t)?.iter().zip(values(speed)?).zip(values(turn_rate)?);
+        let sample = |((t, &speed), &turn_rate): ((&f64, &f64), &f64)| Wheels {
+            time_us: microseconds(*t),
+            speed,
+            turn_rate,
         };
-        // In space the height is estimated, and begun at the anchors' mean.
-        if height.is_none() && (dim == 3 || heights.is_some()) {
-            let sum: f64 = anchors.iter().map(|[_, _, z]| z).sum();
-            setup.height = sum / anchors.len().max(1) as f64;
+        sensors.wheels = rows.map(sample).collect();
+    }
+    if let Some((t, z)) = &heights {
+        let rows = values(t)?.iter().zip(values(z)?);
+        sensors.height = Some(Course::new(rows.map(|(t, z)| (microseconds(*t), [*z])).collect()));
+    }
+    let dimensions = match dim {
+        2 => Dimensions::Two,
+        3 => Dimensions::Three,
+        other => {
+            return Err(KestirimError::new_err(format!("dim: expected 2 or 3, found {other}")));
         }
-        if height.is_none() && dim == 2 && heights.is_none() {
-            let found = height::find(&setup, &ranges)?;
-            setup.height = found.metres;
-            setup.found = Some(found);
+    };
+    let is_height_missing = height.is_none() && heights.is_none() && dimensions == Dimensions::Two;
+    // In space the height is estimated, and begun at the anchors' mean.
+    let mean = places.iter().map(|[_, _, z]| z).sum::<f64>() / places.len().max(1) as f64;
+    let setup = Setup {
+        dimensions,
+        scalar: self::scalar(scalar)?,
+        room,
+        biases: biases.as_ref().map(values).transpose()?.map(<[f64]>::to_vec),
+        has_wheels: !sensors.wheels.is_empty(),
+        ..Setup::new(places, height.unwrap_or(mean))
+    };
+    let followed = py.detach(|| follow(setup, sensors, is_height_missing));
+    let (trace, found) = followed.map_err(refused)?;
+    results(py, trace, found.as_ref(), &log)
+}
+
+fn follow(
+    setup: Setup,
+    mut sensors: Sensors,
+    is_height_missing: bool,
+) -> Result<(Trace, Option<FoundHeight>), Error> {
+    sensors.drop_far_ahead();
+    let events = sensors.events();
+    let setup = if is_height_missing {
+        let found = FoundHeight::of_parts(&setup, [events.as_slice()])?;
+        setup.at(found)
+    } else {
+        setup
+    };
+    Ok((track(&setup, &events)?, setup.found))
+}
+
+/// Ranges in the order of their log, of which one that did not come is not a number; refuses what no log can mean.
+fn ranges(t: &[f64], anchor: &[i64], range: &[f64], anchors: usize) -> PyResult<Vec<RangeRow>> {
+    let lines = t.iter().zip(anchor).zip(range).enumerate();
+    let row = |(index, ((t, anchor), range)): (usize, ((&f64, &i64), &f64))| {
+        if t.is_nan() || t.abs() > 1e12 {
+            return Err(refused_at(index, format!("expected a time in s, found {t}")));
         }
-        let mut tag = tag::build(&setup, scalar)?;
-        let mut trace = follow(tag.as_mut(), &ranges, &motion);
-        if let Some(found) = &setup.found {
-            trace.widen(found);
-        }
-        Ok((trace, setup.found))
-    })?;
-    let results = Results::new(py)
-        .line("t", trace.seconds())?
-        .table("position", trace.positions())?
-        .table("sigma", trace.sigmas())?
-        .line("health", trace.healths())?
-        .with("lost", trace.lost_s())?
-        .with("reasons", reasons(trace.doubts()))?
-        .with("height", found.as_ref().map(|found| found.metres))?
-        .with("height_sigma", found.as_ref().map(|found| found.sigma))?;
-    Ok(results.line("taken", trace.taken)?.line("nis", trace.nis)?.done())
+        let known = usize::try_from(*anchor).ok().filter(|anchor| *anchor < anchors);
+        let Some(anchor) = known else {
+            let sentence = format!("expected an anchor from 0 to {}, found {anchor}", anchors - 1);
+            return Err(refused_at(index, sentence));
+        };
+        let range = Some(*range).filter(|range| !range.is_nan());
+        Ok(RangeRow { time_us: microseconds(*t), anchor, range })
+    };
+    lines.map(row).collect()
+}
+
+fn refused(error: Error) -> PyErr {
+    KestirimError::new_err(match error {
+        Error::HeightUnknown | Error::HeightVague { .. } => format!("{error}: {MISSING}"),
+        other => other.to_string(),
+    })
+}
+
+fn results<'py>(
+    py: Python<'py>,
+    trace: Trace,
+    found: Option<&FoundHeight>,
+    log: &[RangeRow],
+) -> PyResult<Bound<'py, PyDict>> {
+    let (taken, nis) = by_row(&trace, log);
+    let lost = trace.lost_s();
+    let why = doubts(std::slice::from_ref(&trace), false);
+    let epochs = &trace.epochs;
+    let of = |epoch: &Epoch| epoch.sigmas_m().map(|sigma| sigma.unwrap_or(f64::NAN));
+    Ok(Results::new(py)
+        .line("t", epochs.iter().map(|epoch| epoch.time_us as f64 / 1e6).collect())?
+        .table("position", epochs.iter().map(|it| it.position.unwrap_or([f64::NAN; 3])).collect())?
+        .table("sigma", epochs.iter().map(of).collect())?
+        .line("health", epochs.iter().map(|epoch| code(epoch.health)).collect())?
+        .with("lost", lost)?
+        .words("reasons", reasons(why))?
+        .with("height", found.map(|found| found.metres))?
+        .with("height_sigma", found.map(|found| found.sigma_m))?
+        .line("taken", taken)?
+        .line("nis", nis)?
+        .done())
+}
+
+/// Of each row of the log: whether its range was taken in, and its normalised innovation squared.
+fn by_row(trace: &Trace, log: &[RangeRow]) -> (Vec<bool>, Vec<f64>) {
+    let mut followed = trace.ranges.iter().peekable();
+    let of = |row: &RangeRow| {
+        // In the order of the log; what had no range, or a time far ahead, is not among them.
+        let next = followed.next_if(|(range, _)| {
+            (range.time_us, range.anchor, Some(range.metres))
+                == (row.time_us, row.anchor, row.range)
+        });
+        let reception = next.map(|(_, reception)| *reception);
+        let nis = reception.and_then(|reception| reception.nis).unwrap_or(f64::NAN);
+        (reception.is_some_and(|reception| reception.taken), nis)
+    };
+    log.iter().map(of).unzip()
 }

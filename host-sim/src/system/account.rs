@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use kestirim_health::{Health, Reason, State};
+use kestirim_replay::Finding;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::finding::Finding;
 use crate::Error;
 use crate::figure::Figure;
 

@@ -4,11 +4,11 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
+use kestirim_replay::Finding;
 use serde::Serialize;
 
 use super::account::{Account, Answer, Table};
 use super::files::{FileField, Files};
-use super::finding::Finding;
 use super::idle::Idle;
 use super::online::{Panel, Plan};
 use super::run::RunOptions;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::run::ScalarKind;
+use kestirim_replay::ScalarKind;
 
 /// A literal of a crate's `Config`, with what differs from where it begins.
 #[derive(Debug, Clone)]

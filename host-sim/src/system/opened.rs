@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use kestirim_health::Reason;
+use kestirim_replay::Finding;
 
 use super::account::{Account, Answer, Table};
 use super::face::{Detail, System};
 use super::files::Source;
-use super::finding::Finding;
 use super::idle::{Idle, refuse};
 use super::setting::Setting;
 use super::settings::Settings;

@@ -1,6 +1,7 @@
 //! Options of a synthetic experiment that all systems share.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use kestirim_replay::ScalarKind;
 
 use crate::Error;
 
@@ -16,30 +17,6 @@ pub struct RunOptions {
     /// Number type of the estimator [default: the system's own]
     #[arg(long, value_name = "TYPE")]
     pub scalar: Option<ScalarKind>,
-}
-
-/// Number type in which an estimator computes.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ScalarKind {
-    /// Single precision
-    #[default]
-    F32,
-    /// Double precision
-    F64,
-    /// Fixed point
-    Fixed,
-}
-
-impl ScalarKind {
-    /// As on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-            Self::Fixed => "fixed",
-        }
-    }
 }
 
 /// The number type to compute in: the one asked for, or else the `default`.

@@ -3,12 +3,13 @@
 use std::fs;
 use std::path::Path;
 
-use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
-use host_sim::systems::pedestrian::recording::truth::Footprint;
 use host_sim::systems::pedestrian::simulate::scenario::Scenario;
 use host_sim::systems::pedestrian::simulate::sensor::razor_text;
+use kestirim_replay::pedestrian::Footprint;
+
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 
 const HEADER: &str = "t,ax,ay,az,gx,gy,gz\n";
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Sample, fly};
+use kestirim_replay::uav::{Noise, Plant};
 use serde_json::Value;
 
 use crate::program::{Desk, host_sim, json, refusal};

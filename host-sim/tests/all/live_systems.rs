@@ -2,16 +2,17 @@
 
 use std::fmt::Write;
 
-use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
-use crate::sender::frames;
 use host_sim::random::stream;
-use host_sim::systems::drone::settings::choices::EnvironmentKind;
 use host_sim::systems::pedestrian::simulate::{scenario::Scenario, sensor};
 use host_sim::systems::robot::simulate::scenario::{ANCHORS, Office, line};
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, fly};
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, fly};
+use kestirim_replay::drone::EnvironmentKind;
+use kestirim_replay::uav::{Noise, Plant};
 use kestirim_telemetry::{Flight, Imu, Message, PathLoss, Range};
 use serde_json::Value;
+
+use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
+use crate::sender::frames;
 
 /// The report on a recording of these messages.
 fn live(desk: &Desk, messages: Vec<Message>, arguments: &[&str]) -> Value {

@@ -2,10 +2,11 @@
 
 use std::process::Command;
 
-use crate::program::{Desk, host_sim, json, messages, refusal, rows_of, text};
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Sample, fly};
+use kestirim_replay::uav::{Noise, Plant};
 use serde_json::Value;
+
+use crate::program::{Desk, host_sim, json, messages, refusal, rows_of, text};
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().expect("an array").iter().map(|it| it.as_f64().expect("a number")).collect()

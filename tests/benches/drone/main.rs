@@ -16,11 +16,11 @@ use std::time::Duration;
 
 use anyhow::{Context, ensure};
 use host_sim::random::stream;
-use host_sim::systems::drone::settings::choices::EnvironmentKind;
 use host_sim::systems::drone::simulate::scenario::measure;
 use host_sim::systems::drone::simulate::trajectory::{SIDE_M, Trajectory};
 use kestirim_air_to_ground::Measurement;
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus, offspring};
+use kestirim_replay::drone::EnvironmentKind;
 use kestirim_scalar::Scalar;
 use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;

@@ -1,12 +1,13 @@
 //! The drone against its thesis: published numbers, limits, credible regions, degeneracy.
 
 use host_sim::metrics::{mean, standard_deviation};
-use host_sim::system::ScalarKind;
 use host_sim::systems::drone::paper::report::Row;
-use host_sim::systems::drone::paper::static_user::{self, Geometry, Job, Outcome, PublishedFilter};
 use host_sim::systems::drone::paper::sweeps::StaticSweeps;
 use host_sim::systems::drone::simulate::moving_user::{self, LOST_M, Policy, Walk};
+use host_sim::systems::drone::simulate::static_user::{Geometry, PublishedFilter};
+use host_sim::systems::drone::simulate::trial::{self, Job, Outcome};
 use kestirim_particle_filter::Resampler;
+use kestirim_replay::ScalarKind;
 use rayon::prelude::*;
 
 /// Trials of a cell: our own error is then half of that of the published hundred.
@@ -14,7 +15,7 @@ const TRIALS: u64 = 400;
 const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
 
 fn fly(job: &Job, scalar: ScalarKind, trials: u64) -> Vec<Outcome> {
-    (0..trials).into_par_iter().map(|index| static_user::trial(job, scalar, 0, index)).collect()
+    (0..trials).into_par_iter().map(|index| trial::trial(job, scalar, 0, index)).collect()
 }
 
 #[test]

@@ -8,10 +8,10 @@ use std::path::Path;
 
 use host_sim::figure::{Figure, svg};
 use host_sim::systems::gnss::figures::{errors, left};
-use host_sim::systems::gnss::settings::{FilterKind, PROCESS_NOISE, Systems};
-use host_sim::systems::gnss::track::followed::{Followed, follow};
+use host_sim::systems::gnss::settings::PROCESS_NOISE;
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::{Config, Motion};
+use kestirim_replay::gnss::{FilterKind, Followed, Systems, follow};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;

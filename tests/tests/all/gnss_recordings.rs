@@ -4,10 +4,9 @@
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use host_sim::metrics::rms;
-use host_sim::systems::gnss::account::accuracy::Accuracy;
-use host_sim::systems::gnss::recording::Recording;
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
+use kestirim_replay::gnss::{Accuracy, Recording};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, ESBC_MULTI, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;

@@ -5,11 +5,9 @@
 //! is printed.
 
 use host_sim::metrics::{mean, median};
-use host_sim::system::ScalarKind;
 use host_sim::systems::pedestrian::recording::log;
-use host_sim::systems::pedestrian::recording::position::TrackPoint;
-use host_sim::systems::pedestrian::settings::{Options, SensorClass};
-use host_sim::systems::pedestrian::track::{Walk, walk};
+use kestirim_replay::ScalarKind;
+use kestirim_replay::pedestrian::{Options, SensorClass, TrackPoint, Walk, walk};
 use kestirim_tests::recordings::{self, GCP, GCP_FAST, Group, gcp, vicon};
 
 fn industrial(causal: bool) -> Options {

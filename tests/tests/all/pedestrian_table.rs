@@ -5,7 +5,8 @@
 use host_sim::metrics::{mean, median};
 use host_sim::system::{ScalarKind, Settings, System};
 use host_sim::systems::pedestrian::Pedestrian;
-use host_sim::systems::pedestrian::settings::{Options, SensorClass, TrackerKind};
+use host_sim::systems::pedestrian::settings::options;
+use kestirim_replay::pedestrian::{Options, SensorClass, TrackerKind};
 use kestirim_tests::recordings::{self, GCP, GCP_FAST, Group, gcp, vicon};
 
 #[test]
@@ -18,7 +19,7 @@ fn table() {
     let detector = |name| {
         let mut settings = Settings::new(Pedestrian::settings(None));
         settings.set("detector", name).expect("a detector");
-        Options::of(&settings).detector
+        options(&settings).detector
     };
     let rows = [
         ("ekf", industrial),

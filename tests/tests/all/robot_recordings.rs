@@ -9,10 +9,9 @@ use host_sim::metrics::{mean, median, rms};
 use host_sim::system::{Detail, Files, ScalarKind, Settings, System};
 use host_sim::systems::robot::Robot;
 use host_sim::systems::robot::account::accuracy::Accuracy;
-use host_sim::systems::robot::height::FoundHeight;
 use host_sim::systems::robot::recording::points;
-use host_sim::systems::robot::settings::{Setup, TrackerKind};
-use host_sim::systems::robot::track::Trace;
+use host_sim::systems::robot::settings;
+use kestirim_replay::robot::{FoundHeight, Trace, TrackerKind};
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Method, Points, Recording, blocked};
 use kestirim_uwb_ranging::LevelBias;
@@ -236,7 +235,7 @@ fn found(folder: &Path, name: &str, scalar: &str) -> Found {
     };
     Found {
         known_m,
-        height: Setup::of_recording(&recording, &without).ok().and_then(|setup| setup.found),
+        height: settings::of_recording(&recording, &without).ok().and_then(|setup| setup.found),
         at_known_m: rmse(&at_known).unwrap_or(f64::NAN),
         at_found_m: traces.as_ref().and_then(|traces| rmse(traces)),
         within_at_known: within(&at_known),

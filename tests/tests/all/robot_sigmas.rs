@@ -8,8 +8,7 @@ use std::path::Path;
 use host_sim::metrics::mean;
 use host_sim::system::{Files, Settings, System};
 use host_sim::systems::robot::Robot;
-use host_sim::systems::robot::settings::Setup;
-use host_sim::systems::robot::track::{self, follow};
+use host_sim::systems::robot::{settings, track};
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{BLOCKED, Points, Recording};
 
@@ -100,9 +99,9 @@ fn told(folder: &Path, name: &str, dimensions: &str, biases: Option<Vec<f64>>) -
     let recording = Robot::read(&files, &Settings::new(Robot::settings(None))).expect(name);
     let mut settings = Settings::new(Robot::settings(Some(&recording)));
     settings.set("dim", dimensions).expect("a dimension");
-    let mut setup = Setup::of_recording(&recording, &settings).expect("a setup");
+    let mut setup = settings::of_recording(&recording, &settings).expect("a setup");
     setup.biases = biases.or(setup.biases);
-    let traces = track::track(&recording, &setup, follow::build).expect("a track");
+    let traces = track::track(&recording, &setup).expect("a track");
     let (mut errors, mut sigmas, mut held) = (Vec::new(), Vec::new(), Vec::new());
     for (part, trace) in recording.parts.iter().zip(&traces) {
         // Of a tag put down what counts is the last position.

@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use host_sim::metrics::mean;
-use host_sim::systems::robot::settings::TrackerKind;
 use kestirim_adaptive_kalman::Learning;
+use kestirim_replay::robot::TrackerKind;
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{Change, Method, Points, Recording, blocked};
 

@@ -2,10 +2,10 @@
 
 use host_sim::random::stream;
 use host_sim::systems::uav::paper::responses::responses;
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START, fly};
-use host_sim::systems::uav::track::design::{Kind, MIDDLE};
+use host_sim::systems::uav::simulate::design::Kind;
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, START, fly};
 use kestirim_observer_design::riccati;
+use kestirim_replay::uav::{MIDDLE, Noise, Plant};
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_longitudinal::{airspeed_and_pitch, full_state, rate_airspeed_and_pitch};
 use nalgebra::{SMatrix, SVector};

@@ -1,8 +1,8 @@
 //! What comes of the thesis' formulas as they are printed: the book's proofs that they are misprints.
 
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, START};
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, START};
 use kestirim_observer_design::{eigenvalues, riccati, zero_order_hold};
+use kestirim_replay::uav::{Noise, Plant};
 use kestirim_uav_longitudinal::{Airframe, SteadyFlight, full_state};
 use nalgebra::{Matrix4, RowVector4, SVector, Vector3};
 

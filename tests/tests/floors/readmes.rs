@@ -69,12 +69,22 @@ fn every_file_that_the_book_names_exists() -> Result<()> {
             continue;
         }
         let text = fs::read_to_string(&chapter)?;
-        for named in text.split('`').filter(|named| is_source(named)) {
-            let exists = folders.iter().any(|folder| folder.join(named).exists());
+        for named in text.split('`').flat_map(alternatives).filter(|named| is_source(named)) {
+            let exists = folders.iter().any(|folder| folder.join(&named).exists());
             ensure!(exists, "{}: there is no {named}", chapter.display());
         }
     }
     Ok(())
+}
+
+/// `a/{b,c}.rs` as a shell has it.
+fn alternatives(path: &str) -> Vec<String> {
+    let parts = path.split_once('{').and_then(|(before, rest)| {
+        let (of, after) = rest.split_once('}')?;
+        Some((before, of, after))
+    });
+    let Some((before, of, after)) = parts else { return vec![path.to_owned()] };
+    of.split(',').flat_map(|one| alternatives(&format!("{before}{one}{after}"))).collect()
 }
 
 /// Whether words in code are the path of a source.
@@ -185,6 +195,9 @@ fn items_of(package: &Package) -> Result<BTreeSet<String>> {
         } else {
             String::new()
         };
+        if !at.is_empty() {
+            pages.insert(format!("{at}index.html"));
+        }
         for item in syn::parse_file(&fs::read_to_string(&file)?)?.items {
             let (kind, name) = match &item {
                 Item::Struct(it) if is_public(&it.vis) => ("struct", &it.ident),

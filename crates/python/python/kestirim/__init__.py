@@ -1,7 +1,8 @@
 """Estimators for localisation, written in Rust, over NumPy arrays.
 
 Five systems, each one call a recording: `pedestrian`, `robot`, `drone`, `uav`, `gnss`. Units are SI and radians, frames
-are named, and an estimate comes with its standard deviation and its `Health`. Building blocks: Kalman filters (`KalmanFilter`,
+are named, and an estimate comes with its standard deviation and its `Health`. A stranger's log of an inertial sensor:
+`read_imu`. Building blocks: Kalman filters (`KalmanFilter`,
 `AdaptiveKalmanFilter`, `RobustKalmanFilter`), `ParticleFilter`, `attitude`, `LuenbergerObserver`, and the design of observers:
 `place`, `dare`, `c2d`.
 
@@ -31,8 +32,8 @@ from ._blocks import (
     place,
 )
 from ._kestirim import KestirimError, __version__
-from ._results import FlightTrack, Health, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
-from ._systems import UavModel, drone, gnss, pedestrian, robot, uav
+from ._results import FlightTrack, Health, ImuLog, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
+from ._systems import UavModel, drone, gnss, pedestrian, read_imu, robot, uav
 
 __all__ = [
     "AdaptiveKalmanFilter",
@@ -42,6 +43,7 @@ __all__ = [
     "Filtered",
     "FlightTrack",
     "Health",
+    "ImuLog",
     "KalmanFilter",
     "KestirimError",
     "LuenbergerObserver",
@@ -65,6 +67,7 @@ __all__ = [
     "gnss",
     "pedestrian",
     "place",
+    "read_imu",
     "robot",
     "uav",
 ]

@@ -24,6 +24,7 @@ __all__ = [
     "gnss",
     "pedestrian",
     "place",
+    "read_imu",
     "robot",
     "uav",
     "uav_model",
@@ -53,7 +54,16 @@ class _Walk(TypedDict):
     path_length: float
     closure: float
     heading_rate: Optional[float]
-    reasons: list[str]
+    warnings: tuple[str, ...]
+    reasons: tuple[str, ...]
+
+class _ImuLog(TypedDict):
+    t: _Floats
+    accel: _Floats
+    gyro: _Floats
+    mag: Optional[_Floats]
+    understood: tuple[str, ...]
+    warnings: tuple[str, ...]
 
 class _TagTrack(TypedDict):
     t: _Floats
@@ -65,7 +75,7 @@ class _TagTrack(TypedDict):
     lost: float
     height: Optional[float]
     height_sigma: Optional[float]
-    reasons: list[str]
+    reasons: tuple[str, ...]
 
 class _UserTrack(TypedDict):
     t: _Floats
@@ -74,7 +84,7 @@ class _UserTrack(TypedDict):
     level: _Floats
     health: _Codes
     measurements: int
-    reasons: list[str]
+    reasons: tuple[str, ...]
 
 class _UavModel(TypedDict):
     a: _Floats
@@ -88,7 +98,7 @@ class _FlightTrack(TypedDict):
     innovations: _Floats
     rejected: _Ints
     health: _Codes
-    reasons: list[str]
+    reasons: tuple[str, ...]
 
 class _ReceiverTrack(TypedDict):
     t: _Floats
@@ -100,8 +110,8 @@ class _ReceiverTrack(TypedDict):
     converged: _Bools
     health: _Codes
     epochs: int
-    warnings: list[str]
-    reasons: list[str]
+    warnings: tuple[str, ...]
+    reasons: tuple[str, ...]
 
 class _Filtered(TypedDict):
     x: _Floats
@@ -187,6 +197,14 @@ def attitude(
 def place(a: _Floats, c: _Floats, poles: list[tuple[float, float]]) -> _Placement: ...
 def dare(a: _Floats, c: _Floats, q: _Floats, r: _Floats) -> _Riccati: ...
 def c2d(a: _Floats, b: _Floats, interval: float, method: str) -> _Discrete: ...
+def read_imu(
+    path: str,
+    columns: Optional[str],
+    units: Optional[str],
+    format: Optional[str],
+    topic: Optional[str],
+    strict: bool,
+) -> _ImuLog: ...
 def pedestrian(
     t: _Floats,
     accel: _Floats,

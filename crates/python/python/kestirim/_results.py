@@ -102,8 +102,26 @@ class Walk(Frame):
     """m: horizontal distance from start to end."""
     heading_rate: Optional[float]
     """rad/s: at which the heading drifted, as a magnetometer showed it and as the path was corrected by."""
+    warnings: tuple[str, ...]
+    """What is suspicious about the sensor or the walk: a sentence each."""
     reasons: tuple[str, ...]
     """Why the walk is not good, in words; empty if it is."""
+
+
+@dataclass(frozen=True)
+class ImuLog(Frame):
+    """What a log of an inertial sensor says: n samples, in the sensor's axes."""
+
+    accel: Floats
+    """(n, 3) m/s², specific force: +9.8 upwards at rest."""
+    gyro: Floats
+    """(n, 3) rad/s."""
+    mag: Optional[Floats]
+    """(n, 3) in the log's unit, not a number where it was not measured; None if the log has no magnetometer."""
+    understood: tuple[str, ...]
+    """How its columns and units were understood, and from what: a sentence each."""
+    warnings: tuple[str, ...]
+    """What was damaged and left out, and what of the rest harms a walk: a sentence each."""
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,35 @@ import numpy.typing as npt
 from . import _kestirim
 from ._check import Floats, floats, ints, maybe_floats
 from ._kestirim import KestirimError
-from ._results import FlightTrack, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
+from ._results import FlightTrack, ImuLog, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
 
 Scalar = Literal["f32", "f64", "fixed"]
+
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def read_imu(
+    path: Path,
+    *,
+    columns: Optional[str] = None,
+    units: Optional[str] = None,
+    format: Optional[str] = None,
+    topic: Optional[str] = None,
+    strict: bool = False,
+) -> ImuLog:
+    """A stranger's log of an inertial sensor: text of any device, ArduPilot, PX4, a ROS 1 bag, MCAP, or a phone's export.
+
+    Columns, units and axes are found and told, or the log is refused with what to say: columns such as "t=time,gy=-GyrZ",
+    units such as "acc=g,gyro=deg/s,t=ms", the format's name, the topic of one sensor among several. A damaged line is skipped
+    and told; strict: it refuses the log.
+
+    >>> log = read_imu("walk.csv")  # doctest: +SKIP
+    >>> walk = pedestrian(log.t, log.accel, log.gyro, mag=log.mag)  # doctest: +SKIP
+
+    The same as `host-sim replay pedestrian --log` reads, with what `host-sim check pedestrian` finds.
+    """
+    return ImuLog(**_kestirim.read_imu(os.fspath(path), columns, units, format, topic, strict))
 
 
 def pedestrian(
@@ -72,7 +98,8 @@ def pedestrian(
         path_length=results["path_length"],
         closure=results["closure"],
         heading_rate=results["heading_rate"],
-        reasons=tuple(results["reasons"]),
+        warnings=results["warnings"],
+        reasons=results["reasons"],
     )
 
 
@@ -125,18 +152,7 @@ def robot(
         dim,
         scalar,
     )
-    return TagTrack(
-        t=results["t"],
-        position=results["position"],
-        sigma=results["sigma"],
-        health=results["health"],
-        taken=results["taken"],
-        nis=results["nis"],
-        lost=results["lost"],
-        height=results["height"],
-        height_sigma=results["height_sigma"],
-        reasons=tuple(results["reasons"]),
-    )
+    return TagTrack(**results)
 
 
 def drone(
@@ -177,15 +193,7 @@ def drone(
         None if environment == "open" else environment,
         every,
     )
-    return UserTrack(
-        t=results["t"],
-        position=results["position"],
-        sigma=results["sigma"],
-        level=results["level"],
-        health=results["health"],
-        measurements=results["measurements"],
-        reasons=tuple(results["reasons"]),
-    )
+    return UserTrack(**results)
 
 
 @dataclass(frozen=True)
@@ -261,15 +269,7 @@ def uav(
         ratio,
         scalar,
     )
-    return FlightTrack(
-        t=results["t"],
-        state=results["state"],
-        sigma=results["sigma"],
-        innovations=results["innovations"],
-        rejected=results["rejected"],
-        health=results["health"],
-        reasons=tuple(results["reasons"]),
-    )
+    return FlightTrack(**results)
 
 
 def _rows(outputs: Union[Sequence[str], npt.ArrayLike]) -> Floats:
@@ -279,9 +279,6 @@ def _rows(outputs: Union[Sequence[str], npt.ArrayLike]) -> Floats:
             raise KestirimError(f"outputs: expected names of {', '.join(_STATES)}, found {unknown[0]!r}")
         return np.eye(4)[[_STATES.index(name) for name in outputs]]
     return floats("outputs", outputs, "p", 4)
-
-
-Path = Union[str, "os.PathLike[str]"]
 
 
 def gnss(
@@ -323,19 +320,7 @@ def gnss(
         mask,
         until,
     )
-    return ReceiverTrack(
-        t=results["t"],
-        position=results["position"],
-        sigma=results["sigma"],
-        clock=results["clock"],
-        wet_delay=results["wet_delay"],
-        satellites=results["satellites"],
-        converged=results["converged"],
-        health=results["health"],
-        epochs=results["epochs"],
-        warnings=tuple(results["warnings"]),
-        reasons=tuple(results["reasons"]),
-    )
+    return ReceiverTrack(**results)
 
 
 def _paths(given: Union[Path, Sequence[Path]]) -> list[str]:

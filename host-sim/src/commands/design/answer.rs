@@ -1,12 +1,11 @@
 //! The answer to a case.
 
+use kestirim_design::{self as design, MOST_STATES, MOST_WIDE, Observed, Solution};
 use nalgebra::DMatrix;
 use serde::Serialize;
 use serde_json::Value;
 
 use super::case::{Case, Problem};
-use super::sized::{self, MOST_STATES, MOST_WIDE, Observed};
-use super::solution::Solution;
 
 /// What was asked, and what came of it.
 #[derive(Debug, Clone, Serialize)]
@@ -73,7 +72,7 @@ fn placement(case: &Case) -> Result<Solution, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let c = case.outputs("C", a.nrows(), MOST_WIDE)?;
     let states: Vec<_> = (0..a.nrows()).collect();
-    sized::place(&a, &c, &case.poles(a.nrows())?, &states)
+    told(design::place(&a, &c, &case.poles(a.nrows())?, &states))
 }
 
 /// The states that are not measured are observed through what they do to those that are: a pair of its own.
@@ -88,7 +87,12 @@ fn reduced_order(case: &Case) -> Result<Solution, Problem> {
         return Err("measured, unmeasured: expected some of each, and none that is both".to_owned());
     }
     let part = |rows: &[usize]| a.select_rows(rows).select_columns(&unmeasured);
-    sized::place(&part(&unmeasured), &part(&measured), &case.poles(unmeasured.len())?, &unmeasured)
+    told(design::place(
+        &part(&unmeasured),
+        &part(&measured),
+        &case.poles(unmeasured.len())?,
+        &unmeasured,
+    ))
 }
 
 fn riccati(case: &Case) -> Result<Solution, Problem> {
@@ -96,13 +100,13 @@ fn riccati(case: &Case) -> Result<Solution, Problem> {
     let c = case.outputs("C", a.nrows(), MOST_WIDE)?;
     let q = case.matrix_of("Q", a.nrows(), a.nrows())?;
     let r = case.matrix_of("R", c.nrows(), c.nrows())?;
-    sized::riccati(&a, &c, &q, &r)
+    told(design::riccati(&a, &c, &q, &r))
 }
 
 fn discretisation(case: &Case) -> Result<Solution, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let b = case.inputs("B", a.nrows(), MOST_WIDE)?;
-    sized::discretise(&a, &b, case.number("h")?)
+    told(design::discretise(&a, &b, case.number("h")?))
 }
 
 /// P = F P Fᵀ + B Qu Bᵀ + L R Lᵀ with F = A − L C, or with Q instead of B Qu Bᵀ; where there is no L,
@@ -111,7 +115,7 @@ fn covariance(case: &Case) -> Result<Solution, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let states = a.nrows();
     if !case.has("L") {
-        return sized::lyapunov(&a, &case.matrix_of("Q", states, states)?);
+        return told(design::lyapunov(&a, &case.matrix_of("Q", states, states)?));
     }
     let process = if case.has("Q_input") {
         let b = case.inputs("B", states, MOST_WIDE)?;
@@ -123,5 +127,10 @@ fn covariance(case: &Case) -> Result<Solution, Problem> {
     let c = case.outputs("C", states, MOST_WIDE)?;
     let gain = case.matrix_of("L", states, c.nrows())?;
     let r = case.matrix_of("R", c.nrows(), c.nrows())?;
-    sized::error_covariance(&Observed { a, c, gain, process, r })
+    told(design::error_covariance(&Observed { a, c, gain, process, r }))
+}
+
+/// With what is wrong in a sentence.
+fn told(designed: Result<Solution, design::Error>) -> Result<Solution, Problem> {
+    designed.map_err(|error| error.to_string())
 }

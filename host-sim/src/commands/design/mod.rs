@@ -4,15 +4,12 @@ mod answer;
 mod case;
 mod report;
 mod rust;
-mod sized;
-mod solution;
-
-pub use answer::{Answer, Answered};
-pub use report::Report;
-pub use solution::Solution;
 
 use std::path::{Path, PathBuf};
 
+pub use answer::{Answer, Answered};
+pub use kestirim_design::Solution;
+pub use report::Report;
 use serde_json::{Map, Value};
 
 use crate::text::TextFile;

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use kestirim_design::Solution;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::answer::{Answer, Answered};
-use super::solution::Solution;
 use crate::output;
 
 /// The answers, section by section, in the order of the program.

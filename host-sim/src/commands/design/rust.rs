@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
+use kestirim_design::Solution;
 use nalgebra::DMatrix;
 
 use super::answer::Answer;
 use super::report::Report;
-use super::solution::Solution;
 
 /// Writes every matrix as an array of rows. Refused cases become comments.
 pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {

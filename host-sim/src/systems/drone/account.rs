@@ -2,16 +2,13 @@
 
 mod accuracy;
 
-use kestirim_air_to_ground::Measurement;
-use kestirim_user_locator::LevelStep;
+use kestirim_replay::drone::{Estimate, Track, level_step};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Drone;
 use super::recording::Recording;
-use super::recording::flight::Stop;
 use super::settings::expected_loss_db;
-use super::track::trace::{Estimate, Track};
 use crate::Error;
 use crate::metrics::mean;
 use crate::system::{Account, HealthState, Reason, Settings, System, Table};
@@ -114,17 +111,6 @@ pub(super) fn account(
         }
     }
     Ok(account)
-}
-
-/// When the levels step, s, and by how much, dB, as seen from the estimated place.
-fn level_step(stops: &[Stop], place: [f64; 2]) -> Option<(f64, f64)> {
-    let measured = |stop: &Stop| {
-        let measurement = Measurement::new(stop.place, stop.height, stop.loss).ok()?;
-        Some((stop.t, measurement))
-    };
-    let (times, measurements): (Vec<_>, Vec<_>) = stops.iter().filter_map(measured).unzip();
-    let LevelStep { at, by } = LevelStep::find(&measurements, place)?;
-    Some((times[at], by))
 }
 
 /// What is known of a flight whose user and channel are.

@@ -1,7 +1,8 @@
 //! What a recorded flight shows before the user is searched.
 
+use kestirim_replay::drone::Quantity;
+
 use super::recording::Recording;
-use super::recording::flight::Quantity;
 use crate::metrics::{median, standard_deviation};
 use crate::system::{Finding, Reason};
 

@@ -1,13 +1,13 @@
 //! What a flight looks like, measurement by measurement.
 
+mod cloud;
 pub mod streams;
 
+use kestirim_replay::drone::{EnvironmentKind, Estimate, Quantity, Track};
+
 use super::recording::Recording;
-use super::recording::flight::Quantity;
-use super::settings::choices::EnvironmentKind;
 use super::settings::{built, expected_loss_db};
 use super::simulate::{moving_user, trajectory};
-use super::track::trace::{Estimate, Track};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::{Answer, Settings};
 
@@ -81,7 +81,7 @@ impl Drawing<'_> {
             figure = figure.with(border.coloured(Colour::Truth));
         }
         if let Some(cloud) = &shown.cloud {
-            figure = cloud.on(figure);
+            figure = cloud::on(figure, cloud);
         }
         let user = track.user(shown).into_iter();
         let estimates = so_far.iter().map(|estimate| estimate.place);

@@ -16,14 +16,13 @@ mod online;
 pub mod paper;
 pub mod recording;
 pub mod settings;
-pub mod simulate;
 pub mod track;
 
+pub use kestirim_simulate::drone as simulate;
 use std::sync::Arc;
 
 use self::paper::{experiment, report::Report};
 use self::recording::Recording;
-use self::track::trace::Track;
 use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
@@ -31,6 +30,7 @@ use crate::system::{
     Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
     Setting, Settings, System, Table,
 };
+use kestirim_replay::drone::Track;
 
 /// The system.
 #[derive(Debug, Clone, Copy)]

@@ -1,14 +1,11 @@
 //! A user on the ground, heard by a drone that still flies.
 
+use kestirim_replay::drone::{Area, EnvironmentKind, Estimate, MOST_OPEN, Quantity, Search, Stop};
 use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
-use super::recording::area::{self, Area};
-use super::recording::flight::{Quantity, Stop};
+use super::recording::area;
 use super::settings::built;
-use super::settings::choices::EnvironmentKind;
-use super::track::search::{MOST_OPEN, Search};
-use super::track::trace::Estimate;
 use crate::Error;
 use crate::figure::{Colour, Mark, Series};
 use crate::system::{Files, Online, Outcome, Plan, Settings};
@@ -66,7 +63,7 @@ impl Listener {
             return None;
         }
         let Listening { area, environment } = &self.plan;
-        let search = Search::new(stops, area.as_deref(), None, true, false);
+        let search = Search::new(stops, area.as_deref(), None, true, false).ok()?;
         search.find(*environment, Quantity::PathLoss).pop()
     }
 }

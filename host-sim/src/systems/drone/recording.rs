@@ -6,7 +6,8 @@ pub mod plane;
 
 use std::path::PathBuf;
 
-use self::area::Area;
+use kestirim_replay::drone::Area;
+
 use self::flight::Flight;
 use crate::Error;
 use crate::system::Files;

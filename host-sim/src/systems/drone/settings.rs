@@ -5,11 +5,11 @@ pub mod choices;
 mod firmware;
 
 use clap::ValueEnum;
+use kestirim_replay::drone::{EnvironmentKind, Stop};
 
-use self::choices::{EnvironmentKind, FilterKind, FlightKind, ResamplerKind, TrajectoryKind};
+use self::choices::{FilterKind, FlightKind, ResamplerKind, TrajectoryKind};
 pub(super) use self::firmware::firmware;
 use super::recording::Recording;
-use super::recording::flight::Stop;
 use super::simulate::moving_user::{Policy, Walk};
 use super::simulate::static_user::{FilterSetting, Geometry, PublishedFilter};
 use super::simulate::trajectory::Trajectory;

@@ -1,3 +1,4 @@
+use kestirim_replay::drone::Quantity;
 use std::fmt::Write as _;
 use std::fs;
 
@@ -217,8 +218,8 @@ fn firmware_says_which_filter_and_what_differs() {
         };
         Recording::Flight(Box::new(recorded))
     };
-    let level = flight(recording::flight::Quantity::Level);
-    let loss = flight(recording::flight::Quantity::PathLoss);
+    let level = flight(Quantity::Level);
+    let loss = flight(Quantity::PathLoss);
     for (recording, given, expected) in [
         (Some(&level), &[][..], "FreeSpace::new(None)"),
         (Some(&loss), &[], "LevelPrior { mean: -38.46"),

@@ -1,15 +1,8 @@
 //! Feeds a flight to the filters, recorded or synthetic.
 
-pub mod cloud;
-pub mod search;
-pub mod trace;
+use kestirim_replay::drone::{Area, BEYOND_M, EnvironmentKind, Search, Stop, Track, thinned};
 
-use self::search::{BEYOND_M, MOST, MOST_OPEN, Search};
-use self::trace::Track;
-use super::recording::area::Area;
-use super::recording::flight::Stop;
 use super::recording::{Recorded, Recording};
-use super::settings::choices::EnvironmentKind;
 use super::settings::{built, filter_of, geometry, walk};
 use super::simulate::{moving_user, static_user};
 use crate::Error;
@@ -49,6 +42,7 @@ fn find(
     // What comes in between takes as long as the end, each time.
     let only_last = truth.is_none() && detail == Detail::Result;
     let search = Search::new(&stops, area, *truth, only_last, detail == Detail::Every);
+    let search = search.map_err(|error| recorded.refused(&error.to_string()))?;
     let estimates = search.find(environment, flight.quantity);
     if estimates.is_empty() {
         return Err(recorded.refused("no place explains the measurements"));
@@ -71,14 +65,11 @@ fn used(recorded: &Recorded, environment: Option<EnvironmentKind>) -> (Vec<Stop>
              ±300 dB)"
         ));
     }
-    let most = if environment.is_some() { MOST } else { MOST_OPEN };
-    let count = flight.stops.len();
-    let stops = if count > most {
+    let stops = thinned(&flight.stops, environment);
+    let (most, count) = (stops.len(), flight.stops.len());
+    if count > most {
         warnings.push(format!("of {count} measurements {most} are used, evenly"));
-        (0..most).map(|k| flight.stops[k * count / most]).collect()
-    } else {
-        flight.stops.clone()
-    };
+    }
     match area {
         None => warnings
             .push(format!("the user is looked for up to {BEYOND_M} m beyond the flight (--area)")),

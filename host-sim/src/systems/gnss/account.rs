@@ -1,6 +1,5 @@
 //! What came of a recording.
 
-pub mod accuracy;
 pub mod comparison;
 pub mod report;
 pub mod tables;
@@ -8,15 +7,14 @@ mod track_file;
 mod warning;
 
 use kestirim_ppp_filter::Health;
+use kestirim_replay::gnss::{FilterKind, Followed, Recording};
 
 use self::comparison::Comparison;
 use self::report::Report;
 pub(super) use self::track_file::text as track_text;
 use super::Gnss;
-use super::recording::Recording;
-use super::settings::{Choice, FilterKind, Mode, Setup};
+use super::settings::{Choice, Mode, Setup};
 use super::track::Track;
-use super::track::followed::Followed;
 use crate::Error;
 use crate::system::{Account, System};
 

@@ -6,13 +6,11 @@ use std::collections::BTreeMap;
 
 use kestirim_gnss_files::satellite_name;
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_replay::gnss::{BEGINNING, FilterKind, Followed};
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
 
-use super::account::accuracy::BEGINNING;
-use super::settings::FilterKind;
 use super::track::Track;
-use super::track::followed::Followed;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::median;
 

@@ -5,17 +5,17 @@
 //! Times are seconds since the midnight before the first epoch, positions those of the marker, ECEF.
 
 pub mod account;
-mod check;
 pub mod figures;
 pub mod paper;
 pub mod recording;
 pub mod settings;
-pub mod simulate;
 pub mod track;
+
+use kestirim_replay::gnss::{self, Recording};
+pub use kestirim_simulate::gnss as simulate;
 
 use self::figures::streams;
 use self::paper::experiment;
-use self::recording::Recording;
 use self::settings::{Choice, Setup};
 use self::track::Track;
 use crate::Error;
@@ -103,15 +103,15 @@ impl System for Gnss {
     }
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
-        Recording::read(files)
+        recording::read(files)
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {
-        Recording::synthetic(name)
+        recording::synthetic(name)
     }
 
     fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
-        check::check(recording)
+        gnss::check(recording)
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {

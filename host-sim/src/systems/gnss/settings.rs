@@ -5,23 +5,18 @@ mod firmware;
 mod part;
 
 use kestirim_gnss_ppp::Corrections;
-use kestirim_ppp_filter::{Config, Motion, states};
+use kestirim_ppp_filter::{Config, Motion};
+use kestirim_replay::gnss::{FilterKind, Recording, Systems};
 use kestirim_robust_kalman::{Igg3, Weight};
 use nalgebra::Vector3;
 
-pub use self::filter::{Choice, FilterKind, Mode, Systems};
+pub use self::filter::{Choice, Mode};
 use self::part::Part;
-use super::recording::Recording;
 use super::recording::truth::place;
 use crate::system::{Idle, ScalarKind, Setting, Settings};
 
 /// Number types the filter is built for: ranges of 26 000 km to a millimetre need the digits.
 pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];
-
-/// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
-pub const STATES: usize = states(20);
-/// The same where satellites of Galileo are among them.
-pub const STATES_WITH_GALILEO: usize = states(34);
 
 /// Variance per second of each coordinate of a receiver that may move at will, m²/s: in the 30 s between
 /// epochs it gets 55 m away, so that only what is observed in an epoch tells where it is.

@@ -32,7 +32,7 @@ fn synthetic_recordings_answer_with_the_same_figures() {
         let is_of_faults = |warning: &String| *name == "faults" && warning.contains("rejected");
         assert!(answer.warnings.iter().all(is_of_faults), "{:?}", answer.warnings);
     }
-    assert!(Recording::synthetic("winter").is_err());
+    assert!(recording::synthetic("winter").is_err());
 }
 
 #[test]

@@ -1,15 +1,10 @@
 //! Feeds filters with a recording: one, or all for comparison.
 
-pub mod followed;
-pub mod outage;
-
+use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, follow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use self::followed::{Followed, follow};
-use super::recording::Recording;
-use super::recording::model::Epoch;
-use super::settings::{FilterKind, Setup};
+use super::settings::Setup;
 use crate::system::Detail;
 use crate::{Error, output};
 

@@ -1,15 +1,13 @@
 //! What came of a walk.
 
 pub mod accuracy;
-pub(crate) mod warning;
 
+use kestirim_replay::pedestrian::{TrackPoint, Walk};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Pedestrian;
 use super::recording::Recording;
-use super::recording::position::TrackPoint;
-use super::track::Walk;
 use crate::Error;
 use crate::system::{Account, System, Table};
 

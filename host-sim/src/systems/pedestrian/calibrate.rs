@@ -9,13 +9,14 @@ use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use kestirim_imu_calibration::{AccelerometerModel, Error as Refused, GyroscopeModel, Side};
+use kestirim_replay::pedestrian;
 use serde::Serialize;
 
 use self::found::{Found, HOLD_S, Refusal, SHORTEST_S};
 use self::watched::Watching;
+use super::Pedestrian;
 use super::recording::calibration::{self, Parameter};
 use super::recording::log;
-use super::{Pedestrian, check};
 use crate::system::{Calibration, Finding, Plan, Reading, System};
 use crate::{Error, output};
 
@@ -55,7 +56,7 @@ impl Calibration for Calibrate {
             .map_err(|refusal| Error::File { path: from.clone(), problem: sentence(&refusal) })?;
         let parameters = calibration::parameters(&found.calibration, found.sigmas);
         calibration::write(to, &parameters)?;
-        let faults = check::check(&log.samples).into_iter().filter(Finding::is_fault);
+        let faults = pedestrian::check(&log.samples).into_iter().filter(Finding::is_fault);
         let mut warnings = log.warnings;
         warnings.extend(faults.map(|finding| finding.sentence()));
         output::warn_of(from, &warnings);

@@ -3,13 +3,14 @@
 pub mod placement;
 pub mod streams;
 
+use kestirim_replay::pedestrian::{
+    self, Moment, Options, Trace, TrackPoint, trace, without_updates,
+};
+
 use self::placement::Placement;
 use super::Sample;
 use super::recording::Recording;
-use super::recording::position::TrackPoint;
-use super::settings::Options;
-use super::track::trace::{Moment, Trace, trace, without_updates};
-use super::track::{RunError, refused};
+use super::track::refused;
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::STANDARD_GRAVITY;
@@ -21,7 +22,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const COLOURS: [Colour; 3] = [Colour::Other(0), Colour::Other(1), Colour::Other(2)];
 
 /// What makes a trace.
-type Tracker = fn(&[Sample], &Options) -> Result<Trace, RunError>;
+type Tracker = fn(&[Sample], &Options) -> Result<Trace, pedestrian::Error>;
 
 /// The page's figures, and facts of what they compare with: the published method, and no updates at all.
 pub(super) fn draw(

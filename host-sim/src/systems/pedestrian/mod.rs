@@ -8,26 +8,25 @@
 
 pub mod account;
 mod calibrate;
-mod check;
 pub mod figures;
 mod online;
 pub mod paper;
 pub mod recording;
 pub mod settings;
-pub mod simulate;
 pub mod track;
 
+pub use kestirim_simulate::pedestrian as simulate;
 use std::sync::Arc;
 
-pub use kestirim_import::inertial::Sample;
+use kestirim_replay::pedestrian;
+pub use kestirim_replay::pedestrian::Sample;
 
 use self::calibrate::Calibrate;
 use self::figures::streams;
 use self::paper::experiment;
 use self::recording::{Recording, Walked, calibration};
-use self::settings::Options;
-use self::track::Track;
-use self::track::sensor::class_of;
+use self::settings::options;
+use self::track::{Track, class_of};
 use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
@@ -105,11 +104,11 @@ impl System for Pedestrian {
     }
 
     fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
-        check::check(recording.measured())
+        pedestrian::check(recording.measured())
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {
-        Track::of(recording, settings.number("rate"), &Options::of(settings), detail)
+        Track::of(recording, settings.number("rate"), &options(settings), detail)
     }
 
     fn account(recording: &Recording, _: &Settings, track: &Track) -> Result<Account, Error> {
@@ -123,7 +122,7 @@ impl System for Pedestrian {
         answer: &mut Answer,
     ) -> Result<(), Error> {
         let recording = track.tracked(recording);
-        let options = Options::of(settings).with_sensor(|| class_of(recording));
+        let options = options(settings).with_sensor(|| class_of(recording));
         figures::draw(recording, &options, &track.trace, answer)
     }
 
@@ -137,9 +136,9 @@ impl System for Pedestrian {
     }
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
-        let options = Options::of(settings);
+        let options = options(settings);
         let options = recording.map_or(options, |it| options.with_sensor(|| class_of(it)));
-        let firmware = options.firmware();
+        let firmware = settings::firmware(&options);
         match recording.and_then(Recording::calibration) {
             Some(known) => format!("{firmware}\n\n{}", calibration::firmware(known)),
             None => firmware,
@@ -156,7 +155,7 @@ impl System for Pedestrian {
 
     fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
         let calibration = files.one("calibration").map(calibration::read).transpose()?;
-        Ok(Some(Arc::new(online::Walking { options: Options::of(settings), calibration })))
+        Ok(Some(Arc::new(online::Walking { options: options(settings), calibration })))
     }
 
     fn calibration() -> Option<Box<dyn Calibration>> {

@@ -6,14 +6,14 @@ use std::marker::PhantomData;
 use kestirim_imu_calibration::Calibration;
 use kestirim_pedestrian::detector::StanceDetector;
 use kestirim_pedestrian::{Ekf, Estimate, Lite, Navigator, Tracker};
-use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_replay::pedestrian::{
+    Options, TrackerKind, WithDetector, imu_sample, sentences, with_detector,
+};
+use kestirim_scalar::{Components, Q12_20, Scalar};
 use kestirim_telemetry::{Imu, Message};
 
 use super::Sample;
-use super::account::warning;
 use super::recording::calibration;
-use super::settings::{Options, TrackerKind};
-use super::track::{WithDetector, config, double, imu_sample, with_detector};
 use crate::Error;
 use crate::system::{Online, Outcome, Plan, ScalarKind};
 
@@ -52,7 +52,7 @@ impl<T: Scalar + 'static, N: Navigator<T> + Debug + 'static> WithDetector<T> for
     type Output = Box<dyn Online>;
 
     fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Box<dyn Online> {
-        let tracker = Tracker::<T, N, D>::with_detector(config(&self.0.options), detector);
+        let tracker = Tracker::<T, N, D>::with_detector(self.0.options.config(), detector);
         let calibration = self.0.calibration.as_ref().map(calibration::cast);
         Box::new(Walker { tracker, calibration, last: None, strides: 0 })
     }
@@ -91,7 +91,7 @@ impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online fo
     }
 
     fn position(&self) -> Option<[f64; 3]> {
-        self.last.as_ref().map(|estimate| double(&estimate.position))
+        self.last.as_ref().map(|estimate| estimate.position.as_array().map(T::to_f64))
     }
 
     fn is_still(&self) -> bool {
@@ -117,6 +117,6 @@ impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online fo
 
     fn warnings(&self) -> Vec<String> {
         // Whether a foot ever stood is not known before it did.
-        if self.last.is_some() { warning::sentences(self.tracker.warnings()) } else { Vec::new() }
+        if self.last.is_some() { sentences(self.tracker.warnings()) } else { Vec::new() }
     }
 }

@@ -2,7 +2,6 @@
 
 pub mod calibration;
 pub mod log;
-pub mod position;
 pub mod resample;
 pub mod truth;
 
@@ -12,10 +11,9 @@ use std::sync::OnceLock;
 use kestirim_import::{Format, Options};
 use kestirim_imu_calibration::Calibration;
 use kestirim_pedestrian::SensorClass;
+use kestirim_replay::pedestrian::{Footprint, TrackPoint};
 
 use self::log::Log;
-use self::position::TrackPoint;
-use self::truth::Footprint;
 use super::Sample;
 use super::simulate::scenario::Scenario;
 use super::simulate::sensor;

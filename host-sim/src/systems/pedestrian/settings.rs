@@ -1,13 +1,12 @@
 //! How a walk is tracked: what can be set, and what it means.
 
 use clap::ValueEnum;
-use kestirim_pedestrian::detector::{AngularRateEnergy, FixedShoe, Magnitude, MovingVariance};
+use kestirim_pedestrian::detector::Magnitude;
+use kestirim_replay::ScalarKind;
+use kestirim_replay::pedestrian::{DetectorKind, Options, SensorClass, TrackerKind};
 
 use crate::metrics::STANDARD_GRAVITY;
-use crate::system::{Given, Idle, Literal, ScalarKind, Setting, SettingValue, Settings, Shorthand};
-
-/// Number types the tracker is built for.
-pub const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
+use crate::system::{Given, Idle, Literal, Setting, SettingValue, Settings, Shorthand};
 
 /// Least and greatest multiple of a detector's default threshold.
 const FACTORS: [f64; 2] = [1e-6, 1e6];
@@ -55,7 +54,7 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
         ),
         Setting::number("rate", "Average the log down to this rate first", "Hz", rates, rates[1])
             .undecided(),
-        Setting::some_of("scalar", "Number type of the tracker", &SCALARS, &ScalarKind::F32).live(),
+        Setting::one_of("scalar", "Number type of the tracker", &ScalarKind::F32).live(),
     ]
 }
 
@@ -90,196 +89,69 @@ fn turns_back(settings: &Settings) -> bool {
         && !settings.is_on("causal")
 }
 
-/// Everything that can be chosen about a tracker.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// Architecture of the tracker.
-    pub tracker: TrackerKind,
-    /// How stance is recognised.
-    pub detector: DetectorKind,
-    /// Class of the sensor: prior of its bias and noise.
-    pub sensor: SensorClass,
-    /// Height of the sensor above the ball of the foot, m; none is the tracker's default, and 0 with the
-    /// detector of the paper, which forces all velocity to zero.
-    pub contact_height_m: Option<f64>,
-    /// Look only backwards, as firmware must.
-    pub causal: bool,
-    /// Correct the heading by a magnetometer, if there is one.
-    pub magnetometer: bool,
-    /// Number type of the estimator.
-    pub scalar: ScalarKind,
-}
-
-impl Options {
-    /// The published method: the paper's architecture and its threshold of 0.1 g.
-    pub fn published() -> Self {
-        Self {
-            tracker: TrackerKind::Lite,
-            detector: DetectorKind::Magnitude(DetectorKind::MAGNITUDE_THRESHOLD),
-            ..Self::default()
+/// As set.
+pub fn options(settings: &Settings) -> Options {
+    let factor = settings.decided("factor");
+    let detector = match settings.chosen("detector") {
+        DetectorName::Adaptive => DetectorKind::Adaptive,
+        DetectorName::Magnitude => {
+            DetectorKind::Magnitude(settings.decided("threshold") * STANDARD_GRAVITY)
         }
-    }
-
-    /// The published method beside this one: with its threshold, if it has one, its sensor and its numbers.
-    pub(super) fn published_beside(&self) -> Self {
-        let detector = match self.detector {
-            DetectorKind::Magnitude(_) => self.detector,
-            _ => DetectorKind::Magnitude(DetectorKind::MAGNITUDE_THRESHOLD),
-        };
-        Self { detector, sensor: self.sensor, scalar: self.scalar, ..Self::published() }
-    }
-
-    /// The threshold of the detector magnitude, g; the paper's with another detector.
-    pub(super) fn magnitude_threshold_g(&self) -> f64 {
-        match self.detector {
-            DetectorKind::Magnitude(threshold) => threshold / STANDARD_GRAVITY,
-            _ => Magnitude::<f64>::THRESHOLD_G,
+        DetectorName::Variance => DetectorKind::Variance(factor * DetectorKind::VARIANCE_THRESHOLD),
+        DetectorName::AngularRate => {
+            DetectorKind::AngularRate(factor * DetectorKind::ANGULAR_RATE_THRESHOLD)
         }
-    }
-
-    /// As set.
-    pub fn of(settings: &Settings) -> Self {
-        let factor = settings.decided("factor");
-        let detector = match settings.chosen("detector") {
-            DetectorName::Adaptive => DetectorKind::Adaptive,
-            DetectorName::Magnitude => {
-                DetectorKind::Magnitude(settings.decided("threshold") * STANDARD_GRAVITY)
-            }
-            DetectorName::Variance => {
-                DetectorKind::Variance(factor * DetectorKind::VARIANCE_THRESHOLD)
-            }
-            DetectorName::AngularRate => {
-                DetectorKind::AngularRate(factor * DetectorKind::ANGULAR_RATE_THRESHOLD)
-            }
-            DetectorName::Shoe => DetectorKind::Shoe(factor * DetectorKind::SHOE_THRESHOLD),
-        };
-        Self {
-            tracker: settings.chosen("tracker"),
-            detector,
-            sensor: settings.chosen("sensor"),
-            contact_height_m: settings.number("contact-height"),
-            causal: settings.is_on("causal"),
-            magnetometer: settings.is_on("magnetometer") && turns_back(settings),
-            scalar: settings.chosen("scalar"),
-        }
-    }
-
-    /// The height that the tracker takes the sensor for, m; none is its own.
-    pub(super) fn contact_height_m(&self) -> Option<f64> {
-        match (self.contact_height_m, self.detector) {
-            (None, DetectorKind::Magnitude(_)) => Some(0.0),
-            (height, _) => height,
-        }
-    }
-
-    /// With the class that is found, unless it is said.
-    #[must_use]
-    pub(super) fn with_sensor(
-        &self,
-        found: impl FnOnce() -> kestirim_pedestrian::SensorClass,
-    ) -> Self {
-        let sensor = match self.sensor {
-            SensorClass::Found => SensorClass::from(found()),
-            said => said,
-        };
-        Self { sensor, ..*self }
-    }
-
-    /// The same in firmware.
-    pub(super) fn firmware(&self) -> String {
-        let (scalar, number) =
-            (Literal::number_type(self.scalar), |value| Literal::number(self.scalar, value));
-        let config = format!("Config::<{scalar}>");
-        let mut literal =
-            Literal::new("kestirim_pedestrian::Config", self.scalar, &config, "Config::default()")
-                .number_field("contact_height", self.contact_height_m());
-        if self.sensor == SensorClass::Industrial {
-            literal = literal
-                .import("kestirim_pedestrian::SensorClass")
-                .field("sensor", format!("SensorClass::{:?}", self.sensor));
-        }
-        if self.detector != DetectorKind::Adaptive {
-            literal = literal.field("levels", "false".to_owned());
-        }
-        let detector = match self.detector {
-            DetectorKind::Adaptive => None,
-            DetectorKind::Magnitude(value) => Some(("Magnitude", value / STANDARD_GRAVITY)),
-            DetectorKind::Variance(value) => {
-                Some(("MovingVariance", value / STANDARD_GRAVITY.powi(2)))
-            }
-            DetectorKind::AngularRate(value) => Some(("AngularRateEnergy", value)),
-            DetectorKind::Shoe(value) => Some(("FixedShoe", value)),
-        };
-        let navigator = format!("{:?}", self.tracker);
-        let literal = literal
-            .import("kestirim_pedestrian::Tracker")
-            .import(&format!("kestirim_pedestrian::{navigator}"));
-        let tracker = format!("let tracker = Tracker::<{scalar}, {navigator}<{scalar}>");
-        match detector {
-            None => literal.then(format!("{tracker}>::new(config);")),
-            Some((detector, threshold)) => {
-                let threshold = number(threshold);
-                literal.import(&format!("kestirim_pedestrian::detector::{detector}")).then(format!(
-                    "{tracker}, _>::with_detector(config, {detector}::new({threshold}));"
-                ))
-            }
-        }
-        .to_string()
+        DetectorName::Shoe => DetectorKind::Shoe(factor * DetectorKind::SHOE_THRESHOLD),
+    };
+    Options {
+        tracker: settings.chosen("tracker"),
+        detector,
+        sensor: settings.chosen("sensor"),
+        contact_height_m: settings.number("contact-height"),
+        causal: settings.is_on("causal"),
+        magnetometer: settings.is_on("magnetometer") && turns_back(settings),
+        scalar: settings.chosen("scalar"),
     }
 }
 
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            tracker: TrackerKind::default(),
-            detector: DetectorKind::default(),
-            sensor: SensorClass::default(),
-            contact_height_m: None,
-            causal: false,
-            magnetometer: true,
-            scalar: ScalarKind::F32,
+/// The same in firmware.
+pub(super) fn firmware(options: &Options) -> String {
+    let (scalar, number) =
+        (Literal::number_type(options.scalar), |value| Literal::number(options.scalar, value));
+    let config = format!("Config::<{scalar}>");
+    let mut literal =
+        Literal::new("kestirim_pedestrian::Config", options.scalar, &config, "Config::default()")
+            .number_field("contact_height", options.contact_height_m());
+    if options.sensor == SensorClass::Industrial {
+        literal = literal
+            .import("kestirim_pedestrian::SensorClass")
+            .field("sensor", format!("SensorClass::{:?}", options.sensor));
+    }
+    if options.detector != DetectorKind::Adaptive {
+        literal = literal.field("levels", "false".to_owned());
+    }
+    let detector = match options.detector {
+        DetectorKind::Adaptive => None,
+        DetectorKind::Magnitude(value) => Some(("Magnitude", value / STANDARD_GRAVITY)),
+        DetectorKind::Variance(value) => Some(("MovingVariance", value / STANDARD_GRAVITY.powi(2))),
+        DetectorKind::AngularRate(value) => Some(("AngularRateEnergy", value)),
+        DetectorKind::Shoe(value) => Some(("FixedShoe", value)),
+    };
+    let navigator = format!("{:?}", options.tracker);
+    let literal = literal
+        .import("kestirim_pedestrian::Tracker")
+        .import(&format!("kestirim_pedestrian::{navigator}"));
+    let tracker = format!("let tracker = Tracker::<{scalar}, {navigator}<{scalar}>");
+    match detector {
+        None => literal.then(format!("{tracker}>::new(config);")),
+        Some((detector, threshold)) => {
+            let threshold = number(threshold);
+            literal.import(&format!("kestirim_pedestrian::detector::{detector}")).then(format!(
+                "{tracker}, _>::with_detector(config, {detector}::new({threshold}));"
+            ))
         }
     }
-}
-
-/// Architecture of a tracker.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum TrackerKind {
-    /// Error-state Kalman filter with zero-velocity updates
-    #[default]
-    Ekf,
-    /// The paper's: attitude reference, integration, zero velocity in stance
-    Lite,
-}
-
-/// Class of an IMU: how large its bias and noise are before anything is known.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum SensorClass {
-    /// From what the gyroscope shows at rest; of a stream that is followed while it comes: consumer
-    Found,
-    /// Bare chips (MPU-6050, MPU-9250, the Razor): gyro bias about 0.1 rad/s
-    #[default]
-    Consumer,
-    /// Calibrated units (Xsens, NGIMU, 3DM-GX): gyro bias about 3 mrad/s
-    Industrial,
-}
-
-impl From<SensorClass> for kestirim_pedestrian::SensorClass {
-    fn from(class: SensorClass) -> Self {
-        match class {
-            SensorClass::Industrial => Self::Industrial,
-            SensorClass::Consumer | SensorClass::Found => Self::Consumer,
-        }
-    }
-}
-
-impl From<kestirim_pedestrian::SensorClass> for SensorClass {
-    fn from(class: kestirim_pedestrian::SensorClass) -> Self {
-        match class {
-            kestirim_pedestrian::SensorClass::Industrial => Self::Industrial,
-            kestirim_pedestrian::SensorClass::Consumer => Self::Consumer,
-        }
-    }
+    .to_string()
 }
 
 /// The name of a stance detector.
@@ -296,47 +168,6 @@ enum DetectorName {
     AngularRate,
     /// Generalised likelihood ratio of both (SHOE)
     Shoe,
-}
-
-/// How stance is recognised; thresholds in SI, stance is below.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum DetectorKind {
-    /// Threshold-free: compares with the quietest moments around.
-    #[default]
-    Adaptive,
-    /// The paper's: deviation of the specific force's magnitude from 1 g, m/s².
-    Magnitude(f64),
-    /// Moving variance of the specific force, (m/s²)².
-    Variance(f64),
-    /// Mean square angular rate, (rad/s)².
-    AngularRate(f64),
-    /// Generalised likelihood ratio of both (SHOE), (rad/s)².
-    Shoe(f64),
-}
-
-impl DetectorKind {
-    /// The paper's threshold of 0.1 g, m/s².
-    pub const MAGNITUDE_THRESHOLD: f64 = Magnitude::<f64>::THRESHOLD_G * STANDARD_GRAVITY;
-    /// Default of [`Self::Variance`], (m/s²)².
-    pub const VARIANCE_THRESHOLD: f64 =
-        MovingVariance::<f64>::THRESHOLD_G2 * STANDARD_GRAVITY * STANDARD_GRAVITY;
-    /// Default of [`Self::AngularRate`], (rad/s)².
-    pub const ANGULAR_RATE_THRESHOLD: f64 = AngularRateEnergy::<f64>::THRESHOLD;
-    /// Default of [`Self::Shoe`], (rad/s)².
-    pub const SHOE_THRESHOLD: f64 = FixedShoe::<f64>::THRESHOLD;
-
-    /// When the foot is taken to stand.
-    pub(super) fn in_words(self) -> String {
-        match self {
-            Self::Adaptive => "near the quietest moments around".to_owned(),
-            Self::Magnitude(value) => {
-                format!("|a| within {:.2} g of 1 g", value / STANDARD_GRAVITY)
-            }
-            Self::Variance(value) => format!("variance of |a| below {value:.3} (m/s²)²"),
-            Self::AngularRate(value) => format!("mean |ω|² below {value:.3} (rad/s)²"),
-            Self::Shoe(value) => format!("SHOE's T below {value:.3} (rad/s)²"),
-        }
-    }
 }
 
 /// Reads `NAME:THRESHOLD`; none without a colon. The threshold of `magnitude` is in g, as in the paper; those
@@ -381,12 +212,12 @@ mod tests {
     fn detector(text: &str) -> Result<DetectorKind, crate::Error> {
         let mut settings = Settings::new(table(None));
         settings.set("detector", text)?;
-        Ok(Options::of(&settings).detector)
+        Ok(options(&settings).detector)
     }
 
     #[test]
     fn nothing_set_is_the_default_but_for_the_sensor_which_is_found() {
-        let options = Options::of(&Settings::new(table(None)));
+        let options = options(&Settings::new(table(None)));
         assert_eq!(options.sensor, SensorClass::Found);
         let consumer = options.with_sensor(|| kestirim_pedestrian::SensorClass::Consumer);
         assert_eq!(consumer, Options::default());

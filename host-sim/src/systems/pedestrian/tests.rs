@@ -1,3 +1,4 @@
+use kestirim_replay::pedestrian::{Options, Trace, trace, walk, without_updates};
 use serde_json::{Value, json};
 
 use super::*;
@@ -72,4 +73,30 @@ fn what_cannot_be_walked_is_refused_in_one_sentence() {
     }
     assert!(refusal(&Files::default()).is_some());
     assert!(Pedestrian.open(Source::Synthetic("the moon".to_owned()), &settings).is_err());
+}
+
+#[test]
+fn a_trace_is_the_walk_and_more() {
+    let Recording { log, .. } = Recording::synthetic(Walked::Route, 100.0, 1, 0).unwrap();
+    let options = Options::default();
+    let trace = trace(&log.samples, &options).unwrap();
+    assert_eq!(trace.walk, walk(&log.samples, &options).unwrap());
+    assert_eq!(trace.moments.len(), log.samples.len());
+    let standing = trace.moments.iter().filter(|moment| moment.stance).count();
+    assert!((0.3..0.8).contains(&(standing as f64 / log.samples.len() as f64)));
+}
+
+#[test]
+fn without_updates_the_foot_never_stands_again_and_the_velocity_drifts() {
+    let Recording { log, .. } = Recording::synthetic(Walked::Route, 100.0, 1, 0).unwrap();
+    let options = Options::default();
+    let drifting = without_updates(&log.samples, &options).unwrap();
+    let left = drifting.moments.iter().position(|moment| !moment.stance).unwrap();
+    assert!(left > 150 && drifting.moments[left..].iter().all(|moment| !moment.stance));
+    let last_speed = |trace: &Trace| {
+        let [x, y, z] = trace.moments.last().unwrap().velocity;
+        x.hypot(y).hypot(z)
+    };
+    assert!(last_speed(&drifting) > 0.2, "{}", last_speed(&drifting));
+    assert!(last_speed(&trace(&log.samples, &options).unwrap()) < 0.05);
 }

@@ -1,32 +1,11 @@
-//! Feeds a walk to the tracker, in the number type, mode and shape that were chosen.
+//! Tracks a recording.
 
-mod evidence;
-mod heading;
-pub(super) mod sensor;
-pub mod trace;
+use kestirim_pedestrian::SensorClass;
+use kestirim_replay::pedestrian::{self, Options, Trace, heading_rate, sensor_class, trace, walk};
 
-use std::fmt::Debug;
-use std::marker::PhantomData;
-
-use kestirim_pedestrian::detector::{
-    Adaptive, AngularRateEnergy, FixedShoe, Magnitude, MovingVariance, StanceDetector,
-};
-use kestirim_pedestrian::{
-    Config, Ekf, Estimate, ImuSample, Lite, Navigator, OfflineTracker, PathUncertainty, Tracker,
-    Warnings,
-};
-use kestirim_scalar::{Q12_20, Scalar};
-use nalgebra::SVector;
-
-use self::trace::{Moment, OnlyAtStart, See, Trace, Updates};
-use super::Sample;
-use super::account::warning;
 use super::recording::Recording;
-use super::recording::position::TrackPoint;
-use super::settings::{DetectorKind, Options, SensorClass, TrackerKind};
 use crate::Error;
-use crate::metrics::STANDARD_GRAVITY;
-use crate::system::{Detail, Health, HealthState, Reason, ScalarKind};
+use crate::system::Detail;
 
 /// What the tracker made of a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,14 +29,14 @@ impl Track {
     ) -> Result<Self, Error> {
         let averaged = rate_hz.map(|rate_hz| recording.at_rate(rate_hz)).transpose()?;
         let tracked = averaged.as_ref().unwrap_or(recording);
-        let (samples, options) =
-            (&tracked.log.samples, options.with_sensor(|| sensor::class_of(tracked)));
-        let rate = options.magnetometer.then(|| heading::rate(&tracked.log, &options)).flatten();
+        let (samples, options) = (&tracked.log.samples, options.with_sensor(|| class_of(tracked)));
+        let field = tracked.log.field.as_ref().filter(|_| options.magnetometer);
+        let rate = field.and_then(|field| heading_rate(samples, field, &options));
         let tracked = match detail {
             Detail::Result => {
                 walk(samples, &options).map(|walk| Trace { walk, ..Trace::default() })
             }
-            Detail::Every => trace::trace(samples, &options),
+            Detail::Every => trace(samples, &options),
         };
         let mut trace = tracked.map_err(|error| refused(recording, &error))?;
         if let Some(rate) = rate {
@@ -73,316 +52,12 @@ impl Track {
 }
 
 /// A complaint that no tracker takes a recording.
-pub(super) fn refused(recording: &Recording, error: &RunError) -> Error {
+pub(super) fn refused(recording: &Recording, error: &pedestrian::Error) -> Error {
     Error::File { path: recording.path.clone(), problem: error.to_string() }
 }
 
-/// What a tracker makes of a walk, in the room frame.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Walk {
-    /// One position for every sample.
-    pub track: Vec<TrackPoint>,
-    /// One entry for every stride, in order.
-    pub strides: Vec<Stride>,
-    /// Horizontal, stance to stance, m.
-    pub path_length_m: f64,
-    /// Horizontal distance from start to end, m.
-    pub closure_m: f64,
-    /// The rate at which the heading drifted, rad/s, as a magnetometer showed it and as the path was corrected by.
-    pub heading_rate: Option<f64>,
-    /// What is suspicious about the sensor or the walk.
-    pub warnings: Vec<String>,
-    /// The class of sensor that it was tracked for.
-    pub sensor: SensorClass,
-    /// Why it suffers.
-    pub doubts: Health,
-    /// How far it can be relied upon, where that changes: from which entry of the track on.
-    pub health: Vec<(usize, HealthState)>,
-}
-
-/// One stride of the foot, from stance to stance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stride {
-    /// When the foot stands again, µs.
-    pub time_us: u64,
-    /// Where it stands then, m.
-    pub position: [f64; 3],
-    /// Horizontal distance from the stance before, m.
-    pub length_m: f64,
-    /// Time from the stance before, s.
-    pub duration_s: f64,
-    /// Turn with respect to the stride before, rad, anticlockwise.
-    pub heading_change_rad: f64,
-    /// Standard deviations of the position, m.
-    pub sigma_m: [f64; 3],
-}
-
-/// Why a tracker makes no walk of a log.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunError {
-    /// Too short to integrate anything.
-    #[error("expected a log of at least {needed} samples, found {found}")]
-    TooShort {
-        /// Samples of the log.
-        found: usize,
-        /// Samples it takes.
-        needed: usize,
-    },
-    /// The tracker refuses a sample.
-    #[error("sample {index}: {source}")]
-    Sample {
-        /// Counted from 1.
-        index: usize,
-        /// Why.
-        source: kestirim_pedestrian::Error,
-    },
-}
-
-/// Tracks a walk.
-///
-/// # Errors
-/// If the log is too short or holds a sample that the tracker refuses.
-pub fn walk(samples: &[Sample], options: &Options) -> Result<Walk, RunError> {
-    watched(samples, options, Updates::InStance, &mut |_| ())
-}
-
-/// Tracks a walk and lets `see` each moment of it.
-fn watched(
-    samples: &[Sample],
-    options: &Options,
-    updates: Updates,
-    see: &mut See<'_>,
-) -> Result<Walk, RunError> {
-    if samples.len() < 2 {
-        return Err(RunError::TooShort { found: samples.len(), needed: 2 });
-    }
-    match options.scalar {
-        ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
-        ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),
-        ScalarKind::Fixed => with_scalar::<Q12_20>(samples, options, updates, see),
-    }
-}
-
-fn with_scalar<T: Scalar>(
-    samples: &[Sample],
-    options: &Options,
-    updates: Updates,
-    see: &mut See<'_>,
-) -> Result<Walk, RunError> {
-    match options.tracker {
-        TrackerKind::Lite => with_navigator::<T, Lite<T>>(samples, options, updates, see),
-        TrackerKind::Ekf => with_navigator::<T, Ekf<T>>(samples, options, updates, see),
-    }
-}
-
-fn with_navigator<T: Scalar, N: Navigator<T>>(
-    samples: &[Sample],
-    options: &Options,
-    updates: Updates,
-    see: &mut See<'_>,
-) -> Result<Walk, RunError> {
-    let samples: Vec<_> = samples.iter().map(imu_sample::<T>).collect();
-    let config = config(options);
-    if updates == Updates::OnlyAtStart {
-        return causal::<T, N, _>(&samples, config, OnlyAtStart::default(), see);
-    }
-    if options.detector == DetectorKind::Adaptive && !options.causal {
-        return offline::<T, N>(&samples, config, see);
-    }
-    with_detector(
-        options,
-        Causally::<T, N> { samples: &samples, config, see, navigator: PhantomData },
-    )
-}
-
-/// What a tracker is built from.
-pub(super) fn config<T: Scalar>(options: &Options) -> Config<T> {
-    let levels = options.detector == DetectorKind::Adaptive;
-    let config = Config { sensor: options.sensor.into(), levels, ..Config::default() };
-    match options.contact_height_m() {
-        Some(height) => Config { contact_height: T::from_f64(height), ..config },
-        None => config,
-    }
-}
-
-/// What is done with a detector, whichever it is.
-pub(super) trait WithDetector<T: Scalar> {
-    /// What comes of it.
-    type Output;
-
-    /// Does it.
-    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Self::Output;
-}
-
-/// Does something with the detector that is chosen.
-pub(super) fn with_detector<T: Scalar, W: WithDetector<T>>(
-    options: &Options,
-    work: W,
-) -> W::Output {
-    let threshold = T::from_f64;
-    match options.detector {
-        DetectorKind::Adaptive => work.with(Adaptive::default()),
-        DetectorKind::Magnitude(value) => {
-            work.with(Magnitude::new(threshold(value / STANDARD_GRAVITY)))
-        }
-        DetectorKind::Variance(value) => {
-            work.with(MovingVariance::new(threshold(value / STANDARD_GRAVITY.powi(2))))
-        }
-        DetectorKind::AngularRate(value) => work.with(AngularRateEnergy::new(threshold(value))),
-        DetectorKind::Shoe(value) => work.with(FixedShoe::new(threshold(value))),
-    }
-}
-
-/// A log, tracked sample by sample.
-struct Causally<'a, 'b, T: Scalar, N> {
-    samples: &'a [ImuSample<T>],
-    config: Config<T>,
-    see: &'a mut See<'b>,
-    navigator: PhantomData<N>,
-}
-
-impl<T: Scalar, N: Navigator<T>> WithDetector<T> for Causally<'_, '_, T, N> {
-    type Output = Result<Walk, RunError>;
-
-    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Self::Output {
-        causal::<T, N, D>(self.samples, self.config, detector, self.see)
-    }
-}
-
-fn causal<T: Scalar, N: Navigator<T>, D: StanceDetector<T>>(
-    samples: &[ImuSample<T>],
-    config: Config<T>,
-    detector: D,
-    see: &mut See<'_>,
-) -> Result<Walk, RunError> {
-    let mut tracker = Tracker::<T, N, D>::with_detector(config, detector);
-    let mut walk = Walk::default();
-    for (index, sample) in samples.iter().enumerate() {
-        let estimate = tracker
-            .update(sample)
-            .map_err(|source| RunError::Sample { index: index + 1, source })?;
-        walk.push(&estimate, see);
-        walk.doubt(tracker.warnings());
-    }
-    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings(), config.sensor);
-    Ok(walk)
-}
-
-fn offline<T: Scalar, N: Navigator<T>>(
-    samples: &[ImuSample<T>],
-    config: Config<T>,
-    see: &mut See<'_>,
-) -> Result<Walk, RunError> {
-    let mut energy = vec![T::ZERO; samples.len()];
-    let mut tracker = OfflineTracker::<T, N>::new(config, samples, &mut energy)
-        .map_err(|(index, source)| RunError::Sample { index: index + 1, source })?;
-    let mut walk = Walk::default();
-    while let Some(estimate) = tracker.next() {
-        walk.push(&estimate, see);
-        walk.doubt(tracker.warnings());
-    }
-    walk.finish(tracker.finish(), tracker.path_length(), tracker.warnings(), config.sensor);
-    Ok(walk)
-}
-
-impl Walk {
-    fn push<T: Scalar>(&mut self, estimate: &Estimate<T>, see: &mut See<'_>) {
-        see(Moment { velocity: double(&estimate.velocity), stance: estimate.stance });
-        let position = double(&estimate.position);
-        self.track.push(TrackPoint { time_us: estimate.time_us, position });
-        self.strides.extend(estimate.stride.as_ref().map(Stride::from_estimate));
-    }
-
-    /// From here on the walk is no better than its warnings say; that it began without a standstill is told at the
-    /// end, when none came.
-    fn doubt(&mut self, warnings: Warnings) {
-        let state = Warnings { never_still: false, ..warnings }.health().state();
-        let before = self.health.last().map_or(HealthState::Good, |(_, before)| *before);
-        if before < state {
-            self.health.push((self.track.len().saturating_sub(1), state));
-        }
-    }
-
-    /// How far each entry of the track can be relied upon.
-    pub fn healths(&self) -> impl Iterator<Item = HealthState> {
-        let never_still = self.doubts.has(Reason::NotObservable);
-        let from_the_start = Health::GOOD.with(Reason::NotObservable, never_still).state();
-        let (mut changes, mut now) = (self.health.iter().peekable(), from_the_start);
-        (0..self.track.len()).map(move |index| {
-            while let Some((_, state)) = changes.next_if(|(from, _)| *from <= index) {
-                now = now.max(*state);
-            }
-            now
-        })
-    }
-
-    /// Standard deviations of the position at times that ascend, µs: those of the stride before, m.
-    pub fn sigmas_m(&self, times_us: impl Iterator<Item = u64>) -> impl Iterator<Item = [f64; 3]> {
-        let before_the_first = PathUncertainty::<f64>::new(self.sensor.into());
-        let mut now = before_the_first.standard_deviation().into();
-        let mut strides = self.strides.iter().peekable();
-        times_us.map(move |time_us| {
-            while let Some(stride) = strides.next_if(|stride| stride.time_us <= time_us) {
-                now = stride.sigma_m;
-            }
-            now
-        })
-    }
-
-    fn finish<T: Scalar>(
-        &mut self,
-        last: Option<kestirim_pedestrian::Stride<T>>,
-        path_length: T,
-        warnings: Warnings,
-        sensor: kestirim_pedestrian::SensorClass,
-    ) {
-        self.sensor = sensor.into();
-        self.strides.extend(last.as_ref().map(Stride::from_estimate));
-        let mut uncertainty = PathUncertainty::new(sensor);
-        for stride in &mut self.strides {
-            uncertainty.add(&stride.of_the_crate());
-            stride.sigma_m = uncertainty.standard_deviation().into();
-        }
-        self.path_length_m = path_length.to_f64();
-        if let Some(TrackPoint { position: [x, y, _], .. }) = self.track.last() {
-            self.closure_m = x.hypot(*y);
-        }
-        (self.warnings, self.doubts) = (warning::sentences(warnings), warnings.health());
-    }
-}
-
-impl Stride {
-    fn from_estimate<T: Scalar>(stride: &kestirim_pedestrian::Stride<T>) -> Self {
-        Self {
-            time_us: stride.time_us,
-            position: double(&stride.position),
-            length_m: stride.length.to_f64(),
-            duration_s: stride.duration.to_f64(),
-            heading_change_rad: stride.heading_change.to_f64(),
-            sigma_m: [0.0; 3],
-        }
-    }
-
-    fn of_the_crate(&self) -> kestirim_pedestrian::Stride<f64> {
-        kestirim_pedestrian::Stride {
-            time_us: self.time_us,
-            position: self.position.into(),
-            length: self.length_m,
-            duration: self.duration_s,
-            heading_change: self.heading_change_rad,
-        }
-    }
-}
-
-pub(super) fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {
-    ImuSample {
-        time_us: sample.time_us,
-        specific_force: SVector::from(sample.specific_force.map(T::from_f64)),
-        angular_rate: SVector::from(sample.angular_rate.map(T::from_f64)),
-    }
-}
-
-pub(super) fn double<T: Scalar>(vector: &SVector<T, 3>) -> [f64; 3] {
-    vector.data.0[0].map(T::to_f64)
+/// The class of a recording's sensor, looked for once; that of bare chips if it never stood still. Truth is not asked.
+pub(super) fn class_of(recording: &Recording) -> SensorClass {
+    let found = || sensor_class(&recording.log.samples, recording.measured());
+    *recording.class.get_or_init(found)
 }

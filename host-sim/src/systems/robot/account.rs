@@ -2,15 +2,14 @@
 
 pub mod accuracy;
 
+use kestirim_replay::robot::{Trace, doubts};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
-use super::Robot;
 use super::recording::Recording;
-use super::settings::Setup;
-use super::track::Trace;
+use super::{Robot, height, settings};
 use crate::Error;
-use crate::system::{Account, Reason, Settings, System, Table};
+use crate::system::{Account, Settings, System, Table};
 
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
@@ -54,7 +53,7 @@ pub(super) fn account(
     traces: &[Trace],
 ) -> Result<Account, Error> {
     let points = points(recording, traces);
-    let found = Setup::of_recording(recording, settings)?.found;
+    let found = settings::of_recording(recording, settings)?.found;
     let report = Report {
         system: Robot::NAME,
         updates: traces.iter().map(Trace::taken).sum(),
@@ -74,20 +73,14 @@ pub(super) fn account(
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.about.clone_from(&recording.path);
     account.understood(&report.import);
-    if report.rejected > report.updates {
-        account.doubt(Reason::Rejected);
-    }
-    if traces.iter().all(|trace| trace.last().is_none()) || traces.iter().any(Trace::is_vague) {
-        account.doubt(Reason::NotObservable);
-    }
-    if !recording.is_static() && traces.iter().any(Trace::is_interrupted) {
-        account.doubt(Reason::Dropout);
+    for reason in doubts(traces, recording.is_static()).reasons() {
+        account.doubt(reason);
     }
     account.fact("ranges taken in", report.updates.to_string());
     account.fact("ranges left out", report.rejected.to_string());
     account.fact("without a position", format!("{:.1} s", report.lost_s));
     if let Some(found) = &found {
-        account.fact("height of the tag", found.in_words());
+        account.fact("height of the tag", height::in_words(found));
     }
     if let Some(points) = &report.points {
         account.fact("points found", points.len().to_string());

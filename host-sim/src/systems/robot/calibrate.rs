@@ -5,10 +5,11 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use kestirim_import::Options as Reading;
+use kestirim_replay::robot::Anchors;
 use serde::Serialize;
 
 use super::Robot;
-use super::recording::anchors::{self, Anchors};
+use super::recording::anchors;
 use super::recording::calibration::{self, AnchorCalibration, Residuals};
 use super::recording::{points, ranges};
 use crate::system::{Calibration, System};

@@ -3,12 +3,11 @@
 pub mod plan;
 pub mod streams;
 
+use kestirim_replay::robot::{Event, Reception, Setup, Trace, TrackerKind};
+
 use self::plan::{ellipse, rectangle, room};
 use super::recording::Recording;
-use super::recording::event::Event;
-use super::settings::{Setup, TrackerKind};
-use super::track::follow::{self, Reception};
-use super::track::{Trace, track};
+use super::track::track;
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
@@ -30,7 +29,7 @@ pub(super) fn draw(
     answer: &mut Answer,
 ) -> Result<(), Error> {
     let unfiltered = Setup { tracker: TrackerKind::Lsq, ..setup.clone() };
-    let unfiltered = track(recording, &unfiltered, follow::build)?;
+    let unfiltered = track(recording, &unfiltered)?;
     let (shown, raw) = (Shown::new(recording, traces), Shown::new(recording, &unfiltered));
     let room = setup.room.map(|corners| rectangle("room", corners).coloured(Colour::Limit));
     let positions = raw.track("trilateration alone", Mark::Dots).coloured(Colour::Published);

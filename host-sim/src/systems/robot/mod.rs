@@ -7,26 +7,25 @@
 
 pub mod account;
 mod calibrate;
-mod check;
 pub mod figures;
-pub mod height;
+mod height;
 mod online;
 pub mod paper;
 pub mod recording;
 pub mod settings;
-pub mod simulate;
 pub mod track;
 
+pub use kestirim_simulate::robot as simulate;
 use std::sync::Arc;
+
+use kestirim_replay::robot::{self, Trace};
 
 use self::calibrate::Calibrate;
 use self::figures::streams;
 use self::online::Tag;
 use self::paper::experiment;
 use self::recording::{Driven, Recording};
-use self::settings::Setup;
 use self::simulate::scenario::office_anchors;
-use self::track::{Trace, follow};
 use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
@@ -114,11 +113,12 @@ impl System for Robot {
     }
 
     fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> {
-        check::check(recording, settings)
+        let parts = recording.parts.iter().map(|part| part.events.as_slice());
+        robot::check(&recording.anchors, parts, settings::known_height(recording, settings))
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Vec<Trace>, Error> {
-        track::track(recording, &Setup::of_recording(recording, settings)?, follow::build)
+        track::track(recording, &settings::of_recording(recording, settings)?)
     }
 
     fn account(
@@ -135,7 +135,7 @@ impl System for Robot {
         traces: &Vec<Trace>,
         answer: &mut Answer,
     ) -> Result<(), Error> {
-        figures::draw(recording, &Setup::of_recording(recording, settings)?, traces, answer)
+        figures::draw(recording, &settings::of_recording(recording, settings)?, traces, answer)
     }
 
     fn table(_: &str, recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Table {
@@ -148,11 +148,11 @@ impl System for Robot {
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {
         let setup = match recording {
-            Some(recording) => Setup::of_recording(recording, settings),
-            None => Ok(Setup::of(settings, &office_anchors(), None)),
+            Some(recording) => settings::of_recording(recording, settings),
+            None => Ok(settings::of(settings, &office_anchors(), None)),
         };
-        setup
-            .map_or_else(|error| format!("// {error}"), |setup| setup.firmware(recording.is_some()))
+        let said = |setup| settings::firmware::firmware(&setup, recording.is_some());
+        setup.map_or_else(|error| format!("// {error}"), said)
     }
 
     fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {

@@ -1,15 +1,15 @@
 //! A tag, followed as firmware follows it.
 
+use kestirim_replay::robot::{
+    self, Anchors, Dimensions, Event, Follow, HeightSearch, Inertial, Setup, build,
+};
 use kestirim_telemetry::{Imu, Message, Range};
 
-use super::height::Finder;
-use super::recording::anchors::{self, Anchors};
+use super::recording::anchors;
 use super::recording::calibration;
-use super::recording::event::{self, Event};
-use super::recording::motion::Inertial;
-use super::settings::{Dimensions, Setup};
+use super::settings;
 use super::simulate::scenario::office_anchors;
-use super::track::follow::{self, Follow};
+use super::track::refused;
 use crate::Error;
 use crate::figure::{Colour, Series};
 use crate::system::{Files, Online, Outcome, Plan, Settings};
@@ -40,7 +40,7 @@ impl Tag {
         };
         let calibration = files.one("calibration").map(|path| calibration::of(path, &anchors));
         let (biases, warnings) = calibration.transpose()?.unzip();
-        let setup = Setup::of(settings, &anchors, biases.as_deref());
+        let setup = settings::of(settings, &anchors, biases.as_deref());
         let is_height_missing = setup.dimensions == Dimensions::Two && !settings.is_given("height");
         if is_height_missing {
             assumptions.push(format!(
@@ -55,9 +55,10 @@ impl Tag {
 
 impl Plan for Tag {
     fn build(&self) -> Result<Box<dyn Online>, Error> {
-        let finder = self.is_height_missing.then(|| Finder::new(&self.setup)).transpose()?;
+        let finder = self.is_height_missing.then(|| HeightSearch::new(&self.setup));
+        let finder = finder.transpose().map_err(refused)?;
         Ok(Box::new(Followed {
-            tracker: follow::build(&self.setup)?,
+            tracker: build(&self.setup).map_err(refused)?,
             setup: self.setup.clone(),
             finder: finder.map(Box::new),
             begun_us: None,
@@ -81,20 +82,20 @@ struct Followed {
     tracker: Box<dyn Follow>,
     setup: Setup,
     /// Looks for the height until it is found.
-    finder: Option<Box<Finder>>,
+    finder: Option<Box<HeightSearch>>,
     begun_us: Option<u64>,
 }
 
 impl Followed {
     /// Once the ranges tell the height, the tag is followed anew at that height.
-    fn look_for_height(&mut self, time_us: u64, range: &event::Range) {
+    fn look_for_height(&mut self, time_us: u64, range: &robot::Range) {
         let Some(finder) = &mut self.finder else { return };
         if !finder.take(time_us, range) {
             return;
         }
         let Ok(found) = finder.found() else { return };
         let setup = self.setup.clone().at(found);
-        if let Ok(tracker) = follow::build(&setup) {
+        if let Ok(tracker) = build(&setup) {
             (self.tracker, self.setup, self.finder) = (tracker, setup, None);
         }
     }
@@ -105,7 +106,7 @@ impl Online for Followed {
         let (time_us, event) = match *message {
             Message::Range(Range { time_us, anchor, range }) => {
                 let (anchor, metres) = (anchor.into(), range.into());
-                (time_us, Event::Range(event::Range { time_us: time_us as i64, anchor, metres }))
+                (time_us, Event::Range(robot::Range { time_us: time_us as i64, anchor, metres }))
             }
             Message::Imu(Imu { time_us, specific_force, .. }) => {
                 let acceleration = specific_force.map(f64::from);
@@ -120,7 +121,7 @@ impl Online for Followed {
             self.look_for_height(since_us, range);
         }
         let reception = self.tracker.take(since_us, &event);
-        if let Event::Range(event::Range { time_us, .. }) = event {
+        if let Event::Range(robot::Range { time_us, .. }) = event {
             self.tracker.take(since_us, &Event::EpochEnd { time_us });
             return Outcome::taken(reception.taken);
         }

@@ -2,7 +2,6 @@
 
 pub mod anchors;
 pub mod calibration;
-pub mod event;
 pub mod motion;
 pub mod points;
 pub mod ranges;
@@ -10,10 +9,8 @@ pub mod ranges;
 use std::path::{Path, PathBuf};
 
 use kestirim_import::Options;
+use kestirim_replay::robot::{Anchors, Course, Event, Sensors};
 
-use self::anchors::Anchors;
-use self::event::{Event, Sensors};
-use self::points::Course;
 use self::ranges::RangeLog;
 use super::height::FoundOnce;
 use super::simulate::scenario::{self, EPOCH_US, EPOCHS, Office, office_anchors};
@@ -157,9 +154,7 @@ impl Recording {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
         self.warn_of_unlisted(log.unlisted);
-        let ahead = ranges::drop_far_ahead(&mut sensors.ranges, |row| row.time_us)
-            + ranges::drop_far_ahead(&mut sensors.inertial, |sample| sample.time_us)
-            + ranges::drop_far_ahead(&mut sensors.wheels, |sample| sample.time_us);
+        let ahead = sensors.drop_far_ahead();
         if ahead > 0 {
             self.warn(format!(
                 "{ahead} samples are more than 10 s ahead of what follows them: left out"

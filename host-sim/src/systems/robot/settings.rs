@@ -1,21 +1,15 @@
 //! How a tag is tracked: what can be set, and what it means.
 
-mod firmware;
-pub mod tuning;
+pub(super) mod firmware;
 
-use clap::ValueEnum;
-use kestirim_uwb_ranging::Room;
+use kestirim_replay::ScalarKind;
+use kestirim_replay::robot::{Anchors, Dimensions, KnownHeight, Setup, TrackerKind, Tuning};
 
-use self::tuning::Tuning;
-use super::height::{self, FoundHeight};
-use super::recording::anchors::Anchors;
+use super::height;
 use super::recording::{Heights, Part, Recording};
 use super::simulate::scenario::ANCHORS;
 use crate::Error;
-use crate::system::{Idle, ScalarKind, Setting, Settings};
-
-/// Number types the trackers are built for.
-pub const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
+use crate::system::{Idle, Setting, Settings};
 
 /// Farther above or below the anchors no slider looks for a tag, m.
 const HEIGHTS: f64 = 5.0;
@@ -105,7 +99,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
             own.decay_time_s.unwrap_or_default(),
         )
         .live(),
-        Setting::some_of("scalar", "Number type of the tracker", &SCALARS, &ScalarKind::F32).live(),
+        Setting::one_of("scalar", "Number type of the tracker", &ScalarKind::F32).live(),
         Setting::switch("calibrated", "Use the calibration of the anchors", true).live(),
     ]
 }
@@ -144,144 +138,70 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
     }
 }
 
-/// How ranges become positions.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum TrackerKind {
-    /// Linear trilateration of each epoch by itself (eqs 3-7)
-    Lsq,
-    /// Nonlinear least squares of each epoch by itself
-    Nls,
-    /// The paper's extended Kalman filter (eqs 8-17)
-    Ekf,
-    /// The adaptive filter in its safe form
-    Aekf,
-    /// The adaptive filter as published (eqs 18, 19)
-    #[value(alias = "aekf-printed")]
-    AekfPublished,
-    /// Robust, adaptive, with a common bias where the anchors are not calibrated
-    #[default]
-    Default,
+/// The default tracker in the paper's office, without calibration.
+pub fn of_the_office(scalar: ScalarKind) -> Setup {
+    Setup { scalar, ..Setup::new(&ANCHORS, 0.0) }
 }
 
-/// In how many dimensions.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum Dimensions {
-    /// In the plane, at a known height
-    #[default]
-    #[value(name = "2")]
-    Two,
-    /// In space
-    #[value(name = "3")]
-    Three,
+/// As set, for what was recorded. A height that nobody says is found from the ranges.
+///
+/// # Errors
+/// [`Error::Usage`]: the ranges do not tell it.
+pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Setup, Error> {
+    let has_wheels = recording.parts.iter().any(Part::has_wheels);
+    let setup = of(settings, &recording.anchors, recording.biases.as_deref());
+    let setup = Setup { has_wheels, ..setup };
+    if !height::is_missing(recording, settings) {
+        return Ok(setup);
+    }
+    let found = height::of_recording(recording, &setup)?;
+    Ok(setup.at(found))
 }
 
-/// Everything that can be chosen about a tracker, and the anchors it is for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
-    /// How ranges become positions.
-    pub tracker: TrackerKind,
-    /// In how many dimensions.
-    pub dimensions: Dimensions,
-    /// Number type of the estimator.
-    pub scalar: ScalarKind,
-    /// Where the tag can be, m.
-    pub room: Option<[f64; 4]>,
-    /// Height of the tag to begin with, m.
-    pub height_m: f64,
-    /// Places of the anchors, m.
-    pub anchors: Vec<[f64; 3]>,
-    /// What they measure too long by, m, if they are calibrated.
-    pub biases: Option<Vec<f64>>,
-    /// Whether the log has the robot's wheels.
-    pub has_wheels: bool,
-    /// The height as the ranges tell it, if nobody else does, with what uncalibrated anchors measure too long
-    /// then.
-    pub found: Option<FoundHeight>,
-    /// Constants of the tracker.
-    pub tuning: Tuning,
+/// What is known of the tag's height. One that the ranges do not tell is the tracker's to say.
+pub(super) fn known_height(recording: &Recording, settings: &Settings) -> KnownHeight {
+    if recording.heights == Heights::Read {
+        return KnownHeight::Varying;
+    }
+    let is_in_plane = settings.chosen::<Dimensions>("dim") == Dimensions::Two;
+    let height = is_in_plane.then(|| of_recording(recording, settings).ok()).flatten();
+    match height.map(|setup| setup.height_m) {
+        None => KnownHeight::Unknown,
+        Some(metres) if settings.is_given("height") => KnownHeight::Said(metres),
+        Some(metres) => KnownHeight::Found(metres),
+    }
 }
 
-impl Setup {
-    /// The default tracker for a tag at a height (m) among uncalibrated anchors.
-    pub fn new(anchors: &[[f64; 3]], height_m: f64) -> Self {
-        Self {
-            tracker: TrackerKind::Default,
-            dimensions: Dimensions::Two,
-            scalar: ScalarKind::F32,
-            room: None,
-            height_m,
-            anchors: anchors.to_vec(),
-            biases: None,
-            has_wheels: false,
-            found: None,
-            tuning: Tuning::default(),
-        }
+/// As set, for anchors and what they measure too long by (m), if that is known. A height that is not set is the anchors'
+/// mean height.
+pub fn of(settings: &Settings, anchors: &Anchors, biases: Option<&[f64]>) -> Setup {
+    let room = settings.text("room").and_then(|text| match text.as_str() {
+        WITHIN_ANCHORS => Some(anchors.rectangle()),
+        corners => parse_room(corners).ok(),
+    });
+    Setup {
+        tracker: settings.chosen("tracker"),
+        dimensions: settings.chosen("dim"),
+        scalar: settings.chosen("scalar"),
+        room,
+        height_m: settings.number("height").unwrap_or_else(|| anchors.mean_height()),
+        anchors: anchors.positions.clone(),
+        biases: biases.filter(|_| settings.is_on("calibrated")).map(<[f64]>::to_vec),
+        has_wheels: false,
+        found: None,
+        tuning: tuning(settings),
     }
+}
 
-    /// The default tracker in the paper's office, without calibration.
-    pub fn of_the_office(scalar: ScalarKind) -> Self {
-        Self { scalar, ..Self::new(&ANCHORS, 0.0) }
-    }
-
-    /// As set, for what was recorded. A height that nobody says is found from the ranges.
-    ///
-    /// # Errors
-    /// [`Error::Usage`]: the ranges do not tell it.
-    pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Self, Error> {
-        let has_wheels = recording.parts.iter().any(Part::has_wheels);
-        let setup = Self::of(settings, &recording.anchors, recording.biases.as_deref());
-        let setup = Self { has_wheels, ..setup };
-        if !height::is_missing(recording, settings) {
-            return Ok(setup);
-        }
-        let found = height::of_recording(recording, &setup)?;
-        Ok(setup.at(found))
-    }
-
-    /// The same for a tag at the height that was found.
-    pub(super) fn at(self, found: FoundHeight) -> Self {
-        Self { height_m: found.metres, found: Some(found), ..self }
-    }
-
-    /// As set, for anchors and what they measure too long by (m), if that is known. A height that is not set is the
-    /// anchors' mean height.
-    pub fn of(settings: &Settings, anchors: &Anchors, biases: Option<&[f64]>) -> Self {
-        let room = settings.text("room").and_then(|text| match text.as_str() {
-            WITHIN_ANCHORS => Some(anchors.rectangle()),
-            corners => parse_room(corners).ok(),
-        });
-        Self {
-            tracker: settings.chosen("tracker"),
-            dimensions: settings.chosen("dim"),
-            scalar: settings.chosen("scalar"),
-            room,
-            height_m: settings.number("height").unwrap_or_else(|| anchors.mean_height()),
-            anchors: anchors.positions.clone(),
-            biases: biases.filter(|_| settings.is_on("calibrated")).map(<[f64]>::to_vec),
-            has_wheels: false,
-            found: None,
-            tuning: Tuning::of(settings),
-        }
-    }
-
-    /// Whether the default tracker is moved by the wheels: in the plane.
-    pub(super) fn is_wheeled(&self) -> bool {
-        self.has_wheels && self.dimensions == Dimensions::Two
-    }
-
-    /// The room in another number type.
-    pub fn room<T: kestirim_scalar::Scalar>(&self) -> Option<Room<T>> {
-        self.room.map(|corners| {
-            let [x0, y0, x1, y1] = corners.map(T::from_f64);
-            Room::plane(x0, y0, x1, y1)
-        })
-    }
-
-    /// The bias of an anchor, m.
-    pub fn bias(&self, anchor: usize) -> f64 {
-        let of = |biases: Option<&Vec<f64>>| biases?.get(anchor).copied();
-        let found = self.found.as_ref().map(|found| &found.biases);
-        of(self.biases.as_ref()).unwrap_or_default() + of(found).unwrap_or_default()
+fn tuning(settings: &Settings) -> Tuning {
+    let huber = ["huber-long", "huber-short"].map(|name| settings.decided(name));
+    Tuning {
+        range_sigma_m: settings.decided("range-sigma"),
+        acceleration_density: settings.decided("acceleration"),
+        gate_sigmas: settings.is_on("gating").then(|| settings.decided("gate")),
+        huber_sigmas: settings.is_on("huber").then_some(huber),
+        decay_time_s: settings.number("decay"),
+        learns: settings.is_on("learning"),
     }
 }
 
@@ -319,9 +239,9 @@ mod tests {
         let settings = Settings::new(table(None));
         let anchors = Anchors { positions: ANCHORS.to_vec(), ..Anchors::default() };
         let biases = [0.1; 4];
-        let expected = Setup::of_the_office(ScalarKind::F32);
-        assert_eq!(Setup::of(&settings, &anchors, None), expected);
+        let expected = of_the_office(ScalarKind::F32);
+        assert_eq!(of(&settings, &anchors, None), expected);
         let expected = Setup { biases: Some(biases.to_vec()), ..expected };
-        assert_eq!(Setup::of(&settings, &anchors, Some(&biases)), expected);
+        assert_eq!(of(&settings, &anchors, Some(&biases)), expected);
     }
 }

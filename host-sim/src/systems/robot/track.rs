@@ -1,200 +1,44 @@
-//! Feeds a recording to a tracker, and keeps what became of every range.
+//! Tracks a recording, part by part.
 
-mod each_epoch;
-mod elsewhere;
-pub mod follow;
-pub mod published;
-mod recursive;
-mod wheeled;
+use kestirim_replay::robot::{self, Follow, Setup, Trace};
 
-use self::follow::{Follow, Reception};
-use super::height::FoundHeight;
 use super::recording::Recording;
-use super::recording::event::{Event, Range};
-use super::settings::Setup;
 use crate::Error;
-use crate::system::{HealthState, Reason};
 
-/// What a tracker made of one part of a recording.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Trace {
-    /// One entry for each time at which there are ranges, in order.
-    pub epochs: Vec<Epoch>,
-    /// Every range that was one, and what became of it.
-    pub ranges: Vec<(Range, Reception)>,
-}
-
-/// Where the tag was found at one epoch.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Epoch {
-    /// Time of the log's clock, µs.
-    pub time_us: i64,
-    /// Where, m; none while the tracker does not know.
-    pub position: Option<[f64; 3]>,
-    /// Variance of x, covariance and variance of y, m², from a tracker that knows them.
-    pub spread: Option<[f64; 3]>,
-    /// Variance of z, m², from a tracker that estimates it, or of the height that was found.
-    pub height_variance: Option<f64>,
-    /// How far it can be relied upon.
-    pub health: HealthState,
-}
-
-/// A position of a larger standard deviation is not what anybody ranges for, m.
-const VAGUE_M: f64 = 1.0;
-
-impl Epoch {
-    /// Standard deviations of x, y and z, m, as far as they are known.
-    pub fn sigmas_m(&self) -> [Option<f64>; 3] {
-        let of = |variance: f64| variance.max(0.0).sqrt();
-        let [x, y] = self.spread.map_or([None; 2], |[xx, _, yy]| [xx, yy].map(|it| Some(of(it))));
-        [x, y, self.height_variance.map(of)]
-    }
-
-    /// Whether the position is known to a metre, or not at all.
-    pub fn is_vague(&self) -> bool {
-        self.sigma_m().is_some_and(|sigma| sigma > VAGUE_M)
-    }
-
-    /// Standard deviation of the position in the plane, root of its variances' sum, m.
-    pub fn sigma_m(&self) -> Option<f64> {
-        self.spread.map(|[xx, _, yy]| (xx + yy).max(0.0).sqrt())
-    }
-}
-
-impl Trace {
-    /// How many ranges were taken in.
-    pub fn taken(&self) -> usize {
-        self.ranges.iter().filter(|(_, reception)| reception.taken).count()
-    }
-
-    /// How many ranges were left out or refused.
-    pub fn rejected(&self) -> usize {
-        self.ranges.len() - self.taken()
-    }
-
-    /// Adds what a height that was found leaves uncertain: of itself, and a root mean square distance in the plane, in
-    /// no direction more than in another.
-    fn widen(&mut self, found: &FoundHeight) {
-        let half = 0.5 * found.position_sigma_m * found.position_sigma_m;
-        for epoch in &mut self.epochs {
-            epoch.height_variance = Some(found.sigma_m * found.sigma_m);
-            if let Some([xx, _, yy]) = epoch.spread.as_mut() {
-                *xx += half;
-                *yy += half;
-            }
-        }
-    }
-
-    /// Times, µs, and where the tag was then, m, wherever it was found.
-    pub fn known(&self) -> impl Iterator<Item = (i64, [f64; 3])> {
-        self.epochs.iter().filter_map(|epoch| Some((epoch.time_us, epoch.position?)))
-    }
-
-    /// Where it was at the last epoch, if that is known.
-    pub fn last(&self) -> Option<[f64; 3]> {
-        self.epochs.last().and_then(|epoch| epoch.position)
-    }
-
-    /// Whether more than a tenth of the positions are vague.
-    pub fn is_vague(&self) -> bool {
-        let vague = self.epochs.iter().filter(|epoch| epoch.is_vague()).count();
-        10 * vague > self.known().count()
-    }
-
-    /// Whether there is no position for more than a tenth of the time.
-    pub fn is_interrupted(&self) -> bool {
-        let ends = self.epochs.first().zip(self.epochs.last());
-        let seconds = ends.map(|(first, last)| (last.time_us - first.time_us) as f64 * 1e-6);
-        self.lost_s() > 0.1 * seconds.unwrap_or_default()
-    }
-
-    /// How long the tag was not known after the first range, s.
-    pub fn lost_s(&self) -> f64 {
-        let lost = self.epochs.windows(2).filter(|pair| pair[0].position.is_none());
-        lost.map(|pair| (pair[1].time_us - pair[0].time_us) as f64 * 1e-6).fold(0.0, |a, b| a + b)
-    }
-}
-
-/// The ranges of the last seconds.
-#[derive(Debug, Default)]
-struct Recent {
-    /// The first of them.
-    first: usize,
-    rejected: usize,
-    /// Beyond the last of them.
-    end: usize,
-}
-
-impl Recent {
-    /// As far back as is looked, µs.
-    const SPAN_US: i64 = 10_000_000;
-    /// Of fewer ranges no share is taken.
-    const FEWEST: usize = 20;
-
-    /// Less than good while more ranges are left out than taken in.
-    fn health(&mut self, now_us: i64, ranges: &[(Range, Reception)]) -> HealthState {
-        let is_rejected = |(_, reception): &(Range, Reception)| usize::from(!reception.taken);
-        self.rejected += ranges[self.end..].iter().map(is_rejected).sum::<usize>();
-        self.end = ranges.len();
-        while let Some(old) = ranges[self.first..].first() {
-            if old.0.time_us >= now_us - Self::SPAN_US {
-                break;
-            }
-            self.rejected -= is_rejected(old);
-            self.first += 1;
-        }
-        let count = self.end - self.first;
-        if count >= Self::FEWEST && 2 * self.rejected > count {
-            Reason::Rejected.state()
-        } else {
-            HealthState::Good
-        }
-    }
-}
-
-/// Feeds a tracker.
-pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
-    let start_us = events.iter().map(Event::time_us).min().unwrap_or_default();
-    let mut trace = Trace::default();
-    let mut recent = Recent::default();
-    for event in events {
-        let time_us = event.time_us();
-        let reception = tracker.take(time_us.saturating_sub(start_us).max(0) as u64, event);
-        match event {
-            Event::Range(range) => trace.ranges.push((*range, reception)),
-            Event::EpochEnd { .. } => {
-                let (position, spread) = (tracker.position(), tracker.spread());
-                let height_variance = tracker.height_variance();
-                let health = recent.health(time_us, &trace.ranges);
-                let mut epoch = Epoch { time_us, position, spread, height_variance, health };
-                if epoch.is_vague() && epoch.health == HealthState::Good {
-                    epoch.health = Reason::NotObservable.state();
-                }
-                trace.epochs.push(epoch);
-            }
-            _ => {}
-        }
-    }
-    trace
-}
+/// What helps if the ranges do not tell the height.
+const MISSING: &str = "expected --height, metres above the floor or a file (or --dim 3)";
 
 /// Tracks every part of a recording by itself, with a tracker that is built for it.
 ///
 /// # Errors
+/// [`Error::Usage`] if the anchors will not do.
+pub fn track(recording: &Recording, setup: &Setup) -> Result<Vec<Trace>, Error> {
+    track_by(recording, setup, |_, setup| robot::build(setup))
+}
+
+/// The same with trackers of one's own, each built for a part, counted from 0.
+///
+/// # Errors
 /// Those of `build`.
-pub fn track(
+pub fn track_by(
     recording: &Recording,
     setup: &Setup,
-    build: impl Fn(&Setup) -> Result<Box<dyn Follow>, Error>,
+    build: impl Fn(usize, &Setup) -> Result<Box<dyn Follow>, robot::Error>,
 ) -> Result<Vec<Trace>, Error> {
-    let parts = recording.parts.iter().map(|part| {
+    let parts = recording.parts.iter().enumerate().map(|(number, part)| {
         let height_m = part.height_m.unwrap_or(setup.height_m);
-        let mut tracker = build(&Setup { height_m, ..setup.clone() })?;
-        let mut trace = follow(tracker.as_mut(), &part.events);
-        if let Some(found) = &setup.found {
-            trace.widen(found);
-        }
-        Ok(trace)
+        let setup = Setup { height_m, ..setup.clone() };
+        Ok(Trace::by(build(number, &setup)?.as_mut(), &setup, &part.events))
     });
-    parts.collect()
+    parts.collect::<Result<_, _>>().map_err(refused)
+}
+
+/// A tracker that cannot be made, or a height that is missing.
+pub(super) fn refused(error: robot::Error) -> Error {
+    Error::Usage(match error {
+        robot::Error::HeightUnknown | robot::Error::HeightVague { .. } => {
+            format!("{error}: {MISSING}")
+        }
+        other => other.to_string(),
+    })
 }

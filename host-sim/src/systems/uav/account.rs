@@ -3,15 +3,13 @@
 pub mod accuracy;
 pub mod states;
 
+use kestirim_replay::uav::{Estimate, EstimatorKind, Followed, STATE_COLUMNS};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Uav;
 use super::recording::Recording;
-use super::recording::model::STATE_COLUMNS;
-use super::settings::EstimatorKind;
 use super::track::Track;
-use super::track::estimators::{Estimate, Followed};
 use crate::Error;
 use crate::metrics::rms;
 use crate::system::{Account, Reason, System, Table};
@@ -81,13 +79,13 @@ pub(super) fn account(
     estimator: EstimatorKind,
     track: &Track,
 ) -> Result<Account, Error> {
-    let Track { flight, followed } = track;
+    let Track { flight, followed, .. } = track;
     let accuracy = Accuracy::of(track);
     let found = match recording {
         Recording::Logged(logged) => logged.found.clone(),
         Recording::Synthetic(_) => Found::default(),
     };
-    let mut warnings = [found.warnings, flight.warnings()].concat();
+    let mut warnings = [found.warnings, track.warnings.clone()].concat();
     if accuracy.as_ref().is_some_and(|accuracy| accuracy.samples == 0) {
         warnings.push("no time of the truth is one of the log's".to_owned());
     }
@@ -96,8 +94,9 @@ pub(super) fn account(
     let missing = flight.log.samples.iter().flat_map(|sample| &sample.measured);
     let residuals = followed.innovations.iter().zip(followed.rejected.iter().chain(&[0; 4]));
     let innovations = flight.names().zip(residuals).map(|(output, (innovations, &rejected))| {
+        let innovations: Vec<f64> = innovations.iter().copied().flatten().collect();
         let (output, measured) = (output.to_owned(), innovations.len());
-        Residual { output, measured, rms: rms(innovations), rejected }
+        Residual { output, measured, rms: rms(&innovations), rejected }
     });
     let innovations: Vec<_> = innovations.collect();
     warnings.extend(innovations.iter().filter_map(Residual::warning));
@@ -178,7 +177,7 @@ impl Report {
 }
 
 /// Time, states and, of a filter that knows them, their standard deviations in every line.
-pub(super) fn table(Track { flight, followed }: &Track) -> Table {
+pub(super) fn table(Track { flight, followed, .. }: &Track) -> Table {
     let row = |estimate: &Estimate| {
         let state = flight.absolute(estimate);
         let time = format!("{:.6}", estimate.t_us as f64 / 1e6);

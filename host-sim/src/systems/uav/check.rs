@@ -1,7 +1,8 @@
 //! What the log of a flight shows before an estimator follows it.
 
+use kestirim_replay::uav::STATE_COLUMNS;
+
 use super::recording::Recording;
-use super::recording::model::STATE_COLUMNS;
 use crate::metrics::{median, standard_deviation};
 use crate::system::{Finding, Reason};
 

@@ -4,15 +4,15 @@ mod poles;
 pub mod streams;
 mod synthetic;
 
+use kestirim_replay::uav::{Estimate, EstimatorKind};
 use nalgebra::SVector;
 
 use super::account::accuracy::Accuracy;
 use super::account::states::{BANDS, shown};
 use super::recording::Recording;
-use super::settings::{EstimatorKind, Options, Simulation};
+use super::settings::{Simulation, options};
 use super::simulate::plant::{STATE_NAMES, STATE_SLUGS, STATE_UNITS, STATES};
 use super::track::Track;
-use super::track::estimators::Estimate;
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::{Answer, Settings};
@@ -61,7 +61,7 @@ pub(super) fn draw(
     };
     answer.figures.extend((0..4).map(|state| drawn(state, ours, [luenberger, kalman])));
     answer.figures.push(error(ours, [luenberger, kalman]));
-    let options = Options::of(settings);
+    let options = options(settings);
     match recording {
         Recording::Logged(_) => {
             answer.figures.push(poles::of_log(&ours.flight, &options, luenberger.is_some())?);

@@ -17,9 +17,9 @@ mod online;
 pub mod paper;
 pub mod recording;
 pub mod settings;
-pub mod simulate;
 pub mod track;
 
+pub use kestirim_simulate::uav as simulate;
 use std::sync::Arc;
 
 use self::figures::streams;

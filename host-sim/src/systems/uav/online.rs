@@ -2,16 +2,18 @@
 
 use std::fmt::Debug;
 
+use kestirim_replay::uav::{
+    Assumed, EstimatorKind, Filter, KEPT, Model, Options, Sample, discrete, filter, rows, sized,
+};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_telemetry::{Flight, Message};
 use kestirim_uav_estimator::{self as uav, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
-use super::recording::log::{LARGEST, Sample};
-use super::recording::model::Model;
-use super::settings::{EstimatorKind, Options};
-use super::track::design::discrete;
-use super::track::estimators::{Assumed, Filter, KEPT, filter, rows, sized};
+use super::recording::log::LARGEST;
+use super::recording::model;
+use super::settings;
+use super::track::refused;
 use crate::Error;
 use crate::system::{Files, Online, Outcome, Plan, ScalarKind, Settings};
 
@@ -43,7 +45,7 @@ impl Flying {
             let problem = "--system uav needs a --model: P1, P2, P3 or a file";
             return Err(Error::Usage(problem.to_owned()));
         }
-        let model = file.map(Model::read).transpose()?;
+        let model = file.map(model::read).transpose()?;
         let model = model.unwrap_or_else(|| Model::of(settings.chosen("model")));
         let place = |(place, name): (usize, &&str)| {
             let output = model.outputs.iter().position(|(known, _)| known == name)?;
@@ -56,8 +58,8 @@ impl Flying {
             let path = file.unwrap_or_else(|| "model".as_ref()).to_path_buf();
             return Err(Error::File { path, problem });
         }
-        let origin = model.origin(settings.is_on("absolute"))?;
-        let flying = Self { model, outputs, places, origin, options: Options::of(settings) };
+        let origin = model.origin(settings.is_on("absolute")).map_err(refused)?;
+        let flying = Self { model, outputs, places, origin, options: settings::options(settings) };
         flying.build()?;
         Ok(flying)
     }

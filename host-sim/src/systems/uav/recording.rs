@@ -5,8 +5,8 @@ pub mod model;
 
 use std::path::PathBuf;
 
-use self::log::{Log, Truth};
-use self::model::{Model, STATE_COLUMNS};
+use kestirim_replay::uav::{Log, Model, STATE_COLUMNS, Truth};
+
 use super::simulate::scenario::Inputs;
 use crate::Error;
 use crate::system::Files;
@@ -43,7 +43,7 @@ impl Recording {
     /// The file, the line, and what was expected there.
     pub fn read(files: &Files) -> Result<Self, Error> {
         let path = files.required("log")?.to_path_buf();
-        let model = files.one("model").map(Model::read).transpose()?;
+        let model = files.one("model").map(model::read).transpose()?;
         let names = model.as_ref().map_or_else(
             || STATE_COLUMNS.to_vec(),
             |model| model.outputs.iter().map(|(name, _)| name.as_str()).collect(),

@@ -4,14 +4,13 @@ pub(super) mod firmware;
 pub mod text;
 
 use clap::ValueEnum;
-use serde::Serialize;
+use kestirim_replay::uav::{EstimatorKind, MIDDLE, Noise, Options, Plant, faster};
 
 use super::recording::Recording;
-use super::recording::model::NEEDS_TRIM;
+use super::simulate::design::Kind;
 use super::simulate::flight::Flight;
-use super::simulate::plant::{Outputs, Plant};
-use super::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise, START};
-use super::track::design::{Kind, MIDDLE, Poles, faster};
+use super::simulate::plant::Outputs;
+use super::simulate::scenario::{INTERVAL_S, Inputs, NEAR, START};
 use crate::system::{Idle, ScalarKind, Setting, Settings};
 
 /// What belongs to an estimator.
@@ -20,6 +19,8 @@ const OF_THE_OBSERVER: [&str; 2] = ["poles", "faster"];
 /// What belongs to a synthetic flight.
 const SYNTHETIC: [&str; 7] =
     ["outputs", "gain", "noise", "sigma", "wrong-start", "duration", "seed"];
+/// What `--absolute` does.
+pub(super) const NEEDS_TRIM: &str = "needs a model with a trim: P1, or a file that has one";
 /// Standard deviation that a filter reckons with where there is no noise.
 const LEAST_SIGMA: f64 = 1e-3;
 
@@ -124,17 +125,6 @@ fn untrimmed(settings: &Settings) -> Option<Idle> {
     (settings.chosen::<Plant>("model") != Plant::P1).then(|| Idle::foreign(NEEDS_TRIM))
 }
 
-/// Which estimator follows a flight.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum EstimatorKind {
-    /// A Kalman filter
-    #[default]
-    Kalman,
-    /// A Luenberger observer
-    Luenberger,
-}
-
 /// The gain of a Kalman filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum GainKind {
@@ -157,46 +147,17 @@ enum NoiseKind {
     None,
 }
 
-/// Everything that can be chosen about the estimators.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// Which one.
-    pub estimator: EstimatorKind,
-    /// Of the observer, 1/s.
-    pub poles: Poles,
-    /// Standard deviations of the inputs' noise; none is those of usual sensors.
-    pub inputs: Option<[f64; 2]>,
-    /// The same of the outputs.
-    pub outputs: Option<[f64; 4]>,
-    /// Q/R of the filter, times that of the noise.
-    pub ratio: f64,
-    /// Number type.
-    pub scalar: ScalarKind,
-}
-
-impl Options {
-    /// As set.
-    pub fn of(settings: &Settings) -> Self {
-        let list = |name| settings.text(name);
-        let poles = list("poles").and_then(|poles| text::poles(&poles).ok());
-        Self {
-            estimator: settings.chosen("estimator"),
-            poles: faster(poles.unwrap_or(MIDDLE), settings.decided("faster")),
-            inputs: list("input-noise").and_then(|sigmas| text::two_numbers(&sigmas).ok()),
-            outputs: list("output-noise").and_then(|sigmas| text::four_numbers(&sigmas).ok()),
-            ratio: settings.decided("ratio"),
-            scalar: settings.chosen("scalar"),
-        }
-    }
-
-    /// The same with another estimator.
-    pub const fn with(&self, estimator: EstimatorKind) -> Self {
-        Self { estimator, ..*self }
-    }
-
-    /// Standard deviations of the inputs' noise with this Q/R.
-    pub(super) fn weighted(&self, inputs: [f64; 2]) -> [f64; 2] {
-        inputs.map(|sigma| sigma * self.ratio.sqrt())
+/// As set.
+pub fn options(settings: &Settings) -> Options {
+    let list = |name| settings.text(name);
+    let poles = list("poles").and_then(|poles| text::poles(&poles).ok());
+    Options {
+        estimator: settings.chosen("estimator"),
+        poles: faster(poles.unwrap_or(MIDDLE), settings.decided("faster")),
+        inputs: list("input-noise").and_then(|sigmas| text::two_numbers(&sigmas).ok()),
+        outputs: list("output-noise").and_then(|sigmas| text::four_numbers(&sigmas).ok()),
+        ratio: settings.decided("ratio"),
+        scalar: settings.chosen("scalar"),
     }
 }
 
@@ -224,7 +185,7 @@ impl Simulation {
                 (equal(settings.decided("sigma")), equal(settings.decided("sigma")))
             }
         };
-        let options = Options::of(settings);
+        let options = self::options(settings);
         let wrong = settings.decided("wrong-start");
         let flight = Flight {
             plant: settings.chosen("model"),

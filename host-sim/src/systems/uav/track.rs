@@ -1,17 +1,12 @@
 //! Feeds a flight to an estimator.
 
-pub mod design;
-pub mod deviations;
-pub mod estimators;
+use kestirim_replay::uav::{
+    self, Deviations, Estimate, EstimatorKind, Followed, Log, Model, Plant, Sample,
+};
 
-use self::deviations::Deviations;
-use self::estimators::{Estimate, Followed};
-use super::recording::log::{Log, Sample};
-use super::recording::model::Model;
 use super::recording::{Logged, Recording};
-use super::settings::{EstimatorKind, Options, Simulation};
+use super::settings::{NEEDS_TRIM, Simulation, options};
 use super::simulate::flight::{Flight, Moment};
-use super::simulate::plant::Plant;
 use super::simulate::scenario::INTERVAL_S;
 use crate::Error;
 use crate::system::{Health, Settings};
@@ -23,6 +18,8 @@ pub struct Track {
     pub flight: Deviations,
     /// What came of it.
     pub followed: Followed,
+    /// What a reader should know of the log.
+    pub warnings: Vec<String>,
 }
 
 impl Track {
@@ -43,13 +40,14 @@ impl Track {
         settings: &Settings,
         estimator: EstimatorKind,
     ) -> Result<Self, Error> {
-        let options = Options::of(settings).with(estimator);
+        let options = options(settings).with(estimator);
         match recording {
             Recording::Logged(logged) => {
                 let flight = deviations(logged, settings)?;
                 let followed = flight.follow(&options);
-                let followed = followed.map_err(|problem| recording.refused(problem))?;
-                Ok(Self { flight, followed })
+                let followed = followed.map_err(|error| recording.refused(error.to_string()))?;
+                let warnings = warnings(logged, settings, &flight);
+                Ok(Self { flight, followed, warnings })
             }
             Recording::Synthetic(inputs) => {
                 let simulation = Simulation::of(settings, *inputs);
@@ -66,11 +64,31 @@ fn deviations(logged: &Logged, settings: &Settings) -> Result<Deviations, Error>
     let plant = settings.chosen::<Plant>("model");
     let model = logged.model.clone().unwrap_or_else(|| Model::of(plant));
     let (log, truth) = (logged.log.clone(), logged.truth.clone());
-    let mut flight = Deviations::new(model, log, truth, settings.is_on("absolute"))?;
-    if logged.model.is_none() && !settings.is_given("model") {
-        flight.doubts.push(format!("no model is given: {} is assumed (--model)", plant.name()));
-    }
-    Ok(flight)
+    Deviations::new(model, log, truth, settings.is_on("absolute")).map_err(refused)
+}
+
+fn warnings(logged: &Logged, settings: &Settings, flight: &Deviations) -> Vec<String> {
+    let absolute = flight.looks_absolute.map(|[airspeed, steady]| {
+        format!("V is {airspeed} m/s where deviations from {steady} m/s are expected (--absolute)")
+    });
+    let Log { gaps, interval_s, .. } = flight.log;
+    let missing =
+        || format!("{gaps} gaps are longer than one and a half intervals of {interval_s} s");
+    let is_assumed = logged.model.is_none() && !settings.is_given("model");
+    let assumed = || {
+        let plant = settings.chosen::<Plant>("model").name();
+        format!("no model is given: {plant} is assumed (--model)")
+    };
+    let told = [absolute, (gaps > 0).then(missing), is_assumed.then(assumed)];
+    told.into_iter().flatten().collect()
+}
+
+/// What cannot be estimated as it is set.
+pub(super) fn refused(error: uav::Error) -> Error {
+    Error::Usage(match error {
+        uav::Error::NoTrim => format!("--absolute {NEEDS_TRIM}"),
+        other => other.to_string(),
+    })
 }
 
 /// A simulated flight as a log would have it.
@@ -83,7 +101,10 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
         measured: outputs.iter().map(|&output| Some(moment.sample.y[output])).collect(),
     };
     let innovations = outputs.iter().map(|&output| {
-        moments.iter().map(|moment| moment.sample.y[output] - moment.estimate[output]).collect()
+        moments
+            .iter()
+            .map(|moment| Some(moment.sample.y[output] - moment.estimate[output]))
+            .collect()
     });
     let followed = Followed {
         estimates: timed()
@@ -97,5 +118,5 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
     let samples = timed().map(sample).collect();
     let log = Log { outputs: outputs.clone(), samples, interval_s: INTERVAL_S, gaps: 0 };
     let flight = Deviations::simulated(Model::of(flight.plant), log, truth.collect());
-    Track { flight, followed }
+    Track { flight, followed, warnings: Vec::new() }
 }

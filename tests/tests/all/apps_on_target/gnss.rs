@@ -3,9 +3,9 @@
 
 use anyhow::{Result, bail, ensure};
 use gnss_app::{STATES, site};
-use host_sim::systems::gnss::recording::products::Products;
 use kestirim_gnss_files::{self as files, Antennas, Clocks, Orbits, Text};
 use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Slipped, Solution};
+use kestirim_replay::gnss::Products;
 use kestirim_scalar::Components;
 use kestirim_telemetry::{GlobalPosition, Message};
 use kestirim_tests::ppp::{OUTLIERS, START, station};

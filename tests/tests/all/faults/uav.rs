@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::Result;
 use host_sim::systems::uav::Uav;
-use host_sim::systems::uav::simulate::plant::Plant;
-use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, Sample, fly};
+use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Sample, fly};
+use kestirim_replay::uav::{Noise, Plant};
 use serde_json::Value;
 
 use super::table::{Table, one_in};

@@ -4,6 +4,7 @@ use host_sim::systems::pedestrian::recording::log;
 use host_sim::systems::robot::recording::{anchors, ranges};
 use kestirim_import::Options;
 use kestirim_pedestrian::{Config as WalkConfig, Ekf, Lite, Tracker as Walk};
+use kestirim_replay::robot::RangeRow;
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_tests::recordings::{folder, folder_of, gcp};
 use kestirim_uwb_tracker::{Anchor, Config, Tracker as Robot};
@@ -45,7 +46,7 @@ fn a_recorded_drive() {
     let options = Options::default();
     let (log, _) =
         ranges::read_moving(&folder.join("ranges.csv"), &places, &options).expect("ranges");
-    let sample = |row: &ranges::RangeRow| {
+    let sample = |row: &RangeRow| {
         Some(Sample::Range(row.time_us as u64, row.anchor as u32, row.range? as f32))
     };
     let samples: Vec<_> = log.rows.iter().filter_map(sample).collect();

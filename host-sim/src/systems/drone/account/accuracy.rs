@@ -1,9 +1,9 @@
 //! Estimates against the truth.
 
+use kestirim_replay::drone::{Estimate, Track};
 use serde::Serialize;
 
 use crate::metrics::error_over_sigma;
-use crate::systems::drone::track::trace::{Estimate, Track};
 
 /// Errors are told after each of these, s.
 const MINUTE_S: f64 = 60.0;

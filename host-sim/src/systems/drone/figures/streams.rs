@@ -1,7 +1,8 @@
 //! A flight as streams, for other programs.
 
+use kestirim_replay::drone::Track;
+
 use crate::stream::Stream;
-use crate::systems::drone::track::trace::Track;
 
 /// Measurements, estimates and, where it is known, the truth.
 pub fn streams(track: &Track) -> Vec<Stream> {

@@ -2,12 +2,12 @@
 
 use kestirim_air_to_ground::{Contaminated, Likelihood, Measurement};
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
+use kestirim_replay::drone::EnvironmentKind;
 use kestirim_user_locator::{Height, Locator, Motion, Orbit, Tracker, Waypoint};
 use rand_core::{Rng, SeedableRng};
 
 use crate::metrics::{distance, mean};
 use crate::random::{stream, uniform};
-use crate::systems::drone::settings::choices::EnvironmentKind;
 use crate::systems::drone::simulate::moving_user::{self, Policy, Walk};
 use crate::systems::drone::simulate::scenario::measure;
 use crate::systems::drone::simulate::trajectory::{SIDE_M, Trajectory};

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use super::beyond::{self, Stay};
 use super::published::ENERGY;
 use super::report::{Report, Row};
-use super::static_user::{self, Job};
 use super::sweeps::{MovingSweeps, STOPS, StaticCell, StaticSweeps, place_of};
 use crate::metrics::mean;
 use crate::system::{RunOptions, ScalarKind, Settings, System, choose_scalar};
@@ -18,6 +17,7 @@ use crate::systems::drone::settings::cell;
 use crate::systems::drone::simulate::moving_user::{self, LOST_M, Policy, Walk};
 use crate::systems::drone::simulate::static_user::{FilterSetting, Geometry};
 use crate::systems::drone::simulate::trajectory::SIDE_M;
+use crate::systems::drone::simulate::trial::{self, Job};
 use crate::{Error, output};
 
 /// Trials of a cell of a user who stays unless told otherwise: portions of so many, until …
@@ -145,7 +145,7 @@ impl Experiment {
         self.report(vec![Row { table: "moving user", cell: name, ..row }], 0)
     }
 
-    fn staying(&self, job: &Job, bar: &ProgressBar) -> Vec<static_user::Outcome> {
+    fn staying(&self, job: &Job, bar: &ProgressBar) -> Vec<trial::Outcome> {
         let mut outcomes = Vec::new();
         let portions = self.trials.map_or(MOST_PORTIONS, |_| 1);
         for portion in 0..u64::from(portions) {
@@ -153,7 +153,7 @@ impl Experiment {
             let more = (portion * size..(portion + 1) * size)
                 .into_par_iter()
                 .progress_with(bar.clone())
-                .map(|index| static_user::trial(job, self.scalar, self.seed, index));
+                .map(|index| trial::trial(job, self.scalar, self.seed, index));
             outcomes.extend(more.collect::<Vec<_>>());
             let limits: Vec<f64> = outcomes.iter().map(|outcome| outcome.limit).collect();
             let row = Row::of(&limits);
@@ -198,17 +198,17 @@ impl Experiment {
 }
 
 /// The thesis' filter and ours in one cell.
-fn both(outcomes: &[static_user::Outcome], cell: &StaticCell) -> Vec<Row> {
+fn both(outcomes: &[trial::Outcome], cell: &StaticCell) -> Vec<Row> {
     let row = published_row(outcomes, cell.published_filter, cell.published, cell.maximum);
     if cell.maximum { vec![row] } else { vec![row, best_row(outcomes, cell.best)] }
 }
 
-fn limit(outcomes: &[static_user::Outcome]) -> f64 {
+fn limit(outcomes: &[trial::Outcome]) -> f64 {
     mean(&outcomes.iter().map(|outcome| outcome.limit).collect::<Vec<_>>())
 }
 
 fn published_row(
-    outcomes: &[static_user::Outcome],
+    outcomes: &[trial::Outcome],
     filter: usize,
     published: Option<f64>,
     maximum: bool,
@@ -221,7 +221,7 @@ fn published_row(
     Row { filter: "published", ..row }
 }
 
-fn best_row(outcomes: &[static_user::Outcome], best: usize) -> Row {
+fn best_row(outcomes: &[trial::Outcome], best: usize) -> Row {
     let errors: Vec<f64> = outcomes.iter().map(|outcome| outcome.bests[best]).collect();
     let credible = outcomes.iter().filter(|outcome| outcome.credible).count();
     let credible_percent =

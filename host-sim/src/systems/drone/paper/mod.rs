@@ -5,5 +5,4 @@ pub mod chapter;
 pub mod experiment;
 pub mod published;
 pub mod report;
-pub mod static_user;
 pub mod sweeps;

@@ -5,10 +5,11 @@ use kestirim_particle_filter::Resampler;
 use super::published::{
     EQUAL_ENERGY, HEIGHT, PARTICLES, RADIUS, RESAMPLERS_MAXIMUM, RESAMPLERS_MEAN, TRAJECTORIES,
 };
-use super::static_user::{Geometry, Job, PublishedFilter};
 use crate::systems::drone::settings::choices::{ResamplerKind, name};
 use crate::systems::drone::simulate::moving_user::{Policy, Walk};
+use crate::systems::drone::simulate::static_user::{Geometry, PublishedFilter};
 use crate::systems::drone::simulate::trajectory::Trajectory;
+use crate::systems::drone::simulate::trial::Job;
 
 /// Points of our filter, unless the cell says otherwise.
 const POINTS: usize = 500;

@@ -2,15 +2,11 @@
 
 use std::path::Path;
 
+use kestirim_replay::drone::{Area, MOST_CORNERS};
+
 use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table;
-
-/// Most corners of an area.
-pub const MOST_CORNERS: usize = 4096;
-
-/// A polygon, m.
-pub type Area = kestirim_user_locator::Area<f64, MOST_CORNERS>;
 
 /// Reads columns x,y, or lat,lon as in the log: the corners in their order.
 ///

@@ -3,33 +3,12 @@
 use std::path::Path;
 
 use kestirim_import::{Options, levels};
+use kestirim_replay::drone::{Quantity, Stop};
 
 use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table::{self, Column, Found, Header, Log};
 use crate::text;
-
-/// What was measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// Path loss, dB.
-    PathLoss,
-    /// Received level of unknown offset, dB.
-    Level,
-}
-
-/// One measurement.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stop {
-    /// s.
-    pub t: f64,
-    /// Where the drone was, m.
-    pub place: [f64; 2],
-    /// Its height above the user, m.
-    pub height: f64,
-    /// The path loss, or the negative level, dB.
-    pub loss: f64,
-}
 
 /// A log.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,18 +25,6 @@ pub struct Flight {
 
 /// From stop to stop it takes so long, s.
 const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
-/// Heights above which no drone flies, m.
-const HIGHEST_M: f64 = 20_000.0;
-/// No radio measures a larger loss or level, dB.
-const LARGEST_DB: f64 = 300.0;
-
-impl Stop {
-    /// Whether a channel can use it.
-    pub fn is_usable(&self) -> bool {
-        self.height > 0.0 && self.height < HIGHEST_M && self.loss.abs() <= LARGEST_DB
-    }
-}
-
 /// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP.
 ///
 /// # Errors

@@ -1,6 +1,8 @@
 //! One cell of the experiment: a user who stays in 2000 m × 2000 m, or moves in 4000 m × 4000 m.
 
-use super::choices::{EnvironmentKind, FilterKind, ResamplerKind, name};
+use kestirim_replay::drone::EnvironmentKind;
+
+use super::choices::{FilterKind, ResamplerKind, name};
 use super::{FilterSetting, Geometry, Policy, Walk};
 use crate::output;
 use crate::system::{Idle, Setting, Settings};

@@ -1,39 +1,7 @@
 //! What there is to choose from.
 
 use clap::ValueEnum;
-use kestirim_air_to_ground::{Channel, Environment};
 use kestirim_particle_filter::Resampler;
-use kestirim_scalar::Scalar;
-
-/// Wavelength of 2 GHz with the thesis' speed of light, m.
-pub const WAVELENGTH_M: f64 = 0.15;
-
-/// What is built on the ground.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum EnvironmentKind {
-    /// Suburbs and villages
-    Suburban,
-    /// A European city
-    #[default]
-    Urban,
-    /// A city whose houses stand close together
-    DenseUrban,
-    /// A city of skyscrapers
-    HighRise,
-}
-
-impl EnvironmentKind {
-    /// Its channel at 2 GHz.
-    pub fn channel<T: Scalar>(self) -> Channel<T> {
-        let environment = match self {
-            Self::Suburban => Environment::suburban(),
-            Self::Urban => Environment::urban(),
-            Self::DenseUrban => Environment::dense_urban(),
-            Self::HighRise => Environment::high_rise(),
-        };
-        Channel::new(&environment, T::from_f64(WAVELENGTH_M)).expect("the thesis' constants")
-    }
-}
 
 /// Which filter finds a user.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]

@@ -1,12 +1,12 @@
 //! The same in firmware.
 
-use super::choices::{EnvironmentKind, FlightKind, ResamplerKind};
+use kestirim_replay::drone::{EnvironmentKind, MOST, MOST_OPEN, POINTS, Quantity, level_prior};
+
+use super::choices::{FlightKind, ResamplerKind};
 use super::{Recording, Settings, built, filter_of, geometry, walk};
 use crate::system::{Literal, ScalarKind};
-use crate::systems::drone::recording::flight::Quantity;
 use crate::systems::drone::simulate::moving_user::{Policy, Walk};
 use crate::systems::drone::simulate::static_user::FilterSetting;
-use crate::systems::drone::track::search::{MOST, MOST_OPEN, POINTS, level_prior};
 
 const CHANNELS: &str = "kestirim_air_to_ground";
 const FILTERS: &str = "kestirim_particle_filter";

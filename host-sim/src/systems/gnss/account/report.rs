@@ -3,16 +3,13 @@
 use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
 use kestirim_ppp_filter::Health;
+use kestirim_replay::gnss::{Accuracy, Both, FilterKind, Followed, Recording, Slips, Unused};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::accuracy::Accuracy;
 use crate::system::System;
 use crate::systems::gnss::Gnss;
-use crate::systems::gnss::recording::Recording;
-use crate::systems::gnss::settings::{FilterKind, Mode, Setup};
-use crate::systems::gnss::track::followed::{Both, Followed, Slips};
-use crate::systems::gnss::track::outage::Unused;
+use crate::systems::gnss::settings::{Mode, Setup};
 
 /// So many satellites are named as those with the most rejected observations.
 const WORST: usize = 5;

@@ -3,12 +3,10 @@
 use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::Slip;
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_replay::gnss::{Fix, Followed, Systems};
 use kestirim_robust_kalman::{Decision, Reason};
 
-use super::accuracy::Fix;
 use crate::system::Table;
-use crate::systems::gnss::settings::Systems;
-use crate::systems::gnss::track::followed::Followed;
 
 const RESIDUAL_COLUMNS: [&str; 13] = [
     "t",

@@ -4,9 +4,7 @@ use std::fmt::Write;
 
 use kestirim_gnss_ppp::{Corrections, Geodetic};
 use kestirim_ppp_filter::Health;
-
-use crate::systems::gnss::recording::Recording;
-use crate::systems::gnss::track::followed::Followed;
+use kestirim_replay::gnss::{Followed, Recording};
 
 /// Days between the first of January 1970 and day zero of the modified Julian date.
 const UNIX_DAY: i64 = 40_587;

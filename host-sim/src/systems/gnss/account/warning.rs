@@ -1,12 +1,10 @@
 //! What a user should know of files, and of how they fit each other.
 
 use kestirim_ppp_filter::Contradiction;
+use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, Tally, names};
 
 use crate::metrics::median;
-use crate::systems::gnss::recording::model::Epoch;
-use crate::systems::gnss::recording::{Recording, names};
-use crate::systems::gnss::settings::{FilterKind, Setup};
-use crate::systems::gnss::track::followed::{Followed, Tally};
+use crate::systems::gnss::settings::Setup;
 
 /// What is the same for all filters, by what one of them made of the recording.
 pub(super) fn of_recording(

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use kestirim_gnss_files::satellite_name;
 use kestirim_ppp_filter::SatelliteReport;
+use kestirim_replay::gnss::Followed;
 use kestirim_robust_kalman::Reason;
 use nalgebra::Vector3;
 
 use crate::stream::Stream;
-use crate::systems::gnss::track::followed::Followed;
 
 const ESTIMATE: [&str; 9] =
     ["x_m", "y_m", "z_m", "sd_x_m", "sd_y_m", "sd_z_m", "ecef_x_m", "ecef_y_m", "ecef_z_m"];

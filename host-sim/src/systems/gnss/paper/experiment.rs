@@ -8,6 +8,7 @@ mod score;
 use indicatif::ProgressBar;
 use kestirim_gnss_ppp::{Corrections, Receiver};
 use kestirim_ppp_filter::{Config, Estimator, Motion, PppFilter, SatelliteObservation, states};
+use kestirim_replay::gnss::{FilterKind, Fix};
 use rayon::prelude::*;
 
 pub(super) use self::report::four;
@@ -16,8 +17,7 @@ pub use self::score::Score;
 use super::published::{self, PppErrors};
 use crate::system::{RunOptions, ScalarKind, System, choose_scalar};
 use crate::systems::gnss::Gnss;
-use crate::systems::gnss::account::accuracy::Fix;
-use crate::systems::gnss::settings::{FilterKind, SCALARS};
+use crate::systems::gnss::settings::SCALARS;
 use crate::systems::gnss::simulate::{Day, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::{Error, output};
 

@@ -2,9 +2,10 @@
 
 use kestirim_gnss_ppp::{Correction, Corrections};
 use kestirim_ppp_filter::{Config, Motion};
+use kestirim_replay::gnss::FilterKind;
 use kestirim_robust_kalman::{Igg3, Weight};
 
-use super::{FilterKind, Setup};
+use super::Setup;
 use crate::system::{Literal, ScalarKind};
 
 impl Setup {

@@ -1,14 +1,12 @@
 //! A tracked walk against the truth.
 
+use kestirim_replay::pedestrian::{Footprint, TrackPoint, Walk, position_at};
 use serde::Serialize;
 
 use crate::metrics::{
     aligned_errors, error_over_sigma, polyline_length, ratio_in_words, relative_error_percent, rms,
 };
 use crate::systems::pedestrian::recording::Recording;
-use crate::systems::pedestrian::recording::position::{TrackPoint, position_at};
-use crate::systems::pedestrian::recording::truth::Footprint;
-use crate::systems::pedestrian::track::Walk;
 
 /// How far a walk is from the truth: horizontally, after a least-squares yaw alignment about the
 /// start.
@@ -101,7 +99,7 @@ fn compare(walk: &Walk, times_us: &[u64], truth: &[[f64; 2]], true_length_m: f64
 #[expect(clippy::float_cmp, reason = "these values are exact")]
 mod tests {
     use super::*;
-    use crate::systems::pedestrian::track::Stride;
+    use kestirim_replay::pedestrian::Stride;
 
     /// A walk straight ahead along y, 1 m a second, one stride a second, `stretch` times too long.
     fn straight(stretch: f64) -> Walk {

@@ -1,8 +1,9 @@
 //! A track laid onto a plan, for the eye: an inertial tracker knows neither where it starts nor which way it
 //! looks.
 
+use kestirim_replay::pedestrian::{TrackPoint, position_at};
+
 use crate::metrics::best_turn;
-use crate::systems::pedestrian::recording::position::{TrackPoint, position_at};
 
 /// How the frame of a track lies in that of a truth.
 #[derive(Debug, Clone, Copy, PartialEq)]

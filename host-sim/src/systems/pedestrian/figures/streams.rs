@@ -1,11 +1,11 @@
 //! A walk as streams, for other programs.
 
+use kestirim_replay::pedestrian::{Trace, TrackPoint};
+
 use super::placement::Placement;
 use super::seconds;
 use crate::stream::Stream;
 use crate::systems::pedestrian::Sample;
-use crate::systems::pedestrian::recording::position::TrackPoint;
-use crate::systems::pedestrian::track::trace::Trace;
 
 /// What the sensor said, what the tracker makes of it, and the truth as far as it is known, turned onto the
 /// estimate: that has the frame in which `--track` writes it.
@@ -57,8 +57,7 @@ pub fn streams(samples: &[Sample], trace: &Trace, truth: &[TrackPoint]) -> Vec<S
 mod tests {
     use super::*;
     use crate::systems::pedestrian::recording::{Recording, Walked};
-    use crate::systems::pedestrian::settings::Options;
-    use crate::systems::pedestrian::track::trace::trace;
+    use kestirim_replay::pedestrian::{Options, trace};
 
     #[test]
     fn rows_fit_their_columns_and_truth_lies_on_the_estimate() {

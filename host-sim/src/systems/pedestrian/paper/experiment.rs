@@ -7,17 +7,16 @@
 use std::fmt;
 
 use indicatif::ParallelProgressIterator;
+use kestirim_replay::ScalarKind;
+use kestirim_replay::pedestrian::{self, Options, walk};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::published::{FIFTY_HZ, HUNDRED_HZ, PathLengths, ROUTE_M};
 use crate::metrics::{mean, median, standard_deviation};
-use crate::system::choose_scalar;
-use crate::system::{RunOptions, ScalarKind};
+use crate::system::{RunOptions, choose_scalar};
 use crate::systems::pedestrian::account::accuracy::{Accuracy, against_footprints};
 use crate::systems::pedestrian::recording::{Recording, Walked};
-use crate::systems::pedestrian::settings::{Options, SCALARS};
-use crate::systems::pedestrian::track::{RunError, walk};
 use crate::{Error, output};
 
 /// Walks at each rate in the paper.
@@ -74,7 +73,7 @@ struct Outcome {
 /// [`Error::Usage`] for a number type that the tracker is not built for.
 pub fn run(options: RunOptions) -> Result<Report, Error> {
     let default = Options::default();
-    let scalar = choose_scalar("pedestrian", options.scalar, &SCALARS, default.scalar)?;
+    let scalar = choose_scalar("pedestrian", options.scalar, &ScalarKind::ALL, default.scalar)?;
     let trials = options.trials.unwrap_or(DEFAULT_TRIALS);
     let methods = [Options { scalar, ..Options::published() }, Options { scalar, ..default }];
     let walks = u64::from(trials) * WALKS;
@@ -120,7 +119,7 @@ fn track(
 }
 
 /// A complaint that the tracker refuses a synthetic walk.
-pub(super) fn refused(index: u64, error: &RunError) -> Error {
+pub(super) fn refused(index: u64, error: &pedestrian::Error) -> Error {
     Error::Usage(format!("synthetic walk {index}: {error}"))
 }
 

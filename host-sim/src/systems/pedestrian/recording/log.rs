@@ -5,23 +5,14 @@ use std::path::Path;
 
 pub use kestirim_import::Options;
 use kestirim_import::inertial::{self, Conclusion, Inertial};
+use kestirim_replay::pedestrian::TrackPoint;
 
-use super::position::TrackPoint;
 use crate::Error;
 use crate::systems::pedestrian::Sample;
 use crate::table::{FARTHEST_POSITION, refused};
 use crate::text;
 
 const TRUTH_COLUMNS: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
-/// Names of a magnetometer's columns. Any unit will do: only its directions and ratios are used.
-const FIELD_COLUMNS: [[&str; 3]; 5] = [
-    ["mx_G", "my_G", "mz_G"],
-    ["mx_uT", "my_uT", "mz_uT"],
-    ["mx", "my", "mz"],
-    ["magx", "magy", "magz"],
-    ["mag_x", "mag_y", "mag_z"],
-];
-
 /// A recorded walk.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Log {
@@ -72,19 +63,10 @@ pub fn parse(path: &Path, bytes: &[u8], options: &Options) -> Result<Log, Error>
     let truth = truth(path, &read)?;
     Ok(Log {
         truth,
-        field: field(&read),
+        field: read.magnetic_field(),
         import: read.conclusions.iter().map(Conclusion::to_string).collect(),
         warnings: read.damage.sentences(),
         samples: read.samples,
-    })
-}
-
-/// The magnetic field, by the columns that say so.
-fn field(log: &Inertial) -> Option<Vec<[f64; 3]>> {
-    FIELD_COLUMNS.iter().find_map(|names| {
-        let [x, y, z] = names.map(|name| log.column(name));
-        let (x, y, z) = (x?, y?, z?);
-        Some(x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect())
     })
 }
 

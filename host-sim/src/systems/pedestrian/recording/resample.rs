@@ -6,8 +6,9 @@
 //! delayed nor advanced, whatever a time stamp means in the log. A block without samples, a gap,
 //! stays a gap. Truth is interpolated at the block's time.
 
+use kestirim_replay::pedestrian::{TrackPoint, position_at};
+
 use super::log::Log;
-use super::position::{TrackPoint, position_at};
 use crate::Error;
 use crate::systems::pedestrian::Sample;
 

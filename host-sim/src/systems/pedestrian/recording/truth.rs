@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use kestirim_replay::pedestrian::Footprint;
+
 use super::log::Log;
 use crate::Error;
 use crate::table;
@@ -9,15 +11,6 @@ use crate::table;
 /// How far beyond the ends of a log a footprint may lie, µs: a log that was averaged or rewritten
 /// in milliseconds ends a few samples early, while the foot stands.
 const SLACK_US: u64 = 100_000;
-
-/// Where the foot stood.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Footprint {
-    /// Time of the log's clock, µs.
-    pub time_us: u64,
-    /// Horizontal position, m, in any right-handed frame with z up.
-    pub position: [f64; 2],
-}
 
 /// Reads footprints: CSV with columns `t,x,y` (s, m); others, such as `sample_index`, are ignored.
 /// They are joined to the log by `t`.

@@ -1,11 +1,10 @@
 //! How far positions are from the truth, in the plane.
 
+use kestirim_replay::robot::{Course, Epoch, Trace};
 use serde::Serialize;
 
 use crate::metrics::{distance, error_over_sigma, mean, median, percentile, ratio_in_words, rms};
-use crate::systems::robot::recording::points::Course;
 use crate::systems::robot::recording::{Recording, Truth};
-use crate::systems::robot::track::{Epoch, Trace};
 
 /// Horizontal errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

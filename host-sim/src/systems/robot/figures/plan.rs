@@ -63,7 +63,7 @@ pub(super) fn ellipse([x, y]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Vec<[f64; 2]>
 mod tests {
     use super::*;
     use crate::metrics::distance;
-    use crate::systems::robot::recording::anchors::Anchors;
+    use kestirim_replay::robot::Anchors;
 
     #[test]
     fn an_ellipse_lies_along_its_longer_axis() {

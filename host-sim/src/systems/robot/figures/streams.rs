@@ -1,8 +1,9 @@
 //! A recording and its track as streams, for other programs.
 
+use kestirim_replay::robot::{Event, Trace};
+
 use crate::stream::Stream;
 use crate::systems::robot::recording::Recording;
-use crate::systems::robot::track::Trace;
 
 /// What was measured, what the tracker makes of it, and the truth as far as it is known. Points that were
 /// recorded one by one begin at the same time, so each has topics of its own.
@@ -36,7 +37,7 @@ pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
     }
     let mut sensors: Vec<Stream> = Vec::new();
     for event in recording.parts.iter().flat_map(|part| &part.events) {
-        let Some((topic, columns, row)) = event.streamed() else { continue };
+        let Some((topic, columns, row)) = streamed(event) else { continue };
         let row = (seconds(event.time_us()), row);
         match sensors.iter_mut().find(|stream| stream.topic == topic) {
             Some(stream) => stream.rows.push(row),
@@ -47,20 +48,36 @@ pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
     streams
 }
 
+/// What a sensor said that is written as a stream: its topic, its columns, their values.
+fn streamed(event: &Event) -> Option<(&'static str, &'static [&'static str], Vec<f64>)> {
+    match event {
+        Event::Inertial(sample) => {
+            Some(("/robot/imu", &["ax_m_s2", "ay_m_s2", "az_m_s2"], sample.acceleration.to_vec()))
+        }
+        Event::Wheels(sample) => Some((
+            "/robot/wheels",
+            &["speed_m_s", "turn_rate_rad_s"],
+            vec![sample.speed, sample.turn_rate],
+        )),
+        // With the ranges stands what became of each.
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::system::ScalarKind;
     use crate::systems::robot::recording::Driven;
-    use crate::systems::robot::settings::Setup;
-    use crate::systems::robot::track::{follow, track};
+    use crate::systems::robot::settings::of_the_office;
+    use crate::systems::robot::track::track;
 
     #[test]
     fn rows_fit_their_columns_and_every_point_has_its_topics() {
-        let setup = Setup::of_the_office(ScalarKind::F32);
+        let setup = of_the_office(ScalarKind::F32);
         for (driven, expected) in [(Driven::Line, 3), (Driven::Points, 45)] {
             let recording = Recording::synthetic(driven, 1);
-            let traces = track(&recording, &setup, follow::build).unwrap();
+            let traces = track(&recording, &setup).unwrap();
             let streams = streams(&recording, &traces);
             assert_eq!(streams.len(), expected);
             for stream in &streams {

@@ -6,6 +6,11 @@
 use std::fmt;
 
 use indicatif::ParallelProgressIterator;
+use kestirim_replay::ScalarKind;
+use kestirim_replay::robot::{
+    self, Beginning, Epoch, Follow, Noise, RangeRow, Sensors, Setup, TrackerKind, build,
+    build_published,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -13,16 +18,12 @@ use super::limit::{Knowledge, mean_error_limit};
 use super::published::{PositionErrors, TABLE_1, TABLE_1_MEAN};
 use crate::metrics::{distance, mean};
 use crate::random::stream;
-use crate::system::{RunOptions, ScalarKind, System, choose_scalar};
+use crate::system::{RunOptions, System, choose_scalar};
 use crate::systems::robot::Robot;
 use crate::systems::robot::account::accuracy::Accuracy;
-use crate::systems::robot::recording::event::Sensors;
-use crate::systems::robot::recording::ranges::RangeRow;
-use crate::systems::robot::settings::{SCALARS, Setup, TrackerKind};
+use crate::systems::robot::settings::of_the_office;
 use crate::systems::robot::simulate::scenario::{self, EPOCHS, Office};
-use crate::systems::robot::track::follow::{self, Follow};
-use crate::systems::robot::track::published::{Beginning, Noise};
-use crate::systems::robot::track::{self, Epoch};
+use crate::systems::robot::track::refused;
 use crate::{Error, output};
 
 /// Repetitions unless told otherwise: the mean of the table is then good to a fiftieth.
@@ -83,14 +84,14 @@ pub struct Report {
 /// # Errors
 /// If the scalar is not supported.
 pub fn run(options: RunOptions) -> Result<Report, Error> {
-    let scalar = choose_scalar(Robot::NAME, options.scalar, &SCALARS, ScalarKind::F32)?;
+    let scalar = choose_scalar(Robot::NAME, options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
     let trials = options.trials.unwrap_or(TRIALS);
-    let days: Result<Vec<Day>, Error> = (0..u64::from(trials))
+    let days: Result<Vec<Day>, _> = (0..u64::from(trials))
         .into_par_iter()
         .progress_with(output::progress(u64::from(trials), "days"))
         .map(|trial| Day::run(options.seed, trial, scalar))
         .collect();
-    let days = days?;
+    let days = days.map_err(refused)?;
     let points: Vec<Row> = (0..15).map(|point| row(&days, point)).collect();
     let lines: Vec<[f64; 5]> = days.iter().map(|day| day.line).collect();
     let column = |index: usize| mean(&lines.iter().map(|line| line[index]).collect::<Vec<_>>());
@@ -114,12 +115,12 @@ struct Day {
 }
 
 impl Day {
-    fn run(seed: u64, trial: u64, scalar: ScalarKind) -> Result<Self, Error> {
+    fn run(seed: u64, trial: u64, scalar: ScalarKind) -> Result<Self, robot::Error> {
         let mut rng = stream(seed, trial);
         let office = Office::draw(&mut rng);
         let places = scenario::points();
         let measured = places.map(|place| office.measure(&mut rng, &[place; EPOCHS]));
-        let plain = Setup::of_the_office(scalar);
+        let plain = of_the_office(scalar);
         let calibrated = Setup { biases: Some(office.calibrate(&mut rng)), ..plain.clone() };
         let mut points = [[0.0; COLUMNS]; 15];
         for ((errors, rows), &place) in points.iter_mut().zip(&measured).zip(&places) {
@@ -130,11 +131,11 @@ impl Day {
         let rows = office.measure(&mut rng, &path);
         let honest = |noise| Beginning { start: None, noise };
         let followers = [
-            follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
-            follow::build_published(&plain, honest(Noise::Fixed))?,
-            follow::build_published(&plain, honest(Noise::Adapted))?,
-            follow::build(&plain)?,
-            follow::build(&calibrated)?,
+            build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
+            build_published(&plain, honest(Noise::Fixed))?,
+            build_published(&plain, honest(Noise::Adapted))?,
+            build(&plain)?,
+            build(&calibrated)?,
         ];
         let line = followers.map(|mut tracker| line_error_cm(tracker.as_mut(), &rows, &path));
         Ok(Self { points, line })
@@ -147,25 +148,25 @@ fn trackers(
     calibrated: &Setup,
     place: [f64; 2],
     trial: u64,
-) -> Result<[Box<dyn Follow>; COLUMNS], Error> {
+) -> Result<[Box<dyn Follow>; COLUMNS], robot::Error> {
     // Beside the point, every day in another direction: turned by the golden angle.
     let angle = 2.399_963_229_728_653 * trial as f64;
     let beside = [place[0] + 0.1 * angle.cos(), place[1] + 0.1 * angle.sin()];
-    let published = |start, noise| follow::build_published(plain, Beginning { start, noise });
+    let published = |start, noise| build_published(plain, Beginning { start, noise });
     Ok([
-        follow::build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
+        build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
         published(Some(place), Noise::Fixed)?,
         published(Some(place), Noise::Adapted)?,
         published(None, Noise::Fixed)?,
         published(None, Noise::Adapted)?,
         published(Some(beside), Noise::Adapted)?,
-        follow::build(plain)?,
-        follow::build(calibrated)?,
+        build(plain)?,
+        build(calibrated)?,
     ])
 }
 
 fn positions(tracker: &mut dyn Follow, rows: &[RangeRow]) -> Vec<Epoch> {
-    track::follow(tracker, &Sensors::ranges(rows.to_vec()).events()).epochs
+    robot::follow(tracker, &Sensors::ranges(rows.to_vec()).events()).epochs
 }
 
 /// The paper's measure: the error of the mean of all positions, cm.

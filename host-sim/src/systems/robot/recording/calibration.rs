@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use kestirim_replay::robot::Anchors;
 use serde::Serialize;
 
-use super::anchors::Anchors;
 use crate::metrics::{mean, percentile};
 use crate::table;
 use crate::text::printable;

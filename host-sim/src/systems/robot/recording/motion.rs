@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use kestirim_import::Options;
+use kestirim_replay::robot::{Inertial, Wheels};
 
 use crate::Error;
 use crate::table::{self, Column, Found, Log, Row};
@@ -12,28 +13,6 @@ const GRAVITY: f64 = 9.806_65;
 
 /// A robot's sensors are read so often, s.
 const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
-
-/// A sample of the IMU.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inertial {
-    /// Time of the log's clock, µs.
-    pub time_us: i64,
-    /// Acceleration as logged, body axes, m/s².
-    pub acceleration: [f64; 3],
-    /// Acceleration without gravity, room axes, m/s², if the attitude is known.
-    pub push: Option<[f64; 3]>,
-}
-
-/// A sample of the wheels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wheels {
-    /// Time of the log's clock, µs.
-    pub time_us: i64,
-    /// Mean speed, m/s.
-    pub speed: f64,
-    /// Difference of the speeds by the track, rad/s.
-    pub turn_rate: f64,
-}
 
 /// Columns of an IMU log, as far as they are there.
 struct Columns {

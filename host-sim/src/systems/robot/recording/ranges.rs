@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use kestirim_import::{Options, ranging};
+use kestirim_replay::robot::{Anchors, RangeRow};
 
-use super::anchors::Anchors;
 use crate::Error;
 use crate::table::{self, Column, Found, Log, Row};
 use crate::text::{self, printable};
@@ -17,17 +17,6 @@ const USUAL_STEP_S: [f64; 2] = [2e-3, 2.0];
 /// Beyond any count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
-/// One line of a log: a range, or that there was none.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RangeRow {
-    /// Time of the log's clock, µs.
-    pub time_us: i64,
-    /// The anchor's place in the list.
-    pub anchor: usize,
-    /// The range, m, as logged, which may be no number; none if the field is empty.
-    pub range: Option<f64>,
-}
-
 /// The ranges of a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RangeLog {
@@ -35,26 +24,6 @@ pub struct RangeLog {
     pub rows: Vec<RangeRow>,
     /// How many lines name an anchor that is not in the list; they are left out.
     pub unlisted: usize,
-}
-
-/// Later lines may go back behind a time by this, µs; one that they go back behind farther was wrong.
-const LARGEST_STEP_BACK_US: i64 = 10_000_000;
-
-/// Drops samples whose time is far ahead of those that follow, and says how many there were: a single
-/// wrong time would make everything after it too late.
-pub fn drop_far_ahead<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
-    let (before, mut earliest_us) = (samples.len(), i64::MAX);
-    let mut kept = Vec::with_capacity(before);
-    while let Some(sample) = samples.pop() {
-        let time_us = time_us(&sample);
-        if time_us.saturating_sub(LARGEST_STEP_BACK_US) <= earliest_us {
-            earliest_us = earliest_us.min(time_us);
-            kept.push(sample);
-        }
-    }
-    kept.reverse();
-    *samples = kept;
-    before - samples.len()
 }
 
 /// Reads the log of a moving tag: as its radio printed it, a column an anchor, or a table with columns `t,anchor,range` (s,

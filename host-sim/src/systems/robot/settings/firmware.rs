@@ -1,20 +1,27 @@
 //! The settings of a tracker as firmware says them.
 
-use super::{Dimensions, Setup, TrackerKind};
-use crate::system::Literal;
-use crate::systems::robot::settings::tuning::Tuning;
+use kestirim_replay::robot::{Dimensions, Setup, TrackerKind, Tuning};
 
-impl Setup {
-    /// The same in firmware: the tracker's configuration, and for a recording (`with_anchors`) its anchors.
-    pub(in crate::systems::robot) fn firmware(&self, with_anchors: bool) -> String {
-        let height = self.number(self.height_m);
-        let scalar = Literal::number_type(self.scalar);
+use crate::system::Literal;
+
+/// The same in firmware: the tracker's configuration, and for a recording (`with_anchors`) its anchors.
+pub(in crate::systems::robot) fn firmware(setup: &Setup, with_anchors: bool) -> String {
+    Said(setup).firmware(with_anchors)
+}
+
+/// A setup that is said as firmware says it.
+struct Said<'a>(&'a Setup);
+
+impl Said<'_> {
+    fn firmware(&self, with_anchors: bool) -> String {
+        let height = self.number(self.0.height_m);
+        let scalar = Literal::number_type(self.0.scalar);
         let config = format!("Config::<{scalar}>");
         let of_the_tracker = |base: &str| {
             let base = format!("Config::{base}({height})");
             self.literal("kestirim_uwb_tracker::Config", &config, &base)
         };
-        let literal = match self.tracker {
+        let literal = match self.0.tracker {
             TrackerKind::Lsq | TrackerKind::Nls => {
                 let base = format!("Solver::new({height})");
                 self.literal("kestirim_uwb_ranging::Solver", &format!("Solver::<{scalar}>"), &base)
@@ -32,7 +39,7 @@ impl Setup {
                 let learning = format!("{learning}({forgetting}, {least}, {most}).ok()");
                 self.with_noises(of_the_tracker("plain")).field("learning", learning)
             }
-            TrackerKind::Default if self.biases.is_some() => {
+            TrackerKind::Default if self.0.biases.is_some() => {
                 self.with_robustness(of_the_tracker("calibrated"))
             }
             TrackerKind::Default => self.with_robustness(of_the_tracker("uncalibrated")),
@@ -42,22 +49,22 @@ impl Setup {
     }
 
     fn number(&self, value: f64) -> String {
-        Literal::number(self.scalar, value)
+        Literal::number(self.0.scalar, value)
     }
 
     fn literal(&self, import: &str, config: &str, base: &str) -> Literal {
-        Literal::new(import, self.scalar, config, base)
+        Literal::new(import, self.0.scalar, config, base)
     }
 
     const fn axes(&self) -> usize {
-        match self.dimensions {
+        match self.0.dimensions {
             Dimensions::Two => 2,
             Dimensions::Three => 3,
         }
     }
 
     fn with_noises(&self, literal: Literal) -> Literal {
-        let (tuning, own) = (self.tuning, Tuning::default());
+        let (tuning, own) = (self.0.tuning, Tuning::default());
         let differing =
             |value: f64, own: f64| Some(value).filter(|&value| Some(value) != Some(own));
         literal
@@ -69,7 +76,7 @@ impl Setup {
     }
 
     fn with_robustness(&self, literal: Literal) -> Literal {
-        let (tuning, own) = (self.tuning, Tuning::default());
+        let (tuning, own) = (self.0.tuning, Tuning::default());
         let number = |value| self.number(value);
         let huber = tuning.huber_sigmas.map(|sigmas| {
             let [long, short] = sigmas.map(number);
@@ -94,27 +101,27 @@ impl Setup {
     }
 
     fn with_room(&self, literal: Literal) -> Literal {
-        let acts = !matches!(self.tracker, TrackerKind::Lsq | TrackerKind::AekfPublished);
-        let Some(corners) = self.room.filter(|_| acts) else { return literal };
+        let acts = !matches!(self.0.tracker, TrackerKind::Lsq | TrackerKind::AekfPublished);
+        let Some(corners) = self.0.room.filter(|_| acts) else { return literal };
         let corners = corners.map(|metres| self.number(metres)).join(", ");
         literal.field("room", format!("Some(kestirim_uwb_ranging::Room::plane({corners}))"))
     }
 
     fn with_anchors(&self, literal: Literal) -> Literal {
-        let anchors = self.anchors.iter().enumerate().map(|(index, place)| {
+        let anchors = self.0.anchors.iter().enumerate().map(|(index, place)| {
             let place = place.map(|metres| self.number(metres)).join(", ");
-            let bias = self.number(self.bias(index));
+            let bias = self.number(self.0.bias(index));
             format!("\n    Anchor {{ position: [{place}].into(), bias: {bias} }},")
         });
         let anchors = anchors.collect::<String>();
-        let (scalar, count) = (Literal::number_type(self.scalar), self.anchors.len());
+        let (scalar, count) = (Literal::number_type(self.0.scalar), self.0.anchors.len());
         let (axes, states) = (self.axes(), 2 * self.axes());
-        let (name, parameters, method) = match self.tracker {
+        let (name, parameters, method) = match self.0.tracker {
             TrackerKind::Lsq => ("EpochSolver", String::new(), "EpochMethod::Trilateration, "),
             TrackerKind::Nls => ("EpochSolver", String::new(), "EpochMethod::LeastSquares, "),
             TrackerKind::AekfPublished => ("PublishedTracker", format!("{axes}, {states}, "), ""),
-            TrackerKind::Default if self.is_wheeled() => ("WheelTracker", String::new(), ""),
-            TrackerKind::Default if self.biases.is_none() => {
+            TrackerKind::Default if self.0.is_wheeled() => ("WheelTracker", String::new(), ""),
+            TrackerKind::Default if self.0.biases.is_none() => {
                 ("Tracker", format!("{axes}, {}, ", states + 1), "")
             }
             _ => ("Tracker", format!("{axes}, {states}, "), ""),

@@ -20,7 +20,7 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// Of a flight, if there is a truth.
-    pub fn of(Track { flight, followed }: &Track) -> Option<Self> {
+    pub fn of(Track { flight, followed, .. }: &Track) -> Option<Self> {
         flight.truth.as_ref()?;
         let estimates = &followed.estimates;
         let errors = flight.errors(estimates);

@@ -1,16 +1,13 @@
 //! Poles of continuous time, from the matrices of discrete time.
 
 use kestirim_observer_design::{Complex, Discrete, eigenvalues, riccati};
+use kestirim_replay::uav::{Assumed, Deviations, Model, Options, rows};
 use kestirim_uav_estimator::Step;
 use nalgebra::SMatrix;
 
 use super::{KALMAN, LUENBERGER};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
-use crate::systems::uav::recording::model::Model;
-use crate::systems::uav::settings::Options;
-use crate::systems::uav::track::deviations::Deviations;
-use crate::systems::uav::track::estimators::{Assumed, rows};
 
 /// Of x⁺ = A x at this interval (s), 1/s; none where an eigenvalue is zero or none was found.
 pub(super) fn of(a: &SMatrix<f64, 4, 4>, interval: f64) -> Vec<[f64; 2]> {
@@ -75,8 +72,8 @@ fn settled<const P: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::systems::uav::simulate::plant::Plant;
     use crate::systems::uav::simulate::scenario::INTERVAL_S;
+    use kestirim_replay::uav::Plant;
 
     #[test]
     fn discrete_poles_are_those_of_continuous_time() {

@@ -5,7 +5,7 @@ use crate::systems::uav::simulate::plant::STREAM_COLUMNS;
 use crate::systems::uav::track::Track;
 
 /// Inputs, measurements, estimates and, where it is known, the truth: all as in the log.
-pub fn streams(Track { flight, followed }: &Track) -> Vec<Stream> {
+pub fn streams(Track { flight, followed, .. }: &Track) -> Vec<Stream> {
     let unknown = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let outputs: Vec<&str> = flight.names().collect();
     let inputs = flight.inputs().map(|(t_us, input)| (seconds(t_us), input.into()));

@@ -1,16 +1,17 @@
 //! What only a simulated flight tells: what it is without noise, and what other settings would come to.
 
+use kestirim_replay::uav::{EstimatorKind, Noise, Options, faster};
+use kestirim_simulate::with_outputs;
 use nalgebra::SMatrix;
 
 use super::{KALMAN, LUENBERGER, poles};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::Answer;
 use crate::systems::uav::account::states::{caught, times};
-use crate::systems::uav::settings::{EstimatorKind, Options, Simulation};
+use crate::systems::uav::settings::Simulation;
+use crate::systems::uav::simulate::design::{Kind, settled};
 use crate::systems::uav::simulate::flight::{Flight, Moment};
-use crate::systems::uav::simulate::plant::with_outputs;
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Noise, SAMPLES};
-use crate::systems::uav::track::design::{Kind, faster, settled};
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, SAMPLES};
 
 /// Factors of the sweep, of Q/R and of the poles: from a tenth to ten, four steps a half.
 const FACTORS: std::ops::RangeInclusive<i32> = -4..=4;

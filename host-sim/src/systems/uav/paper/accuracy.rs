@@ -1,18 +1,18 @@
 //! Root mean square errors under noise, beside what the Lyapunov equation predicts.
 
 use kestirim_observer_design::Discrete;
+use kestirim_replay::uav::{FAST, MIDDLE, Noise, Plant, SLOW};
 use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_simulate::with_outputs;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::random::stream;
 use crate::system::ScalarKind;
-use crate::systems::uav::simulate::plant::{Outputs, Plant, with_outputs};
-use crate::systems::uav::simulate::scenario::{
-    INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START, fly,
-};
-use crate::systems::uav::track::design::{FAST, Family, Kind, MIDDLE, SLOW, settled};
+use crate::systems::uav::simulate::design::{Family, Kind, settled};
+use crate::systems::uav::simulate::plant::Outputs;
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START, fly};
 
 /// Samples after which an estimator that starts at the truth has settled: the slowest error of the experiment, that
 /// of the Navion's airspeed, has by then been forgotten to a hundredth.

@@ -1,15 +1,16 @@
 //! How long an estimator that starts somewhere else takes to catch the plant, without noise.
 
+use kestirim_replay::uav::{FAST, MIDDLE, Noise, Plant, SLOW};
 use nalgebra::SVector;
 use serde::Serialize;
 
 use crate::system::ScalarKind;
 use crate::systems::uav::account::states::caught;
 use crate::systems::uav::paper::published::{KALMAN_CAUGHT, LUENBERGER_CAUGHT, SINE_CAUGHT};
+use crate::systems::uav::simulate::design::{Family, Kind};
 use crate::systems::uav::simulate::flight::{Flight, Moment};
-use crate::systems::uav::simulate::plant::{Outputs, Plant};
-use crate::systems::uav::simulate::scenario::{FAR, Inputs, NEAR, Noise, SAMPLES, START};
-use crate::systems::uav::track::design::{FAST, Family, Kind, MIDDLE, SLOW};
+use crate::systems::uav::simulate::plant::Outputs;
+use crate::systems::uav::simulate::scenario::{FAR, Inputs, NEAR, SAMPLES, START};
 
 /// A start, and what follows.
 #[derive(Debug, Clone, Copy, PartialEq)]

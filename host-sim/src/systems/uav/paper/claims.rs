@@ -1,15 +1,16 @@
 //! What the thesis concludes, measured.
 
 use kestirim_observer_design::eigenvalues;
+use kestirim_replay::uav::{FAST, Noise, Plant, SLOW};
 use kestirim_uav_longitudinal::full_state;
 use serde::Serialize;
 
 use super::accuracy::{self, Window};
 use super::catching::{self, Chase};
 use crate::system::ScalarKind;
-use crate::systems::uav::simulate::plant::{Outputs, Plant};
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise};
-use crate::systems::uav::track::design::{FAST, Family, Kind, SLOW};
+use crate::systems::uav::simulate::design::{Family, Kind};
+use crate::systems::uav::simulate::plant::Outputs;
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR};
 
 /// A claim in one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]

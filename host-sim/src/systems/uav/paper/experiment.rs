@@ -1,12 +1,12 @@
 //! `host-sim run uav`: the thesis' experiments.
 
+use kestirim_replay::uav::Plant;
 use rayon::prelude::*;
 
 use super::report::Report;
 use super::{accuracy, catching, claims, responses};
 use crate::system::choose_scalar;
 use crate::system::{RunOptions, ScalarKind};
-use crate::systems::uav::simulate::plant::Plant;
 use crate::{Error, output};
 
 /// Flights a cell unless told otherwise: a RMSE is then known to one or two percent.

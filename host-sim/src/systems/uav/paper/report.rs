@@ -3,6 +3,7 @@
 use std::fmt;
 
 use comfy_table::Table;
+use kestirim_replay::uav::Plant;
 use serde::Serialize;
 
 use super::accuracy::{self, Window};
@@ -13,7 +14,7 @@ use crate::output;
 use crate::system::ScalarKind;
 use crate::systems::uav::account::states::{shown, times};
 use crate::systems::uav::paper::published::{CONSTANT_INPUTS, SETTLING_S};
-use crate::systems::uav::simulate::plant::{Plant, STATES};
+use crate::systems::uav::simulate::plant::STATES;
 use crate::systems::uav::simulate::scenario::Inputs;
 
 /// All experiments.

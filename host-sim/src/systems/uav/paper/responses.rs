@@ -2,13 +2,15 @@
 
 use kestirim_observer_design::{self as design, Complex, controllability, eigenvalues};
 use kestirim_observer_design::{observability, singular_values};
+use kestirim_replay::uav::{Noise, Plant};
+use kestirim_simulate::with_outputs;
 use kestirim_uav_longitudinal::{StateSpace, full_state};
 use nalgebra::{SMatrix, SVector};
 use serde::Serialize;
 
 use crate::random::stream;
-use crate::systems::uav::simulate::plant::{Outputs, Plant, with_outputs};
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, Noise, SAMPLES, START, fly};
+use crate::systems::uav::simulate::plant::Outputs;
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, SAMPLES, START, fly};
 
 /// Samples of a step response, 25 min in all, …
 const STEP_SAMPLES: usize = 30_000;

@@ -4,46 +4,16 @@ use std::path::Path;
 
 use kestirim_import::Options;
 use kestirim_import::flight::{self, Flight};
+use kestirim_replay::uav::{Log, STATE_COLUMNS, Sample, Truth};
 
 use crate::Error;
-use crate::systems::uav::recording::model::STATE_COLUMNS;
-use crate::table::{self, Column, Found, Header, Log as Logged};
+use crate::table::{self, Column, Found, Header};
 use crate::text;
 
-/// Intervals that differ by less than this share from the usual one are jitter.
-const JITTER: f64 = 0.1;
-/// Share of intervals that must be the usual one.
-const REGULAR: f64 = 0.75;
-/// From this many usual intervals on, samples are missing.
-const GAP: f64 = 1.5;
 /// An aircraft's sensors are read so often, s.
 const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
 /// No sensor of an aircraft measures more, in any unit.
 pub(in crate::systems::uav) const LARGEST: f64 = 1e6;
-
-/// A line of a log.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sample {
-    /// µs.
-    pub t_us: i64,
-    /// δe, δt.
-    pub input: [f64; 2],
-    /// What was measured, in the order of the log's outputs; an empty field is nothing.
-    pub measured: Vec<Option<f64>>,
-}
-
-/// A log.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Log {
-    /// Which of the model's outputs the log has.
-    pub outputs: Vec<usize>,
-    /// In the order of their times.
-    pub samples: Vec<Sample>,
-    /// The usual time between samples, s.
-    pub interval_s: f64,
-    /// How many times samples are missing.
-    pub gaps: usize,
-}
 
 /// Reads what an autopilot logged, or columns `t`, `delta_e`, `delta_t` and those of the model's outputs that there are.
 ///
@@ -60,8 +30,9 @@ pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Foun
         let problem = "expected measurements, found none in any line".to_owned();
         return Err(Error::File { path: path.to_path_buf(), problem });
     }
-    let (interval_s, gaps) = regular(path, &samples)?;
-    Ok((Log { outputs, samples, interval_s, gaps }, found))
+    let log = Log::new(outputs, samples)
+        .map_err(|error| Error::File { path: path.to_path_buf(), problem: error.to_string() })?;
+    Ok((log, found))
 }
 
 /// Which outputs there are, the samples, and how they were read.
@@ -105,7 +76,7 @@ fn of_table(
     let found = table::parse(
         path,
         bytes,
-        &Logged { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
+        &table::Log { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         |header| {
             let inputs = header.require(["t", "delta_e", "delta_t"])?;
             let columns = measured_columns(header, names)?;
@@ -154,28 +125,6 @@ fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, C
     }
     Ok(columns)
 }
-
-/// The usual interval, s, and how many are much longer.
-fn regular(path: &Path, samples: &[Sample]) -> Result<(f64, usize), Error> {
-    let mut steps: Vec<f64> =
-        samples.windows(2).map(|pair| (pair[1].t_us - pair[0].t_us) as f64 / 1e6).collect();
-    steps.sort_by(f64::total_cmp);
-    let wrong = |problem| Error::File { path: path.to_path_buf(), problem };
-    let Some(&usual) = steps.get(steps.len() / 2) else {
-        return Err(wrong("expected at least two samples".to_owned()));
-    };
-    let near = steps.iter().filter(|step| (*step / usual - 1.0).abs() <= JITTER).count();
-    if (near as f64) < REGULAR * steps.len() as f64 {
-        return Err(wrong(format!(
-            "expected samples at a regular interval, found {near} of {} near {usual} s",
-            steps.len()
-        )));
-    }
-    Ok((usual, steps.iter().filter(|step| **step > GAP * usual).count()))
-}
-
-/// True states: a time in µs, and those that the file has of α, q, V, θ.
-pub type Truth = Vec<(i64, [Option<f64>; 4])>;
 
 /// Reads columns `t` and some of `alpha`, `q`, `V`, `theta`.
 ///

@@ -1,18 +1,16 @@
 //! The same settings in firmware: the estimator of `kestirim-uav-estimator`, with its model as numbers.
 
 use kestirim_observer_design::Complex;
+use kestirim_replay::uav::{Assumed, EstimatorKind, Model, Noise, Options, discrete, rows};
+use kestirim_simulate::with_outputs;
 use kestirim_uav_estimator::Dynamics;
 use kestirim_uav_longitudinal::StateSpace;
 use nalgebra::SMatrix;
 
-use super::{EstimatorKind, GainKind, Options, Simulation};
+use super::{GainKind, Simulation, options};
 use crate::system::{Literal, ScalarKind, Settings};
 use crate::systems::uav::recording::Recording;
-use crate::systems::uav::recording::model::Model;
-use crate::systems::uav::simulate::plant::with_outputs;
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Noise, START};
-use crate::systems::uav::track::design::discrete;
-use crate::systems::uav::track::estimators::{Assumed, rows};
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, START};
 
 /// Outputs and interval of a flight that nobody recorded: q, V and θ.
 const USUAL: ([usize; 3], f64) = ([1, 2, 3], 0.01);
@@ -22,7 +20,7 @@ pub(in crate::systems::uav) fn firmware(
     recording: Option<&Recording>,
     settings: &Settings,
 ) -> String {
-    let options = Options::of(settings);
+    let options = options(settings);
     let known = || Model::of(settings.chosen("model"));
     match recording {
         None => logged(&known(), &USUAL.0, USUAL.1, &options),

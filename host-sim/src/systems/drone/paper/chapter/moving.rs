@@ -1,16 +1,16 @@
 //! A user who walks: Table 3.5, Figs 3.6 to 3.12.
 
+use kestirim_particle_filter::Resampler;
+use kestirim_replay::drone::{EnvironmentKind, Estimate, Track};
+
 use super::cells::Cells;
 use super::{made, tables};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::report::Item;
 use crate::stream::Stream;
 use crate::systems::drone::paper::report::{Report, Row};
-use crate::systems::drone::settings::choices::EnvironmentKind;
 use crate::systems::drone::settings::expected_loss_db;
 use crate::systems::drone::simulate::moving_user::{LOST_M, Policy, SIDE_M, Walk, track};
-use crate::systems::drone::track::trace::{Estimate, Track};
-use kestirim_particle_filter::Resampler;
 
 /// Flights that are drawn.
 pub(super) struct Walks {

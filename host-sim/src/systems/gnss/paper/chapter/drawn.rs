@@ -1,6 +1,7 @@
 //! Station-days of the experiment again, this time with all that becomes of them.
 
 use kestirim_ppp_filter::Motion;
+use kestirim_replay::gnss::{BEGINNING, FilterKind, Followed, Recording};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -9,14 +10,12 @@ use crate::figure::Figure;
 use crate::metrics::median;
 use crate::stream::Stream;
 use crate::system::Detail;
-use crate::systems::gnss::account::accuracy::BEGINNING;
 use crate::systems::gnss::figures::{self, streams};
 use crate::systems::gnss::paper::experiment::{PROCESS_NOISE, Report};
-use crate::systems::gnss::recording::Recording;
-use crate::systems::gnss::settings::{FilterKind, Setup};
+use crate::systems::gnss::recording;
+use crate::systems::gnss::settings::Setup;
 use crate::systems::gnss::simulate::{Day, Rates};
 use crate::systems::gnss::track::Track;
-use crate::systems::gnss::track::followed::Followed;
 
 /// Station-days that are drawn; the paper draws three.
 const DRAWN: u32 = 3;
@@ -44,7 +43,7 @@ impl Days {
             .into_par_iter()
             .map(|index| {
                 let day = Day::new(report.seed, index, &Rates::RECORDING);
-                (day.marker, Recording::of_day(day))
+                (day.marker, recording::of_day(day))
             })
             .collect();
         let standing: Result<_, Error> = days

@@ -1,9 +1,10 @@
 //! Published beside ours.
 
+use kestirim_replay::gnss::FilterKind;
+
 use crate::report::Comparison;
 use crate::systems::gnss::paper::experiment::{CLEAN, KINEMATIC, Report, Row, STATIC, four};
 use crate::systems::gnss::paper::published::PppErrors;
-use crate::systems::gnss::settings::FilterKind;
 
 /// The paper's Table 2, and what each filter is as published.
 pub(super) fn standing(report: &Report) -> Comparison {

@@ -1,9 +1,8 @@
 //! How good a day's solution is, as the paper has it.
 
+use kestirim_replay::gnss::{Accuracy, Fix};
 use nalgebra::Vector3;
 use serde::Serialize;
-
-use crate::systems::gnss::account::accuracy::{Accuracy, Fix};
 
 /// Errors of a station-day.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

@@ -1,15 +1,15 @@
 //! The figures of the paper, of one walk. As there, the sensor is that of a log at 100 Hz and the position that of
 //! one at 50 Hz.
 
+use kestirim_replay::pedestrian::{DetectorKind, Trace};
+
 use super::Typical;
 use crate::figure::{Colour, Figure, Series};
 use crate::metrics::STANDARD_GRAVITY;
 use crate::systems::pedestrian::Sample;
 use crate::systems::pedestrian::figures::{self, Placed};
 use crate::systems::pedestrian::paper::published::AFTER_15_S;
-use crate::systems::pedestrian::settings::DetectorKind;
 use crate::systems::pedestrian::simulate::scenario::Scenario;
-use crate::systems::pedestrian::track::trace::Trace;
 
 /// Figs 8 to 11: what the sensor says, and stance in it.
 pub(super) fn of_the_sensor(walk: &Typical) -> [Figure; 4] {

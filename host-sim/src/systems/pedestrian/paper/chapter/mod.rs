@@ -4,6 +4,8 @@ mod drawings;
 mod own;
 mod tables;
 
+use kestirim_replay::pedestrian::{Options, Trace, trace, without_updates};
+
 use super::experiment::{Report, WALKS, refused};
 use crate::Error;
 use crate::random::stream;
@@ -12,8 +14,6 @@ use crate::system::System;
 use crate::systems::pedestrian::Pedestrian;
 use crate::systems::pedestrian::figures::streams;
 use crate::systems::pedestrian::recording::{Recording, Walked};
-use crate::systems::pedestrian::settings::Options;
-use crate::systems::pedestrian::track::trace::{Trace, trace, without_updates};
 
 /// The chapter of a report.
 ///

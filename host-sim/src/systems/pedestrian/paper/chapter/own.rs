@@ -1,5 +1,6 @@
 //! Beyond the paper: how errors are spread, and what each choice of tracker and detector gives.
 
+use kestirim_replay::pedestrian::{DetectorKind, Options, TrackerKind, walk};
 use rayon::prelude::*;
 
 use super::super::experiment::{Report, error_percent, refused};
@@ -9,8 +10,6 @@ use crate::metrics::mean;
 use crate::report::Comparison;
 use crate::system::ScalarKind;
 use crate::systems::pedestrian::recording::{Recording, Walked};
-use crate::systems::pedestrian::settings::{DetectorKind, Options, TrackerKind};
-use crate::systems::pedestrian::track::walk;
 
 /// Walks on which methods are compared.
 pub(super) const COMPARED: u64 = 20;

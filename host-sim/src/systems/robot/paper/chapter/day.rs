@@ -1,12 +1,12 @@
 //! One day in the office, followed by every tracker.
 
+use kestirim_replay::ScalarKind;
+use kestirim_replay::robot::{Beginning, Noise, Setup, Trace, TrackerKind, build_published};
+
 use crate::Error;
-use crate::system::ScalarKind;
 use crate::systems::robot::recording::{Recording, Truth};
-use crate::systems::robot::settings::{Setup, TrackerKind};
-use crate::systems::robot::track::follow::{self, Follow};
-use crate::systems::robot::track::published::{Beginning, Noise};
-use crate::systems::robot::track::{Trace, track};
+use crate::systems::robot::settings::of_the_office;
+use crate::systems::robot::track::{track, track_by};
 
 /// A recording, and what each tracker makes of it.
 pub(super) struct Day {
@@ -26,23 +26,23 @@ pub(super) struct Day {
 
 impl Day {
     pub(super) fn follow(recording: Recording, scalar: ScalarKind) -> Result<Self, Error> {
-        let plain = Setup::of_the_office(scalar);
+        let plain = of_the_office(scalar);
         let calibrated = Setup { biases: recording.biases.clone(), ..plain.clone() };
         let unfiltered = Setup { tracker: TrackerKind::Lsq, ..plain.clone() };
         let kinds = [Noise::Fixed, Noise::Adapted];
         let honest = kinds.map(|noise| {
             let beginning = Beginning { start: None, noise };
-            track(&recording, &plain, |setup| follow::build_published(setup, beginning))
+            track_by(&recording, &plain, |_, setup| build_published(setup, beginning))
         });
         let from_the_truth = kinds.map(|noise| each_from_its_truth(&recording, &plain, noise));
         let [ekf, aekf] = honest;
         let [true_ekf, true_aekf] = from_the_truth;
         Ok(Self {
-            unfiltered: track(&recording, &unfiltered, follow::build)?,
+            unfiltered: track(&recording, &unfiltered)?,
             honest: [ekf?, aekf?],
             from_the_truth: [true_ekf?, true_aekf?],
-            ours: track(&recording, &plain, follow::build)?,
-            calibrated: track(&recording, &calibrated, follow::build)?,
+            ours: track(&recording, &plain)?,
+            calibrated: track(&recording, &calibrated)?,
             recording,
         })
     }
@@ -54,12 +54,9 @@ fn each_from_its_truth(
     setup: &Setup,
     noise: Noise,
 ) -> Result<Vec<Trace>, Error> {
-    let starts: Vec<_> = recording.parts.iter().map(|part| start(part.truth.as_ref())).collect();
-    let next = std::cell::Cell::new(0);
-    track(recording, setup, |setup| -> Result<Box<dyn Follow>, Error> {
-        let part = next.replace(next.get() + 1);
-        let start = starts.get(part).copied().flatten();
-        follow::build_published(setup, Beginning { start, noise })
+    track_by(recording, setup, |part, setup| {
+        let start = start(recording.parts[part].truth.as_ref());
+        build_published(setup, Beginning { start, noise })
     })
 }
 

@@ -1,11 +1,12 @@
 //! The figures of the paper, of one day, and ours.
 
+use kestirim_replay::robot::Trace;
+
 use super::day::Day;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::systems::robot::figures::{self, Shown, plan};
 use crate::systems::robot::paper::experiment::{Report, Row};
 use crate::systems::robot::recording::{Recording, Truth};
-use crate::systems::robot::track::Trace;
 
 /// Fig. 3: the office.
 pub(super) fn office(points: &Day, line: &Day) -> Figure {

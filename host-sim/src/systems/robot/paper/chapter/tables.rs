@@ -1,11 +1,12 @@
 //! The paper's table, with the start made visible.
 
+use kestirim_replay::robot::Trace;
+
 use super::day::Day;
 use crate::report::Comparison;
 use crate::systems::robot::account::accuracy::Accuracy;
 use crate::systems::robot::paper::experiment::{Report, Row};
 use crate::systems::robot::paper::published::PositionErrors;
-use crate::systems::robot::track::Trace;
 
 fn three(errors: &PositionErrors) -> String {
     let PositionErrors { unfiltered_cm, ekf_cm, aekf_cm } = errors;

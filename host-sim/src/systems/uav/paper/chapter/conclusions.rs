@@ -1,5 +1,7 @@
 //! What the thesis concludes, and what it did not ask.
 
+use kestirim_replay::uav::{MIDDLE, Noise, Plant, faster};
+
 use super::made;
 use crate::Error;
 use crate::figure::{Colour, Figure, Series};
@@ -9,9 +11,9 @@ use crate::systems::uav::account::states::{caught, shown};
 use crate::systems::uav::paper::accuracy::{Cell, Window};
 use crate::systems::uav::paper::catching::{Chase, THESIS_LUENBERGER};
 use crate::systems::uav::paper::report::{Report, alike, four};
-use crate::systems::uav::simulate::plant::{Outputs, Plant, STATES};
-use crate::systems::uav::simulate::scenario::{Inputs, Noise};
-use crate::systems::uav::track::design::{Kind, MIDDLE, faster};
+use crate::systems::uav::simulate::design::Kind;
+use crate::systems::uav::simulate::plant::{Outputs, STATES};
+use crate::systems::uav::simulate::scenario::Inputs;
 
 /// Claims, accuracies, limits.
 pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {

@@ -1,5 +1,7 @@
 //! Chapter 6 of the thesis: estimators beside their plant.
 
+use kestirim_replay::uav::{FAST, Noise, Plant, SLOW};
+
 use super::{by_state, made};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
@@ -7,10 +9,10 @@ use crate::report::{Comparison, Item};
 use crate::systems::uav::account::states::{BANDS, times};
 use crate::systems::uav::paper::catching::{Chase, Row, THESIS, THESIS_LUENBERGER, THESIS_SINE};
 use crate::systems::uav::paper::report::Report;
+use crate::systems::uav::simulate::design::Kind;
 use crate::systems::uav::simulate::flight::{Flight, Moment};
-use crate::systems::uav::simulate::plant::{Outputs, Plant, STATES};
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START};
-use crate::systems::uav::track::design::{FAST, Kind, SLOW};
+use crate::systems::uav::simulate::plant::{Outputs, STATES};
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START};
 
 /// In the thesis' order.
 pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {

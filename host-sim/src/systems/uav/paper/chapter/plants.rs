@@ -1,13 +1,14 @@
 //! Chapters 3 and 5 of the thesis: the trim, and what the plant does by itself.
 
+use kestirim_replay::uav::{Model, Plant};
+
 use super::{by_state, made};
 use crate::figure::{Colour, Figure, Series};
 use crate::report::{Comparison, Item};
 use crate::systems::uav::paper::published::{RANK, SETTLING_S, TRIM};
 use crate::systems::uav::paper::report::{Report, said_of_constant_inputs};
 use crate::systems::uav::paper::responses::{Bode, Responses};
-use crate::systems::uav::recording::model::climb;
-use crate::systems::uav::simulate::plant::{Plant, STATES};
+use crate::systems::uav::simulate::plant::STATES;
 
 /// What drives the plant, and how much of it the drawings take for one: a degree of elevator, a tenth of the throttle.
 const DRIVES: [(&str, f64, Colour); 2] = [
@@ -43,7 +44,7 @@ pub(super) fn items(report: &Report) -> Vec<Item> {
 }
 
 fn trim() -> Comparison {
-    let (state, _) = climb();
+    let (state, _) = Model::of(Plant::P1).trim.unwrap_or_default();
     let degrees = |angle: f64| format!("{:.2}°", angle.to_degrees());
     let ours = [
         degrees(state[0]),

@@ -1,12 +1,14 @@
 //! A typical run for other programs: P2 under the noise of real sensors.
 
+use kestirim_replay::uav::{MIDDLE, Noise, Plant};
+
 use crate::Error;
 use crate::stream::Stream;
 use crate::systems::uav::paper::report::Report;
+use crate::systems::uav::simulate::design::Kind;
 use crate::systems::uav::simulate::flight::{Flight, Moment};
-use crate::systems::uav::simulate::plant::{Outputs, Plant, STREAM_COLUMNS};
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, Noise, SAMPLES, START};
-use crate::systems::uav::track::design::{Kind, MIDDLE};
+use crate::systems::uav::simulate::plant::{Outputs, STREAM_COLUMNS};
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START};
 
 /// Inputs, measurements, truth, and what both estimators make of them.
 pub(super) fn streams(report: &Report) -> Result<Vec<Stream>, Error> {

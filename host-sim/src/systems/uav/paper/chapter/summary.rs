@@ -1,10 +1,11 @@
 //! The few numbers that matter most.
 
+use kestirim_replay::uav::Plant;
+
 use crate::report::Comparison;
 use crate::systems::uav::account::states::{shown, times};
 use crate::systems::uav::paper::published::SETTLING_S;
 use crate::systems::uav::paper::report::Report;
-use crate::systems::uav::simulate::plant::Plant;
 
 /// Times to catch, claims, and how honest the errors are.
 pub(super) fn summary(report: &Report) -> Comparison {

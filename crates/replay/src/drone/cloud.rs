@@ -1,0 +1,137 @@
+//! What a filter believes, as it can be drawn.
+
+use kestirim_particle_filter::{Moments, Particles, PointMass};
+use kestirim_scalar::Scalar;
+
+/// Share of the weight that the heaviest carry; the others are drawn apart.
+const SHARE: f64 = 0.9;
+/// Points of an ellipse.
+const CORNERS: u32 = 64;
+/// Most particles of each kind that are drawn.
+const MOST: usize = 1500;
+
+/// Particles or lattice points, and the ellipse that stands for them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Cloud {
+    /// The heaviest places, which carry nine tenths of the weight, m.
+    pub heavy: Vec<[f32; 2]>,
+    /// The others, m.
+    pub light: Vec<[f32; 2]>,
+    /// The mean, m.
+    pub mean: [f64; 2],
+    /// Lower triangular, F Fᵀ is the covariance, m.
+    pub factor: [[f64; 2]; 2],
+    /// Effective number of particles.
+    pub effective: f64,
+}
+
+impl Cloud {
+    /// Of particles whose first two coordinates are a place.
+    pub fn of_particles<T: Scalar, const D: usize, const N: usize>(
+        particles: &Particles<T, D, N>,
+        effective: f64,
+    ) -> Self {
+        let moments = particles.moments_of(|state| [state[0], state[1]]);
+        let states = (0..particles.len()).filter_map(|index| particles.state(index));
+        Self::new(states, particles.log_weights(), &moments, effective)
+    }
+
+    /// Of the points of a lattice likewise.
+    pub fn of_lattice<T: Scalar, const D: usize, const N: usize>(
+        lattice: &PointMass<T, D, N>,
+    ) -> Self {
+        let points = (0..lattice.len()).filter_map(|index| lattice.point(index));
+        let effective = lattice.effective().to_f64();
+        Self::new(points, lattice.log_weights(), &lattice.moments(), effective)
+    }
+
+    fn new<T: Scalar, const D: usize, const K: usize>(
+        states: impl Iterator<Item = [T; D]>,
+        log_weights: &[T],
+        moments: &Moments<T, K>,
+        effective: f64,
+    ) -> Self {
+        let (mut heavy, mut light) = (Vec::new(), Vec::new());
+        let least = least_of_the_heaviest(log_weights.iter().map(|log| log.to_f64()).collect());
+        for (state, log_weight) in states.zip(log_weights) {
+            let kind = if log_weight.to_f64() >= least { &mut heavy } else { &mut light };
+            kind.push([state[0], state[1]].map(|axis| axis.to_f64() as f32));
+        }
+        let (mean, factor) = (moments.mean(), moments.factor());
+        let factor = [0, 1].map(|row| [factor[row][0].to_f64(), factor[row][1].to_f64()]);
+        let mean = [mean[0].to_f64(), mean[1].to_f64()];
+        Self { heavy: thinned(&heavy), light: thinned(&light), mean, factor, effective }
+    }
+
+    /// The same, as many metres further to the east and north.
+    pub fn moved(mut self, by: [f64; 2]) -> Self {
+        for place in self.heavy.iter_mut().chain(&mut self.light) {
+            *place = [place[0] + by[0] as f32, place[1] + by[1] as f32];
+        }
+        self.mean = [self.mean[0] + by[0], self.mean[1] + by[1]];
+        self
+    }
+
+    /// Root mean square distance from the mean, m.
+    pub fn spread(&self) -> f64 {
+        self.factor.iter().flatten().fold(0.0, |sum: f64, part| sum.hypot(*part))
+    }
+
+    /// The border of where nine of ten would be if it were normally distributed, closed, m.
+    pub fn ellipse(&self) -> impl Iterator<Item = [f64; 2]> {
+        // Of a normal distribution in the plane: √(−2 ln 0.1) deviations.
+        let reach = (-2.0 * 0.1_f64.ln()).sqrt();
+        let ([x, y], factor) = (self.mean, self.factor);
+        (0..=CORNERS).map(move |corner| {
+            let angle = std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
+            let (sine, cosine) = angle.sin_cos();
+            let along = |row: [f64; 2]| reach * (row[0] * cosine + row[1] * sine);
+            [x + along(factor[0]), y + along(factor[1])]
+        })
+    }
+}
+
+/// The smallest logarithm among the heaviest; those that weigh as much belong to them, too.
+fn least_of_the_heaviest(mut logs: Vec<f64>) -> f64 {
+    logs.sort_by(|a, b| b.total_cmp(a));
+    let all: f64 = logs.iter().map(|log| log.exp()).sum();
+    let mut sum = 0.0;
+    let last = logs.iter().find(|log| {
+        sum += log.exp();
+        sum >= SHARE * all
+    });
+    last.copied().unwrap_or(f64::NEG_INFINITY)
+}
+
+/// Every so manieth.
+fn thinned(places: &[[f32; 2]]) -> Vec<[f32; 2]> {
+    places.iter().step_by(places.len().div_ceil(MOST).max(1)).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_heaviest_carry_nine_tenths_and_equals_stay_together() {
+        let logs = [0.03_f64, 0.5, 0.3, 0.05, 0.12].map(f64::ln);
+        assert!((least_of_the_heaviest(logs.to_vec()) - logs[4]).abs() < 1e-12);
+        assert!(least_of_the_heaviest(vec![0.0; 20]).abs() < 1e-12);
+        assert!(least_of_the_heaviest(Vec::new()).is_infinite());
+    }
+
+    #[test]
+    fn an_ellipse_lies_about_its_mean_and_long_clouds_are_thinned() {
+        let factor = [[2.0, 0.0], [1.0, 3.0]];
+        let cloud = Cloud { factor, ..Cloud::default() }.moved([10.0, -5.0]);
+        assert!((cloud.spread() - 14.0_f64.sqrt()).abs() < 1e-12);
+        let corners: Vec<_> = cloud.ellipse().collect();
+        let middle = corners[0][0].midpoint(corners[32][0]);
+        assert!((middle - 10.0).abs() < 1e-9);
+        let widest = corners.iter().map(|corner| corner[0] - 10.0).fold(0.0, f64::max);
+        assert!((widest - 2.0 * 2.146).abs() < 1e-3, "{widest}");
+        let all = vec![[0.0, 0.0]; 4000];
+        assert!(thinned(&all).len() <= MOST && thinned(&all).len() > MOST / 2);
+        assert_eq!(thinned(&all[..7]).len(), 7);
+    }
+}

@@ -1,0 +1,20 @@
+//! A user on the ground, heard by a drone.
+//!
+//! A [`Search`] makes an [`Estimate`] of each [`Stop`] at which the drone measured. Places are metres in the plane, heights
+//! metres above the user.
+
+mod cloud;
+mod error;
+mod estimate;
+mod flight;
+mod search;
+mod trace;
+
+pub use self::cloud::Cloud;
+pub use self::error::Error;
+pub use self::estimate::Estimate;
+pub use self::flight::{
+    Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step,
+};
+pub use self::search::{BEYOND_M, MOST, MOST_OPEN, POINTS, Search, level_prior, thinned};
+pub use self::trace::{Flown, Track};

@@ -1,0 +1,241 @@
+//! Where a user is looked for: over open ground, or through the thesis' channel.
+
+use kestirim_air_to_ground::{Channel, FreeSpace, LevelPrior, Measurement};
+use kestirim_particle_filter::Region;
+use kestirim_user_locator::{BeaconSearch, Locator, Within};
+
+use super::{
+    Area, Cloud, EnvironmentKind, Error, Estimate, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M,
+};
+
+/// Points of a lattice.
+pub const POINTS: usize = 2000;
+/// Most measurements of a flight among buildings; of more as many are taken, evenly.
+pub const MOST: usize = 400;
+/// And over open ground, where what is measured close together says the same.
+pub const MOST_OPEN: usize = 100;
+/// How far beyond the flight the user may be if no area is given, m.
+pub const BEYOND_M: f64 = 500.0;
+/// Levels of the transmitter that are thought possible about the nominal one, dB.
+const LEVELS_DB: f64 = 100.0;
+/// How many levels stand for all.
+const LEVELS: u32 = 41;
+/// How well a path loss is calibrated, dB.
+const CALIBRATION_DB: f64 = 3.0;
+
+/// The thesis' channel to users within an area.
+type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
+/// A user in the plane, or with D = 3 one whose transmitter's level is unknown.
+type UserLocator<'a, const D: usize> = Locator<f64, POINTS, MOST, D, ChannelWithin<'a>>;
+
+/// As many measurements as can be remembered, evenly chosen.
+pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop> {
+    let most = if environment.is_some() { MOST } else { MOST_OPEN };
+    let count = stops.len();
+    if count > most { (0..most).map(|k| stops[k * count / most]).collect() } else { stops.to_vec() }
+}
+
+/// What is known of the level received at one metre over open ground; none if nothing is.
+pub fn level_prior(quantity: Quantity) -> Option<LevelPrior<f64>> {
+    match quantity {
+        Quantity::Level => None,
+        // What 2 GHz loses on the first metre.
+        Quantity::PathLoss => Some(LevelPrior {
+            mean: -20.0 * (4.0 * std::f64::consts::PI / WAVELENGTH_M).log10(),
+            sigma: CALIBRATION_DB,
+        }),
+    }
+}
+
+/// Where a user is looked for.
+#[derive(Debug)]
+pub struct Search<'a> {
+    stops: &'a [Stop],
+    /// Coordinates are counted from here, so that they stay small.
+    origin: [f64; 2],
+    area: Box<Area>,
+    truth: Option<[f64; 2]>,
+    /// Whether only the last estimate is wanted.
+    only_last: bool,
+    /// Whether all that is believed is wanted.
+    with_clouds: bool,
+}
+
+impl<'a> Search<'a> {
+    /// In an area, or about the measurements if none is given.
+    ///
+    /// # Errors
+    /// [`Error::Area`] if the measurements have no surroundings.
+    pub fn new(
+        stops: &'a [Stop],
+        area: Option<&Area>,
+        truth: Option<[f64; 2]>,
+        only_last: bool,
+        with_clouds: bool,
+    ) -> Result<Self, Error> {
+        let (origin, area) = match area {
+            Some(area) => {
+                let origin = *area.region().low();
+                (origin, area.relative_to(origin)?)
+            }
+            None => surroundings(stops)?,
+        };
+        let area = Box::new(area);
+        Ok(Self { stops, origin, area, truth, only_last, with_clouds })
+    }
+
+    /// Where the user is after each measurement that some place explains: through the channel of an environment, or
+    /// over open ground if there is none.
+    pub fn find(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Vec<Estimate> {
+        match environment {
+            None => self.in_free_space(quantity),
+            Some(environment) => self.among_buildings(environment, quantity),
+        }
+    }
+
+    fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x - self.origin[0], y - self.origin[1]]
+    }
+
+    fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x + self.origin[0], y + self.origin[1]]
+    }
+
+    fn measurement(&self, stop: &Stop) -> Option<Measurement<f64>> {
+        Measurement::new(self.inward(stop.place), stop.height, stop.loss).ok()
+    }
+
+    /// Over open ground.
+    fn in_free_space(&self, quantity: Quantity) -> Vec<Estimate> {
+        // One place is that of the last measurement: all of them are kept.
+        let mut search = Box::new(BeaconSearch::<f64, { MOST_OPEN + 1 }, MOST_CORNERS>::new(
+            FreeSpace::new(level_prior(quantity)),
+            (*self.area).clone(),
+        ));
+        let mut estimates = Vec::new();
+        for (number, stop) in self.stops.iter().enumerate() {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            search.measure(&measurement);
+            if self.only_last && number + 1 < self.stops.len() {
+                continue;
+            }
+            let Ok(found) = search.estimate::<POINTS>() else { continue };
+            let covered = self.truth.map(|truth| search.credible(&found, self.inward(truth), 0.9));
+            estimates.push(Estimate {
+                stop: number,
+                place: self.outward(found.place),
+                sd_m: found.moments().spread(),
+                level_db: (quantity == Quantity::Level).then_some(found.level),
+                covered,
+                cloud: self
+                    .with_clouds
+                    .then(|| Cloud::of_lattice(&found.posterior).moved(self.origin)),
+            });
+        }
+        estimates
+    }
+
+    /// Through the thesis' channel.
+    fn among_buildings(&self, environment: EnvironmentKind, quantity: Quantity) -> Vec<Estimate> {
+        let channel = Within::new(environment.channel(), &*self.area);
+        let region = self.area.region();
+        match quantity {
+            Quantity::PathLoss => self.follow::<2>(Locator::new(channel, region)),
+            Quantity::Level => {
+                let [width, height] = *region.high();
+                let corners = ([0.0, 0.0, -LEVELS_DB], [width, height, LEVELS_DB]);
+                match Region::new(corners.0, corners.1) {
+                    Ok(region) => self.follow::<3>(Locator::new(channel, &region)),
+                    Err(_) => Vec::new(),
+                }
+            }
+        }
+    }
+
+    /// Whether the 90 % region of places holds the true one. The level, where it is a third coordinate, is
+    /// integrated over: nobody knows the true one.
+    fn covered<const D: usize>(
+        &self,
+        locator: &UserLocator<'_, D>,
+        truth: [f64; 2],
+    ) -> Option<bool> {
+        let truth = self.inward(truth);
+        if D == 2 {
+            let state = std::array::from_fn(|axis| truth[axis]);
+            return locator.credible(&state, 0.9);
+        }
+        let moments = locator.moments();
+        let (level, deviation) = (moments.mean()[D - 1], moments.deviation()[D - 1]);
+        let levels = (0..LEVELS)
+            .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
+        let density = |[x, y]: [f64; 2]| {
+            log_sum(levels.clone().map(|level| {
+                let state = std::array::from_fn(|axis| [x, y, level][axis]);
+                locator.log_posterior(&state)
+            }))
+        };
+        let posterior = locator.posterior();
+        let mut points: Vec<(f64, f64)> = (0..posterior.len())
+            .filter_map(|index| {
+                Some((posterior.point(index)?, posterior.log_weights().get(index)?))
+            })
+            .filter(|(_, log_weight)| **log_weight > -12.0)
+            .map(|(state, log_weight)| (density([state[0], state[1]]), log_weight.exp()))
+            .collect();
+        points.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let all: f64 = points.iter().map(|(_, weight)| weight).sum();
+        let mut sum = 0.0;
+        let border = points.iter().find(|(_, weight)| {
+            sum += weight;
+            sum >= 0.9 * all
+        });
+        border.map(|(least, _)| density(truth) >= *least)
+    }
+
+    fn follow<const D: usize>(&self, locator: UserLocator<'_, D>) -> Vec<Estimate> {
+        let mut locator = Box::new(locator);
+        let mut estimates = Vec::new();
+        for (number, stop) in self.stops.iter().enumerate() {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            if locator.measure(&measurement).is_err() {
+                continue;
+            }
+            let moments = locator.moments();
+            let (mean, deviation) = (moments.mean(), moments.deviation());
+            let last = number + 1 == self.stops.len();
+            let covered =
+                self.truth.filter(|_| last).and_then(|truth| self.covered(&locator, truth));
+            estimates.push(Estimate {
+                stop: number,
+                place: self.outward([mean[0], mean[1]]),
+                sd_m: deviation[0].hypot(deviation[1]),
+                // A level received is the negative loss: the more the transmitter sends, the less.
+                level_db: mean.get(2).map(|loss| -loss),
+                covered,
+                cloud: self
+                    .with_clouds
+                    .then(|| Cloud::of_lattice(locator.posterior()).moved(self.origin)),
+            });
+        }
+        estimates
+    }
+}
+
+/// Adds up exponentials of logarithms, as a logarithm.
+fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
+    let logs: Vec<f64> = logs.collect();
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln()
+}
+
+/// The box around a flight, and some more: its lower corner, and the area as seen from there.
+fn surroundings(stops: &[Stop]) -> Result<([f64; 2], Area), Error> {
+    let bound = |axis: usize, sign: f64| {
+        let outermost = stops.iter().map(|stop| sign * stop.place[axis]).fold(f64::MIN, f64::max);
+        sign * (outermost + BEYOND_M)
+    };
+    let origin = [bound(0, -1.0), bound(1, -1.0)];
+    let size = [bound(0, 1.0) - origin[0], bound(1, 1.0) - origin[1]];
+    let region = Region::new([0.0; 2], size).map_err(|_| Error::Surroundings)?;
+    Ok((origin, Area::rectangle(&region)?))
+}

@@ -1,0 +1,123 @@
+//! Which filter, and of which systems the satellites.
+
+use kestirim_ppp_filter::{Estimator, Motion, states};
+
+/// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
+pub const STATES: usize = states(20);
+/// The same where satellites of Galileo are among them.
+pub const STATES_WITH_GALILEO: usize = states(34);
+
+/// Satellites of which systems serve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+pub enum Systems {
+    /// Those of all that are observed and known
+    #[default]
+    All,
+    /// Of GPS alone
+    Gps,
+    /// Of Galileo alone
+    Galileo,
+}
+
+impl Systems {
+    /// Whether a satellite serves, by its number: those of Galileo begin at 101.
+    pub const fn has(self, satellite: u8) -> bool {
+        match self {
+            Self::All => true,
+            Self::Gps => satellite <= 100,
+            Self::Galileo => satellite > 100,
+        }
+    }
+}
+
+/// Which filter.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+pub enum FilterKind {
+    /// The plain Kalman filter (the paper's GKF)
+    Gkf,
+    /// IGG III weights, all at once (RKF)
+    Rkf,
+    /// Classification by a t-test (SKF)
+    Skf,
+    /// IGG III weights, the worst observation first (IKF)
+    Ikf,
+    /// The same and an adaptive factor on the position (the paper's UKF)
+    Adaptive,
+    /// Our own: robust, and slips that nothing else shows are found
+    #[default]
+    Default,
+}
+
+impl FilterKind {
+    /// Every filter, in the order of tables.
+    pub const ALL: [Self; 6] =
+        [Self::Gkf, Self::Rkf, Self::Skf, Self::Ikf, Self::Adaptive, Self::Default];
+
+    /// Whether the paper publishes formulas of it from which ours differ.
+    pub const fn is_published(self) -> bool {
+        matches!(self, Self::Rkf | Self::Skf | Self::Ikf | Self::Adaptive)
+    }
+
+    /// Whether it weights by IGG III, between two thresholds.
+    pub const fn has_thresholds(self) -> bool {
+        !matches!(self, Self::Gkf | Self::Skf)
+    }
+
+    /// As on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gkf => "gkf",
+            Self::Rkf => "rkf",
+            Self::Skf => "skf",
+            Self::Ikf => "ikf",
+            Self::Adaptive => "adaptive",
+            Self::Default => "default",
+        }
+    }
+
+    /// What people call it.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Gkf => "plain (GKF)",
+            Self::Rkf => "IGG III (RKF)",
+            Self::Skf => "t-test (SKF)",
+            Self::Ikf => "iterative IGG III (IKF)",
+            Self::Adaptive => "adaptive (UKF)",
+            Self::Default => "default",
+        }
+    }
+
+    /// What is done about observations that do not fit, as the paper publishes it if `published`.
+    pub fn estimator(self, motion: Motion, published: bool) -> Estimator {
+        let ours = match self {
+            Self::Gkf => Estimator::plain(),
+            Self::Rkf => Estimator::igg3(),
+            Self::Skf => Estimator::t_test(),
+            Self::Ikf => Estimator::iterative_igg3(),
+            Self::Adaptive => Estimator::adaptive(),
+            Self::Default => Estimator::guarded(motion),
+        };
+        if published && self.is_published() {
+            Estimator { robust: ours.robust.published(), ..ours }
+        } else {
+            ours
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_published_is_of_the_robust_filters() {
+        let estimator = |kind: FilterKind, published| kind.estimator(Motion::Static, published);
+        for kind in FilterKind::ALL {
+            assert_eq!(estimator(kind, true) != estimator(kind, false), kind.is_published());
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Of which satellites, and when, the products know enough.
+
+use std::collections::BTreeSet;
+
+use kestirim_gnss_files::{
+    Antennas, GpsTime as Time, Observations, Orbits, Signals, satellite_name,
+};
+use kestirim_gnss_ppp::{Correction, GpsTime};
+
+use super::model::{self, patterns};
+
+/// The number of the first satellite of Galileo, `E01`.
+pub(super) const FIRST_GALILEO: u8 = 101;
+
+/// Galileo satellites that are not to be used, and warnings about those of which something is not known.
+pub(super) fn left_out(
+    observations: &Observations,
+    orbits: &Orbits,
+    antennas: &Antennas,
+    (antex, start): (&str, Time),
+    warnings: &mut Vec<(Option<Correction>, String)>,
+) -> BTreeSet<u8> {
+    let is_unknown = |(number, signals): &(&u8, &Signals)| {
+        let carriers = model::carriers(signals.carriers);
+        let antenna = antennas.satellite(**number, start);
+        let antenna = antenna.and_then(|antenna| patterns(antenna, carriers));
+        !orbits.satellite(**number).is_empty() && antenna.is_none()
+    };
+    let all = observations.signals.iter();
+    let without = |(number, _): &(&u8, &Signals)| orbits.satellite(**number).is_empty();
+    let is_galileo = |(number, _): &(&u8, &Signals)| **number >= FIRST_GALILEO;
+    // A metre off is worse than nothing, where GPS serves without.
+    let left_out = all.clone().filter(is_galileo);
+    let left_out = left_out.filter(|it| without(it) || is_unknown(it));
+    let left_out: BTreeSet<u8> = left_out.map(|(number, _)| *number).collect();
+    if !left_out.is_empty() {
+        warnings.push((
+            None,
+            format!(
+                "{} are left out: orbits or antennas of them are not known",
+                names(left_out.iter().copied()),
+            ),
+        ));
+    }
+    let unknown = all.filter(|it| !is_galileo(it)).filter(is_unknown);
+    let unknown: Vec<_> = unknown.map(|(number, _)| *number).collect();
+    if !unknown.is_empty() {
+        warnings.push((
+            Some(Correction::SatelliteAntenna),
+            format!(
+                "{antex}: does not know the antennas of {}: they are off by a metre or more",
+                names(unknown),
+            ),
+        ));
+    }
+    left_out
+}
+
+/// From when to when there are orbits, s since midnight.
+pub(super) fn span(orbits: &Orbits, midnight: GpsTime) -> [f64; 2] {
+    let times = orbits.satellites().filter_map(|prn| {
+        let samples = orbits.satellite(prn);
+        let ends = [samples.first()?.time, samples.last()?.time];
+        Some(ends.map(|time| model::time(time).since(midnight)))
+    });
+    times.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [first, last]| {
+        [a.min(first), b.max(last)]
+    })
+}
+
+/// Satellites as they are named in files; of many, the first and how many more.
+pub fn names(satellites: impl IntoIterator<Item = u8>) -> String {
+    const MOST: usize = 12;
+    let mut names: Vec<_> = satellites.into_iter().map(satellite_name).collect();
+    let more = names.len().saturating_sub(MOST);
+    names.truncate(MOST);
+    let named = names.join(" ");
+    if more == 0 { named } else { format!("{named} and {more} more") }
+}

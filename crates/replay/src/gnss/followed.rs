@@ -1,0 +1,296 @@
+//! One filter, fed with a recording, and what becomes of each observation.
+
+use std::collections::BTreeMap;
+
+use super::choices::{STATES, STATES_WITH_GALILEO, Systems};
+use super::model::Epoch;
+use super::outage::{Outage, Outages, Unused};
+use super::products::Unusable;
+use super::recording::Recording;
+use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
+use kestirim_ppp_filter::{
+    Config, Contradiction, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped,
+    Solution,
+};
+use kestirim_robust_kalman::{Decision, Reason};
+use nalgebra::Vector3;
+
+/// Numbers of codes and of phases.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Both {
+    /// Codes.
+    pub code: usize,
+    /// Phases.
+    pub phase: usize,
+}
+
+impl Both {
+    /// Codes and phases.
+    pub const fn sum(self) -> usize {
+        self.code + self.phase
+    }
+
+    fn count(&mut self, report: &SatelliteReport, reason: Reason) {
+        let is = |decision: &Decision<f64>| usize::from(decision.reason == reason);
+        self.code += is(&report.code);
+        self.phase += is(&report.phase);
+    }
+}
+
+/// Slips by what showed them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Slips {
+    /// The receiver said so.
+    pub loss_of_lock: usize,
+    /// A jump of L1 − L2.
+    pub geometry_free: usize,
+    /// A jump of the Melbourne–Wübbena combination.
+    pub melbourne_wuebbena: usize,
+    /// A phase that contradicted all others for several epochs.
+    pub contradicted: usize,
+    /// All phases jumped against their codes at once.
+    pub clock: usize,
+}
+
+impl Slips {
+    /// All of them.
+    pub const fn sum(self) -> usize {
+        self.loss_of_lock
+            + self.geometry_free
+            + self.melbourne_wuebbena
+            + self.contradicted
+            + self.clock
+    }
+
+    fn count(&mut self, slipped: Option<Slipped>) {
+        match slipped {
+            // A satellite that comes, or comes back, is no slip.
+            None | Some(Slipped::New | Slipped::Seen(Slip::Gap)) => {}
+            Some(Slipped::Seen(Slip::LossOfLock)) => self.loss_of_lock += 1,
+            Some(Slipped::Seen(Slip::GeometryFree)) => self.geometry_free += 1,
+            Some(Slipped::Seen(Slip::MelbourneWuebbena)) => self.melbourne_wuebbena += 1,
+            Some(Slipped::Seen(Slip::Clock)) => self.clock += 1,
+            Some(Slipped::Contradicted) => self.contradicted += 1,
+        }
+    }
+}
+
+/// What became of one satellite.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Tally {
+    /// In how many epochs it was used.
+    pub epochs: usize,
+    /// Its observations that were rejected.
+    pub rejected: Both,
+    /// In how many epochs its orbit was not known.
+    pub no_orbit: usize,
+    /// In how many epochs its clock was not known.
+    pub no_clock: usize,
+}
+
+/// The end of a replay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Last {
+    /// Standard deviations to the east, north and up, m.
+    pub sd_enu: [f64; 3],
+    /// How far the position is to be trusted.
+    pub health: Health,
+    /// Zenith delay of the wet troposphere, m.
+    pub wet_delay: f64,
+}
+
+/// Where the marker was found at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fix {
+    /// Seconds since the midnight before the first epoch.
+    pub t: f64,
+    /// ECEF, m.
+    pub position: Vector3<f64>,
+}
+
+/// What a filter made of a recording.
+#[derive(Debug, Clone, Default)]
+pub struct Followed {
+    /// How many epochs there were.
+    pub epochs: usize,
+    /// Those with a solution.
+    pub fixes: Vec<Fix>,
+    /// Their standard deviations to the east, north and up, m.
+    pub deviations: Vec<[f64; 3]>,
+    /// Of each of them the receiver's clock ahead of GPS time, m, and the zenith delay of the wet troposphere, m.
+    pub delays: Vec<[f64; 2]>,
+    /// The last of them.
+    pub last: Option<Last>,
+    /// How far each of them is to be trusted.
+    pub healths: Vec<Health>,
+    /// How many satellites each of them is from.
+    pub heard: Vec<usize>,
+    /// When all phases jumped against their codes, s, and by how many milliseconds; that was repaired.
+    pub clock_jumps: Vec<(f64, i32)>,
+    /// Since when all positions have been converged ones, s.
+    pub converged_since: Option<f64>,
+    /// Observations that the filter was given.
+    pub observations: usize,
+    /// Those without weight …
+    pub rejected: Both,
+    /// … and those with less than the full one.
+    pub deweighted: Both,
+    /// Ambiguities begun anew.
+    pub slips: Slips,
+    /// Observed satellites that the filter was not given.
+    pub unused: Unused,
+    /// By satellite.
+    pub satellites: BTreeMap<u8, Tally>,
+    /// The epochs without a solution.
+    pub outages: Outages,
+    /// Of each satellite in each epoch, if that was asked for.
+    pub residuals: Vec<(f64, SatelliteReport)>,
+}
+
+/// Feeds a filter with the satellites of some `systems` in `epochs`; `with_residuals` keeps what became of each
+/// observation. `next` is called after each epoch.
+pub fn follow(
+    recording: &Recording,
+    epochs: &[Epoch],
+    receiver: &Receiver<'_>,
+    config: Config,
+    systems: Systems,
+    with_residuals: bool,
+    next: impl FnMut(),
+) -> Followed {
+    if recording.has_galileo() && systems != Systems::Gps {
+        let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
+        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+    } else {
+        let filter = PppFilter::<STATES>::new(config);
+        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+    }
+}
+
+fn feed<const N: usize>(
+    mut filter: PppFilter<N>,
+    recording: &Recording,
+    epochs: &[Epoch],
+    receiver: &Receiver<'_>,
+    systems: Systems,
+    with_residuals: bool,
+    mut next: impl FnMut(),
+) -> Followed {
+    let mask = filter.config().elevation_mask;
+    let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
+    let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();
+    // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
+    let mut lost = [false; 256];
+    // Tells which satellites stand below the mask, and nothing else.
+    let mut about = recording.approximate_position().map(Vector3::from);
+    for epoch in epochs {
+        let t = recording.seconds(epoch);
+        let satellites = || epoch.satellites.iter().filter(|observed| systems.has(observed.prn));
+        let mut unused = Unused { observed: satellites().count(), ..Unused::default() };
+        observations.clear();
+        if epoch.power_failure {
+            lost.fill(true);
+        }
+        for observed in satellites() {
+            let lost = &mut lost[usize::from(observed.prn)];
+            *lost |= observed.loss_of_lock.contains(&true);
+            match recording.products().observation(epoch.time, observed) {
+                Ok(observation) => {
+                    observations.push(SatelliteObservation { lock_lost: *lost, ..observation });
+                }
+                Err(reason) => followed.miss(observed.prn, reason, &mut unused),
+            }
+        }
+        match filter.process(epoch.time, receiver, &observations) {
+            Ok(solution) => {
+                for report in &solution.satellites {
+                    lost[usize::from(report.satellite)] = false;
+                }
+                about = Some(solution.position);
+                unused.below_mask = observations.len().saturating_sub(solution.satellites.len());
+                followed.take(t, &solution, with_residuals);
+            }
+            Err(error) => {
+                unused.below_mask = about.map_or(0, |place| below(&observations, &place, mask));
+                followed.outages.add(Outage { error, t, unused });
+            }
+        }
+        followed.unused.add(&unused);
+        next();
+    }
+    followed
+}
+
+/// How many satellites stand below the mask.
+fn below(observations: &[SatelliteObservation<'_>], place: &Vector3<f64>, mask: f64) -> usize {
+    let geodetic = Geodetic::from_ecef(place);
+    let is_below = |observation: &&SatelliteObservation<'_>| {
+        let sight = (observation.state.position - place).normalize();
+        Direction::of(&sight, &geodetic).elevation < mask
+    };
+    observations.iter().filter(is_below).count()
+}
+
+impl Followed {
+    /// The positions to the east, north and up of a place (ECEF, m), m.
+    pub fn enu_from(&self, place: &Vector3<f64>) -> Vec<[f64; 3]> {
+        let rotation = Geodetic::from_ecef(place).enu_from_ecef();
+        self.fixes.iter().map(|fix| (rotation * (fix.position - place)).into()).collect()
+    }
+
+    /// When solutions were not to be relied upon, s, and why.
+    pub fn contradictions(&self) -> impl Iterator<Item = (f64, Contradiction)> {
+        self.fixes.iter().zip(&self.healths).filter_map(|(fix, health)| match health {
+            Health::Contradicted(contradiction) => Some((fix.t, *contradiction)),
+            _ => None,
+        })
+    }
+
+    fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {
+        let tally = self.satellites.entry(prn).or_default();
+        match reason {
+            Unusable::Incomplete => unused.incomplete += 1,
+            Unusable::NoOrbit => {
+                unused.no_orbit += 1;
+                tally.no_orbit += 1;
+            }
+            Unusable::NoClock => {
+                unused.no_clock += 1;
+                tally.no_clock += 1;
+            }
+        }
+    }
+
+    fn take<const N: usize>(&mut self, t: f64, solution: &Solution<N>, with_residuals: bool) {
+        self.fixes.push(Fix { t, position: solution.position });
+        let sd_enu = solution.deviations_enu();
+        self.deviations.push(sd_enu);
+        self.delays.push([solution.clock, solution.wet_delay]);
+        self.last = Some(Last { sd_enu, health: solution.health, wet_delay: solution.wet_delay });
+        self.healths.push(solution.health);
+        self.heard.push(solution.satellites.len());
+        if solution.milliseconds != 0 {
+            self.clock_jumps.push((t, solution.milliseconds));
+        }
+        if solution.health == Health::Converged {
+            self.converged_since.get_or_insert(t);
+        } else {
+            self.converged_since = None;
+        }
+        for report in &solution.satellites {
+            let tally = self.satellites.entry(report.satellite).or_default();
+            tally.epochs += 1;
+            tally.rejected.count(report, Reason::Rejected);
+            self.observations += 2;
+            self.rejected.count(report, Reason::Rejected);
+            self.deweighted.count(report, Reason::DownWeighted);
+            self.slips.count(report.slipped);
+            if with_residuals {
+                self.residuals.push((t, *report));
+            }
+        }
+    }
+}

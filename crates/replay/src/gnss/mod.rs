@@ -1,0 +1,24 @@
+//! A receiver of satellite navigation: precise point positioning from files.
+//!
+//! A [`Recording`] is read with all that must be known for a position, [`follow`] makes a [`Followed`] of it. Positions are
+//! ECEF, m; times s since the midnight before the first epoch.
+
+mod accuracy;
+mod check;
+mod choices;
+mod coverage;
+mod followed;
+mod model;
+mod outage;
+mod products;
+mod recording;
+
+pub use self::accuracy::{Accuracy, BEGINNING};
+pub use self::check::check;
+pub use self::choices::{FilterKind, STATES, STATES_WITH_GALILEO, Systems};
+pub use self::coverage::names;
+pub use self::followed::{Both, Fix, Followed, Last, Slips, Tally, follow};
+pub use self::model::{Epoch, epoch};
+pub use self::outage::{Outage, Outages, Unused};
+pub use self::products::{Products, Satellite, Unusable};
+pub use self::recording::{FEWEST_SATELLITES, Paths, Recording};

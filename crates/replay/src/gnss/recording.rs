@@ -1,0 +1,233 @@
+//! What a receiver recorded, and all that must be known for a position.
+
+use std::path::{Path, PathBuf};
+
+use kestirim_gnss_files::{
+    Antenna, Antennas, Biases, Clocks, Error, Observations, Orbits, StationLoading,
+};
+use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
+use kestirim_health::{Health, Reason};
+use nalgebra::Vector3;
+
+use super::coverage::{self, FIRST_GALILEO};
+use super::model::{self, Epoch, patterns, receiver_patterns};
+use super::products::Products;
+
+/// Fewer satellites give no position, …
+pub const FEWEST_SATELLITES: usize = 4;
+/// … and such a share of epochs with fewer makes a poor day.
+const POOR: f64 = 0.1;
+/// Where the files are.
+#[derive(Debug, Clone, Copy)]
+pub struct Paths<'a> {
+    /// Observations: RINEX 2 or 3, plain or compact, packed or not.
+    pub obs: &'a Path,
+    /// Orbits: one SP3 file or more.
+    pub sp3: &'a [PathBuf],
+    /// Antennas: one ANTEX file or more.
+    pub antex: &'a [PathBuf],
+    /// Clocks; without any those of the orbit files serve.
+    pub clk: &'a [PathBuf],
+    /// Biases of codes.
+    pub bias: &'a [PathBuf],
+    /// Ocean loading of stations.
+    pub blq: Option<&'a Path>,
+}
+
+/// What a receiver recorded, and all that must be known for a position.
+#[derive(Debug)]
+pub struct Recording {
+    /// Where the observations were read.
+    pub path: PathBuf,
+    /// Where the marker really is, ECEF, m, if that is known; serves accuracy alone.
+    pub truth: Option<Vector3<f64>>,
+    epochs: Vec<Epoch>,
+    approximate_position: Option<[f64; 3]>,
+    /// The antenna's reference point above, east and north of the marker, m.
+    antenna_delta_hen: [f64; 3],
+    products: Products,
+    antenna: Option<Antenna>,
+    /// On which carriers satellites of Galileo are observed.
+    galileo: Option<Carriers>,
+    loading: Option<OceanLoading>,
+    /// UTC ahead of GPS time, s.
+    utc_minus_gps: f64,
+    /// Midnight before the first epoch.
+    pub midnight: GpsTime,
+    /// The first and the last time of an orbit, s since the midnight.
+    pub orbits_span: [f64; 2],
+    /// What a user should know of the files, some of it only if a correction is applied.
+    warnings: Vec<(Option<Correction>, String)>,
+}
+
+impl Recording {
+    /// Reads the files; those that do not need each other at the same time.
+    ///
+    /// # Errors
+    /// The file, the line, and what was expected there.
+    pub fn read(paths: &Paths<'_>) -> Result<Self, Error> {
+        let biases = Biases::read(paths.bias)?;
+        let clocks = || (!paths.clk.is_empty()).then(|| Clocks::read(paths.clk)).transpose();
+        let (observations, (orbits, clocks)) = rayon::join(
+            || Observations::read_unbiased(paths.obs, &biases),
+            || rayon::join(|| Orbits::read(paths.sp3), clocks),
+        );
+        let (observations, orbits, clocks) = (observations?, orbits?, clocks?);
+        let antennas = Antennas::read(paths.antex, &observations.antenna)?;
+        let near = observations.approximate_position;
+        let read = |path| StationLoading::read(path, &observations.marker, near);
+        let loading = paths.blq.map(read).transpose()?;
+        let Some(start) = observations.epochs.first().map(|epoch| epoch.time) else {
+            let problem = "expected observations of GPS satellites, found none".to_owned();
+            return Err(Error::File { path: paths.obs.to_path_buf(), problem });
+        };
+        let told = [
+            &observations.warnings[..],
+            &orbits.warnings,
+            clocks.as_ref().map_or(&[], |clocks| &clocks.warnings),
+            &antennas.warnings,
+            loading.as_ref().map_or(&[], |loading| &loading.warnings),
+        ];
+        let told = told.into_iter().flatten().map(|warning| (None, warning.to_string()));
+        let mut warnings: Vec<_> = told.collect();
+        let midnight = GpsTime::new(start.day(), 0.0);
+        let antex = paths.antex.first().map_or_else(String::new, |path| printable(path));
+        let left_out =
+            coverage::left_out(&observations, &orbits, &antennas, (&antex, start), &mut warnings);
+        let galileo = observations.signals.range(FIRST_GALILEO..).next();
+        let loading = loading.and_then(|station| station.loading);
+        Ok(Self {
+            path: paths.obs.to_path_buf(),
+            truth: None,
+            products: Products::new(start, &orbits, clocks.as_ref(), &antennas),
+            epochs: observations
+                .epochs
+                .into_iter()
+                .map(|mut epoch| {
+                    epoch.satellites.retain(|observed| !left_out.contains(&observed.prn));
+                    model::epoch(epoch)
+                })
+                .collect(),
+            approximate_position: observations.approximate_position,
+            antenna_delta_hen: observations.antenna_delta_hen,
+            antenna: antennas.receiver,
+            galileo: galileo.map(|(_, signals)| model::carriers(signals.carriers)),
+            loading: loading.as_ref().map(model::ocean_loading),
+            utc_minus_gps: -start.leap_seconds(),
+            midnight,
+            orbits_span: coverage::span(&orbits, midnight),
+            warnings,
+        })
+    }
+
+    /// A recording that was not read: antennas are points, and oceans have no tides.
+    ///
+    /// Times count from `midnight`, UTC is `utc_minus_gps` ahead of GPS time, s.
+    pub fn simulated(
+        epochs: Vec<Epoch>,
+        products: Products,
+        midnight: GpsTime,
+        utc_minus_gps: f64,
+    ) -> Self {
+        Self {
+            path: PathBuf::from("synthetic day"),
+            truth: None,
+            epochs,
+            approximate_position: None,
+            antenna_delta_hen: [0.0; 3],
+            products,
+            antenna: None,
+            galileo: None,
+            loading: None,
+            utc_minus_gps,
+            midnight,
+            orbits_span: [f64::NEG_INFINITY, f64::INFINITY],
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Adds what a user should know, if it concerns a correction only where that is applied.
+    pub fn warn(&mut self, correction: Option<Correction>, warning: impl Into<String>) {
+        self.warnings.push((correction, warning.into()));
+    }
+
+    /// The epochs with fewer than four satellites.
+    pub fn sparse(&self) -> impl Iterator<Item = &Epoch> {
+        self.epochs.iter().filter(|epoch| epoch.satellites.len() < FEWEST_SATELLITES)
+    }
+
+    /// What the files show against the recording before anything is solved: many epochs with fewer than four satellites,
+    /// orbits of another time.
+    pub fn doubts(&self) -> Health {
+        let ([first, last], [begin, end]) = (self.span(), self.orbits_span);
+        let few = self.sparse().count();
+        Health::GOOD
+            .with(Reason::Dropout, few as f64 > POOR * self.epochs.len() as f64)
+            .with(Reason::Time, begin > first || end < last)
+    }
+
+    /// The epochs up to a time, s since the midnight before the first one.
+    pub fn epochs(&self, until: Option<f64>) -> &[Epoch] {
+        // A receiver's clock is some milliseconds off at most.
+        let last = until.map_or(f64::INFINITY, |until| until + 1e-2);
+        &self.epochs[..self.epochs.partition_point(|epoch| self.seconds(epoch) <= last)]
+    }
+
+    /// Times of the first and the last epoch, s since the midnight before the first one.
+    pub fn span(&self) -> [f64; 2] {
+        let ends = [self.epochs.first(), self.epochs.last()];
+        ends.map(|epoch| epoch.map_or(0.0, |epoch| self.seconds(epoch)))
+    }
+
+    /// What a user should know of the files if some corrections are applied.
+    pub fn warnings(&self, corrections: Corrections) -> impl Iterator<Item = String> {
+        let concerns = move |of: &Option<Correction>| of.is_none_or(|it| corrections.has(it));
+        let some = self.warnings.iter().filter(move |(of, _)| concerns(of));
+        some.map(|(_, warning)| warning.clone())
+    }
+
+    /// Seconds since the midnight before the first epoch.
+    pub fn seconds(&self, epoch: &Epoch) -> f64 {
+        epoch.time.since(self.midnight)
+    }
+
+    /// Where the file says that the marker is, ECEF, m.
+    pub const fn approximate_position(&self) -> Option<[f64; 3]> {
+        self.approximate_position
+    }
+
+    /// Whether satellites of Galileo are observed.
+    pub const fn has_galileo(&self) -> bool {
+        self.galileo.is_some()
+    }
+
+    /// Orbits, clocks and antennas of satellites.
+    pub const fn products(&self) -> &Products {
+        &self.products
+    }
+
+    /// The receiver's antenna, if its phase centres are known.
+    pub fn receiver_antenna(&self) -> Option<&str> {
+        self.antenna.as_ref().map(|antenna| antenna.name.as_str())
+    }
+
+    /// What is known of the receiver, of which some `corrections` are applied.
+    pub fn receiver(&self, corrections: Corrections) -> Receiver<'_> {
+        let [up, east, north] = self.antenna_delta_hen;
+        Receiver {
+            antenna: self.antenna.as_ref().and_then(|it| patterns(it, Carriers::L1L2)),
+            galileo_antenna: (self.galileo)
+                .and_then(|carriers| receiver_patterns(self.antenna.as_ref()?, carriers)),
+            eccentricity: [east, north, up],
+            ocean_loading: self.loading.as_ref(),
+            ut1_minus_gps: self.utc_minus_gps,
+            corrections,
+        }
+    }
+}
+
+/// A path as it can be shown on a line.
+fn printable(path: &Path) -> String {
+    let shown = path.display().to_string();
+    shown.chars().map(|letter| if letter.is_control() { '?' } else { letter }).collect()
+}

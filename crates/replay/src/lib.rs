@@ -1,0 +1,13 @@
+#![doc = include_str!("../README.md")]
+
+pub mod drone;
+mod finding;
+pub mod gnss;
+pub mod metrics;
+pub mod pedestrian;
+pub mod robot;
+mod scalar;
+pub mod uav;
+
+pub use self::finding::Finding;
+pub use self::scalar::ScalarKind;

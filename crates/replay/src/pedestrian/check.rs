@@ -1,0 +1,212 @@
+//! What the log of a walk shows before it is tracked.
+
+use kestirim_health::Reason;
+use kestirim_import::inertial::turns;
+
+use super::Sample;
+use crate::Finding;
+use crate::metrics::median;
+
+/// Samples farther apart than so many usual steps have others missing between them.
+const GAP: f64 = 3.0;
+/// A sensor that repeats itself bit for bit for so long is stuck, s.
+const STUCK_S: f64 = 0.25;
+/// A value that stands at least so often at an axis's end is its limit, …
+const CLIPPED: usize = 3;
+/// … if that is far out: beyond 1.8 g, beyond 200 °/s.
+const FAR_OUT: [f64; 2] = [1.8 * 9.806_65, 3.49];
+/// What sensors are set to: g and °/s.
+const RANGES: [&[f64]; 2] =
+    [&[2.0, 4.0, 6.0, 8.0, 16.0, 24.0, 32.0], &[250.0, 300.0, 450.0, 500.0, 1000.0, 2000.0]];
+/// The measured turns fit gravity with another factor than one: by so much, …
+const OTHER_FACTOR: f64 = 1.25;
+/// … so many times as well, …
+const BETTER: f64 = 1.5;
+/// … and well.
+const WELL: f64 = 0.12;
+
+/// What the samples show.
+pub fn check(samples: &[Sample]) -> Vec<Finding> {
+    let steps: Vec<f64> = samples
+        .windows(2)
+        .map(|pair| (pair[1].time_us - pair[0].time_us) as f64 * 1e-6)
+        .filter(|step| *step > 0.0)
+        .collect();
+    let usual = median(&steps);
+    if steps.is_empty() {
+        return vec![Finding::note("rate", "one sample")];
+    }
+    let mut findings = vec![rate(&steps, usual)];
+    findings.extend(gaps(&steps, usual));
+    findings.extend(stuck(samples));
+    findings.extend(clipped(samples));
+    findings.extend(rest(samples, usual));
+    findings.extend(turned(samples));
+    findings
+}
+
+fn rate(steps: &[f64], usual: f64) -> Finding {
+    let off: Vec<f64> = steps.iter().map(|step| (step - usual).abs()).collect();
+    let found = format!("{:.1} Hz, usual jitter {:.2} ms", 1.0 / usual, 1e3 * median(&off));
+    if usual > 0.04 {
+        return Finding::fault(
+            "rate",
+            Reason::Dropout,
+            found,
+            "a footprint has too few samples to be found surely",
+            "log at 50 Hz or more, 100 Hz or more of a running foot",
+        );
+    }
+    Finding::note("rate", found)
+}
+
+fn gaps(steps: &[f64], usual: f64) -> Option<Finding> {
+    let gaps: Vec<f64> = steps.iter().copied().filter(|step| *step > GAP * usual).collect();
+    let longest = gaps.iter().copied().fold(0.0, f64::max);
+    let found = format!("{} gaps, the longest {longest:.2} s", gaps.len());
+    // Shorter ones are told here alone: they hardly change a path.
+    (!gaps.is_empty()).then(|| Finding::note("gaps", found))
+}
+
+/// Runs of samples that are the same bit for bit: a bus that stalls, a buffer that is read again.
+fn stuck(samples: &[Sample]) -> Option<Finding> {
+    let (mut runs, mut longest, mut lost, mut begin) = (0_usize, 0.0_f64, 0.0, 0_usize);
+    let same = |a: &Sample, b: &Sample| {
+        a.specific_force == b.specific_force && a.angular_rate == b.angular_rate
+    };
+    for i in 1..=samples.len() {
+        if i < samples.len() && same(&samples[i], &samples[begin]) {
+            continue;
+        }
+        let seconds = (samples[i - 1].time_us - samples[begin].time_us) as f64 * 1e-6;
+        if seconds >= STUCK_S {
+            runs += 1;
+            longest = longest.max(seconds);
+            lost += seconds;
+        }
+        begin = i;
+    }
+    let times = if runs == 1 { "once".to_owned() } else { format!("{runs} times") };
+    (runs > 0).then(|| {
+        Finding::fault(
+            "repeated samples",
+            Reason::Stuck,
+            format!(
+                "the sensor repeated itself {times}, {lost:.1} s in all, {longest:.1} s at most"
+            ),
+            "what the foot did meanwhile is not in the log",
+            "look at the bus and at the logger's buffer",
+        )
+    })
+}
+
+/// Axes that stand at their end.
+fn clipped(samples: &[Sample]) -> Vec<Finding> {
+    let axis = |sensor: usize, axis: usize| {
+        let value = move |sample: &Sample| {
+            if sensor == 0 { sample.specific_force[axis] } else { sample.angular_rate[axis] }
+        };
+        let most = samples.iter().map(|sample| value(sample).abs()).fold(0.0, f64::max);
+        let at_end = |sample: &&Sample| value(sample).abs() >= most * (1.0 - 1e-4);
+        let count = samples.iter().filter(at_end).count();
+        // Neighbours at the end: an impact reaches its peak once.
+        let together = samples
+            .windows(2)
+            .filter(|pair| pair.iter().all(|sample| value(sample).abs() >= most * (1.0 - 1e-4)))
+            .count();
+        (most, count, together)
+    };
+    let mut findings = Vec::new();
+    for (sensor, name, unit, scale) in [
+        (0, "accelerometer", "g", 1.0 / 9.806_65),
+        (1, "gyroscope", "°/s", 180.0 / std::f64::consts::PI),
+    ] {
+        let clipped: Vec<_> = (0..3)
+            .map(|i| (i, axis(sensor, i)))
+            .filter(|(_, (most, count, together))| {
+                *most > FAR_OUT[sensor] && *count >= CLIPPED && *together > 0
+            })
+            .collect();
+        let Some(&(_, (most, ..))) = clipped.iter().max_by(|a, b| a.1.0.total_cmp(&b.1.0)) else {
+            continue;
+        };
+        let share = |count: usize| 100.0 * count as f64 / samples.len() as f64;
+        let each: Vec<_> = clipped
+            .iter()
+            .map(|(i, (_, count, _))| format!("{} {:.2} %", ["x", "y", "z"][*i], share(*count)))
+            .collect();
+        let end = most * scale;
+        let next = RANGES[sensor].iter().find(|range| **range > end * 1.03);
+        let remedy = match next {
+            Some(range) => format!("set the sensor to ±{range} {unit}"),
+            None => "take a sensor with a wider range".to_owned(),
+        };
+        findings.push(Finding::fault(
+            "clipping",
+            Reason::Saturated,
+            format!("the {name} saturated at {end:.0} {unit} ({})", each.join(", ")),
+            "strides come out too short or bent",
+            remedy,
+        ));
+    }
+    findings
+}
+
+/// Standstills: what the accelerometer and the gyroscope show there.
+fn rest(samples: &[Sample], usual: f64) -> Vec<Finding> {
+    let length = ((0.5 / usual).round() as usize).max(5);
+    let mut still: Vec<(f64, [f64; 3])> = Vec::new();
+    for part in samples.chunks_exact(length) {
+        let mean = |of: fn(&Sample) -> [f64; 3]| -> [f64; 3] {
+            std::array::from_fn(|i| part.iter().map(|s| of(s)[i]).sum::<f64>() / length as f64)
+        };
+        let (force, rate) = (mean(|s| s.specific_force), mean(|s| s.angular_rate));
+        let off = |sample: &Sample| {
+            let force = (0..3).map(|i| (sample.specific_force[i] - force[i]).abs());
+            let rate = (0..3).map(|i| (sample.angular_rate[i] - rate[i]).abs() * 5.0);
+            force.chain(rate).fold(0.0, f64::max)
+        };
+        if part.iter().all(|sample| off(sample) < 0.6) {
+            still.push((force.iter().map(|x| x * x).sum::<f64>().sqrt(), rate));
+        }
+    }
+    if still.is_empty() {
+        return vec![Finding::note("rest", "no standstill of half a second")];
+    }
+    let norm = median(&still.iter().map(|(norm, _)| *norm).collect::<Vec<_>>());
+    let bias: [f64; 3] = std::array::from_fn(|i| {
+        median(&still.iter().map(|(_, rate)| rate[i].to_degrees()).collect::<Vec<_>>())
+    });
+    let seconds = 0.5 * still.len() as f64;
+    vec![
+        Finding::note("rest", format!("{seconds:.1} s at rest, gravity {norm:.3} m/s² there")),
+        Finding::note(
+            "gyroscope's bias",
+            format!("{:.2}, {:.2}, {:.2} °/s", bias[0], bias[1], bias[2]),
+        ),
+    ]
+}
+
+/// Whether the turns are as large as gravity shows them.
+fn turned(samples: &[Sample]) -> Option<Finding> {
+    let turns = turns(samples)?;
+    let apart = turns.factor.max(1.0 / turns.factor);
+    if apart < OTHER_FACTOR || turns.error > WELL || turns.error_as_measured < BETTER * turns.error
+    {
+        return Some(Finding::note(
+            "turns",
+            format!(
+                "{:.0} % of gravity left in disagreement over {} stretches",
+                100.0 * turns.error_as_measured,
+                turns.stretches
+            ),
+        ));
+    }
+    Some(Finding::fault(
+        "turns",
+        Reason::Time,
+        format!("turns have to be {:.2} times as large to agree with gravity", turns.factor),
+        "strides and their directions come out wrong",
+        "look at the times (--units t=…) and at the gyroscope's scale (--units gyro=…)",
+    ))
+}

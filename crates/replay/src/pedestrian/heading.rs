@@ -1,0 +1,78 @@
+//! The heading of a recorded walk, corrected by a magnetometer where the foot stands twice at the same place.
+
+use kestirim_pedestrian::{Ekf, MagneticHeading, OfflineTracker, PathUncertainty};
+use nalgebra::SVector;
+
+use super::{Options, Sample, Walk, imu_sample, position_at};
+
+/// Standard deviation of where a foot stands that is put back to where it stood, m.
+const PUT_BACK: f64 = 0.1;
+
+/// The rate at which the heading of a walk drifts, rad/s, where the magnetometer shows it.
+///
+/// The `field` is measured at each sample, body axes, in any unit, and not a number where it was not.
+pub fn heading_rate(samples: &[Sample], field: &[[f64; 3]], options: &Options) -> Option<f64> {
+    let samples: Vec<_> = samples.iter().map(imu_sample::<f64>).collect();
+    let config = options.config();
+    let mut energy = vec![0.0; samples.len()];
+    let mut tracker = OfflineTracker::<f64, Ekf<f64>>::new(config, &samples, &mut energy).ok()?;
+    let (mut heading, mut uncertainty) =
+        (MagneticHeading::default(), PathUncertainty::new(config.sensor));
+    let mut deviation = PUT_BACK;
+    for (sample, field) in samples.iter().zip(field) {
+        let estimate = tracker.next()?;
+        if let Some(stride) = &estimate.stride {
+            uncertainty.add(stride);
+            let [x, y, _] = uncertainty.standard_deviation().into();
+            deviation = x.hypot(y).hypot(PUT_BACK);
+        }
+        heading.update(sample, &estimate, Some(&SVector::from(*field)), deviation);
+    }
+    heading.finish(deviation);
+    heading.rate()
+}
+
+impl Walk {
+    /// Turns each step back by how far the heading has drifted until then, at this rate, rad/s.
+    pub fn turn_back(&mut self, rate: f64) {
+        let Some(first) = self.track.first().copied() else { return };
+        let (mut before, mut now) = (first.position, first.position);
+        for point in &mut self.track {
+            let (sine, cosine) = (-rate * (point.time_us - first.time_us) as f64 * 1e-6).sin_cos();
+            let [dx, dy] = [point.position[0] - before[0], point.position[1] - before[1]];
+            before = point.position;
+            now = [now[0] + cosine * dx - sine * dy, now[1] + sine * dx + cosine * dy, before[2]];
+            point.position = now;
+        }
+        for stride in &mut self.strides {
+            stride.position = position_at(&self.track, stride.time_us).unwrap_or(stride.position);
+            stride.heading_change_rad -= rate * stride.duration_s;
+        }
+        self.closure_m = now[0].hypot(now[1]);
+        self.heading_rate = Some(rate);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pedestrian::TrackPoint;
+
+    #[test]
+    fn a_drift_is_turned_back() {
+        // A circle walked at a constant rate, with a heading that drifts by so much.
+        let drift = 0.001;
+        let mut at = [0.0, 0.0];
+        let track = (0..=100).map(|k| {
+            let heading = (0.01 * std::f64::consts::TAU + drift) * f64::from(k);
+            let position = [at[0], at[1], 0.0];
+            at = [at[0] + heading.cos(), at[1] + heading.sin()];
+            TrackPoint { time_us: 1_000_000 * u64::try_from(k).expect("a time"), position }
+        });
+        let mut walk = Walk { track: track.collect(), ..Walk::default() };
+        // A step is turned by the drift at its end, one step late.
+        walk.turn_back(drift);
+        assert!(walk.closure_m < 0.01, "{} m", walk.closure_m);
+        assert_eq!(walk.heading_rate, Some(drift));
+    }
+}

@@ -1,0 +1,51 @@
+//! What a tracker finds suspicious, in words.
+
+use kestirim_pedestrian::Warnings;
+
+/// A sentence for each warning that was raised.
+pub fn sentences(warnings: Warnings) -> Vec<String> {
+    [
+        (
+            warnings.accelerometer_saturated,
+            "the accelerometer saturated: choose a wider range than the walker's steps",
+        ),
+        (
+            warnings.gyroscope_saturated,
+            "the gyroscope saturated: choose a wider range than the walker's steps",
+        ),
+        (
+            warnings.gravity_implausible,
+            "at rest the accelerometer does not show 9.8 m/s²: wrong unit, or uncalibrated",
+        ),
+        (
+            warnings.rate_implausible,
+            "angular rates beyond any foot's: degrees a second where radians are expected?",
+        ),
+        (
+            warnings.axes_inconsistent,
+            "accelerometer and gyroscope contradict each other: axes swapped or mirrored?",
+        ),
+        (
+            warnings.tilt_lost,
+            "the tilt was lost and found again: samples are missing or wrong, and what the foot turned meanwhile is not known",
+        ),
+        (
+            warnings.landings_implausible,
+            "stride by stride too large a velocity is left over: the gyroscope is clipped, late, or its scale or zero is \
+             wrong (calibrate pedestrian), or the clock runs wrong",
+        ),
+        (warnings.gaps, "samples are missing for more than 0.1 s"),
+        (
+            warnings.out_of_range,
+            "the path leads beyond the 2048 m of Q12.20, where its numbers stand still: choose --scalar f32",
+        ),
+        (
+            warnings.never_still,
+            "no standstill of half a second was found: the gyro bias is unknown",
+        ),
+    ]
+    .into_iter()
+    .filter(|(raised, _)| *raised)
+    .map(|(_, sentence)| sentence.to_owned())
+    .collect()
+}

@@ -1,0 +1,30 @@
+//! Where anchors are.
+
+/// Anchors in the order of their file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Anchors {
+    /// Their names, as logs use them.
+    pub names: Vec<String>,
+    /// Their places in the room (right-handed, z up), m.
+    pub positions: Vec<[f64; 3]>,
+}
+
+impl Anchors {
+    /// The place of a name in the list.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|known| known == name)
+    }
+
+    /// The smallest rectangle around them: two opposite corners, m.
+    pub fn rectangle(&self) -> [f64; 4] {
+        let [least, most] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        self.positions.iter().fold([least[0], least[1], most[0], most[1]], |corners, &[x, y, _]| {
+            [corners[0].min(x), corners[1].min(y), corners[2].max(x), corners[3].max(y)]
+        })
+    }
+
+    /// What a tag's height is taken to be when nobody says, m.
+    pub fn mean_height(&self) -> f64 {
+        self.positions.iter().map(|[_, _, z]| z).sum::<f64>() / self.positions.len().max(1) as f64
+    }
+}

@@ -1,0 +1,182 @@
+//! What the ranges of a tag show before it is tracked.
+
+mod geometry;
+
+use std::collections::BTreeMap;
+
+use kestirim_health::Reason;
+
+use super::{Anchors, Event, Range};
+use crate::Finding;
+use crate::metrics::standard_deviation;
+
+/// A range that stays the same to the last digit for so long and so often is stuck, s, …
+const STUCK_S: f64 = 3.0;
+const STUCK: usize = 15;
+/// … if the others change meanwhile by more than noise, m.
+const MOVING_M: f64 = 0.3;
+/// Ranges at the same largest value, of so many and such a share, were cut there.
+const CUT: usize = 20;
+const CUT_SHARE: f64 = 0.03;
+
+/// What is known of the tag's height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum KnownHeight {
+    /// Nothing: it is one of the unknowns.
+    Unknown,
+    /// It was said, m.
+    Said(f64),
+    /// It was found from the ranges, m, or assumed.
+    Found(f64),
+    /// It changes with time.
+    Varying,
+}
+
+/// What the parts of a recording show.
+pub fn check<'a>(
+    anchors: &Anchors,
+    parts: impl IntoIterator<Item = &'a [Event]>,
+    height: KnownHeight,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
+    let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
+    findings.extend(links(&parts, anchors.names.len(), &name));
+    let cut_at = cut_at(&parts);
+    findings.extend(cut_at.map(cut));
+    let cut_at = cut_at.map(|(_, metres)| metres);
+    findings.extend(parts.iter().find_map(|ranges| stuck(ranges, cut_at, &name)));
+    findings.extend(geometry::check(anchors, &parts, height));
+    findings
+}
+
+fn ranges(events: &[Event]) -> Vec<Range> {
+    let range = |event: &Event| match event {
+        Event::Range(range) => Some(*range),
+        _ => None,
+    };
+    events.iter().filter_map(range).collect()
+}
+
+/// How often each anchor is heard, and what it says that is no range.
+fn links<'a>(
+    parts: &[Vec<Range>],
+    anchors: usize,
+    name: &impl Fn(usize) -> &'a str,
+) -> Vec<Finding> {
+    let seconds: f64 = parts
+        .iter()
+        .filter_map(|ranges| {
+            let times = ranges.iter().map(|range| range.time_us);
+            Some((times.clone().max()? - times.min()?) as f64 * 1e-6)
+        })
+        .sum();
+    let mut findings = Vec::new();
+    let mut rates = Vec::new();
+    for anchor in 0..anchors {
+        let its: Vec<f64> =
+            parts.iter().flatten().filter(|it| it.anchor == anchor).map(|it| it.metres).collect();
+        if its.is_empty() {
+            findings.push(Finding::note("anchors", format!("{} is never heard", name(anchor))));
+            continue;
+        }
+        rates.push(format!("{} {:.1} Hz", name(anchor), its.len() as f64 / seconds.max(1e-3)));
+        let wrong = its.iter().filter(|metres| !metres.is_finite() || **metres <= 0.0).count();
+        if wrong * 10 > its.len() {
+            findings.push(Finding::fault(
+                "ranges",
+                Reason::Units,
+                format!("{} of {} ranges to {} are no distances", wrong, its.len(), name(anchor)),
+                "they are left out",
+                "look at the antenna delay: a range must be above zero",
+            ));
+        }
+    }
+    findings.insert(0, Finding::note("rate", rates.join(", ")));
+    findings
+}
+
+/// An anchor whose range stays while those of others change.
+fn stuck<'a>(
+    ranges: &[Range],
+    cut_at: Option<f64>,
+    name: &impl Fn(usize) -> &'a str,
+) -> Option<Finding> {
+    runs(ranges).into_iter().find_map(|run| {
+        let Run { anchor, metres, count, first, last } = run;
+        let seconds = (ranges[last].time_us - ranges[first].time_us) as f64 * 1e-6;
+        if count < STUCK || seconds < STUCK_S || Some(metres) == cut_at {
+            return None;
+        }
+        let mut others: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        let during = ranges[first..=last].iter();
+        for other in during.filter(|it| it.anchor != anchor && it.metres.is_finite()) {
+            others.entry(other.anchor).or_default().push(other.metres);
+        }
+        let moving = others.values().filter(|its| standard_deviation(its) > MOVING_M).count();
+        (moving >= 2).then(|| {
+            let name = name(anchor);
+            Finding::fault(
+                "stuck",
+                Reason::Stuck,
+                format!(
+                    "the range to {name} stays at {metres:.3} m for {seconds:.1} s while others change"
+                ),
+                "the position is drawn to a circle that is not there",
+                "look at what the anchor or the logger repeats",
+            )
+        })
+    })
+}
+
+/// Ranges to an anchor that are all the same.
+struct Run {
+    anchor: usize,
+    metres: f64,
+    count: usize,
+    /// Their places in the log.
+    first: usize,
+    last: usize,
+}
+
+/// The runs of each anchor, in the order in which they end: looked at once each, however long they are.
+fn runs(ranges: &[Range]) -> Vec<Run> {
+    let mut going: BTreeMap<usize, Run> = BTreeMap::new();
+    let mut runs = Vec::new();
+    for (i, range) in ranges.iter().enumerate() {
+        let Range { anchor, metres, .. } = *range;
+        match going.get_mut(&anchor) {
+            Some(run) if run.metres == metres => (run.count, run.last) = (run.count + 1, i),
+            _ => {
+                let run = Run { anchor, metres, count: 1, first: i, last: i };
+                runs.extend(going.insert(anchor, run));
+            }
+        }
+    }
+    runs.extend(going.into_values());
+    runs
+}
+
+/// How many ranges were cut at a largest value, and that value, m.
+fn cut_at(parts: &[Vec<Range>]) -> Option<(usize, f64)> {
+    let all: Vec<&Range> = parts.iter().flatten().filter(|it| it.metres.is_finite()).collect();
+    let metres: Vec<f64> = all.iter().map(|it| it.metres).collect();
+    let most = metres.iter().copied().fold(0.0, f64::max);
+    let at_most: Vec<usize> =
+        all.iter().filter(|it| it.metres == most).map(|it| it.anchor).collect();
+    let is_often = at_most.len() >= CUT && at_most.len() as f64 >= CUT_SHARE * metres.len() as f64;
+    // A tag that stands gives the same range to one anchor again and again.
+    let of_several = at_most.iter().any(|anchor| *anchor != at_most[0]);
+    let is_cut = is_often && of_several && standard_deviation(&metres) > MOVING_M;
+    is_cut.then_some((at_most.len(), most))
+}
+
+fn cut((count, metres): (usize, f64)) -> Finding {
+    Finding::fault(
+        "cut",
+        Reason::Saturated,
+        format!("{count} ranges are exactly {metres} m, the largest of all"),
+        "what is farther away looks nearer than it is",
+        "look at the largest range that the radio or the logger can give",
+    )
+}

@@ -1,0 +1,204 @@
+//! What a tag's sensors say, in the order in which trackers take it.
+
+use std::iter::from_fn;
+
+use super::Course;
+
+/// What is given to a tracker. Times are those of the log's clock, µs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Event {
+    /// A range was measured.
+    Range(Range),
+    /// The IMU was read.
+    Inertial(Inertial),
+    /// The wheels were read.
+    Wheels(Wheels),
+    /// The height of the tag became known.
+    Height {
+        /// When.
+        time_us: i64,
+        /// The height, m.
+        metres: f64,
+    },
+    /// All ranges of a time were given.
+    EpochEnd {
+        /// That time.
+        time_us: i64,
+    },
+}
+
+/// A sample of the IMU.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertial {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// Acceleration as logged, body axes, m/s².
+    pub acceleration: [f64; 3],
+    /// Acceleration without gravity, room axes, m/s², if the attitude is known.
+    pub push: Option<[f64; 3]>,
+}
+
+/// A sample of the wheels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wheels {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// Mean speed, m/s.
+    pub speed: f64,
+    /// Difference of the speeds by the track, rad/s.
+    pub turn_rate: f64,
+}
+
+/// A range to an anchor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// When it was measured, µs.
+    pub time_us: i64,
+    /// The anchor's place in the list.
+    pub anchor: usize,
+    /// The range as measured, m, which may be no number.
+    pub metres: f64,
+}
+
+impl Event {
+    /// When it was, µs.
+    pub const fn time_us(&self) -> i64 {
+        match self {
+            Self::Range(Range { time_us, .. })
+            | Self::Inertial(Inertial { time_us, .. })
+            | Self::Wheels(Wheels { time_us, .. })
+            | Self::Height { time_us, .. }
+            | Self::EpochEnd { time_us } => *time_us,
+        }
+    }
+}
+
+/// One line of a log: a range, or that there was none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RangeRow {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// The anchor's place in the list.
+    pub anchor: usize,
+    /// The range, m, as logged, which may be no number; none if there was none.
+    pub range: Option<f64>,
+}
+
+/// The samples of each sensor, in the order of its log.
+#[derive(Debug, Clone, Default)]
+pub struct Sensors {
+    /// Ranges.
+    pub ranges: Vec<RangeRow>,
+    /// Samples of the IMU.
+    pub inertial: Vec<Inertial>,
+    /// Samples of the wheels.
+    pub wheels: Vec<Wheels>,
+    /// Height of the tag over time, m.
+    pub height: Option<Course<1>>,
+}
+
+impl Sensors {
+    /// Ranges alone.
+    pub fn ranges(ranges: Vec<RangeRow>) -> Self {
+        Self { ranges, ..Self::default() }
+    }
+
+    /// Drops samples whose time is more than 10 s ahead of one that follows, and says how many there were: a single
+    /// wrong time would make everything after it too late.
+    pub fn drop_far_ahead(&mut self) -> usize {
+        far_ahead_dropped(&mut self.ranges, |row| row.time_us)
+            + far_ahead_dropped(&mut self.inertial, |sample| sample.time_us)
+            + far_ahead_dropped(&mut self.wheels, |sample| sample.time_us)
+    }
+
+    /// All in the order of their times. No sensor's own samples are reordered: times that go backwards are the
+    /// tracker's to refuse, and ranges that come late end no epoch.
+    pub fn events(&self) -> Vec<Event> {
+        let mut events = Vec::with_capacity(2 * self.ranges.len() + self.inertial.len());
+        let mut motion = self.motion().into_iter().peekable();
+        let mut latest_us = i64::MIN;
+        for epoch in self.ranges.chunk_by(|a, b| a.time_us == b.time_us) {
+            let time_us = epoch[0].time_us;
+            events.extend(from_fn(|| motion.next_if(|event| event.time_us() <= time_us)));
+            let height = self.height.as_ref().and_then(|course| course.held(time_us));
+            events.extend(height.map(|[metres]| Event::Height { time_us, metres }));
+            events.extend(epoch.iter().filter_map(|row| {
+                let (anchor, metres) = (row.anchor, row.range?);
+                Some(Event::Range(Range { time_us, anchor, metres }))
+            }));
+            if time_us > latest_us {
+                latest_us = time_us;
+                events.push(Event::EpochEnd { time_us });
+            }
+        }
+        events.extend(motion);
+        events
+    }
+
+    /// Samples of IMU and wheels.
+    fn motion(&self) -> Vec<Event> {
+        let inertial = self.inertial.iter().copied().map(Event::Inertial);
+        merged(inertial, self.wheels.iter().copied().map(Event::Wheels))
+    }
+}
+
+/// Later samples may go back behind a time by this, µs; one that they go back behind farther was wrong.
+const LARGEST_STEP_BACK_US: i64 = 10_000_000;
+
+fn far_ahead_dropped<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
+    let (before, mut earliest_us) = (samples.len(), i64::MAX);
+    let mut kept = Vec::with_capacity(before);
+    while let Some(sample) = samples.pop() {
+        let time_us = time_us(&sample);
+        if time_us.saturating_sub(LARGEST_STEP_BACK_US) <= earliest_us {
+            earliest_us = earliest_us.min(time_us);
+            kept.push(sample);
+        }
+    }
+    kept.reverse();
+    *samples = kept;
+    before - samples.len()
+}
+
+/// Both in the order of their times, the first before the second.
+fn merged(
+    first: impl IntoIterator<Item = Event>,
+    second: impl Iterator<Item = Event>,
+) -> Vec<Event> {
+    let mut first = first.into_iter().peekable();
+    let mut events = Vec::with_capacity(first.size_hint().0 + second.size_hint().0);
+    for event in second {
+        let time_us = event.time_us();
+        events.extend(from_fn(|| first.next_if(|before| before.time_us() <= time_us)));
+        events.push(event);
+    }
+    events.extend(first);
+    events
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_come_in_the_order_of_their_times() {
+        let range = |time_us, range| RangeRow { time_us, anchor: 0, range };
+        let wheels = |time_us| Wheels { time_us, speed: 0.0, turn_rate: 0.0 };
+        let inertial = |time_us| Inertial { time_us, acceleration: [0.0; 3], push: None };
+        let sensors = Sensors {
+            ranges: vec![
+                range(10, Some(1.0)),
+                range(10, None),
+                range(20, None),
+                range(5, Some(1.0)),
+            ],
+            inertial: vec![inertial(1), inertial(12), inertial(30)],
+            wheels: vec![wheels(2), wheels(11)],
+            height: Some(Course::new(vec![(0, [1.0])])),
+        };
+        let times: Vec<_> = sensors.events().iter().map(Event::time_us).collect();
+        assert_eq!(times, [1, 2, 10, 10, 10, 11, 12, 20, 20, 5, 5, 30]);
+        let ends = |event: &&Event| matches!(event, Event::EpochEnd { .. });
+        assert_eq!(sensors.events().iter().filter(ends).count(), 2);
+    }
+}

@@ -1,0 +1,31 @@
+//! A tag among ultra-wideband anchors.
+//!
+//! [`Sensors`] put what was measured in the order of time, a [`Setup`] says what is known beforehand, [`track`] makes a
+//! [`Trace`] of both. Frame: *room*, right-handed with z up, as the anchors are given.
+
+mod anchors;
+mod check;
+mod course;
+mod error;
+mod event;
+mod height;
+mod setup;
+mod trace;
+mod trackers;
+mod tuning;
+
+pub use self::anchors::Anchors;
+pub use self::check::{KnownHeight, check};
+pub use self::course::Course;
+pub use self::error::Error;
+pub use self::event::{Event, Inertial, Range, RangeRow, Sensors, Wheels};
+pub use self::height::{FoundHeight, HeightSearch};
+pub use self::setup::{Dimensions, Setup, TrackerKind};
+pub use self::trace::{Epoch, Trace, doubts, follow, track};
+pub use self::trackers::{
+    Beginning, Follow, Noise, Reception, build, build_changed, build_published,
+};
+pub use self::tuning::Tuning;
+
+/// The most anchors that the trackers are built for.
+pub const MOST: usize = 32;

@@ -1,0 +1,169 @@
+//! The trackers behind one face, whatever they compute in.
+
+mod each_epoch;
+mod elsewhere;
+mod published;
+mod recursive;
+mod wheeled;
+
+use std::fmt::Debug;
+
+use kestirim_adaptive_kalman::Learning;
+use kestirim_kalman::Covariance;
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_uwb_tracker::{Config, EpochMethod, Outcome, RangeSample, Report};
+use nalgebra::SVector;
+
+use self::each_epoch::EachEpoch;
+use self::elsewhere::Elsewhere;
+use self::published::Published;
+pub use self::published::{Beginning, Noise};
+use self::recursive::Recursive;
+use self::wheeled::Wheeled;
+use super::{Dimensions, Error, Event, Range, Setup, TrackerKind};
+use crate::ScalarKind;
+
+/// Something that follows a tag.
+pub trait Follow: Debug {
+    /// Takes in what a sensor says, at a time in µs since the recording began. A sensor that the tracker has no
+    /// use for is taken in and changes nothing.
+    fn take(&mut self, time_us: u64, event: &Event) -> Reception;
+
+    /// Where the tag is, m; its height is given back as it was set in two dimensions.
+    fn position(&self) -> Option<[f64; 3]>;
+
+    /// Variance of x, covariance, and variance of y, m², of a tracker that knows them.
+    fn spread(&self) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Variance of z, m², of a tracker that estimates it.
+    fn height_variance(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// What became of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reception {
+    /// Whether it was taken in.
+    pub taken: bool,
+    /// The normalised innovation squared of a range, from a tracker that weighs ranges one by one.
+    pub nis: Option<f64>,
+}
+
+impl Reception {
+    /// Of a tracker that weighs nothing.
+    pub const fn unweighed(taken: bool) -> Self {
+        Self { taken, nis: None }
+    }
+
+    /// Of a range that was weighed by itself, or refused.
+    fn of_range<T: Scalar, E>(answer: &Result<Report<T>, E>) -> Self {
+        let Ok(report) = answer else { return Self::unweighed(false) };
+        let nis = report.innovation.map(|innovation| innovation.nis.to_f64());
+        Self { taken: report.outcome != Outcome::Rejected, nis }
+    }
+}
+
+/// A range as a tracker takes it.
+fn sample<T: Scalar>(time_us: u64, range: &Range) -> RangeSample<T> {
+    RangeSample { time_us, anchor: range.anchor, range: T::from_f64(range.metres) }
+}
+
+/// Builds what was chosen.
+///
+/// # Errors
+/// [`Error`] if these anchors or numbers will not do.
+pub fn build(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    let Some(origin) = elsewhere::origin(setup) else { return build_here(setup) };
+    let tracker = build_here(&elsewhere::about(setup, origin))?;
+    Ok(Box::new(Elsewhere { tracker, origin }))
+}
+
+fn build_here(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    match setup.scalar {
+        ScalarKind::F32 => with_scalar::<f32>(setup),
+        ScalarKind::F64 => with_scalar::<f64>(setup),
+        ScalarKind::Fixed => with_scalar::<Q12_20>(setup),
+    }
+}
+
+fn with_scalar<T: Scalar>(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+    match setup.dimensions {
+        Dimensions::Two => in_dimensions::<T, 2, 4, 5>(setup),
+        Dimensions::Three => in_dimensions::<T, 3, 6, 7>(setup),
+    }
+}
+
+fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usize>(
+    setup: &Setup,
+) -> Result<Box<dyn Follow>, Error> {
+    let (height, tuning) = (T::from_f64(setup.height_m), &setup.tuning);
+    let plain = tuning.of_any(Config::plain(height));
+    Ok(match setup.tracker {
+        TrackerKind::Lsq => Box::new(EachEpoch::<T, D>::new(setup, EpochMethod::Trilateration)?),
+        TrackerKind::Nls => Box::new(EachEpoch::<T, D>::new(setup, EpochMethod::LeastSquares)?),
+        TrackerKind::Ekf => Box::new(Recursive::<T, D, N>::new(setup, plain)?),
+        TrackerKind::Aekf => {
+            let [forgetting, least, most] = TrackerKind::AEKF_LEARNING.map(T::from_f64);
+            let learning = Learning::new(forgetting, least, most).ok();
+            Box::new(Recursive::<T, D, N>::new(setup, Config { learning, ..plain })?)
+        }
+        TrackerKind::AekfPublished => Published::<T, D, N>::boxed(setup, Beginning::HONEST)?,
+        TrackerKind::Default => {
+            let is_calibrated = setup.biases.is_some();
+            let config = if is_calibrated { Config::calibrated } else { Config::uncalibrated };
+            let config = tuning.of_the_robust(config(height));
+            if setup.is_wheeled() {
+                Box::new(Wheeled::<T>::new(setup, config)?)
+            } else if is_calibrated {
+                Box::new(Recursive::<T, D, N>::new(setup, config)?)
+            } else {
+                Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, config)?)
+            }
+        }
+    })
+}
+
+/// The default tracker in the plane and double precision, with its constants changed: to see what they do.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_changed(
+    setup: &Setup,
+    change: impl FnOnce(&mut Config<f64>),
+) -> Result<Box<dyn Follow>, Error> {
+    if setup.biases.is_some() {
+        let mut config = Config::calibrated(setup.height_m);
+        change(&mut config);
+        return Ok(Box::new(Recursive::<f64, 2, 4>::new(setup, config)?));
+    }
+    let mut config = Config::uncalibrated(setup.height_m);
+    change(&mut config);
+    Ok(Box::new(Recursive::<f64, 2, 5>::new(setup, config)?))
+}
+
+/// The paper's filter in the plane, begun as one likes.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_published(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
+    match setup.scalar {
+        ScalarKind::F32 => Published::<f32, 2, 4>::boxed(setup, beginning),
+        ScalarKind::F64 => Published::<f64, 2, 4>::boxed(setup, beginning),
+        ScalarKind::Fixed => Published::<Q12_20, 2, 4>::boxed(setup, beginning),
+    }
+}
+
+/// A position in two or three dimensions, m.
+fn place<T: Scalar, const D: usize>(position: &SVector<T, D>, height_m: f64) -> Option<[f64; 3]> {
+    let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
+    Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(height_m)])
+}
+
+/// Variance of x, covariance and variance of y: of the first two states of any filter.
+fn of_the_plane<T: Scalar, const N: usize>(covariance: &Covariance<T, N>) -> Option<[f64; 3]> {
+    let of = |i, j| covariance.get(i, j).map(T::to_f64);
+    Some([of(0, 0)?, of(0, 1)?, of(1, 1)?])
+}

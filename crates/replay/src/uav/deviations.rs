@@ -1,0 +1,139 @@
+//! A logged flight in deviations from its model's steady one.
+
+use kestirim_health::Reason;
+use nalgebra::SVector;
+
+use super::estimators::{self, Assumed, Estimate, Followed};
+use super::{Error, EstimatorKind, Log, Model, Options, Truth};
+use crate::ScalarKind;
+
+/// A flight in deviations from its model's steady one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deviations {
+    /// The aircraft.
+    pub model: Model,
+    /// The log, in deviations.
+    pub log: Log,
+    /// What was really flown, as in its file.
+    pub truth: Option<Truth>,
+    /// State and input that were taken from the log.
+    origin: ([f64; 4], [f64; 2]),
+    /// The usual airspeed of the log, m/s, and that of the model's steady flight, if the log looks absolute and is not said
+    /// to be.
+    pub looks_absolute: Option<[f64; 2]>,
+}
+
+impl Deviations {
+    /// From what was logged; with `absolute` values the model's trim is taken from them.
+    ///
+    /// # Errors
+    /// [`Error::NoTrim`] if values are `absolute` and the model has none.
+    pub fn new(
+        model: Model,
+        mut log: Log,
+        truth: Option<Truth>,
+        absolute: bool,
+    ) -> Result<Self, Error> {
+        let origin = model.origin(absolute)?;
+        let looks_absolute = match model.trim {
+            Some((state, _)) if !absolute => looks_absolute(&log, &model, state[2]),
+            _ => None,
+        };
+        subtract(&mut log, &model, origin);
+        Ok(Self { model, log, truth, origin, looks_absolute })
+    }
+
+    /// From a simulated flight, which is in deviations.
+    pub fn simulated(model: Model, log: Log, truth: Truth) -> Self {
+        let (truth, origin) = (Some(truth), ([0.0; 4], [0.0; 2]));
+        Self { model, log, truth, origin, looks_absolute: None }
+    }
+
+    /// Of the outputs that the log has.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.log.outputs.iter().map(|&output| self.model.outputs[output].0.as_str())
+    }
+
+    /// By an estimator.
+    ///
+    /// # Errors
+    /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample.
+    pub fn follow(&self, options: &Options) -> Result<Followed, Error> {
+        let assumed = Assumed::of(&self.model, &self.log.outputs, options);
+        let kalman = |scalar| estimators::kalman(&self.model, &self.log, &assumed, scalar);
+        match options.estimator {
+            EstimatorKind::Kalman => kalman(options.scalar),
+            EstimatorKind::Luenberger => {
+                let (poles, scalar) = (options.poles, options.scalar);
+                let mut followed = estimators::observer(&self.model, &self.log, poles, scalar)?;
+                // An observer does not know how large innovations may be. Whether model and measurements agree does
+                // not depend on it: the filter beside it tells.
+                if let Ok(judge) = kalman(ScalarKind::F64) {
+                    for (health, judged) in followed.healths.iter_mut().zip(&judge.healths) {
+                        for reason in [Reason::Innovations, Reason::Time] {
+                            *health = health.with(reason, judged.has(reason));
+                        }
+                    }
+                }
+                Ok(followed)
+            }
+        }
+    }
+
+    /// An estimate as the log has its values.
+    pub fn absolute(&self, estimate: &Estimate) -> SVector<f64, 4> {
+        estimate.state + SVector::from(self.origin.0)
+    }
+
+    /// Inputs of the log as they were before the trim was taken.
+    pub fn inputs(&self) -> impl Iterator<Item = (i64, [f64; 2])> {
+        let steady = self.origin.1;
+        let absolute = move |input: [f64; 2]| std::array::from_fn(|i| input[i] + steady[i]);
+        self.log.samples.iter().map(move |sample| (sample.t_us, absolute(sample.input)))
+    }
+
+    /// Rows of the log as they were before the trim was taken: of each output, or nothing.
+    pub fn measured(&self) -> impl Iterator<Item = (i64, Vec<Option<f64>>)> {
+        let steady: Vec<f64> = self.log.outputs.iter().map(|&o| self.steady(o)).collect();
+        self.log.samples.iter().map(move |sample| {
+            let values = sample.measured.iter().zip(&steady);
+            (sample.t_us, values.map(|(value, steady)| value.map(|v| v + steady)).collect())
+        })
+    }
+
+    fn steady(&self, output: usize) -> f64 {
+        self.model.output(output, &self.origin.0)
+    }
+
+    /// Errors at times that log and truth share: estimated less true, of the states that are known.
+    pub fn errors(&self, estimates: &[Estimate]) -> Vec<(i64, [Option<f64>; 4])> {
+        let Some(truth) = &self.truth else { return Vec::new() };
+        let error = |estimate: &Estimate| {
+            let place = truth.binary_search_by_key(&estimate.t_us, |(t, _)| *t).ok()?;
+            let (state, known) = (self.absolute(estimate), truth[place].1);
+            let each = |column: usize| known[column].map(|known| state[column] - known);
+            Some((estimate.t_us, std::array::from_fn(each)))
+        };
+        estimates.iter().filter_map(error).collect()
+    }
+}
+
+/// Whether airspeeds are nearer to the steady one than to nothing.
+fn looks_absolute(log: &Log, model: &Model, airspeed: f64) -> Option<[f64; 2]> {
+    let column = log.outputs.iter().position(|&output| model.outputs[output].0 == "V")?;
+    let mut values: Vec<f64> =
+        log.samples.iter().filter_map(|sample| sample.measured[column]).collect();
+    values.sort_by(f64::total_cmp);
+    let middle = *values.get(values.len() / 2)?;
+    (middle > 0.5 * airspeed).then_some([middle, airspeed])
+}
+
+fn subtract(log: &mut Log, model: &Model, (state, input): ([f64; 4], [f64; 2])) {
+    let shown: Vec<f64> = log.outputs.iter().map(|&output| model.output(output, &state)).collect();
+    for sample in &mut log.samples {
+        sample.input = std::array::from_fn(|i| sample.input[i] - input[i]);
+        for (measured, steady) in sample.measured.iter_mut().zip(&shown) {
+            *measured = measured.map(|measured| measured - steady);
+        }
+    }
+}

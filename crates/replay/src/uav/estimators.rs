@@ -1,0 +1,198 @@
+//! Estimates along a recorded flight.
+
+use kestirim_health::Health;
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_uav_estimator::{self as uav, FlightFilter, FlightObserver};
+use nalgebra::{SMatrix, SVector};
+
+use super::{Error, Log, MOST_OUTPUTS, Model, Noise, Options, Poles, Sample, discrete};
+use crate::ScalarKind;
+
+/// Intervals of a log of which the steps are kept.
+pub const KEPT: usize = 512;
+
+/// A Kalman filter with room for as many outputs as a model may have.
+pub type Filter<T> = FlightFilter<T, MOST_OUTPUTS, KEPT>;
+
+/// An estimate, after its line was taken in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// µs.
+    pub t_us: i64,
+    /// Deviations α, q, V, θ.
+    pub state: SVector<f64, 4>,
+    /// Their standard deviations, of a filter that knows them.
+    pub sigma: Option<SVector<f64, 4>>,
+}
+
+/// Of a flight: estimates, and what the measurements said beyond what was expected of them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Followed {
+    /// One a line.
+    pub estimates: Vec<Estimate>,
+    /// Of each of the log's outputs: one a line, or nothing where it was not measured, or nothing expected yet.
+    pub innovations: Vec<Vec<Option<f64>>>,
+    /// How many times each of them contradicted the estimate and was left out.
+    pub rejected: Vec<u32>,
+    /// Of each line: how far its estimate can be relied upon.
+    pub healths: Vec<Health>,
+}
+
+impl Followed {
+    fn new(log: &Log) -> Self {
+        let innovations = vec![Vec::new(); log.outputs.len()];
+        Self { innovations, rejected: vec![0; log.outputs.len()], ..Self::default() }
+    }
+
+    fn add(
+        &mut self,
+        estimate: Estimate,
+        innovations: impl IntoIterator<Item = Option<f64>>,
+        rejected: &[u32],
+        health: Health,
+    ) {
+        for (all, innovation) in self.innovations.iter_mut().zip(innovations) {
+            all.push(innovation);
+        }
+        for (all, rejected) in self.rejected.iter_mut().zip(rejected) {
+            *all = *rejected;
+        }
+        self.healths.push(health);
+        self.estimates.push(estimate);
+    }
+}
+
+/// Standard deviations of white noise: of δe, δt, and of each of the log's outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assumed {
+    /// On the inputs, a sample.
+    pub inputs: [f64; 2],
+    /// On the outputs.
+    pub outputs: Vec<f64>,
+}
+
+impl Assumed {
+    /// As set, and otherwise of usual sensors. What a file's C mixes of the states is as noisy as the mixture of their
+    /// sensors.
+    pub fn of(model: &Model, outputs: &[usize], options: &Options) -> Self {
+        let usual = |&output: &usize| Noise::SENSORS.of_output(&model.outputs[output].1);
+        let of_output =
+            |output: &usize| options.outputs.map_or_else(|| usual(output), |given| given[*output]);
+        Self {
+            inputs: options.weighted(options.inputs.unwrap_or(Noise::SENSORS.inputs)),
+            outputs: outputs.iter().map(of_output).collect(),
+        }
+    }
+}
+
+/// A Kalman filter of these outputs of a model, measured every `usual` seconds.
+///
+/// # Errors
+/// Why there is none.
+pub fn filter<T: Scalar>(
+    model: &Model,
+    outputs: &[usize],
+    assumed: &Assumed,
+    usual: f64,
+) -> Result<Box<Filter<T>>, uav::Error> {
+    // Outputs that are never measured fill the rest.
+    let sigma = |output: usize| assumed.outputs.get(output).copied().unwrap_or(1.0);
+    let noise = uav::Noise {
+        inputs: assumed.inputs.into(),
+        outputs: SVector::from_fn(|output, _| sigma(output)),
+    };
+    Ok(Box::new(Filter::new(&model.dynamics, &rows(model, outputs), &noise, usual)?))
+}
+
+/// By a Kalman filter whose estimate the first lines decide.
+///
+/// # Errors
+/// [`Error::Estimator`] or [`Error::Sample`].
+pub(super) fn kalman(
+    model: &Model,
+    log: &Log,
+    assumed: &Assumed,
+    scalar: ScalarKind,
+) -> Result<Followed, Error> {
+    match scalar {
+        ScalarKind::F32 => kalman_in::<f32>(model, log, assumed),
+        ScalarKind::F64 => kalman_in::<f64>(model, log, assumed),
+        ScalarKind::Fixed => kalman_in::<Q16_16>(model, log, assumed),
+    }
+}
+
+fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<Followed, Error> {
+    let mut filter = filter::<T>(model, &log.outputs, assumed, log.interval_s)?;
+    let mut followed = Followed::new(log);
+    for (index, sample) in log.samples.iter().enumerate() {
+        let innovations = filter.take(&sized(sample));
+        let innovations = innovations.map_err(|source| Error::Sample { index, source })?;
+        let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
+        let now = filter.filter();
+        let sigma = Some(now.sigma());
+        let estimate = Estimate { t_us: sample.t_us, state: now.estimate(), sigma };
+        followed.add(estimate, innovations, filter.rejected(), filter.health());
+    }
+    Ok(followed)
+}
+
+/// By an observer with these poles, 1/s, that starts at what the first line measures.
+///
+/// # Errors
+/// [`Error::Estimator`] or [`Error::Sample`].
+pub(super) fn observer(
+    model: &Model,
+    log: &Log,
+    poles: Poles,
+    scalar: ScalarKind,
+) -> Result<Followed, Error> {
+    match scalar {
+        ScalarKind::F32 => observer_in::<f32>(model, log, poles),
+        ScalarKind::F64 => observer_in::<f64>(model, log, poles),
+        ScalarKind::Fixed => observer_in::<Q16_16>(model, log, poles),
+    }
+}
+
+fn observer_in<T: Scalar>(model: &Model, log: &Log, poles: Poles) -> Result<Followed, Error> {
+    match log.outputs.len() {
+        1 => observer_of::<T, 1>(model, log, poles),
+        2 => observer_of::<T, 2>(model, log, poles),
+        3 => observer_of::<T, 3>(model, log, poles),
+        _ => observer_of::<T, 4>(model, log, poles),
+    }
+}
+
+fn observer_of<T: Scalar, const P: usize>(
+    model: &Model,
+    log: &Log,
+    poles: Poles,
+) -> Result<Followed, Error> {
+    let (c, usual) = (rows::<P>(model, &log.outputs), log.interval_s);
+    let poles = discrete(poles, usual);
+    let mut observer =
+        Box::new(FlightObserver::<T, P, KEPT>::new(&model.dynamics, &c, &poles, usual)?);
+    let mut followed = Followed::new(log);
+    for (index, sample) in log.samples.iter().enumerate() {
+        let innovations = observer.take(&sized(sample));
+        let innovations = innovations.map_err(|source| Error::Sample { index, source })?;
+        let (state, sigma) = (observer.estimate(), None);
+        let estimate = Estimate { t_us: sample.t_us, state, sigma };
+        followed.add(estimate, innovations, observer.rejected(), observer.health());
+    }
+    Ok(followed)
+}
+
+/// Rows of C that are measured; zero beyond.
+pub fn rows<const P: usize>(model: &Model, outputs: &[usize]) -> SMatrix<f64, P, 4> {
+    let row = |place: usize| outputs.get(place).map_or([0.0; 4], |&output| model.outputs[output].1);
+    SMatrix::from_fn(|place, state| row(place)[state])
+}
+
+/// A line with room for P outputs.
+pub fn sized<const P: usize>(sample: &Sample) -> uav::Sample<P> {
+    uav::Sample {
+        time_us: sample.t_us,
+        input: sample.input.into(),
+        measured: std::array::from_fn(|output| sample.measured.get(output).copied().flatten()),
+    }
+}

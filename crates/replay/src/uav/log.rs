@@ -1,0 +1,60 @@
+//! A flight as it was logged.
+
+use super::Error;
+
+/// Intervals that differ by less than this share from the usual one are jitter.
+const JITTER: f64 = 0.1;
+/// Share of intervals that must be the usual one.
+const REGULAR: f64 = 0.75;
+/// From this many usual intervals on, samples are missing.
+const GAP: f64 = 1.5;
+
+/// A line of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// µs.
+    pub t_us: i64,
+    /// δe, δt.
+    pub input: [f64; 2],
+    /// What was measured, in the order of the log's outputs; an empty field is nothing.
+    pub measured: Vec<Option<f64>>,
+}
+
+/// A log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    /// Which of the model's outputs the log has.
+    pub outputs: Vec<usize>,
+    /// In the order of their times.
+    pub samples: Vec<Sample>,
+    /// The usual time between samples, s.
+    pub interval_s: f64,
+    /// How many times samples are missing.
+    pub gaps: usize,
+}
+
+impl Log {
+    /// Samples, in the order of their times, of some of a model's outputs.
+    ///
+    /// # Errors
+    /// [`Error::NotLater`], [`Error::TooShort`] or [`Error::Irregular`] of times at which no filter can be built.
+    pub fn new(outputs: Vec<usize>, samples: Vec<Sample>) -> Result<Self, Error> {
+        let step = |pair: &[Sample]| pair[1].t_us.saturating_sub(pair[0].t_us) as f64 / 1e6;
+        let mut steps: Vec<f64> = samples.windows(2).map(step).collect();
+        if let Some(before) = steps.iter().position(|step| *step <= 0.0) {
+            return Err(Error::NotLater { index: before + 1 });
+        }
+        steps.sort_by(f64::total_cmp);
+        let usual = *steps.get(steps.len() / 2).ok_or(Error::TooShort)?;
+        let near = steps.iter().filter(|step| (*step / usual - 1.0).abs() <= JITTER).count();
+        let of = steps.len();
+        if (near as f64) < REGULAR * of as f64 {
+            return Err(Error::Irregular { near, of, usual });
+        }
+        let gaps = steps.iter().filter(|step| **step > GAP * usual).count();
+        Ok(Self { outputs, samples, interval_s: usual, gaps })
+    }
+}
+
+/// True states: a time in µs, and those that the file has of α, q, V, θ.
+pub type Truth = Vec<(i64, [Option<f64>; 4])>;

@@ -1,0 +1,22 @@
+//! The longitudinal motion of an aeroplane: α, q, V, θ.
+//!
+//! [`Deviations`] are a [`Log`] less the steady flight of its [`Model`]; [`Deviations::follow`] makes a [`Followed`] of them
+//! as the [`Options`] say. Angles are radians, the airspeed m/s, times µs of the log's clock.
+
+mod deviations;
+mod error;
+mod estimators;
+mod log;
+mod model;
+mod noise;
+mod options;
+mod poles;
+
+pub use self::deviations::Deviations;
+pub use self::error::Error;
+pub use self::estimators::{Assumed, Estimate, Filter, Followed, KEPT, filter, rows, sized};
+pub use self::log::{Log, Sample, Truth};
+pub use self::model::{MOST_OUTPUTS, Model, Plant, STATE_COLUMNS, state_outputs};
+pub use self::noise::Noise;
+pub use self::options::{EstimatorKind, Options};
+pub use self::poles::{FAST, MIDDLE, Poles, SLOW, discrete, faster};

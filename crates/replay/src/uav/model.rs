@@ -1,0 +1,118 @@
+//! What is known of an aircraft.
+
+use kestirim_observer_design::{Discrete, zero_order_hold};
+use kestirim_uav_estimator::Dynamics;
+use kestirim_uav_longitudinal::{self as aircraft, Airframe, StateSpace, SteadyFlight};
+
+use super::Error;
+
+/// Names of the states, which are the columns of a log where a model has no C.
+pub const STATE_COLUMNS: [&str; 4] = ["alpha", "q", "V", "theta"];
+/// More outputs than states say nothing new.
+pub const MOST_OUTPUTS: usize = 4;
+
+/// An aircraft.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub enum Plant {
+    /// P1, the Aerosonde
+    #[cfg_attr(feature = "clap", value(name = "P1"))]
+    P1,
+    /// P2, what the thesis says of its aircraft
+    #[default]
+    #[cfg_attr(feature = "clap", value(name = "P2"))]
+    P2,
+    /// P3, the Navion
+    #[cfg_attr(feature = "clap", value(name = "P3"))]
+    P3,
+}
+
+impl Plant {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::P1, Self::P2, Self::P3];
+
+    /// In continuous time.
+    ///
+    /// # Panics
+    /// Never: the known aircraft fly.
+    pub fn model(self) -> StateSpace {
+        match self {
+            Self::P1 => aircraft::aerosonde().expect("the Aerosonde flies"),
+            Self::P2 => aircraft::thesis_like(),
+            Self::P3 => aircraft::navion(),
+        }
+    }
+
+    /// With inputs that are held for `interval` seconds.
+    ///
+    /// # Panics
+    /// The interval is not a number, or infinite.
+    pub fn discrete(self, interval: f64) -> Discrete<4, 2> {
+        let StateSpace { a, b } = self.model();
+        zero_order_hold(&a, &b, interval).expect("finite matrices")
+    }
+
+    /// For a table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::P1 => "P1 Aerosonde",
+            Self::P2 => "P2 thesis-like",
+            Self::P3 => "P3 Navion",
+        }
+    }
+}
+
+/// What an estimator needs to know of an aircraft.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// How it flies.
+    pub dynamics: Dynamics,
+    /// What could be measured: a column of the log, and its row of C.
+    pub outputs: Vec<(String, [f64; 4])>,
+    /// State and input of the flight that deviations are counted from.
+    pub trim: Option<([f64; 4], [f64; 2])>,
+}
+
+impl Model {
+    /// Of a known aircraft.
+    pub fn of(plant: Plant) -> Self {
+        let dynamics = Dynamics::Continuous(plant.model());
+        let trim = (plant == Plant::P1).then(climb);
+        Self { dynamics, outputs: state_outputs(), trim }
+    }
+
+    /// What is taken from values: nothing, or of `absolute` ones the model's trim.
+    ///
+    /// # Errors
+    /// [`Error::NoTrim`] if it has none.
+    pub fn origin(&self, absolute: bool) -> Result<([f64; 4], [f64; 2]), Error> {
+        match (absolute, self.trim) {
+            (false, _) => Ok(([0.0; 4], [0.0; 2])),
+            (true, Some(trim)) => Ok(trim),
+            (true, None) => Err(Error::NoTrim),
+        }
+    }
+
+    /// What an output measures of a state.
+    pub fn output(&self, output: usize, state: &[f64; 4]) -> f64 {
+        self.outputs[output].1.iter().zip(state).map(|(part, state)| part * state).sum()
+    }
+}
+
+/// State and input of P1's flight.
+fn climb() -> ([f64; 4], [f64; 2]) {
+    let flight = SteadyFlight { airspeed: 40.0, climb_angle: 4.0_f64.to_radians() };
+    let trim = Airframe::aerosonde().trim(&flight).expect("the Aerosonde flies");
+    (trim.state.into(), trim.input.into())
+}
+
+/// The four states as outputs.
+pub fn state_outputs() -> Vec<(String, [f64; 4])> {
+    let unit = |state: usize| std::array::from_fn(|place| f64::from(u8::from(place == state)));
+    STATE_COLUMNS
+        .iter()
+        .enumerate()
+        .map(|(state, name)| ((*name).to_owned(), unit(state)))
+        .collect()
+}

@@ -1,0 +1,293 @@
+//! One trial of a user who walks a circle, and of a drone that follows.
+
+use std::f64::consts::TAU;
+
+use kestirim_air_to_ground::{Channel, Measurement};
+use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
+use kestirim_replay::ScalarKind;
+use kestirim_replay::drone::{Cloud, EnvironmentKind, Estimate, Flown, Stop, Track};
+use kestirim_replay::metrics::{distance, mean};
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_user_locator::{
+    Height, Motion, Orbit, PublishedLocator, PublishedSettings, Tracker, Waypoint,
+};
+use rand_core::{Rng, SeedableRng};
+
+use super::scenario::measure;
+use super::static_user::MOST;
+use crate::random::{normal, stream, uniform};
+
+/// Side of the square, m.
+pub const SIDE_M: f64 = 4000.0;
+/// Filters of no more particles than this are kept in less memory, which stays in the cache.
+const FEW: usize = 1024;
+/// From one measurement to the next, s: the thesis counts steps. With its five seconds of hovering a measurement
+/// the user of most of its figures walks at 2.5 m/s.
+pub const INTERVAL_S: f64 = 5.0;
+/// Errors from here on count as lost, m.
+pub const LOST_M: f64 = 300.0;
+
+/// What the drone does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Policy {
+    /// The thesis: its cloud, and the drone flies to the estimate (Table 3.5).
+    Hover(Resampler),
+    /// Round the estimate of a cloud whose particles know their velocity.
+    Orbit,
+    /// The same, low when it knows where the user is and high when not.
+    OrbitLow,
+}
+
+/// One cell of the sweeps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walk {
+    /// Particles L.
+    pub particles: usize,
+    /// Height of the drone, m.
+    pub height_m: f64,
+    /// Radius of the user's circle, m.
+    pub user_radius_m: f64,
+    /// Steps in which it is walked.
+    pub end_time: u32,
+    /// What is built on the ground.
+    pub environment: EnvironmentKind,
+    /// What the drone does.
+    pub policy: Policy,
+    /// Noise that the channel does not know of, dB.
+    pub unknown_noise_db: f64,
+    /// The smallest deviation that the filter believes, dB.
+    pub least_sigma_db: Option<f64>,
+}
+
+impl Walk {
+    /// What most of the thesis' figures were made with.
+    pub const fn thesis(policy: Policy) -> Self {
+        Self {
+            particles: 1000,
+            height_m: 500.0,
+            user_radius_m: 1000.0,
+            end_time: 500,
+            environment: EnvironmentKind::Urban,
+            policy,
+            unknown_noise_db: 0.0,
+            least_sigma_db: None,
+        }
+    }
+
+    /// Jitter of the thesis' filter, which does not print it, m. It must exceed the user's step, or the cloud stays
+    /// behind.
+    pub fn jitter_m(&self) -> f64 {
+        let step = TAU * self.user_radius_m / f64::from(self.end_time);
+        (1.27 * step).max(16.0)
+    }
+}
+
+/// What came out of a trial.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Mean error over all steps, m.
+    pub error_m: f64,
+    /// How far the drone flew: without hovering, as in the thesis.
+    pub flown: Flown,
+}
+
+/// A filter with the drone's rule of where to go.
+trait Follower {
+    /// Takes in a loss measured at a waypoint, and says where the user is and where to go.
+    fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>);
+
+    /// What it believes.
+    fn cloud(&self) -> Cloud;
+}
+
+/// One user, one flight.
+pub fn trial(walk: &Walk, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
+    match (scalar, walk.particles <= FEW) {
+        (ScalarKind::F32, true) => with_scalar::<f32, FEW>(walk, seed, index),
+        (ScalarKind::F32, false) => with_scalar::<f32, MOST>(walk, seed, index),
+        (ScalarKind::F64, true) => with_scalar::<f64, FEW>(walk, seed, index),
+        (ScalarKind::F64, false) => with_scalar::<f64, MOST>(walk, seed, index),
+        (ScalarKind::Fixed, true) => with_scalar::<Q16_16, FEW>(walk, seed, index),
+        (ScalarKind::Fixed, false) => with_scalar::<Q16_16, MOST>(walk, seed, index),
+    }
+}
+
+/// The same flight as [`trial`]'s, in double precision, step by step.
+pub fn track(walk: &Walk, seed: u64, index: u64) -> Track {
+    let mut track = Track::default();
+    let mut watch = |step: &Step<'_>| {
+        let Waypoint { place, height } = step.waypoint;
+        let number = track.stops.len();
+        track.stops.push(Stop { t: number as f64 * INTERVAL_S, place, height, loss: step.loss_db });
+        track.truth.push(step.user);
+        let estimate = Estimate::of_cloud(number, step.follower.cloud());
+        track.estimates.push(Estimate { place: step.estimate, ..estimate });
+    };
+    let outcome = fly::<f64, MOST>(walk, seed, index, &mut watch);
+    Track { flown: Some(outcome.flown), ..track }
+}
+
+/// What a flight shows to who watches it.
+struct Step<'a> {
+    waypoint: Waypoint<f64>,
+    user: [f64; 2],
+    loss_db: f64,
+    estimate: [f64; 2],
+    follower: &'a dyn Follower,
+}
+
+fn with_scalar<T: Scalar, const L: usize>(walk: &Walk, seed: u64, index: u64) -> Outcome {
+    fly::<T, L>(walk, seed, index, &mut |_| {})
+}
+
+fn fly<T: Scalar, const L: usize>(
+    walk: &Walk,
+    seed: u64,
+    index: u64,
+    watch: &mut dyn FnMut(&Step<'_>),
+) -> Outcome {
+    let mut world = stream(seed, index);
+    let phase = TAU * uniform(&mut world);
+    let rng = Xoshiro128PlusPlus::seed_from_u64(world.next_u64());
+    let mut follower: Box<dyn Follower> = match walk.policy {
+        Policy::Hover(resampler) => Box::new(Hovering::<T, L>::new(walk, resampler, rng)),
+        Policy::Orbit => {
+            Box::new(Orbiting::<T, L>::new(walk, Height::Fixed(T::from_f64(walk.height_m)), rng))
+        }
+        Policy::OrbitLow => {
+            let heights = Height::Between(T::from_f64(100.0), T::from_f64(1000.0));
+            Box::new(Orbiting::<T, L>::new(walk, heights, rng))
+        }
+    };
+    let channel = walk.environment.channel::<f64>();
+    let start = if walk.policy == Policy::OrbitLow { 1000.0 } else { walk.height_m };
+    let mut waypoint = Waypoint { place: [SIDE_M / 2.0; 2], height: start };
+    let (mut errors, mut flown) = (Vec::new(), Flown::default());
+    for step in 0..walk.end_time {
+        let (sine, cosine) = (phase + TAU * f64::from(step) / f64::from(walk.end_time)).sin_cos();
+        let user = [cosine, sine].map(|part| SIDE_M / 2.0 + walk.user_radius_m * part);
+        let loss = measure(&channel, user, waypoint.place, waypoint.height, &mut world)
+            + normal(&mut world, walk.unknown_noise_db);
+        let (estimate, next) = follower.step(waypoint, loss);
+        watch(&Step { waypoint, user, loss_db: loss, estimate, follower: &*follower });
+        errors.push(distance(user, estimate));
+        flown.path_m += distance(waypoint.place, next.place).hypot(next.height - waypoint.height);
+        flown.climb_m += (next.height - waypoint.height).max(0.0);
+        waypoint = next;
+    }
+    Outcome { error_m: mean(&errors), flown }
+}
+
+/// The thesis' filter: the drone hovers over its estimate.
+struct Hovering<T: Scalar, const L: usize> {
+    filter: PublishedLocator<T, L>,
+    rng: Xoshiro128PlusPlus,
+    /// Effective number of particles after the last measurement.
+    effective: T,
+}
+
+impl<T: Scalar, const L: usize> Hovering<T, L> {
+    fn new(walk: &Walk, resampler: Resampler, mut rng: Xoshiro128PlusPlus) -> Self {
+        let jitter = T::from_f64(walk.jitter_m());
+        let settings = PublishedSettings { resampler, jitter, ..PublishedSettings::thesis() };
+        let filter = PublishedLocator::with_count(
+            walk.particles,
+            channel(walk),
+            &square(),
+            settings,
+            &mut rng,
+        );
+        let filter = filter.expect("the number of particles is within bounds");
+        Self { filter, rng, effective: T::ZERO }
+    }
+}
+
+impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
+    fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
+        if let Some(measurement) = measurement(from, loss_db) {
+            // What no particle explains leaves the cloud as it was.
+            let update = self.filter.measure(&measurement, &mut self.rng);
+            self.effective = update.map_or(T::ZERO, |update| update.effective);
+        }
+        let place = self.filter.moments().mean().map(T::to_f64);
+        (place, Waypoint { place, height: from.height })
+    }
+
+    fn cloud(&self) -> Cloud {
+        Cloud::of_particles(self.filter.particles(), self.effective.to_f64())
+    }
+}
+
+/// Ours: the drone circles the estimate.
+struct Orbiting<T: Scalar, const L: usize> {
+    tracker: Tracker<T, L>,
+    orbit: Orbit<T>,
+    rng: Xoshiro128PlusPlus,
+    begun: bool,
+    /// Effective number of particles after the last measurement.
+    effective: T,
+}
+
+impl<T: Scalar, const L: usize> Orbiting<T, L> {
+    fn new(walk: &Walk, height: Height<T>, mut rng: Xoshiro128PlusPlus) -> Self {
+        let tracker = Tracker::with_count(
+            walk.particles,
+            channel(walk),
+            motion(walk.least_sigma_db),
+            &square(),
+            &mut rng,
+        );
+        let tracker = tracker.expect("the number of particles is within bounds");
+        Self { tracker, orbit: Orbit::new(height), rng, begun: false, effective: T::ZERO }
+    }
+}
+
+/// What is assumed of the user's motion, with the deviation (dB) of the best measurements.
+fn motion<T: Scalar>(least_sigma_db: Option<f64>) -> Motion<T> {
+    match least_sigma_db {
+        Some(sigma) => Motion::people_measured_to(T::from_f64(sigma)),
+        None => Motion::people(),
+    }
+}
+
+impl<T: Scalar, const L: usize> Follower for Orbiting<T, L> {
+    fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
+        let interval = T::from_f64(INTERVAL_S);
+        if self.begun {
+            self.tracker.predict(interval, &mut self.rng).expect("an interval above zero");
+        }
+        self.begun = true;
+        if let Some(measurement) = measurement(from, loss_db) {
+            // What no particle explains leaves the cloud as it was.
+            let update = self.tracker.measure(&measurement, &mut self.rng);
+            self.effective = update.map_or(T::ZERO, |update| update.effective);
+        }
+        let estimate = self.tracker.estimate();
+        let next = self.orbit.next(&estimate, interval);
+        let next = Waypoint { place: next.place.map(T::to_f64), height: next.height.to_f64() };
+        (estimate.place.map(T::to_f64), next)
+    }
+
+    fn cloud(&self) -> Cloud {
+        Cloud::of_particles(self.tracker.particles(), self.effective.to_f64())
+    }
+}
+
+fn channel<T: Scalar>(walk: &Walk) -> Channel<T> {
+    let channel = walk.environment.channel::<T>();
+    let limited = walk.least_sigma_db.map(|sigma| channel.with_least_sigma(T::from_f64(sigma)));
+    limited.and_then(Result::ok).unwrap_or(channel)
+}
+
+fn measurement<T: Scalar>(from: Waypoint<f64>, loss_db: f64) -> Option<Measurement<T>> {
+    let number = T::from_f64;
+    Measurement::new(from.place.map(number), number(from.height), number(loss_db)).ok()
+}
+
+/// The square in which the filters look for the user.
+///
+/// # Panics
+/// Never: there is a square of this side.
+pub fn square<T: Scalar>() -> Region<T, 2> {
+    Region::new([T::ZERO; 2], [T::from_f64(SIDE_M); 2]).expect("a square")
+}

@@ -1,0 +1,198 @@
+//! A user who stays, measured from a circle or a grid.
+
+use kestirim_air_to_ground::{Measurement, Rotor};
+use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
+use kestirim_replay::drone::{Cloud, EnvironmentKind, Estimate, Flown, Stop, Track};
+use kestirim_replay::metrics::distance;
+use kestirim_scalar::Scalar;
+use kestirim_user_locator::{Locator, PublishedLocator, PublishedSettings};
+use rand_core::{Rng, SeedableRng};
+
+use super::scenario::measure;
+use super::trajectory::{SIDE_M, Trajectory};
+use crate::random::{stream, uniform};
+
+/// Most particles of a filter.
+pub const MOST: usize = 4096;
+/// Most measurements that a lattice remembers.
+const MEMORY: usize = 400;
+/// Time of a measurement, s.
+const HOVER_S: f64 = 5.0;
+
+/// Where and how the user is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometry {
+    /// Points at which the drone stops.
+    pub stops: u32,
+    /// Measurements at each.
+    pub per_stop: u32,
+    /// Height of the drone, m.
+    pub height_m: f64,
+    /// Where the points are.
+    pub trajectory: Trajectory,
+    /// What is built on the ground.
+    pub environment: EnvironmentKind,
+}
+
+impl Geometry {
+    /// The thesis' circle in a city.
+    pub const fn circle(stops: u32, height_m: f64) -> Self {
+        let (trajectory, environment) = (Trajectory::CIRCLE, EnvironmentKind::Urban);
+        Self { stops, per_stop: 1, height_m, trajectory, environment }
+    }
+
+    /// Energy of the flight by the published formulas and constants (eqs 2.12 to 2.17), J.
+    ///
+    /// # Panics
+    /// The speed is not above zero.
+    pub fn energy_j(&self, speed_kmh: f64) -> f64 {
+        let path = self.trajectory.length(self.stops);
+        let hover = f64::from(self.stops) * HOVER_S;
+        Rotor::base_station().energy(path, speed_kmh / 3.6, hover).expect("a speed above zero")
+    }
+}
+
+/// The thesis' filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PublishedFilter {
+    /// Particles L.
+    pub particles: usize,
+    /// How they are resampled.
+    pub resampler: Resampler,
+}
+
+/// Which filter finds the user.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FilterSetting {
+    /// The thesis'.
+    Published(PublishedFilter),
+    /// Ours, with so many points.
+    Best(usize),
+}
+
+/// One user, and what is measured of them.
+#[derive(Debug, Clone)]
+pub struct Flight<'a> {
+    /// Where and how they are measured.
+    pub geometry: &'a Geometry,
+    losses: Vec<([f64; 2], f64)>,
+    /// Where the user is, m.
+    pub user: [f64; 2],
+    seed: u64,
+}
+
+impl<'a> Flight<'a> {
+    /// Flight number `index` of a seed.
+    pub fn new(geometry: &'a Geometry, seed: u64, index: u64) -> Self {
+        let mut rng = stream(seed, index);
+        let user = [SIDE_M * uniform(&mut rng), SIDE_M * uniform(&mut rng)];
+        let channel = geometry.environment.channel::<f64>();
+        let mut losses = Vec::new();
+        for place in geometry.trajectory.points(geometry.stops) {
+            for _ in 0..geometry.per_stop {
+                losses.push((place, measure(&channel, user, place, geometry.height_m, &mut rng)));
+            }
+        }
+        Self { geometry, losses, user, seed: rng.next_u64() }
+    }
+
+    /// The thesis' filter, and its randomness.
+    ///
+    /// # Panics
+    /// More particles than L, or none.
+    pub fn published<T: Scalar, const L: usize>(
+        &self,
+        filter: PublishedFilter,
+    ) -> (Box<PublishedLocator<T, L>>, Xoshiro128PlusPlus) {
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(self.seed);
+        let settings =
+            PublishedSettings { resampler: filter.resampler, ..PublishedSettings::thesis() };
+        let channel = self.geometry.environment.channel::<T>();
+        let filter = PublishedLocator::<T, L>::with_count(
+            filter.particles,
+            channel,
+            &square(),
+            settings,
+            &mut rng,
+        );
+        (Box::new(filter.expect("the number of particles is within bounds")), rng)
+    }
+
+    /// Our filter.
+    ///
+    /// # Panics
+    /// More points than L, or none.
+    pub fn lattice<T: Scalar, const L: usize>(&self, points: usize) -> Locator<T, L, MEMORY> {
+        let channel = self.geometry.environment.channel::<T>();
+        let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
+        filter.expect("the number of points is within bounds")
+    }
+
+    /// What is measured.
+    pub fn measurements<T: Scalar>(&self) -> impl Iterator<Item = Measurement<T>> {
+        let height = T::from_f64(self.geometry.height_m);
+        self.losses.iter().filter_map(move |(place, loss)| {
+            Measurement::new(place.map(T::from_f64), height, T::from_f64(*loss)).ok()
+        })
+    }
+
+    /// Distance of a place from the user, m.
+    pub fn error<T: Scalar>(&self, place: [T; 2]) -> f64 {
+        distance(self.user, place.map(T::to_f64))
+    }
+
+    /// What a filter believes after each measurement, in double precision.
+    fn track(&self, mut cloud: impl FnMut(&Measurement<f64>) -> Cloud) -> Track {
+        let (mut stops, mut estimates) = (Vec::new(), Vec::new());
+        for (number, measurement) in self.measurements().enumerate() {
+            let (height, loss) = (measurement.height(), measurement.loss());
+            stops.push(Stop {
+                t: number as f64 * HOVER_S,
+                place: measurement.place(),
+                height,
+                loss,
+            });
+            estimates.push(Estimate::of_cloud(number, cloud(&measurement)));
+        }
+        let path_m = self.geometry.trajectory.length(self.geometry.stops);
+        let hover_s = f64::from(self.geometry.stops) * HOVER_S;
+        Track {
+            truth: vec![self.user; stops.len()],
+            stops,
+            estimates,
+            warnings: Vec::new(),
+            flown: Some(Flown { path_m, climb_m: 0.0, hover_s }),
+        }
+    }
+}
+
+/// Tracks flight number `index` of a seed, in double precision.
+pub fn track(geometry: &Geometry, filter: FilterSetting, seed: u64, index: u64) -> Track {
+    let flight = Flight::new(geometry, seed, index);
+    match filter {
+        FilterSetting::Published(filter) => {
+            let (mut filter, mut rng) = flight.published::<f64, MOST>(filter);
+            flight.track(|measurement| {
+                let update = filter.measure(measurement, &mut rng);
+                let effective = update.map_or(0.0, |update| update.effective);
+                Cloud::of_particles(filter.particles(), effective)
+            })
+        }
+        FilterSetting::Best(points) => {
+            let mut filter = Box::new(flight.lattice::<f64, MOST>(points));
+            flight.track(|measurement| {
+                // What nothing explains leaves the lattice as it was.
+                let _ = filter.measure(measurement);
+                Cloud::of_lattice(filter.posterior())
+            })
+        }
+    }
+}
+
+/// The square in which the user is.
+///
+/// # Panics
+/// Never: there is a square of this side.
+pub fn square<T: Scalar>() -> Region<T, 2> {
+    Region::new([T::ZERO; 2], [T::from_f64(SIDE_M); 2]).expect("a square")
+}

@@ -1,0 +1,8 @@
+//! Flights of known aircraft, with the noise of their sensors.
+
+pub mod design;
+pub mod flight;
+pub mod plant;
+pub mod scenario;
+
+pub use kestirim_uav_longitudinal::{airspeed_and_pitch, full_state, rate_airspeed_and_pitch};
