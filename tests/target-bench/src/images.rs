@@ -20,10 +20,10 @@ const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
 /// Set to `short`, images are built and looked at for [`SHORT_FORM`] alone: CI has half an hour.
 const TARGETS: &str = "KESTIRIM_TARGETS";
 
-/// Targets and profiles of the short form: with and without a floating-point unit, for speed and for size; of the surface,
-/// whose programs take longest, the last alone.
+/// Targets and profiles of the short form: with and without a floating-point unit, at the level of the applications,
+/// whose dependencies they share; of the surface, whose programs take longest, the last alone.
 const SHORT_FORM: [(&Target, Profile); 2] =
-    [(&CORTEX_M0, Profile::Size), (&CORTEX_M4F, Profile::Speed)];
+    [(&CORTEX_M0, Profile::Speed), (&CORTEX_M4F, Profile::Speed)];
 
 /// The packages of images with our workloads and with the peers', built in one go.
 const WORKLOADS: Packages = &["images", "peers"];
