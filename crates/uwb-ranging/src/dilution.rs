@@ -12,11 +12,22 @@ use kestirim_scalar::Scalar;
 pub fn dilution_of_precision<T: Scalar, const D: usize>(
     directions: impl IntoIterator<Item = [T; D]>,
 ) -> Result<T, Error> {
+    weighted_dilution(directions.into_iter().map(|direction| (direction, T::ONE)))
+}
+
+/// The same for ranges that are not equally good, each with its weight: a reference variance over its own. The dilution
+/// times the reference standard deviation is that of the position.
+///
+/// # Errors
+/// As [`dilution_of_precision`].
+pub fn weighted_dilution<T: Scalar, const D: usize>(
+    ranges: impl IntoIterator<Item = ([T; D], T)>,
+) -> Result<T, Error> {
     const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
     let mut equations = NormalEquations::new();
     let mut count = 0;
-    for direction in directions {
-        equations.add(&direction, T::ZERO, T::ONE);
+    for (direction, weight) in ranges {
+        equations.add(&direction, T::ZERO, weight);
         count += 1;
     }
     if count < D {

@@ -24,7 +24,7 @@ pub use antenna::AntennaDelay;
 pub use bias::LevelBias;
 pub use calibration::Calibration;
 pub use clock::{Channel, ClockOffset, DataRate};
-pub use dilution::dilution_of_precision;
+pub use dilution::{dilution_of_precision, weighted_dilution};
 pub use error::Error;
 pub use height::{Height, HeightSearch};
 pub use least_squares::{Fix, Huber, Observation, Solver};

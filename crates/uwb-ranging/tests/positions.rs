@@ -3,7 +3,7 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     Error, Huber, Observation, Room, Solver, Trilateration, dilution_of_precision, expected_range,
-    trilaterate,
+    trilaterate, weighted_dilution,
 };
 use nalgebra::{SVector, Vector2, Vector3};
 use proptest::prelude::*;
@@ -176,6 +176,11 @@ fn impossible_questions_have_their_errors() {
     assert_eq!(dilution_of_precision(parallel), Err(Error::DegenerateGeometry));
     let around = [[1.0_f32, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     assert!((dilution_of_precision(around).unwrap() - 1.0).abs() < 1e-6);
+    // Ranges of a quarter of the weight err twice as much; of no weight, not at all where the others determine.
+    let weighted = |weights: [f32; 4]| weighted_dilution(around.into_iter().zip(weights));
+    assert!((weighted([0.25; 4]).unwrap() - 2.0).abs() < 1e-6);
+    assert!((weighted([1.0, 1.0, 0.0, 0.0]).unwrap() - 2.0_f32.sqrt()).abs() < 1e-6);
+    assert_eq!(weighted([1.0, 0.0, 1.0, 0.0]), Err(Error::DegenerateGeometry));
 }
 
 #[test]

@@ -29,7 +29,8 @@ pub struct Config<T> {
     pub common_bias_sigma: T,
     /// Standard deviation of the constant error that each anchor's ranges keep, m. It is considered, not estimated
     /// (Schmidt 1966): the filter takes ranges' errors for noise, which an average makes small, so
-    /// [`Health::position_sigma`](crate::Health::position_sigma) adds what these do to the position.
+    /// [`Health::position_sigma`](crate::Health::position_sigma) adds what these do to the position. Where the tag stands,
+    /// each link is given as much again.
     pub bias_sigma: T,
     /// Height of the tag in two dimensions, m.
     pub height: T,

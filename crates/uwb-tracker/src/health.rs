@@ -3,7 +3,7 @@ use crate::link::Link;
 use crate::pace::Pace;
 use kestirim_health::Reason;
 use kestirim_scalar::Scalar;
-use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
+use kestirim_uwb_ranging::{dilution_of_precision, expected_range, weighted_dilution};
 use nalgebra::SVector;
 
 /// State of a tracker's position.
@@ -44,7 +44,8 @@ pub struct Health<T> {
     /// Standard deviation of the position, root of its variances' sum, m: the filter's own, and that of the anchors'
     /// constant errors; none without a position.
     pub position_sigma: Option<T>,
-    /// The latter alone, m: [`Config::bias_sigma`](crate::Config::bias_sigma) times the dilution of the anchors heard.
+    /// The latter alone, m: [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands, times the
+    /// dilution of the anchors heard.
     pub bias_sigma: T,
     /// Whether lately more than a third of the ranges were left out, but for those of blocked anchors.
     pub distrusted: bool,
@@ -68,6 +69,9 @@ pub(crate) const MOST_TRIES: u8 = 20;
 
 /// Mean NIS of ranges up to which they agree.
 const NIS_OF_AGREEMENT: f64 = 4.0;
+
+/// Speed at which what is around a tag changes within the second or so that a position is averaged over, m/s.
+const CHANGING_SPEED: f64 = 0.1;
 
 /// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
@@ -141,26 +145,40 @@ pub(crate) fn count_heard<T: Scalar>(links: &[Link<T>], pace: &Pace, time_us: u6
     links.iter().filter(counts).count() as u8
 }
 
-/// Health of a tracker that has this position, of this variance (the sum of its coordinates', m²).
+/// What health needs to know of an estimate.
+pub(crate) struct Place<T, const D: usize> {
+    /// Position, m.
+    pub(crate) position: SVector<T, D>,
+    /// Sum of its coordinates' variances, m².
+    pub(crate) variance: T,
+    /// Square of the speed, m²/s².
+    pub(crate) speed_squared: T,
+}
+
+/// Health of a tracker that has this place.
 pub(crate) fn health<T: Scalar, const D: usize>(
     (counters, config): (&Counters<T>, &Config<T>),
     (links, pace): (&[Link<T>], &Pace),
-    position: Option<(SVector<T, D>, T)>,
+    place: Option<Place<T, D>>,
     time_us: u64,
     still: bool,
 ) -> Health<T> {
     let heard = count_heard(links, pace, time_us);
     let fresh_us = pace.fresh_us();
-    let fresh =
-        links.iter().filter(|link| !link.is_blocked && link.fresh(time_us, fresh_us).is_some());
-    let dilution = position.and_then(|(position, _)| {
-        let directions = fresh
-            .map(|link| expected_range(&position, config.height, &link.anchor.position).direction);
-        dilution_of_precision(directions).ok()
+    let is_fresh = |link: &&Link<T>| !link.is_blocked && link.fresh(time_us, fresh_us).is_some();
+    let dilution = place.as_ref().and_then(|place| {
+        let fresh = links.iter().filter(is_fresh);
+        let direction = |link: &Link<T>| direction(place, config, link);
+        dilution_of_precision(fresh.map(direction)).ok()
     });
-    let bias_sigma = dilution.map_or(T::ZERO, |dilution| dilution * config.bias_sigma);
+    let bias_sigma = place.as_ref().map_or(T::ZERO, |place| {
+        let fresh = bias_sigma(place, config, links.iter().filter(is_fresh));
+        // Where they are too few, the position keeps what all have made of it.
+        let all = || bias_sigma(place, config, links.iter().filter(|link| link.is_heard()));
+        fresh.or_else(all).unwrap_or(T::ZERO)
+    });
     Health {
-        state: match (&position, counters.starts) {
+        state: match (&place, counters.starts) {
             (None, 0) => State::Initialising,
             (None, _) => State::Lost,
             (Some(_), _) if heard == 0 => State::Coasting,
@@ -172,9 +190,43 @@ pub(crate) fn health<T: Scalar, const D: usize>(
         restarts: counters.starts.saturating_sub(1),
         heard,
         dilution,
-        position_sigma: position.map(|(_, variance)| variance.sqrt().hypot(bias_sigma)),
+        position_sigma: place.map(|place| place.variance.sqrt().hypot(bias_sigma)),
         bias_sigma,
         distrusted: counters.distrust > u16::from(heard.max(1)),
         still,
     }
+}
+
+/// From a place towards an anchor.
+fn direction<T: Scalar, const D: usize>(
+    place: &Place<T, D>,
+    config: &Config<T>,
+    link: &Link<T>,
+) -> [T; D] {
+    expected_range(&place.position, config.height, &link.anchor.position).direction
+}
+
+/// What the constant errors of these anchors' ranges make of the position, m; none if they do not determine it.
+///
+/// Each anchor keeps [`Config::bias_sigma`]. Where a tag stands, so does what is around it and between it and an anchor: what
+/// this adds is constant then, about as much again (an office's links beside its anchors' biases), and what has been learnt
+/// of an anchor's ranges beyond their noise is no noise. On the way all this changes, and averages.
+fn bias_sigma<'a, T: Scalar, const D: usize>(
+    place: &Place<T, D>,
+    config: &Config<T>,
+    links: impl Iterator<Item = &'a Link<T>>,
+) -> Option<T> {
+    let own = config.bias_sigma * config.bias_sigma;
+    if own == T::ZERO {
+        return Some(T::ZERO);
+    }
+    let slow = T::from_f64(CHANGING_SPEED * CHANGING_SPEED);
+    let stands = slow / (slow + place.speed_squared);
+    let least = config.learning.map_or(T::MAX, |learning| learning.limited(T::ZERO));
+    let weighted = links.map(|link| {
+        let learnt = (link.noise.variance() - least).max(T::ZERO);
+        let beside = stands * (own + learnt);
+        (direction(place, config, link), own / (own + beside))
+    });
+    Some(weighted_dilution(weighted).ok()? * config.bias_sigma)
 }

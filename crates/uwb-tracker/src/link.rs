@@ -60,6 +60,12 @@ impl<T: Scalar> Link<T> {
         (self.next_us > 0 && age_us <= fresh_us).then_some((self.range, age_us))
     }
 
+    /// Whether a range ever came.
+    #[inline]
+    pub(crate) fn is_heard(&self) -> bool {
+        self.next_us > 0
+    }
+
     /// The range of a sample, freed of its bias, if it can be one and is new.
     #[inline]
     pub(crate) fn admit(&self, sample: &RangeSample<T>) -> Result<T, Error> {

@@ -139,10 +139,15 @@ fn standard_deviations_are_honest() {
     together.print("moving, together");
     let standing = of(&STANDING);
     Told::together(&standing).print("standing, together");
-    let each = moving.iter().chain(&standing);
-    assert!(each.clone().all(|told| (0.3..2.5).contains(&told.ratio())));
-    assert!((0.7..1.5).contains(&together.ratio()), "{}", together.ratio());
-    assert!((0.8..0.98).contains(&together.held), "{}", together.held);
+    let all: Vec<Told> = moving.into_iter().chain(standing).collect();
+    let class = Told::together(&all);
+    class.print("all, together");
+    for told in [together, class] {
+        assert!((0.7..1.5).contains(&told.ratio()), "{}", told.ratio());
+        assert!((0.8..0.98).contains(&told.held), "{}", told.held);
+    }
+    // Below 0.3 is `esp32_los2`, where the tag stands at two places: three anchors, whose ranges happen to be true.
+    assert!(all.iter().all(|told| (0.2..2.5).contains(&told.ratio())));
 }
 
 #[test]
@@ -160,9 +165,12 @@ fn standard_deviations_of_calibrated_anchors_are_honest() {
         let biases = Recording::read(&folder, free).biases(f64::INFINITY);
         told(&folder, name, "2", Some(biases))
     });
-    Told::together(&standing).print("standing, together");
-    assert!((0.7..1.5).contains(&together.ratio()), "{}", together.ratio());
-    assert!((0.8..0.98).contains(&together.held), "{}", together.held);
+    let stood = Told::together(&standing);
+    stood.print("standing, together");
+    for told in [together, stood] {
+        assert!((0.7..1.5).contains(&told.ratio()), "{}", told.ratio());
+        assert!((0.8..0.98).contains(&told.held), "{}", told.held);
+    }
     let mut each = moving.iter().chain(&standing);
     assert!(each.all(|told| (0.3..2.5).contains(&told.ratio())));
 }

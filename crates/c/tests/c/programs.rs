@@ -9,7 +9,8 @@ use anyhow::{Context, Result, ensure};
 use kestirim_scalar::{Q12_20, Q16_16};
 
 use crate::tools::{
-    arguments, crate_folder, have, include, library, library_folder, output_folder, program, recordings, run,
+    arguments, crate_folder, have, include, library, library_folder, output_folder, program,
+    recordings, run,
 };
 use crate::{reference, streams};
 

@@ -1,19 +1,26 @@
 //! Health of a tracker.
 
 use super::Tracker;
-use crate::{Health, health};
-use kestirim_scalar::Scalar;
+use crate::Health;
+use crate::health::{self, Place};
+use kestirim_scalar::{Components, Scalar};
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Health of the tracker at `time_us`.
     pub fn health(&self, time_us: u64) -> Health<T> {
-        let position = self.estimate.as_ref().and_then(|estimate| {
+        let place = self.estimate.as_ref().and_then(|estimate| {
             let variances = estimate.covariance.variances();
-            let sum = variances.iter().take(D).fold(T::ZERO, |sum, &variance| sum + variance);
-            Some((self.position()?, sum))
+            let coordinates = variances.iter().take(D);
+            let velocity = self.velocity()?;
+            let speed = T::norm(velocity.as_array());
+            Some(Place {
+                position: self.position()?,
+                variance: coordinates.fold(T::ZERO, |sum, &variance| sum + variance),
+                speed_squared: speed * speed,
+            })
         });
         let still = self.is_still(time_us);
         let (of, heard) = ((&self.counters, &self.config), (&*self.links, &self.pace));
-        health::health(of, heard, position, time_us, still)
+        health::health(of, heard, place, time_us, still)
     }
 }

@@ -7,14 +7,14 @@ pub(crate) mod state;
 use self::course::Course;
 use self::state::{COSINE, COUNT, SINE};
 use crate::config::size;
-use crate::health::{Counters, count_heard};
+use crate::health::{self, Counters, Place, count_heard};
 use crate::link::Link;
 use crate::measurement::ProportionalRange;
 use crate::pace::Pace;
 use crate::start::start;
 use crate::take_in::take_in;
 use crate::tracker::{LATE_US, LOST_SIGMA, LOST_US, plausible_wheels};
-use crate::{Anchor, Config, Error, Health, OdometrySample, Outcome, RangeSample, Report, health};
+use crate::{Anchor, Config, Error, Health, OdometrySample, Outcome, RangeSample, Report};
 use heapless::Vec;
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::{Components, Scalar};
@@ -109,15 +109,19 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
 
     /// Health of the tracker at `time_us`.
     pub fn health(&self, time_us: u64) -> Health<T> {
-        let position = self.estimate().and_then(|estimate| {
-            let variance = estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?;
-            Some((self.position()?, variance))
-        });
+        let wheels = self.fresh_wheels(time_us);
         let stands =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
-        let still = self.fresh_wheels(time_us).is_some_and(stands);
+        let place = self.estimate().and_then(|estimate| {
+            Some(Place {
+                position: self.position()?,
+                variance: estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?,
+                speed_squared: wheels.map_or(T::ONE, |wheels| wheels.speed * wheels.speed),
+            })
+        });
+        let still = wheels.is_some_and(stands);
         let (of, heard) = ((&self.counters, &self.config), (&*self.links, &self.pace));
-        health::health(of, heard, position, time_us, still)
+        health::health(of, heard, place, time_us, still)
     }
 
     /// Sets the tag's height, m.

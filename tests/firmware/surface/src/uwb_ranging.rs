@@ -4,7 +4,7 @@ use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     AntennaDelay, Calibration, Channel, ClockOffset, DataRate, DoubleSided, HeightSearch, Huber,
     LevelBias, Observation, Quartiles, Room, SingleSided, Solver, Ticks, Timestamp, Trilateration,
-    dilution_of_precision, expected_range, survey, trilaterate,
+    dilution_of_precision, expected_range, survey, trilaterate, weighted_dilution,
 };
 
 use super::values::{
@@ -82,6 +82,8 @@ fn rooms<T: Scalar, const D: usize>() {
     keep(Room::contains::<D>(&room, &matrix(), number()));
     let directions = any([numbers::<T, D>(); 4]);
     keep(dilution_of_precision(slice(&directions).iter().copied()));
+    let weighted = any([(numbers::<T, D>(), number::<T>()); 4]);
+    keep(weighted_dilution(slice(&weighted).iter().copied()));
 }
 
 fn solvers<T: Scalar, const D: usize>() {
