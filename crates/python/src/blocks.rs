@@ -5,6 +5,7 @@ pub(crate) mod design;
 pub(crate) mod filters;
 pub(crate) mod observer;
 pub(crate) mod particles;
+mod sleep;
 
 use nalgebra::SMatrix;
 use pyo3::PyResult;

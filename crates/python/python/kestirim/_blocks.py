@@ -51,7 +51,24 @@ class RobustlyFiltered(Filtered):
     """(n, m) from 0, left out, to 1, fully taken in; not a number where nothing was measured."""
 
 
-class _Filter:
+class _Sleeper:
+    """What all blocks with a state have."""
+
+    _sleeper: _kestirim.Filter | _kestirim.Cloud | _kestirim.Observer
+
+    def snapshot(self) -> bytes:
+        """The whole state, to be written to a file: with its name, version, size and checksum."""
+        return self._sleeper.snapshot()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Goes on from a snapshot to the bit. A torn one, and one of another kind or size, is refused: all stays as it was.
+
+        What was said when the object was made (F, H, Q and R of a plain or robust filter) is not in it: make it alike.
+        """
+        self._sleeper.restore(snapshot)
+
+
+class _Filter(_Sleeper):
     """What all Kalman filters have."""
 
     def __init__(
@@ -83,6 +100,7 @@ class _Filter:
             limits,
             method,
         )
+        self._sleeper = self._filter
 
     @property
     def x(self) -> Floats:
@@ -196,7 +214,7 @@ class RobustKalmanFilter(_Filter):
         return RobustlyFiltered(*answer, weight=found["first"])
 
 
-class ParticleFilter:
+class ParticleFilter(_Sleeper):
     """A cloud of up to 8192 particles in 1 to 6 coordinates, evenly spread over a box to begin with.
 
     low, high: (d,) corners of the box. The same seed draws the same numbers.
@@ -206,6 +224,7 @@ class ParticleFilter:
         corner = floats("low", low, "d")
         self._size = (count, len(corner))
         self._cloud = _kestirim.Cloud(count, corner, floats("high", high, len(corner)), seed)
+        self._sleeper = self._cloud
 
     @property
     def states(self) -> Floats:
@@ -311,7 +330,7 @@ class Observed:
     """(n, p) y - C x."""
 
 
-class LuenbergerObserver:
+class LuenbergerObserver(_Sleeper):
     """x = A x + B u + L (y - C x) a step, 1 to 8 states, up to 4 inputs and outputs.
 
     a: (k, k). b: (k, m). c: (p, k). gain: (k, p), as `place` or `dare` answers. x: (k,) the start.
@@ -326,6 +345,7 @@ class LuenbergerObserver:
         self._sizes = (entries.shape[1], len(rows))
         transition, correction = floats("a", a, count, count), floats("gain", gain, count, len(rows))
         self._observer = _kestirim.Observer(transition, entries, rows, correction, start.tolist())
+        self._sleeper = self._observer
 
     @property
     def x(self) -> Floats:

@@ -5,8 +5,9 @@ use kestirim_kalman::{Covariance, Gaussian, Linear, SparseRow};
 use kestirim_robust_kalman::{Decision, Measurement, Robust};
 use nalgebra::{SMatrix, SVector};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
+use super::sleep::{loaded, stored};
 use super::{matrix, of_size};
 use crate::arrays::{Line, Results, Table, values};
 use crate::error::{KestirimError, refused, refused_at, unknown};
@@ -69,6 +70,8 @@ trait AnyFilter: Send + Sync {
     /// What is particular about the filter now.
     fn tell(&self, measurements: usize, first: &mut Vec<f64>, second: &mut Vec<f64>);
     fn copy(&self) -> Box<dyn AnyFilter>;
+    fn snapshot(&self) -> PyResult<Vec<u8>>;
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()>;
 
     /// Predicts and updates with rows of measurements; the sample that was refused, and why.
     fn run(&mut self, rows: &[Row], zs: &[f64]) -> Result<Record, (usize, PyErr)> {
@@ -169,6 +172,15 @@ impl<const N: usize> AnyFilter for Plain<N> {
         let Self { model: Model { f, q }, estimate, is_diagonal, .. } = *self;
         Box::new(Self { model: Model { f, q }, estimate, is_diagonal, r: self.r.clone() })
     }
+
+    fn snapshot(&self) -> PyResult<Vec<u8>> {
+        stored(&self.estimate)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
+        self.estimate = loaded(bytes)?;
+        Ok(())
+    }
 }
 
 /// Learns Q and R.
@@ -228,6 +240,15 @@ impl<const N: usize> AnyFilter for Adaptive<N> {
     fn copy(&self) -> Box<dyn AnyFilter> {
         let Self { f, filter } = *self;
         Box::new(Self { f, filter })
+    }
+
+    fn snapshot(&self) -> PyResult<Vec<u8>> {
+        stored(&self.filter)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
+        self.filter = loaded(bytes)?;
+        Ok(())
     }
 }
 
@@ -291,6 +312,15 @@ impl<const N: usize> AnyFilter for Outliers<N> {
         let Self { model: Model { f, q }, estimate, robust, .. } = *self;
         let (variances, weights) = (self.variances.clone(), self.weights.clone());
         Box::new(Self { model: Model { f, q }, estimate, robust, variances, weights })
+    }
+
+    fn snapshot(&self) -> PyResult<Vec<u8>> {
+        stored(&self.estimate)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
+        self.estimate = loaded(bytes)?;
+        Ok(())
     }
 }
 
@@ -401,6 +431,14 @@ impl Filter {
 
     fn predict(&mut self) -> PyResult<()> {
         self.filter.predict()
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.filter.snapshot()?))
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
+        self.filter.restore(snapshot)
     }
 
     /// z: (m,); answers with the NIS.

@@ -3,8 +3,9 @@
 use kestirim_luenberger::{Plant, Predictor, PredictorGains};
 use nalgebra::{SMatrix, SVector};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
+use super::sleep::{loaded, stored};
 use super::{matrix, of_size, too_many};
 use crate::arrays::{Results, Table, values};
 use crate::error::{refused, refused_at};
@@ -19,6 +20,8 @@ trait AnyObserver: Send + Sync {
     fn step(&mut self, input: &[f64; MOST], measured: &[f64; MOST]) -> Result<(), PyErr>;
     fn coast(&mut self, input: &[f64; MOST]) -> Result<(), PyErr>;
     fn copy(&self) -> Box<dyn AnyObserver>;
+    fn snapshot(&self) -> PyResult<Vec<u8>>;
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()>;
 }
 
 impl<const N: usize> AnyObserver for Predictor<f64, N, MOST, MOST> {
@@ -40,6 +43,15 @@ impl<const N: usize> AnyObserver for Predictor<f64, N, MOST, MOST> {
 
     fn copy(&self) -> Box<dyn AnyObserver> {
         Box::new(*self)
+    }
+
+    fn snapshot(&self) -> PyResult<Vec<u8>> {
+        stored(self)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
+        *self = loaded(bytes)?;
+        Ok(())
     }
 }
 
@@ -99,6 +111,14 @@ impl Observer {
 
     fn x(&self) -> Vec<f64> {
         self.kind.estimate().to_vec()
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.kind.snapshot()?))
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
+        self.kind.restore(snapshot)
     }
 
     /// us: (n, m), ys: (n, p), not a number where nothing was measured. All rows, or none.

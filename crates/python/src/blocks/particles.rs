@@ -4,15 +4,29 @@ use std::cell::Cell;
 
 use kestirim_particle_filter::{Particles, Region, Resampler, Start};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use rand_core::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use serde::{Deserialize, Serialize};
 
 use super::of_size;
+use super::sleep::{loaded, stored};
 use crate::arrays::{Line, Table, values};
 use crate::error::{KestirimError, refused, unknown};
 
 /// Most particles.
 const MOST: usize = 8192;
+
+/// A cloud that sleeps with its generator: it draws the same numbers when it wakes.
+#[derive(Serialize, Deserialize)]
+struct Asleep<const D: usize> {
+    cloud: Particles<f64, D, MOST>,
+    rng: Xoshiro256PlusPlus,
+}
+
+kestirim_snapshot::layout! {
+    [const D: usize] for Asleep<D> as "python/particles", 1, f64, [D, MOST], infinite
+}
 
 /// A cloud of any dimension.
 trait AnyCloud: Send + Sync {
@@ -27,6 +41,9 @@ trait AnyCloud: Send + Sync {
     fn resample(&mut self, resampler: Resampler, rng: &mut Xoshiro256PlusPlus) -> PyResult<()>;
     fn jitter(&mut self, deviation: &[f64], rng: &mut Xoshiro256PlusPlus);
     fn regularise(&mut self, scale: f64, rng: &mut Xoshiro256PlusPlus) -> PyResult<()>;
+    fn snapshot(&self, rng: &Xoshiro256PlusPlus) -> PyResult<Vec<u8>>;
+    /// Answers with the generator.
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<Xoshiro256PlusPlus>;
 }
 
 impl<const D: usize> AnyCloud for Particles<f64, D, MOST> {
@@ -83,6 +100,21 @@ impl<const D: usize> AnyCloud for Particles<f64, D, MOST> {
 
     fn regularise(&mut self, scale: f64, rng: &mut Xoshiro256PlusPlus) -> PyResult<()> {
         Self::regularise(self, scale, rng).map_err(refused)
+    }
+
+    fn snapshot(&self, rng: &Xoshiro256PlusPlus) -> PyResult<Vec<u8>> {
+        stored(&Asleep { cloud: self.clone(), rng: rng.clone() })
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> PyResult<Xoshiro256PlusPlus> {
+        let Asleep { cloud, rng } = loaded(bytes)?;
+        if cloud.len() != Self::len(self) {
+            let (expected, found) = (Self::len(self), cloud.len());
+            let sentence = format!("expected a snapshot of {expected} particles, found {found}");
+            return Err(KestirimError::new_err(sentence));
+        }
+        *self = cloud;
+        Ok(rng)
     }
 }
 
@@ -175,5 +207,14 @@ impl Cloud {
 
     fn regularise(&mut self, scale: f64) -> PyResult<()> {
         self.cloud.regularise(scale, &mut self.rng)
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.cloud.snapshot(&self.rng)?))
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
+        self.rng = self.cloud.restore(snapshot)?;
+        Ok(())
     }
 }
