@@ -114,7 +114,7 @@ impl Images {
     ) -> Result<Option<Self>> {
         let is_this = |(of, at): &(&Target, Profile)| of.triple == target.triple && *at == profile;
         let short = if packages == SURFACE { &SHORT_FORM[1..] } else { &SHORT_FORM[..] };
-        if is_short_form() && !short.iter().any(is_this) {
+        if is_short() && !short.iter().any(is_this) {
             let (triple, opt) = (target.triple, profile.opt());
             return left_out(&format!("images for {triple} at {opt}"));
         }
@@ -196,7 +196,7 @@ pub(crate) fn build_apart(
     package: &str,
     profile: Profile,
 ) -> Result<Option<PathBuf>> {
-    if is_short_form() {
+    if is_short() {
         return left_out(package);
     }
     match Toolchain::find(target) {
@@ -205,8 +205,7 @@ pub(crate) fn build_apart(
     }
 }
 
-/// Whether `KESTIRIM_TARGETS=short` is said.
-pub fn is_short_form() -> bool {
+fn is_short() -> bool {
     env::var(TARGETS).is_ok_and(|form| form == "short")
 }
 

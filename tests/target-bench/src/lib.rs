@@ -29,7 +29,7 @@ pub mod workloads;
 
 pub use app::{App, Run};
 pub use elf::Elf;
-pub use images::{Images, Profile, is_short_form};
+pub use images::{Images, Profile};
 pub use output::{Cost, Output, Position};
 pub use row::Row;
 pub use target::{CORTEX_M0, CORTEX_M4F, RV32IMC, TARGETS, Target};

@@ -7,24 +7,11 @@ use std::time::Instant;
 
 use anyhow::Result;
 use kestirim_snapshot::load;
-use target_bench::{CORTEX_M4F, Images, Profile, is_short_form};
+use target_bench::{CORTEX_M4F, Images, Profile};
 
 use super::streams::{Kind, visit_all};
 use super::systems::{Digest, Sample, Sleeper};
 use super::{Awake, CUTS, Visit, places, stored};
-
-/// Samples that an estimator takes after it woke, at most: all that are left, but in the short form. An emulator is a hundred
-/// times as slow as this computer, and clouds of particles and double precision take millions of instructions a sample.
-fn left(name: &str) -> usize {
-    if !is_short_form() {
-        return usize::MAX;
-    }
-    match name.split('/').next() {
-        Some("user") => 10,
-        Some("ppp") => 3,
-        _ => 200,
-    }
-}
 
 /// What the image of a kind reads, and what it is to tell.
 struct Part {
@@ -74,8 +61,7 @@ impl Visit for Parts {
         let name = format!("{} in {}", E::NAME, E::number());
         let mut part = Part { name, stream: Vec::new(), expected: Vec::new() };
         for (place, snapshot) in &awake.snapshots {
-            let end = samples.len().min(place.saturating_add(left(E::NAME)));
-            part.wake::<E>(image, snapshot, &samples[*place..end], &awake.said[*place..end]);
+            part.wake::<E>(image, snapshot, &samples[*place..], &awake.said[*place..]);
         }
         self.0.push(part);
     }
