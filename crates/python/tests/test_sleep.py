@@ -54,7 +54,7 @@ def test_particles_draw_the_same_numbers() -> None:
         go_on(cloud)
     assert np.array_equal(awake.states, asleep.states)
     fewer = kestirim.ParticleFilter(200, [-5.0, -5.0], [5.0, 5.0])
-    with pytest.raises(kestirim.KestirimError, match="expected a snapshot of 200 particles, found 300"):
+    with pytest.raises(kestirim.KestirimError, match="a cloud of 200 particles, found one of a cloud of 300"):
         fewer.restore(awake.snapshot())
 
 
@@ -70,6 +70,9 @@ def test_an_observer_goes_on_to_the_bit() -> None:
     asleep.restore(awake.snapshot())
     expected, found = awake.run(us[13:], ys[13:]), asleep.run(us[13:], ys[13:])
     assert np.array_equal(found.x, expected.x)
+    two = kestirim.LuenbergerObserver(MODEL["F"], [[0.0], [0.1]], np.eye(2), 0.3 * np.eye(2), [0.0, 0.0])
+    with pytest.raises(kestirim.KestirimError, match="outputs: 1, found one of .* outputs: 2"):
+        awake.restore(two.snapshot())
 
 
 def test_what_is_torn_or_anothers_is_refused_and_changes_nothing() -> None:
@@ -82,6 +85,11 @@ def test_what_is_torn_or_anothers_is_refused_and_changes_nothing() -> None:
             filters["plain"].restore(wrong)
     with pytest.raises(kestirim.KestirimError, match="kalman"):
         filters["adaptive"].restore(snapshot)
+    with pytest.raises(kestirim.KestirimError, match="a robust filter, measurements: 1, found one of a plain"):
+        filters["robust"].restore(snapshot)
+    two = kestirim.AdaptiveKalmanFilter(**{**MODEL, "H": np.eye(2), "R": [0.25, 0.25]}, **LEARNING)
+    with pytest.raises(kestirim.KestirimError, match="measurements: 2, found one of .* measurements: 1"):
+        two.restore(filters["adaptive"].snapshot())
     larger = kestirim.KalmanFilter(np.zeros(3), np.eye(3), np.eye(3), [[1.0, 0.0, 0.0]], np.eye(3), [1.0])
     with pytest.raises(kestirim.KestirimError):
         larger.restore(snapshot)

@@ -44,8 +44,8 @@ pub struct Health<T> {
     /// Standard deviation of the position, root of its variances' sum, m: the filter's own, and that of the anchors'
     /// constant errors; none without a position.
     pub position_sigma: Option<T>,
-    /// The latter alone, m: [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands, times the
-    /// dilution of the anchors heard.
+    /// The latter alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands, makes of the
+    /// position through the anchors heard; where these do not determine it, through all that ever were.
     pub bias_sigma: T,
     /// Whether lately more than a third of the ranges were left out, but for those of blocked anchors.
     pub distrusted: bool,
@@ -72,6 +72,9 @@ const NIS_OF_AGREEMENT: f64 = 4.0;
 
 /// Speed at which what is around a tag changes within the second or so that a position is averaged over, m/s.
 const CHANGING_SPEED: f64 = 0.1;
+
+/// Least weight of a link's constant error beside the best link's.
+const LEAST_WEIGHT: f64 = 1e-3;
 
 /// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
@@ -137,12 +140,21 @@ impl<T: Scalar> Counters<T> {
     }
 }
 
-/// How many anchors were heard lately of which nothing is in the way.
+/// Anchors that were heard lately and of which nothing is in the way.
+#[inline]
+fn heard_lately<'a, T: Scalar>(
+    links: &'a [Link<T>],
+    pace: &Pace,
+    time_us: u64,
+) -> impl Iterator<Item = &'a Link<T>> + Clone {
+    let fresh_us = pace.fresh_us();
+    links.iter().filter(move |link| !link.is_blocked && link.fresh(time_us, fresh_us).is_some())
+}
+
+/// How many they are.
 #[inline]
 pub(crate) fn count_heard<T: Scalar>(links: &[Link<T>], pace: &Pace, time_us: u64) -> u8 {
-    let fresh_us = pace.fresh_us();
-    let counts = |link: &&Link<T>| !link.is_blocked && link.fresh(time_us, fresh_us).is_some();
-    links.iter().filter(counts).count() as u8
+    heard_lately(links, pace, time_us).count() as u8
 }
 
 /// What health needs to know of an estimate.
@@ -163,19 +175,17 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     time_us: u64,
     still: bool,
 ) -> Health<T> {
-    let heard = count_heard(links, pace, time_us);
-    let fresh_us = pace.fresh_us();
-    let is_fresh = |link: &&Link<T>| !link.is_blocked && link.fresh(time_us, fresh_us).is_some();
+    let fresh = heard_lately(links, pace, time_us);
+    let heard = fresh.clone().count() as u8;
     let dilution = place.as_ref().and_then(|place| {
-        let fresh = links.iter().filter(is_fresh);
         let direction = |link: &Link<T>| direction(place, config, link);
-        dilution_of_precision(fresh.map(direction)).ok()
+        dilution_of_precision(fresh.clone().map(direction)).ok()
     });
     let bias_sigma = place.as_ref().map_or(T::ZERO, |place| {
-        let fresh = bias_sigma(place, config, links.iter().filter(is_fresh));
         // Where they are too few, the position keeps what all have made of it.
         let all = || bias_sigma(place, config, links.iter().filter(|link| link.is_heard()));
-        fresh.or_else(all).unwrap_or(T::ZERO)
+        let found = bias_sigma(place, config, fresh).or_else(all);
+        found.or(dilution.map(|dilution| dilution * config.bias_sigma)).unwrap_or(T::ZERO)
     });
     Health {
         state: match (&place, counters.starts) {
@@ -210,11 +220,12 @@ fn direction<T: Scalar, const D: usize>(
 ///
 /// Each anchor keeps [`Config::bias_sigma`]. Where a tag stands, so does what is around it and between it and an anchor: what
 /// this adds is constant then, about as much again (an office's links beside its anchors' biases), and what has been learnt
-/// of an anchor's ranges beyond their noise is no noise. On the way all this changes, and averages.
+/// of an anchor's ranges beyond their noise is no noise; ranges of which nothing has been learnt yet count as poor. On the way
+/// all this changes, and averages.
 fn bias_sigma<'a, T: Scalar, const D: usize>(
     place: &Place<T, D>,
     config: &Config<T>,
-    links: impl Iterator<Item = &'a Link<T>>,
+    links: impl Iterator<Item = &'a Link<T>> + Clone,
 ) -> Option<T> {
     let own = config.bias_sigma * config.bias_sigma;
     if own == T::ZERO {
@@ -223,10 +234,16 @@ fn bias_sigma<'a, T: Scalar, const D: usize>(
     let slow = T::from_f64(CHANGING_SPEED * CHANGING_SPEED);
     let stands = slow / (slow + place.speed_squared);
     let least = config.learning.map_or(T::MAX, |learning| learning.limited(T::ZERO));
-    let weighted = links.map(|link| {
+    let variance = |link: &Link<T>| {
         let learnt = (link.noise.variance() - least).max(T::ZERO);
-        let beside = stands * (own + learnt);
-        (direction(place, config, link), own / (own + beside))
+        own + stands * (own + learnt)
+    };
+    // Beside the best link, so that fixed point has room; less than a thousandth of its weight would look as if it did not
+    // determine what a poor link alone tells.
+    let best = links.clone().map(variance).fold(T::MAX, T::min);
+    let weighted = links.map(|link| {
+        let weight = (best / variance(link)).max(T::from_f64(LEAST_WEIGHT));
+        (direction(place, config, link), weight)
     });
-    Some(weighted_dilution(weighted).ok()? * config.bias_sigma)
+    Some(weighted_dilution(weighted).ok()? * best.sqrt())
 }

@@ -9,8 +9,7 @@ use anyhow::{Context, Result, ensure};
 use kestirim_scalar::{Q12_20, Q16_16};
 
 use crate::tools::{
-    arguments, crate_folder, have, include, library, library_folder, output_folder, program,
-    recordings, run,
+    arguments, crate_folder, have, include, library, output_folder, program, recordings, run,
 };
 use crate::{reference, streams};
 
@@ -98,7 +97,7 @@ fn cmake_finds_the_library() -> Result<()> {
     let example = crate_folder().join("contrib/cmake/example");
     let build = output_folder().join("cmake");
     // As the library of the other programs, which is not compiled once more.
-    let cargo = format!("-DKESTIRIM_BUILD={}", library_folder(false).display());
+    let cargo = format!("-DKESTIRIM_BUILD={}", output_folder().display());
     run(Command::new("cmake").args(arguments(&[&"-S", &example, &"-B", &build, &cargo])))?;
     run(Command::new("cmake").arg("--build").arg(&build))?;
     let told = run(&mut Command::new(build.join("standing")))?;

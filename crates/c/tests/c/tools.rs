@@ -66,14 +66,9 @@ pub(crate) fn include() -> PathBuf {
     crate_folder().join("include")
 }
 
-/// Where cargo builds the library.
-pub(crate) fn library_folder(fixed: bool) -> PathBuf {
-    output_folder().join(if fixed { "fixed" } else { "f32" })
-}
-
 /// Builds `libkestirim.a` with a cargo, for this computer or for a target; where it is.
 pub(crate) fn library(cargo: &mut Command, target: Option<&str>, fixed: bool) -> Result<PathBuf> {
-    let folder = library_folder(fixed);
+    let folder = output_folder().join(if fixed { "fixed" } else { "f32" });
     cargo.current_dir(crate_folder().join("staticlib")).env("CARGO_TARGET_DIR", &folder).args([
         "build",
         "--locked",

@@ -59,6 +59,11 @@ impl Record {
 /// What became of the measurements of a time: their NIS.
 type Answer = Result<f64, PyErr>;
 
+/// What a snapshot says beside the number of states.
+fn made_for(kind: &str, measurements: usize) -> String {
+    format!("a {kind} filter, measurements: {measurements}")
+}
+
 /// A filter of any number of states.
 trait AnyFilter: Send + Sync {
     fn predict(&mut self) -> PyResult<()>;
@@ -70,8 +75,8 @@ trait AnyFilter: Send + Sync {
     /// What is particular about the filter now.
     fn tell(&self, measurements: usize, first: &mut Vec<f64>, second: &mut Vec<f64>);
     fn copy(&self) -> Box<dyn AnyFilter>;
-    fn snapshot(&self) -> PyResult<Vec<u8>>;
-    fn restore(&mut self, bytes: &[u8]) -> PyResult<()>;
+    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>>;
+    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()>;
 
     /// Predicts and updates with rows of measurements; the sample that was refused, and why.
     fn run(&mut self, rows: &[Row], zs: &[f64]) -> Result<Record, (usize, PyErr)> {
@@ -173,12 +178,12 @@ impl<const N: usize> AnyFilter for Plain<N> {
         Box::new(Self { model: Model { f, q }, estimate, is_diagonal, r: self.r.clone() })
     }
 
-    fn snapshot(&self) -> PyResult<Vec<u8>> {
-        stored(&self.estimate)
+    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>> {
+        stored(self.estimate, &made_for("plain", measurements))
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
-        self.estimate = loaded(bytes)?;
+    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()> {
+        self.estimate = loaded(bytes, &made_for("plain", measurements))?;
         Ok(())
     }
 }
@@ -242,12 +247,12 @@ impl<const N: usize> AnyFilter for Adaptive<N> {
         Box::new(Self { f, filter })
     }
 
-    fn snapshot(&self) -> PyResult<Vec<u8>> {
-        stored(&self.filter)
+    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>> {
+        stored(self.filter, &made_for("adaptive", measurements))
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
-        self.filter = loaded(bytes)?;
+    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()> {
+        self.filter = loaded(bytes, &made_for("adaptive", measurements))?;
         Ok(())
     }
 }
@@ -314,12 +319,12 @@ impl<const N: usize> AnyFilter for Outliers<N> {
         Box::new(Self { model: Model { f, q }, estimate, robust, variances, weights })
     }
 
-    fn snapshot(&self) -> PyResult<Vec<u8>> {
-        stored(&self.estimate)
+    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>> {
+        stored(self.estimate, &made_for("robust", measurements))
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
-        self.estimate = loaded(bytes)?;
+    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()> {
+        self.estimate = loaded(bytes, &made_for("robust", measurements))?;
         Ok(())
     }
 }
@@ -434,11 +439,11 @@ impl Filter {
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.filter.snapshot()?))
+        Ok(PyBytes::new(py, &self.filter.snapshot(self.rows.len())?))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        self.filter.restore(snapshot)
+        self.filter.restore(snapshot, self.rows.len())
     }
 
     /// z: (m,); answers with the NIS.

@@ -20,8 +20,8 @@ trait AnyObserver: Send + Sync {
     fn step(&mut self, input: &[f64; MOST], measured: &[f64; MOST]) -> Result<(), PyErr>;
     fn coast(&mut self, input: &[f64; MOST]) -> Result<(), PyErr>;
     fn copy(&self) -> Box<dyn AnyObserver>;
-    fn snapshot(&self) -> PyResult<Vec<u8>>;
-    fn restore(&mut self, bytes: &[u8]) -> PyResult<()>;
+    fn snapshot(&self, made_for: &str) -> PyResult<Vec<u8>>;
+    fn restore(&mut self, bytes: &[u8], made_for: &str) -> PyResult<()>;
 }
 
 impl<const N: usize> AnyObserver for Predictor<f64, N, MOST, MOST> {
@@ -45,12 +45,12 @@ impl<const N: usize> AnyObserver for Predictor<f64, N, MOST, MOST> {
         Box::new(*self)
     }
 
-    fn snapshot(&self) -> PyResult<Vec<u8>> {
-        stored(self)
+    fn snapshot(&self, made_for: &str) -> PyResult<Vec<u8>> {
+        stored(*self, made_for)
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> PyResult<()> {
-        *self = loaded(bytes)?;
+    fn restore(&mut self, bytes: &[u8], made_for: &str) -> PyResult<()> {
+        *self = loaded(bytes, made_for)?;
         Ok(())
     }
 }
@@ -114,11 +114,11 @@ impl Observer {
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.kind.snapshot()?))
+        Ok(PyBytes::new(py, &self.kind.snapshot(&self.made_for())?))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        self.kind.restore(snapshot)
+        self.kind.restore(snapshot, &self.made_for())
     }
 
     /// us: (n, m), ys: (n, p), not a number where nothing was measured. All rows, or none.
@@ -156,5 +156,12 @@ impl Observer {
             .shaped("x", x, [count, states])?
             .shaped("innovation", innovations, [count, outputs])?
             .done())
+    }
+}
+
+impl Observer {
+    /// What a snapshot says beside the number of states.
+    fn made_for(&self) -> String {
+        format!("an observer, inputs: {}, outputs: {}", self.inputs, self.outputs)
     }
 }

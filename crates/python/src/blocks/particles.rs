@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use kestirim_particle_filter::{Particles, Region, Resampler, Start};
+use kestirim_snapshot::Layout;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rand_core::SeedableRng;
@@ -19,13 +20,18 @@ const MOST: usize = 8192;
 
 /// A cloud that sleeps with its generator: it draws the same numbers when it wakes.
 #[derive(Serialize, Deserialize)]
-struct Asleep<const D: usize> {
+struct Drawn<const D: usize> {
     cloud: Particles<f64, D, MOST>,
     rng: Xoshiro256PlusPlus,
 }
 
 kestirim_snapshot::layout! {
-    [const D: usize] for Asleep<D> as "python/particles", 1, f64, [D, MOST], infinite
+    [const D: usize] for Drawn<D> as "particles/drawn", <Particles<f64, D, MOST> as Layout>::VERSION, f64, [D, MOST], infinite
+}
+
+/// What a snapshot says beside the number of coordinates.
+fn made_for(count: usize) -> String {
+    format!("a cloud of {count} particles")
 }
 
 /// A cloud of any dimension.
@@ -103,16 +109,12 @@ impl<const D: usize> AnyCloud for Particles<f64, D, MOST> {
     }
 
     fn snapshot(&self, rng: &Xoshiro256PlusPlus) -> PyResult<Vec<u8>> {
-        stored(&Asleep { cloud: self.clone(), rng: rng.clone() })
+        let drawn = Drawn { cloud: self.clone(), rng: rng.clone() };
+        stored(drawn, &made_for(Self::len(self)))
     }
 
     fn restore(&mut self, bytes: &[u8]) -> PyResult<Xoshiro256PlusPlus> {
-        let Asleep { cloud, rng } = loaded(bytes)?;
-        if cloud.len() != Self::len(self) {
-            let (expected, found) = (Self::len(self), cloud.len());
-            let sentence = format!("expected a snapshot of {expected} particles, found {found}");
-            return Err(KestirimError::new_err(sentence));
-        }
+        let Drawn { cloud, rng } = loaded(bytes, &made_for(Self::len(self)))?;
         *self = cloud;
         Ok(rng)
     }

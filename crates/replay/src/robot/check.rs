@@ -22,8 +22,10 @@ const CUT_SHARE: f64 = 0.03;
 /// What is known of the tag's height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KnownHeight {
-    /// Nothing: it is one of the unknowns.
+    /// Nothing: it is one of the unknowns, of a tag in space.
     Unknown,
+    /// Nothing, of a tag in the plane: the ranges do not tell.
+    NotFound,
     /// It was said, m.
     Said(f64),
     /// It was found from the ranges, m, or assumed.
@@ -47,6 +49,9 @@ pub fn check<'a>(
     let cut_at = cut_at.map(|(_, metres)| metres);
     findings.extend(parts.iter().find_map(|ranges| stuck(ranges, cut_at, &name)));
     findings.extend(geometry::check(anchors, &parts, height));
+    if height == KnownHeight::Unknown {
+        findings.extend(geometry::mirror(anchors));
+    }
     findings
 }
 

@@ -113,10 +113,14 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let stands =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
         let place = self.estimate().and_then(|estimate| {
+            // In the room's metres; of wheels not heard lately, what they said last.
+            let counted = self.wheels.map_or(T::ZERO, |wheels| wheels.speed);
+            let state = estimate.mean.as_array();
+            let speed = counted * state[COSINE].hypot(state[SINE]);
             Some(Place {
                 position: self.position()?,
                 variance: estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?,
-                speed_squared: wheels.map_or(T::ONE, |wheels| wheels.speed * wheels.speed),
+                speed_squared: speed * speed,
             })
         });
         let still = wheels.is_some_and(stands);

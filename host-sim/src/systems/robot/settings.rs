@@ -166,6 +166,7 @@ pub(super) fn known_height(recording: &Recording, settings: &Settings) -> KnownH
     let is_in_plane = settings.chosen::<Dimensions>("dim") == Dimensions::Two;
     let height = is_in_plane.then(|| of_recording(recording, settings).ok()).flatten();
     match height.map(|setup| setup.height_m) {
+        None if is_in_plane => KnownHeight::NotFound,
         None => KnownHeight::Unknown,
         Some(metres) if settings.is_given("height") => KnownHeight::Said(metres),
         Some(metres) => KnownHeight::Found(metres),

@@ -2,7 +2,7 @@
 
 use kestirim_health::Reason;
 use kestirim_uwb_ranging::{Observation, Solver};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::KnownHeight;
 use crate::Finding;
@@ -34,8 +34,33 @@ const COMMON_BIAS_M: f64 = 0.5;
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
 const FOOT: f64 = 0.3048;
 
+/// Anchors that are no farther from a plane than so on average lie in it: places are measured to centimetres, m.
+const FLAT_M: f64 = 0.05;
+
 /// The ranges of a moment: a range an anchor.
 type Moment = Vec<(usize, f64)>;
+
+/// Whether a tag in space has the ranges of another: its mirror image, where the anchors lie in one plane.
+pub(super) fn mirror(anchors: &Anchors) -> Option<Finding> {
+    if anchors.positions.is_empty() || !anchors.positions.iter().flatten().all(|it| it.is_finite())
+    {
+        return None;
+    }
+    let count = anchors.positions.len() as f64;
+    let places = || anchors.positions.iter().map(|place| Vector3::from(*place));
+    let centre = places().sum::<Vector3<f64>>() / count;
+    let spread = places().map(|place| place - centre).map(|it| it * it.transpose() / count);
+    let least = spread.sum::<Matrix3<f64>>().symmetric_eigenvalues().min().max(0.0).sqrt();
+    (least < FLAT_M).then(|| {
+        Finding::fault(
+            "geometry",
+            Reason::Geometry,
+            format!("all anchors lie in one plane, within {:.0} cm", 100.0 * least),
+            "a tag has the same ranges on both sides of it, so the height may be the mirror image's",
+            "say the height (--height), or hang an anchor well outside the plane",
+        )
+    })
+}
 
 /// What the geometry shows; nothing if there are too few ranges at a time to contradict each other.
 pub(super) fn check(
@@ -46,7 +71,7 @@ pub(super) fn check(
     let (height, is_given) = match height {
         // A tag whose height changes with time is no plane's.
         KnownHeight::Varying => return None,
-        KnownHeight::Unknown => (None, false),
+        KnownHeight::Unknown | KnownHeight::NotFound => (None, false),
         KnownHeight::Found(metres) => (Some(metres), false),
         KnownHeight::Said(metres) => (Some(metres), true),
     };
