@@ -9,7 +9,7 @@ use host_sim::systems::pedestrian::simulate::sensor::{measure, razor_text};
 use serde_json::{Value, json};
 
 use crate::program::{Desk, host_sim, json as parsed, text};
-use crate::room::{Room, line};
+use crate::room::{ANCHORS, Room, line};
 
 fn faults(arguments: &[&str]) -> Vec<String> {
     let report = parsed(&host_sim(&[&["check"], arguments, &["--json"]].concat()));
@@ -103,4 +103,20 @@ fn the_faults_of_ranges_are_told_with_what_to_do() {
     assert!(replay["health"]["reasons"].as_array().expect("reasons").contains(&json!("anchor")));
     let clean = room.report(&height);
     assert_eq!(clean["health"], json!({ "state": "good", "reasons": [] }));
+}
+
+#[test]
+fn anchors_in_one_plane_do_not_tell_a_tag_from_its_mirror_image() {
+    let room = Room::clean();
+    assert_eq!(room.report(&["--dim", "3"])["warnings"], Value::Array(vec![]));
+    let level =
+        ANCHORS.iter().enumerate().fold("anchor,x,y,z\n".to_owned(), |text, (i, [x, y, _])| {
+            text + &format!("{i},{x},{y},2.1\n")
+        });
+    let level = room.desk.file("level.csv", level);
+    let start = ["replay", "robot", "--anchors", &level, "--log", &room.log];
+    let report = parsed(&host_sim(&[&start[..], &["--dim", "3", "--json"]].concat()));
+    let warnings = report["warnings"].to_string();
+    assert!(warnings.contains("all anchors lie in one plane, within 0 cm"), "{report}");
+    assert_eq!(report["health"]["state"], "bad", "{report}");
 }

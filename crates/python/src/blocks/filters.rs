@@ -1,13 +1,19 @@
 //! Kalman filters of a linear model: plain, adaptive, robust.
 
+mod adaptive;
+mod plain;
+mod robust;
+
 use kestirim_adaptive_kalman::{AdaptiveKalman, Learning, ProcessNoise};
-use kestirim_kalman::{Covariance, Gaussian, Linear, SparseRow};
-use kestirim_robust_kalman::{Decision, Measurement, Robust};
-use nalgebra::{SMatrix, SVector};
+use kestirim_kalman::{Covariance, Gaussian};
+use kestirim_robust_kalman::Robust;
+use nalgebra::SMatrix;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use super::sleep::{loaded, stored};
+use self::adaptive::Adaptive;
+use self::plain::Plain;
+use self::robust::Outliers;
 use super::{matrix, of_size};
 use crate::arrays::{Line, Results, Table, values};
 use crate::error::{KestirimError, refused, refused_at, unknown};
@@ -59,11 +65,6 @@ impl Record {
 /// What became of the measurements of a time: their NIS.
 type Answer = Result<f64, PyErr>;
 
-/// What a snapshot says beside the number of states.
-fn made_for(kind: &str, measurements: usize) -> String {
-    format!("a {kind} filter, measurements: {measurements}")
-}
-
 /// A filter of any number of states.
 trait AnyFilter: Send + Sync {
     fn predict(&mut self) -> PyResult<()>;
@@ -75,8 +76,9 @@ trait AnyFilter: Send + Sync {
     /// What is particular about the filter now.
     fn tell(&self, measurements: usize, first: &mut Vec<f64>, second: &mut Vec<f64>);
     fn copy(&self) -> Box<dyn AnyFilter>;
-    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>>;
-    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()>;
+    fn kind(&self) -> &'static str;
+    fn snapshot(&self, made_for: &str) -> PyResult<Vec<u8>>;
+    fn restore(&mut self, bytes: &[u8], made_for: &str) -> PyResult<()>;
 
     /// Predicts and updates with rows of measurements; the sample that was refused, and why.
     fn run(&mut self, rows: &[Row], zs: &[f64]) -> Result<Record, (usize, PyErr)> {
@@ -94,238 +96,6 @@ trait AnyFilter: Send + Sync {
             self.tell(measurements, &mut record.first, &mut record.second);
         }
         Ok(record)
-    }
-}
-
-/// Each measurement by itself, or all at once if their noises are correlated.
-struct Plain<const N: usize> {
-    model: Model<N>,
-    estimate: Gaussian<f64, N>,
-    r: Vec<f64>,
-    is_diagonal: bool,
-}
-
-impl<const N: usize> Plain<N> {
-    fn at_once<const M: usize>(&mut self, rows: &[Row], innovation: &[f64]) -> Answer {
-        let mut h = SMatrix::<f64, M, N>::zeros();
-        for (line, row) in rows.iter().enumerate() {
-            for (column, number) in row {
-                h[(line, *column)] = *number;
-            }
-        }
-        let r = Covariance::from_lower_triangle(&matrix::<M, M>(&self.r)?);
-        let innovation = SVector::<f64, M>::from_column_slice(innovation);
-        let report = self.estimate.update_block(&h, &innovation, &r).map_err(refused)?;
-        Ok(report.nis)
-    }
-}
-
-impl<const N: usize> AnyFilter for Plain<N> {
-    fn predict(&mut self) -> PyResult<()> {
-        self.estimate.predict(&self.model.f, &self.model.q).map_err(refused)
-    }
-
-    fn correct(&mut self, rows: &[Row], innovation: &[f64]) -> Answer {
-        let count = rows.len();
-        if self.is_diagonal {
-            let before = self.estimate;
-            let mut nis = 0.0;
-            for (index, (row, innovation)) in rows.iter().zip(innovation).enumerate() {
-                if innovation.is_nan() {
-                    continue;
-                }
-                // The innovations are those of the prediction.
-                let moved = self.estimate.mean - before.mean;
-                let left = innovation - expected(row, moved.as_slice());
-                let report = self.estimate.weigh_entries(row, left, self.r[index * (count + 1)]);
-                let report = report.and_then(|weighed| self.estimate.correct(&weighed));
-                nis += report.map_err(refused)?.nis;
-            }
-            return Ok(nis);
-        }
-        if innovation.iter().any(|innovation| innovation.is_nan()) {
-            let sentence = "measurements whose noises are correlated come together, or not at all";
-            return if innovation.iter().all(|it| it.is_nan()) {
-                Ok(0.0)
-            } else {
-                Err(refused(sentence))
-            };
-        }
-        match count {
-            1 => self.at_once::<1>(rows, innovation),
-            2 => self.at_once::<2>(rows, innovation),
-            3 => self.at_once::<3>(rows, innovation),
-            4 => self.at_once::<4>(rows, innovation),
-            5 => self.at_once::<5>(rows, innovation),
-            6 => self.at_once::<6>(rows, innovation),
-            _ => Err(refused("R: expected a diagonal one of more than six measurements")),
-        }
-    }
-
-    fn mean(&self) -> &[f64] {
-        self.estimate.mean.as_slice()
-    }
-
-    fn add_covariance(&self, rows: &mut Vec<f64>) {
-        // It is symmetric: its columns are its rows.
-        rows.extend_from_slice(self.estimate.covariance.to_matrix().as_slice());
-    }
-
-    fn tell(&self, _: usize, _: &mut Vec<f64>, _: &mut Vec<f64>) {}
-
-    fn copy(&self) -> Box<dyn AnyFilter> {
-        let Self { model: Model { f, q }, estimate, is_diagonal, .. } = *self;
-        Box::new(Self { model: Model { f, q }, estimate, is_diagonal, r: self.r.clone() })
-    }
-
-    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>> {
-        stored(self.estimate, &made_for("plain", measurements))
-    }
-
-    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()> {
-        self.estimate = loaded(bytes, &made_for("plain", measurements))?;
-        Ok(())
-    }
-}
-
-/// Learns Q and R.
-struct Adaptive<const N: usize> {
-    f: SMatrix<f64, N, N>,
-    filter: AdaptiveKalman<f64, N, MOST>,
-}
-
-impl<const N: usize> AnyFilter for Adaptive<N> {
-    fn predict(&mut self) -> PyResult<()> {
-        // The filter brings the noise that it has learnt.
-        let none = Covariance::zero();
-        self.filter.predict(&Linear { f: &self.f, q: &none }).map_err(refused)
-    }
-
-    fn correct(&mut self, rows: &[Row], innovation: &[f64]) -> Answer {
-        let before = self.filter.estimate().mean;
-        let mut nis = 0.0;
-        for (index, (row, innovation)) in rows.iter().zip(innovation).enumerate() {
-            if innovation.is_nan() {
-                continue;
-            }
-            let moved = self.filter.estimate().mean - before;
-            let left = innovation - expected(row, moved.as_slice());
-            let mut entries = [(0, 0.0); N];
-            for (index, number) in row {
-                entries[*index] = (*index, *number);
-            }
-            for (index, entry) in entries.iter_mut().enumerate() {
-                entry.0 = index;
-            }
-            nis += self.filter.update(index, &SparseRow::new(entries), left).map_err(refused)?.nis;
-        }
-        Ok(nis)
-    }
-
-    fn mean(&self) -> &[f64] {
-        self.filter.estimate().mean.as_slice()
-    }
-
-    fn add_covariance(&self, rows: &mut Vec<f64>) {
-        // It is symmetric: its columns are its rows.
-        rows.extend_from_slice(self.filter.estimate().covariance.to_matrix().as_slice());
-    }
-
-    fn tell(&self, measurements: usize, r: &mut Vec<f64>, q: &mut Vec<f64>) {
-        let noise = self.filter.measurement_noise();
-        r.extend(
-            noise
-                .iter()
-                .take(measurements)
-                .map(kestirim_adaptive_kalman::MeasurementNoise::variance),
-        );
-        q.extend(self.filter.process_noise().variances());
-    }
-
-    fn copy(&self) -> Box<dyn AnyFilter> {
-        let Self { f, filter } = *self;
-        Box::new(Self { f, filter })
-    }
-
-    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>> {
-        stored(self.filter, &made_for("adaptive", measurements))
-    }
-
-    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()> {
-        self.filter = loaded(bytes, &made_for("adaptive", measurements))?;
-        Ok(())
-    }
-}
-
-/// Weighs measurements by their residuals.
-struct Outliers<const N: usize> {
-    model: Model<N>,
-    estimate: Gaussian<f64, N>,
-    robust: Robust<f64>,
-    variances: Vec<f64>,
-    weights: Vec<f64>,
-}
-
-impl<const N: usize> AnyFilter for Outliers<N> {
-    fn predict(&mut self) -> PyResult<()> {
-        self.estimate.predict(&self.model.f, &self.model.q).map_err(refused)
-    }
-
-    fn correct(&mut self, rows: &[Row], innovation: &[f64]) -> Answer {
-        let all = rows.iter().zip(innovation).zip(&self.variances);
-        let measured = all.filter(|((_, innovation), _)| !innovation.is_nan());
-        let measurements: Vec<_> = measured
-            .map(|((row, innovation), variance)| Measurement {
-                row,
-                innovation: *innovation,
-                variance: *variance,
-            })
-            .collect();
-        let mut decisions = [Decision::NONE; MOST];
-        let summary = self.robust.update(&mut self.estimate, &measurements, &mut decisions);
-        let summary = summary.map_err(refused)?;
-        let mut told = decisions.iter();
-        self.weights =
-            innovation
-                .iter()
-                .map(|it| {
-                    if it.is_nan() {
-                        f64::NAN
-                    } else {
-                        told.next().map_or(f64::NAN, |it| it.weight)
-                    }
-                })
-                .collect();
-        Ok(summary.nis)
-    }
-
-    fn mean(&self) -> &[f64] {
-        self.estimate.mean.as_slice()
-    }
-
-    fn add_covariance(&self, rows: &mut Vec<f64>) {
-        // It is symmetric: its columns are its rows.
-        rows.extend_from_slice(self.estimate.covariance.to_matrix().as_slice());
-    }
-
-    fn tell(&self, measurements: usize, weights: &mut Vec<f64>, _: &mut Vec<f64>) {
-        let of = |index| self.weights.get(index).copied().unwrap_or(f64::NAN);
-        weights.extend((0..measurements).map(of));
-    }
-
-    fn copy(&self) -> Box<dyn AnyFilter> {
-        let Self { model: Model { f, q }, estimate, robust, .. } = *self;
-        let (variances, weights) = (self.variances.clone(), self.weights.clone());
-        Box::new(Self { model: Model { f, q }, estimate, robust, variances, weights })
-    }
-
-    fn snapshot(&self, measurements: usize) -> PyResult<Vec<u8>> {
-        stored(self.estimate, &made_for("robust", measurements))
-    }
-
-    fn restore(&mut self, bytes: &[u8], measurements: usize) -> PyResult<()> {
-        self.estimate = loaded(bytes, &made_for("robust", measurements))?;
-        Ok(())
     }
 }
 
@@ -439,11 +209,11 @@ impl Filter {
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.filter.snapshot(self.rows.len())?))
+        Ok(PyBytes::new(py, &self.filter.snapshot(&self.made_for())?))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        self.filter.restore(snapshot, self.rows.len())
+        self.filter.restore(snapshot, &self.made_for())
     }
 
     /// z: (m,); answers with the NIS.
@@ -492,6 +262,11 @@ impl Filter {
 }
 
 impl Filter {
+    /// What a snapshot says beside the number of states.
+    fn made_for(&self) -> String {
+        format!("a {} filter, measurements: {}", self.filter.kind(), self.rows.len())
+    }
+
     fn innovation(&self, z: &[f64]) -> Vec<f64> {
         let mean = self.filter.mean();
         self.rows.iter().zip(z).map(|(row, z)| z - expected(row, mean)).collect()

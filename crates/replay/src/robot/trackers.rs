@@ -11,7 +11,7 @@ use std::fmt::Debug;
 use kestirim_adaptive_kalman::Learning;
 use kestirim_kalman::Covariance;
 use kestirim_scalar::{Q12_20, Scalar};
-use kestirim_uwb_tracker::{Config, EpochMethod, Outcome, RangeSample, Report};
+use kestirim_uwb_tracker::{Config, EpochMethod, Health, Outcome, RangeSample, Report};
 use nalgebra::SVector;
 
 use self::each_epoch::EachEpoch;
@@ -166,4 +166,18 @@ fn place<T: Scalar, const D: usize>(position: &SVector<T, D>, height_m: f64) -> 
 fn of_the_plane<T: Scalar, const N: usize>(covariance: &Covariance<T, N>) -> Option<[f64; 3]> {
     let of = |i, j| covariance.get(i, j).map(T::to_f64);
     Some([of(0, 0)?, of(0, 1)?, of(1, 1)?])
+}
+
+/// The same with this variance of each axis, which the anchors' constant errors add.
+fn with_bias<T: Scalar, const N: usize>(
+    covariance: &Covariance<T, N>,
+    bias: f64,
+) -> Option<[f64; 3]> {
+    let [xx, xy, yy] = of_the_plane(covariance)?;
+    Some([xx + bias, xy, yy + bias])
+}
+
+/// Variance of each axis that the anchors' constant errors add, m²: in no direction more than in another.
+fn bias_variance<T: Scalar>(health: &Health<T>, dimensions: usize) -> f64 {
+    health.bias_sigma.to_f64().powi(2) / dimensions as f64
 }

@@ -4,7 +4,7 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, InertialSample, OdometrySample, Tracker};
 use nalgebra::SVector;
 
-use super::{Follow, Reception, of_the_plane, place, sample};
+use super::{Follow, Reception, bias_variance, place, sample, with_bias};
 use crate::robot::{Error, Event, Inertial, MOST, Setup, TrackerKind, Wheels};
 
 /// Takes in every measurement by itself.
@@ -30,9 +30,8 @@ impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
         Ok(Self { tracker, now_us: 0, height_m: setup.height_m, pushed })
     }
 
-    /// Variance of each axis that the anchors' constant errors add, m²: in no direction more than in another.
     fn bias_variance(&self) -> f64 {
-        self.tracker.health(self.now_us).bias_sigma.to_f64().powi(2) / D as f64
+        bias_variance(&self.tracker.health(self.now_us), D)
     }
 }
 
@@ -74,9 +73,7 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     }
 
     fn spread(&self) -> Option<[f64; 3]> {
-        let [xx, xy, yy] = of_the_plane(&self.tracker.estimate()?.covariance)?;
-        let bias = self.bias_variance();
-        Some([xx + bias, xy, yy + bias])
+        with_bias(&self.tracker.estimate()?.covariance, self.bias_variance())
     }
 
     fn height_variance(&self) -> Option<f64> {

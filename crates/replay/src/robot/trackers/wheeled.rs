@@ -3,7 +3,7 @@
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, OdometrySample, WheelTracker};
 
-use super::{Follow, Reception, of_the_plane, place, sample};
+use super::{Follow, Reception, bias_variance, place, sample, with_bias};
 use crate::robot::{Error, Event, MOST, Setup, Wheels};
 
 /// Is moved by the wheels, and takes in every range by itself.
@@ -57,8 +57,7 @@ impl<T: Scalar> Follow for Wheeled<T> {
     }
 
     fn spread(&self) -> Option<[f64; 3]> {
-        let [xx, xy, yy] = of_the_plane(&self.tracker.estimate()?.covariance)?;
-        let bias = self.tracker.health(self.now_us).bias_sigma.to_f64().powi(2) / 2.0;
-        Some([xx + bias, xy, yy + bias])
+        let bias = bias_variance(&self.tracker.health(self.now_us), 2);
+        with_bias(&self.tracker.estimate()?.covariance, bias)
     }
 }
