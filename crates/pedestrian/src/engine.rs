@@ -192,7 +192,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
 
     pub(crate) fn warnings(&self) -> Warnings {
         // Fixed point stays at its largest value.
-        let is_within = |navigator: &N| T::all_finite(navigator.position().as_array());
+        let is_within = |navigator: &N| {
+            let (position, velocity) = (navigator.position(), navigator.velocity());
+            T::all_finite(position.as_array()) && T::all_finite(velocity.as_array())
+        };
         let out_of_range =
             self.strides.path_length() == T::MAX || !self.navigator.as_ref().is_none_or(is_within);
         Warnings { out_of_range, ..self.health.warnings() }

@@ -33,8 +33,8 @@ pub struct Warnings {
     pub gaps: bool,
     /// The stream showed no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,
-    /// The path is longer than the number type can tell (`Q12_20`: 2 km), or the foot farther away: there the numbers
-    /// stand still.
+    /// The path is longer than the number type can tell (`Q12_20`: 2 km), or the foot farther away or faster: there
+    /// the numbers stand still.
     pub out_of_range: bool,
 }
 
