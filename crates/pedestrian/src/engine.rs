@@ -96,7 +96,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         (tick, size): (Tick<T>, Size),
         motion: &Motion<T>,
         verdict: Verdict<T>,
-    ) -> Estimate<T> {
+    ) -> Option<Stride<T>> {
         self.clock.set(sample.time_us);
         if size.large_force {
             self.health.large_force(&sample.specific_force);
@@ -157,29 +157,20 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             stride = self.strides.update(sample.time_us, navigator.position(), verdict.stance);
         }
         self.was_stance = verdict.stance;
-        self.estimate(sample.time_us, verdict.stance, stride)
+        stride
     }
 
-    /// The state after the last sample, again.
+    /// The state after the last sample, with the stride that it completed.
     #[inline]
-    pub(crate) fn estimate(
-        &self,
-        time_us: u64,
-        stance: bool,
-        stride: Option<Stride<T>>,
-    ) -> Estimate<T> {
+    pub(crate) fn estimate(&self, time_us: u64, stride: Option<Stride<T>>) -> Estimate<T> {
         let (position, velocity, orientation) = match &self.navigator {
             Some(navigator) => {
                 (navigator.position(), navigator.velocity(), navigator.orientation())
             }
             None => (SVector::zeros(), SVector::zeros(), Orientation::identity()),
         };
+        let stance = self.was_stance;
         Estimate { time_us, position, velocity, orientation, stance, stride }
-    }
-
-    #[inline]
-    pub(crate) fn was_stance(&self) -> bool {
-        self.was_stance
     }
 
     pub(crate) fn finish(&mut self) -> Option<Stride<T>> {

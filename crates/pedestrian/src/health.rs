@@ -80,7 +80,7 @@ impl<T: Scalar> Repeats<T> {
     const CHANCE: u8 = 5;
 
     /// Takes a value and tells whether an axis stays at the end of its range more often than by chance.
-    #[inline]
+    #[inline(never)] // Few values are large.
     fn update(&mut self, value: &SVector<T, 3>, large: T) -> bool {
         for axis in 0..3 {
             let (new, old) = (value.as_array()[axis], self.last.as_array()[axis]);

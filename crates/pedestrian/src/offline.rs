@@ -94,13 +94,14 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
         let minimum = self.minimum_around(sample.time_us);
         // Every sample was examined when the walk was prepared.
         let examined = self.engine.examine(sample).ok()?;
-        if examined.0 == Tick::Duplicate {
-            return Some(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
+        let mut stride = None;
+        if examined.0 != Tick::Duplicate {
+            let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
+            let verdict = Verdict { stance: statistic < bound, statistic };
+            let motion = self.engine.motion(sample);
+            stride = self.engine.advance(sample, examined, &motion, verdict);
         }
-        let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
-        let verdict = Verdict { stance: statistic < bound, statistic };
-        let motion = self.engine.motion(sample);
-        Some(self.engine.advance(sample, examined, &motion, verdict))
+        Some(self.engine.estimate(sample.time_us, stride))
     }
 }
 

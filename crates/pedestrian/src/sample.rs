@@ -53,9 +53,17 @@ pub(crate) struct Size {
 #[inline]
 fn is_large<T: Scalar>(vector: &SVector<T, 3>, large: f64, max: f64) -> Result<bool, Error> {
     if within(vector, T::from_f64(large)) {
-        return Ok(false);
+        Ok(false)
+    } else {
+        is_measurable(vector, T::from_f64(max))
     }
-    if within(vector, T::from_f64(max)) {
+}
+
+/// Whether a sensor can have measured it; else why not.
+#[cold]
+#[inline(never)]
+fn is_measurable<T: Scalar>(vector: &SVector<T, 3>, max: T) -> Result<bool, Error> {
+    if within(vector, max) {
         return Ok(true);
     }
     let finite = vector.as_array().iter().all(|component| component.is_finite());

@@ -96,12 +96,13 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
     #[inline]
     pub fn update(&mut self, sample: &ImuSample<T>) -> Result<Estimate<T>, Error> {
         let examined = self.engine.examine(sample)?;
-        if examined.0 == Tick::Duplicate {
-            return Ok(self.engine.estimate(sample.time_us, self.engine.was_stance(), None));
+        let mut stride = None;
+        if examined.0 != Tick::Duplicate {
+            let motion = self.engine.motion(sample);
+            let verdict = self.detector.update(&motion);
+            stride = self.engine.advance(sample, examined, &motion, verdict);
         }
-        let motion = self.engine.motion(sample);
-        let verdict = self.detector.update(&motion);
-        Ok(self.engine.advance(sample, examined, &motion, verdict))
+        Ok(self.engine.estimate(sample.time_us, stride))
     }
 
     /// Ends the walk: the stride that led to the stance the foot is in, if any.

@@ -1,5 +1,5 @@
 //! The trait for floats: arithmetic is the machine's, functions are libm's or our own, so that host and
-//! target agree bit for bit (but for norms on machines without an FPU, which may differ in the last one).
+//! target agree bit for bit.
 
 use crate::{Scalar, double, single};
 
@@ -149,8 +149,8 @@ macro_rules! impl_scalar_for_float {
 // a thousand particles does not become vector instructions. Those are our own.
 impl_scalar_for_float!(
     f32,
-    single::sqrt,
-    single::root,
+    kestirim_arithmetic::sqrt,
+    kestirim_arithmetic::sqrt,
     single::hypot,
     single::sin_cos,
     single::atan2,

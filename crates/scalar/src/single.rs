@@ -2,37 +2,7 @@
 
 use core::f32::consts::{FRAC_2_PI, TAU};
 
-/// Whether the machine multiplies in hardware.
-const FPU: bool = cfg!(not(any(
-    all(target_arch = "arm", not(target_abi = "eabihf")),
-    all(target_arch = "riscv32", not(target_feature = "f"))
-)));
-
-/// √x within one unit in the last place, with IEEE's edges.
-#[inline]
-pub(crate) fn sqrt(x: f32) -> f32 {
-    if (f32::MIN_POSITIVE..=f32::MAX).contains(&x) { root(x) } else { libm::sqrtf(x) }
-}
-
-/// √x within one unit in the last place; of zero 0, of what is subnormal too little, and of what is not
-/// finite NaN.
-///
-/// The square root instruction of a Cortex-M4F is out of reach of stable Rust without `std`, and libm's
-/// integer square root costs twice as much as this where multiplications are cheap.
-#[inline]
-pub(crate) fn root(x: f32) -> f32 {
-    if !FPU {
-        return libm::sqrtf(x);
-    }
-    // 1/√x within 3.5 % from the bits alone; each of Newton's steps squares that.
-    let half = 0.5 * x;
-    let mut inverse = f32::from_bits(0x5F37_59DF_u32.wrapping_sub(x.to_bits() >> 1));
-    inverse *= 1.5 - half * inverse * inverse;
-    inverse *= 1.5 - half * inverse * inverse;
-    // And the last one for √x itself.
-    let root = x * inverse;
-    root + (x - root * root) * (0.5 * inverse)
-}
+use kestirim_arithmetic::sqrt;
 
 /// √(x² + y²); the squares are scaled where they would overflow or vanish. Never inlined: three square roots
 /// at every place of use would be half a kilobyte each.
@@ -41,13 +11,13 @@ pub(crate) fn hypot(x: f32, y: f32) -> f32 {
     const SCALE: f32 = 18_446_744_073_709_551_616.0; // 2⁶⁴
     let square = x * x + y * y;
     if (1e-30..1e30).contains(&square) {
-        libm::sqrtf(square)
+        sqrt(square)
     } else if x.abs() > 1.0 || y.abs() > 1.0 {
         let (x, y) = (x / SCALE, y / SCALE);
-        libm::sqrtf(x * x + y * y) * SCALE
+        sqrt(x * x + y * y) * SCALE
     } else {
         let (x, y) = (x * SCALE, y * SCALE);
-        libm::sqrtf(x * x + y * y) / SCALE
+        sqrt(x * x + y * y) / SCALE
     }
 }
 
@@ -58,7 +28,7 @@ pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
     if !x.is_finite() {
         return (f32::NAN, f32::NAN);
     }
-    let x = if x.abs() > 8192.0 { x % TAU } else { x };
+    let x = if x.abs() > 8192.0 { within_a_turn(x) } else { x };
     let turns = x * FRAC_2_PI;
     let quadrant = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i32;
     let n = quadrant as f32;
@@ -75,6 +45,19 @@ pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
         2 => (-sine, -cosine),
         _ => (-cosine, sine),
     }
+}
+
+/// An angle beyond 8192 rad in −π..=π; beyond 2²¹ rad, where neighbours are a quarter of a radian apart, that of 2²¹.
+/// The remainder of a division would link a kilobyte.
+#[cold]
+#[inline(never)]
+fn within_a_turn(x: f32) -> f32 {
+    /// 2⁶⁴ / (1024 · 2π): what a step is of a turn, whose whole ones overflow.
+    const OF_A_TURN: i64 = 2_867_080_569_611_329;
+    // Such an angle is a multiple of 2⁻¹⁰ rad.
+    let steps = (x * 1024.0) as i32;
+    let turn = (i64::from(steps).wrapping_mul(OF_A_TURN) >> 32) as i32;
+    turn as f32 * (TAU / 4_294_967_296.0)
 }
 
 /// Added to a number below 2²² and taken away again, it rounds to an integer; its last bits hold it.

@@ -107,6 +107,12 @@ fn cmake_finds_the_library() -> Result<()> {
     Ok(())
 }
 
+/// What a program with the pedestrian's tracker calls at least, and the most flash that may take with a floating-point
+/// unit, bytes.
+const SMALLEST: [&str; 3] =
+    ["kestirim_pedestrian_init", "kestirim_pedestrian_update", "kestirim_pedestrian_position"];
+const LARGEST_FOOT: u64 = 13_000;
+
 /// A bare-metal target, and the machine that QEMU plays.
 struct Target {
     triple: &'static str,
@@ -260,6 +266,10 @@ impl Target {
         let all = self.link("empty", &[], &library, &functions)?;
         assert_eq!(missing(&all, &functions)?, Vec::<&String>::new(), "{}", self.triple);
         assert_eq!(panics(&all)?, Vec::<String>::new(), "{}: a function can panic", self.triple);
+        let smallest = SMALLEST.map(str::to_owned);
+        let foot = flash(&self.link("empty", &[], &library, &smallest)?)? - empty;
+        println!("{} on {}: {foot} bytes over C without it", SMALLEST.join(", "), self.triple);
+        assert!(self.fixed || foot <= LARGEST_FOOT, "the smallest foot has {foot} bytes");
         for name in self.programs {
             let of = format!("{name} on {}", self.triple);
             let image = self.link(name, &[], &library, &[])?;

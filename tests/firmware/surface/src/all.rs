@@ -2,6 +2,7 @@
 
 pub mod adaptive_kalman;
 pub mod air_to_ground;
+pub mod arithmetic;
 pub mod attitude;
 pub mod gnss_ppp;
 pub mod health;
