@@ -1,9 +1,13 @@
 //! Builds an application of `tests/firmware/apps` and runs it.
 
 use std::fs::{self, File};
-use std::path::PathBuf;
+use std::io::{self, Read, Write};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread::{self, JoinHandle};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 
 use crate::elf::Elf;
 use crate::images::{Images, Packages, Profile, build_apart};
@@ -14,12 +18,15 @@ use crate::target::{CORTEX_M0, CORTEX_M4F, RV32IMC, Target};
 const CARD: &str = "card.img";
 const LOG: &str = "log.bin";
 const TELEMETRY: &str = "telemetry.bin";
+const LINE: &str = "line.sock";
 
-/// The applications of each target, and which of them are built in one go: `gnss-firmware` wants another board.
-const APPLICATIONS: [(&Target, Packages); 4] = [
+/// The applications of each target, and which of them are built in one go: `gnss-firmware` wants another board, and the
+/// last two that with its interrupts.
+const APPLICATIONS: [(&Target, Packages); 5] = [
     (&CORTEX_M0, &["pedestrian-firmware", "uav-firmware"]),
     (&CORTEX_M4F, &["drone-firmware", "pedestrian-firmware", "uav-firmware"]),
     (&CORTEX_M4F, &["gnss-firmware"]),
+    (&CORTEX_M4F, &["foot-embassy", "foot-rtic"]),
     (&RV32IMC, &["robot-firmware"]),
 ];
 
@@ -111,17 +118,46 @@ impl App {
         if let Some(card) = card {
             fs::write(file(CARD), card)?;
         }
-        // The emulator hands on what is written to the semihosting host's standard output; its own
-        // console gets what is written to none, which is how an application ends that panicked.
-        let log = File::create(file(LOG))?;
-        let status = emulate(self.target, &self.image, directory.path(), |qemu| {
-            qemu.args(self.board)
-                .args(["-icount", "shift=0,sleep=off"])
-                .args(["-serial", &format!("file:{TELEMETRY}")])
-                .stdout(log);
+        let run = self.run_in(directory.path(), |qemu| {
+            qemu.args(["-serial", &format!("file:{TELEMETRY}")]);
             if card.is_some() {
                 qemu.args(["-drive", &format!("if=sd,format=raw,file={CARD}")]);
             }
+        })?;
+        Ok(Run {
+            telemetry: fs::read(file(TELEMETRY))?,
+            card: card.map(|_| fs::read(file(CARD))).transpose()?,
+            ..run
+        })
+    }
+
+    /// Runs the application with these bytes arriving at its first serial port, until it ends.
+    ///
+    /// # Errors
+    /// It does not end, or leaves no files.
+    pub fn run_on_line(&self, bytes: &[u8]) -> Result<Run> {
+        let directory = tempfile::tempdir()?;
+        let line = Line::new(directory.path().join(LINE), bytes)?;
+        let run = self.run_in(directory.path(), |qemu| {
+            qemu.args([
+                "-chardev",
+                &format!("socket,id=line,path={LINE}"),
+                "-serial",
+                "chardev:line",
+            ]);
+        })?;
+        Ok(Run { telemetry: line.received()?, ..run })
+    }
+
+    /// Runs it in a directory, on a board with what `configure` adds; what it sent and a card are not looked at.
+    fn run_in(&self, directory: &Path, configure: impl FnOnce(&mut Command)) -> Result<Run> {
+        let file = |name| directory.join(name);
+        // The emulator hands on what is written to the semihosting host's standard output; its own
+        // console gets what is written to none, which is how an application ends that panicked.
+        let log = File::create(file(LOG))?;
+        let status = emulate(self.target, &self.image, directory, |qemu| {
+            qemu.args(self.board).args(["-icount", "shift=0,sleep=off"]).stdout(log);
+            configure(qemu);
         })?;
         let Some(status) = status else {
             bail!("{} was still running", self.image.display());
@@ -130,8 +166,40 @@ impl App {
             success: status.success(),
             console: fs::read_to_string(file(OUTPUT))? + &fs::read_to_string(file(ERRORS))?,
             log: fs::read(file(LOG))?,
-            telemetry: fs::read(file(TELEMETRY))?,
-            card: card.map(|_| fs::read(file(CARD))).transpose()?,
+            telemetry: Vec::new(),
+            card: None,
         })
+    }
+}
+
+/// The host's end of an application's serial port.
+struct Line {
+    socket: PathBuf,
+    reader: JoinHandle<io::Result<Vec<u8>>>,
+}
+
+impl Line {
+    /// Waits at a socket for the emulator, sends it these bytes and keeps what comes back.
+    fn new(socket: PathBuf, bytes: &[u8]) -> Result<Self> {
+        let (listener, bytes) = (UnixListener::bind(&socket)?, bytes.to_vec());
+        let reader = thread::spawn(move || {
+            let (mut stream, _) = listener.accept()?;
+            let mut sender = stream.try_clone()?;
+            // An emulator that has ended takes no more: what it sent shows why.
+            let sender = thread::spawn(move || sender.write_all(&bytes).is_ok());
+            let mut received = Vec::new();
+            stream.read_to_end(&mut received)?;
+            let _ = sender.join();
+            Ok(received)
+        });
+        Ok(Self { socket, reader })
+    }
+
+    /// What came back until the emulator ended.
+    fn received(self) -> Result<Vec<u8>> {
+        // An emulator that did not start never came.
+        let _ = UnixStream::connect(&self.socket);
+        let received = self.reader.join().map_err(|_| anyhow!("the line's reader panicked"))?;
+        received.context("the serial line")
     }
 }

@@ -9,7 +9,8 @@ use anyhow::{Context, Result, ensure};
 use kestirim_scalar::{Q12_20, Q16_16};
 
 use crate::tools::{
-    arguments, crate_folder, have, include, library, output_folder, program, recordings, run,
+    arguments, crate_folder, have, include, library, output_folder, program, quickly, recordings,
+    run,
 };
 use crate::{reference, streams};
 
@@ -99,7 +100,7 @@ fn cmake_finds_the_library() -> Result<()> {
     // As the library of the other programs, which is not compiled once more.
     let cargo = format!("-DKESTIRIM_BUILD={}", output_folder().display());
     run(Command::new("cmake").args(arguments(&[&"-S", &example, &"-B", &build, &cargo])))?;
-    run(Command::new("cmake").arg("--build").arg(&build))?;
+    run(quickly(Command::new("cmake").arg("--build").arg(&build)))?;
     let told = run(&mut Command::new(build.join("standing")))?;
     let told = String::from_utf8(told.stdout)?;
     assert!(told.starts_with("0.00") || told.starts_with("-0.00"), "{told}");

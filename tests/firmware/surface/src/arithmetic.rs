@@ -1,9 +1,11 @@
 //! Everything of `kestirim-arithmetic`.
 
+use kestirim_arithmetic::sqrt;
+
 use super::values::{any, call_each, keep};
 
 fn roots() {
-    keep(kestirim_arithmetic::sqrt(any(2.0)));
+    keep(sqrt(any(2.0)));
 }
 
 /// Calls it all.

@@ -7,6 +7,7 @@
 mod card;
 mod drone;
 mod esp32c3;
+mod foot_node;
 mod gnss;
 mod gnss_stream;
 mod image;

@@ -6,7 +6,7 @@
 //! [`Recording`] ([`Mpu9250`], [`Bno055`], [`Ms4525do`]).
 //!
 //! An application that needs more memory takes the machine `mps2-an386` (the feature of that name), of which there is
-//! a serial port ([`CmsdkUart`]).
+//! a serial port, polled ([`CmsdkUart`]) or by interrupts ([`CmsdkPort`]).
 //!
 //! `defmt` writes to the semihosting console. All `unsafe` code of the applications on Arm is in `registers.rs`
 //! and `system.rs`.
@@ -14,6 +14,7 @@
 #![no_std]
 
 mod bno055;
+mod cmsdk_port;
 mod cmsdk_uart;
 mod delay;
 mod i2c;
@@ -32,6 +33,7 @@ use cortex_m as _;
 use defmt_semihosting as _;
 
 pub use bno055::Bno055;
+pub use cmsdk_port::CmsdkPort;
 pub use cmsdk_uart::CmsdkUart;
 pub use delay::Delay;
 pub use i2c::{NoAcknowledge, Only};

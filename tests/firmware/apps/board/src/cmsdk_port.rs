@@ -1,0 +1,61 @@
+//! The first serial port of the machine `mps2-an386`, for who is told by its interrupts.
+
+use crate::registers::Register;
+
+const BASE: usize = 0x4000_4000;
+const DATA: Register = Register::at(BASE);
+const STATE: Register = Register::at(BASE + 0x04);
+const CONTROL: Register = Register::at(BASE + 0x08);
+const INTERRUPTS: Register = Register::at(BASE + 0x0C);
+const DIVIDER: Register = Register::at(BASE + 0x10);
+
+const SENDING: u32 = 1 << 0;
+const RECEIVED: u32 = 1 << 1;
+
+/// The port's registers: a byte each way, and an interrupt each.
+#[derive(Clone, Copy, Debug)]
+pub struct CmsdkPort(());
+
+impl CmsdkPort {
+    /// Sender and receiver, and the interrupts of both.
+    const ENABLE: u32 = 0b1111;
+    /// The least that the port accepts, for the highest rate; QEMU sends at once.
+    const FASTEST: u32 = 16;
+
+    /// Turns on the first port, which QEMU's first `-serial` is connected to. Its interrupts are still masked.
+    pub fn first() -> Self {
+        DIVIDER.write(Self::FASTEST);
+        CONTROL.write(Self::ENABLE);
+        Self(())
+    }
+
+    /// The same port in a handler of its interrupts: it is turned on, or there would be none.
+    pub fn served() -> Self {
+        Self(())
+    }
+
+    /// Takes the byte that has arrived, if there is one. Until it is taken, the other side waits.
+    pub fn receive(self) -> Option<u8> {
+        INTERRUPTS.write(RECEIVED);
+        (STATE.read() & RECEIVED != 0).then(|| DATA.read() as u8)
+    }
+
+    /// Leaves the byte where it is: the handler's answer to an interrupt when there is no room.
+    pub fn postpone(self) {
+        INTERRUPTS.write(RECEIVED);
+    }
+
+    /// Sends a byte, unless the one before is still on its way.
+    pub fn send(self, byte: u8) -> bool {
+        let is_free = STATE.read() & SENDING == 0;
+        if is_free {
+            DATA.write(byte.into());
+        }
+        is_free
+    }
+
+    /// Takes note that a byte has been sent.
+    pub fn sent(self) {
+        INTERRUPTS.write(SENDING);
+    }
+}

@@ -1,0 +1,84 @@
+//! The first serial port, behind the traits of `embedded-io-async`: interrupts move its bytes.
+
+use core::convert::Infallible;
+
+use board::CmsdkPort;
+use cortex_m::peripheral::NVIC;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::pipe::Pipe;
+use embassy_sync::signal::Signal;
+use embedded_io_async::{ErrorType, Read, Write};
+use mps2_an386::Interrupt;
+
+/// What has arrived and is not read yet.
+static ARRIVED: Pipe<CriticalSectionRawMutex, 64> = Pipe::new();
+/// A byte has been sent.
+static SENT: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+
+/// The half that receives.
+pub(crate) struct Receiver(CmsdkPort);
+
+/// The half that sends.
+pub(crate) struct Sender(CmsdkPort);
+
+/// Both halves of the first port. It is called once: there is one port.
+pub(crate) fn first() -> (Receiver, Sender) {
+    let port = CmsdkPort::first();
+    #[allow(unsafe_code)] // The handlers share with the tasks what is made for that.
+    unsafe {
+        NVIC::unmask(Interrupt::UARTRX0);
+        NVIC::unmask(Interrupt::UARTTX0);
+    }
+    (Receiver(port), Sender(port))
+}
+
+impl ErrorType for Receiver {
+    type Error = Infallible;
+}
+
+impl Read for Receiver {
+    async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
+        let count = ARRIVED.read(bytes).await;
+        // There is room again for the byte that the handler may have left in the port.
+        NVIC::pend(Interrupt::UARTRX0);
+        Ok(count)
+    }
+}
+
+impl ErrorType for Sender {
+    type Error = Infallible;
+}
+
+impl Write for Sender {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        for &byte in bytes {
+            while !self.0.send(byte) {
+                SENT.wait().await;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    async fn flush(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+#[allow(unsafe_code)] // The name by which the table of interrupts finds it.
+#[unsafe(export_name = "UARTRX0")]
+extern "C" fn received() {
+    let port = CmsdkPort::served();
+    if ARRIVED.is_full() {
+        port.postpone();
+    } else if let Some(byte) = port.receive() {
+        // There is room: nobody else writes.
+        let _ = ARRIVED.try_write(&[byte]);
+    }
+}
+
+#[allow(unsafe_code)] // The name by which the table of interrupts finds it.
+#[unsafe(export_name = "UARTTX0")]
+extern "C" fn sent() {
+    CmsdkPort::served().sent();
+    SENT.signal(());
+}

@@ -1,0 +1,58 @@
+//! Interrupts of QEMU's machine `mps2-an386` (Arm's application note AN386), as far as applications here have them: what
+//! svd2rust would make of the chip's description, if there were one.
+
+#![no_std]
+#![allow(unsafe_code)] // A table of addresses that the processor reads.
+
+use cortex_m::interrupt::InterruptNumber;
+
+// Under the name by which `#[interrupt]` and RTIC look for both.
+pub use self::Interrupt as interrupt;
+pub use cortex_m_rt::interrupt;
+
+/// Bits of an interrupt's priority.
+pub const NVIC_PRIO_BITS: u8 = 3;
+
+/// An interrupt, by the name of its handler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Interrupt {
+    /// The first serial port has received a byte.
+    UARTRX0 = 0,
+    /// The first serial port can send again.
+    UARTTX0 = 1,
+    /// A pin; free for a program of its own.
+    GPIO0 = 6,
+}
+
+// SAFETY: the numbers are those of the machine, and of this enum.
+unsafe impl InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        self as u16
+    }
+}
+
+/// An entry of the table.
+pub union Vector {
+    handler: unsafe extern "C" fn(),
+    reserved: usize,
+}
+
+unsafe extern "C" {
+    fn UARTRX0();
+    fn UARTTX0();
+    fn GPIO0();
+}
+
+/// The handlers, where `cortex-m-rt` has the linker look for them.
+#[unsafe(link_section = ".vector_table.interrupts")]
+#[unsafe(no_mangle)]
+pub static __INTERRUPTS: [Vector; 7] = [
+    Vector { handler: UARTRX0 },
+    Vector { handler: UARTTX0 },
+    Vector { reserved: 0 },
+    Vector { reserved: 0 },
+    Vector { reserved: 0 },
+    Vector { reserved: 0 },
+    Vector { handler: GPIO0 },
+];
