@@ -54,20 +54,19 @@ pub(crate) struct Size {
 fn is_large<T: Scalar>(vector: &SVector<T, 3>, large: f64, max: f64) -> Result<bool, Error> {
     if within(vector, T::from_f64(large)) {
         Ok(false)
+    } else if within(vector, T::from_f64(max)) {
+        Ok(true)
     } else {
-        is_measurable(vector, T::from_f64(max))
+        Err(refusal(vector))
     }
 }
 
-/// Whether a sensor can have measured it; else why not.
+/// Why a vector cannot have been measured.
 #[cold]
 #[inline(never)]
-fn is_measurable<T: Scalar>(vector: &SVector<T, 3>, max: T) -> Result<bool, Error> {
-    if within(vector, max) {
-        return Ok(true);
-    }
+fn refusal<T: Scalar>(vector: &SVector<T, 3>) -> Error {
     let finite = vector.as_array().iter().all(|component| component.is_finite());
-    Err(if finite { Error::Implausible } else { Error::NotFinite })
+    if finite { Error::Implausible } else { Error::NotFinite }
 }
 
 /// Whether every component is a number of at most this size; a NaN is not.

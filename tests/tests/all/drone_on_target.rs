@@ -14,10 +14,6 @@ use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row,
 
 /// Bit for bit the same arithmetic; the numbers are told with the 24 bits of an `f32`, in micrometres (m).
 const SAME: f64 = 0.5e-6;
-/// Without an FPU the norm of an `f32` may differ in its last bit, by which a weight and so the mean of the cloud
-/// may (m): 2.6·10⁻⁴ m were seen, where a unit in the last place is up to 1.2·10⁻⁴ m. It is not amplified as long
-/// as no particle has an offspring more or less for it.
-const NEARLY_SAME: f64 = 1e-3;
 
 const WAVELENGTH: f64 = 0.15;
 
@@ -47,8 +43,6 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Resu
     let output = images.run(image, stream)?;
     let row = Row::of(images, image, &output)?;
     println!("{row}");
-    let exact = row.scalar != "f32" || images.target.triple == CORTEX_M4F.triple;
-    let tolerance = if exact { SAME } else { NEARLY_SAME };
     let told = output.positions()?;
     assert_eq!(told.len(), host.len());
     let mut apart = 0_f64;
@@ -60,7 +54,7 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Resu
         }
     }
     println!("    at most {apart} m apart");
-    assert!(apart < tolerance, "{image}: {apart} m apart");
+    assert!(apart < SAME, "{image}: {apart} m apart");
     let elf = images.elf(image)?;
     assert_eq!(elf.panic_symbols(), Vec::<String>::new(), "{image} cannot panic");
     assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{image} has no double precision");

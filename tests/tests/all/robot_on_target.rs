@@ -15,8 +15,6 @@ use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row,
 
 /// Bit for bit the same arithmetic; positions are told to the micrometre (m).
 const SAME: f64 = 3e-6;
-/// Without an FPU the norm of an `f32` may differ in its last bit (m).
-const NEARLY_SAME: f64 = 2e-4;
 
 /// The states after each step, as the image computes them.
 type Steps = Vec<[f64; 4]>;
@@ -104,15 +102,13 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &Steps) -> Result<Ou
     let output = images.run(image, stream)?;
     let row = Row::of(images, image, &output)?;
     println!("{row}");
-    let exact = row.scalar != "f32" || images.target.triple == CORTEX_M4F.triple;
-    let tolerance = if exact { SAME } else { NEARLY_SAME };
     let told = output.positions()?;
     assert_eq!(told.len(), host.len().div_ceil(50));
     for (index, told) in told.iter().enumerate() {
         let state = host[(50 * index + 49).min(host.len() - 1)];
         for (ours, theirs) in told.metres.iter().zip(state) {
             let what = format!("{image} after {} steps", 50 * index + 50);
-            assert!((ours - theirs).abs() < tolerance, "{what}: {ours} or {theirs} m");
+            assert!((ours - theirs).abs() < SAME, "{what}: {ours} or {theirs} m");
             if told.metres[2] == 0.0 {
                 break;
             }
