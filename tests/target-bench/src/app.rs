@@ -13,6 +13,7 @@ use crate::elf::Elf;
 use crate::images::{Images, Packages, Profile, build_apart};
 use crate::qemu::{ERRORS, OUTPUT, STREAM, emulate};
 use crate::target::{CORTEX_M0, CORTEX_M4F, RV32IMC, Target};
+use crate::toolchain::Apart;
 
 /// The names under which application and host meet in the emulator's working directory.
 const CARD: &str = "card.img";
@@ -80,9 +81,9 @@ impl App {
     ///
     /// # Errors
     /// As [`App::of`].
-    pub fn apart(target: &'static Target, package: &str) -> Result<Option<Self>> {
+    pub fn apart(target: &'static Target, package: Apart) -> Result<Option<Self>> {
         let directory = build_apart(target, package, Profile::Speed)?;
-        let image = directory.map(|directory| directory.join(package));
+        let image = directory.map(|directory| directory.join(package.name));
         Ok(image.map(|image| Self { target, board: target.board, image }))
     }
 

@@ -12,7 +12,7 @@ use crate::elf::Elf;
 use crate::output::Output;
 use crate::qemu;
 use crate::target::{CORTEX_M0, CORTEX_M4F, Target};
-use crate::toolchain::{Toolchain, is_installed};
+use crate::toolchain::{Apart, Toolchain, is_installed};
 
 /// Set to 1, a missing tool is a failure instead of a reason to skip: CI cannot skip unseen.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
@@ -193,11 +193,11 @@ fn toolchain(target: &'static Target) -> Result<Toolchain, String> {
 /// the directory it is in; `None` on a machine without the tools, which is said.
 pub(crate) fn build_apart(
     target: &'static Target,
-    package: &str,
+    package: Apart,
     profile: Profile,
 ) -> Result<Option<PathBuf>> {
     if is_short() {
-        return left_out(package);
+        return left_out(package.name);
     }
     match Toolchain::find(target) {
         Ok(toolchain) => toolchain.build_apart(package, profile.name()).map(Some),

@@ -33,3 +33,4 @@ pub use images::{Images, Profile};
 pub use output::{Cost, Output, Position};
 pub use row::Row;
 pub use target::{CORTEX_M0, CORTEX_M4F, RV32IMC, TARGETS, Target};
+pub use toolchain::Apart;

@@ -26,6 +26,15 @@ const ENVIRONMENT: [&str; 8] = [
     "SSL_CERT_DIR",
 ];
 
+/// A package that is a workspace of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Apart {
+    /// The folder that its folder is in, from that of the repository.
+    pub folder: &'static str,
+    /// Its name, and that of its folder.
+    pub name: &'static str,
+}
+
 /// A toolchain that can build for one target.
 #[derive(Debug)]
 pub(crate) struct Toolchain {
@@ -82,8 +91,9 @@ impl Toolchain {
     }
 
     /// Builds an application that is a workspace of its own.
-    pub(crate) fn build_apart(&self, package: &str, profile: &str) -> Result<PathBuf> {
-        self.build_in(&workspace().join("apps").join(package), &[package], profile)
+    pub(crate) fn build_apart(&self, package: Apart, profile: &str) -> Result<PathBuf> {
+        let folder = workspace().join("../..").join(package.folder).join(package.name);
+        self.build_in(&folder, &[package.name], profile)
     }
 
     fn build_in(&self, workspace: &Path, packages: &[&str], profile: &str) -> Result<PathBuf> {

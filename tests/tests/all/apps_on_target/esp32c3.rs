@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result};
 use object::{Object, ObjectSection, ObjectSymbol};
-use target_bench::{App, RV32IMC};
+use target_bench::{Apart, App, RV32IMC};
 
 use super::image;
 
@@ -15,7 +15,8 @@ const INSTRUCTIONS: std::ops::Range<u64> = 0x4200_0000..0x4280_0000;
 
 #[test]
 fn it_links() -> Result<()> {
-    let Some(app) = App::apart(&RV32IMC, "robot-esp32c3")? else { return Ok(()) };
+    let robot = Apart { folder: "tests/firmware/apps", name: "robot-esp32c3" };
+    let Some(app) = App::apart(&RV32IMC, robot)? else { return Ok(()) };
     let bytes = app.file()?;
     let elf = object::File::parse(&*bytes)?;
     assert_eq!(elf.architecture(), object::Architecture::Riscv32);

@@ -5,6 +5,7 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print sizes.
 
 mod card;
+mod contrib;
 mod drone;
 mod esp32c3;
 mod foot_node;
