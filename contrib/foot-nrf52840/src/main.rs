@@ -1,4 +1,4 @@
-//! The foot on an nRF52840-DK: SDA at P0.26, SCL at P0.27, the sensor's interrupt at P0.11. The processor sleeps until a
+//! The foot on an nRF52840-DK: SDA at P0.26, SCL at P0.27, the sensor's interrupt at P1.01. The processor sleeps until a
 //! sample is ready, and while DMA fetches it.
 #![no_std]
 #![no_main]
@@ -25,7 +25,7 @@ async fn main(_spawner: Spawner) {
     let mut copies = [0; 16];
     let bus =
         Twim::new(board.TWISPI0, Interrupts, board.P0_26, board.P0_27, config, &mut copies);
-    let mut ready = Input::new(board.P0_11, Pull::None);
+    let mut ready = Input::new(board.P1_01, Pull::None);
     let mut foot = match Foot::new(bus).await {
         Ok(foot) => foot,
         Err(error) => defmt::panic!("no sensor: {}", error),
