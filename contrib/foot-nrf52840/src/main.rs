@@ -8,13 +8,20 @@ use embassy_executor::Spawner;
 use embassy_nrf::gpio::{Input, Pull};
 use embassy_nrf::twim::{self, Twim};
 use embassy_nrf::{bind_interrupts, peripherals};
-use embassy_time::Instant;
-use foot::Foot;
+use embassy_time::{Duration, Instant, Timer, with_timeout};
+use foot::{Error, Foot};
 use panic_probe as _;
 
 bind_interrupts!(struct Interrupts {
     TWISPI0 => twim::InterruptHandler<peripherals::TWISPI0>;
 });
+
+/// Samples a second.
+const RATE: u32 = 100;
+/// An MPU-6050 answers so long after it was switched on (its data sheet).
+const START: Duration = Duration::from_millis(100);
+/// So long without a sample, it has lost its settings.
+const PATIENCE: Duration = Duration::from_millis(200);
 
 #[embassy_executor::main]
 async fn main(_spawner: Spawner) {
@@ -23,20 +30,30 @@ async fn main(_spawner: Spawner) {
     config.frequency = twim::Frequency::K400;
     // DMA reads no flash: constants are copied here.
     let mut copies = [0; 16];
-    let bus =
+    let mut bus =
         Twim::new(board.TWISPI0, Interrupts, board.P0_26, board.P0_27, config, &mut copies);
     let mut ready = Input::new(board.P1_01, Pull::None);
-    let mut foot = match Foot::new(bus).await {
-        Ok(foot) => foot,
-        Err(error) => defmt::panic!("no sensor: {}", error),
-    };
     loop {
-        ready.wait_for_rising_edge().await;
+        Timer::after(START).await;
+        if let Err(error) = walk(&mut bus, &mut ready).await {
+            defmt::error!("{}", error);
+        }
+    }
+}
+
+/// Tracks until the sensor is silent or its bus fails.
+async fn walk(bus: &mut Twim<'_>, ready: &mut Input<'_>) -> Result<(), Error<twim::Error>> {
+    let mut foot = Foot::new(bus, RATE).await?;
+    defmt::info!("walk");
+    while with_timeout(PATIENCE, ready.wait_for_rising_edge()).await.is_ok() {
         let time_us = Instant::now().as_micros();
         match foot.step(time_us).await {
             Ok(Some(footprint)) => defmt::info!("{}", footprint),
             Ok(None) => {}
-            Err(error) => defmt::warn!("{}", error),
+            Err(refused @ Error::Refused(_)) => defmt::warn!("{}", refused),
+            Err(error) => return Err(error),
         }
     }
+    defmt::warn!("no samples");
+    Ok(())
 }

@@ -1,7 +1,6 @@
 //! A foot-mounted MPU-6050 and its tracker, for any board with async I²C: a board's program waits for the sensor's
 //! interrupt and calls [`Foot::step`].
 #![no_std]
-#![forbid(unsafe_code)]
 
 mod mpu6050;
 
@@ -11,17 +10,16 @@ use kestirim_pedestrian::{Config, EkfTracker, ImuSample, PathUncertainty, Sensor
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-pub use mpu6050::{Error, Mpu6050};
+use mpu6050::Mpu6050;
 
-/// `f32` where there is a unit for it, fixed point where there is none.
-#[cfg(target_abi = "eabihf")]
-pub type Number = f32;
-/// `f32` where there is a unit for it, fixed point where there is none.
-#[cfg(not(target_abi = "eabihf"))]
+pub use mpu6050::Error;
+
+/// The tracker's number: for a processor without a floating-point unit, fixed point.
+#[cfg(feature = "fixed")]
 pub type Number = kestirim_scalar::Q12_20;
-
-/// Samples a second.
-pub const RATE: u32 = 100;
+/// The tracker's number: for a processor with a floating-point unit, single precision.
+#[cfg(not(feature = "fixed"))]
+pub type Number = f32;
 
 /// Where the foot stood after a stride.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
@@ -42,12 +40,13 @@ pub struct Foot<B> {
 }
 
 impl<B: I2c> Foot<B> {
-    /// Sets the sensor up: 100 samples a second, 16 g, 2000 °/s, an interrupt for each.
+    /// Sets the sensor up: 16 g, 2000 °/s, so many samples a second (4 to 1000), an interrupt for each. A program that asks
+    /// at times of its own lets it sample ten times as often, so that what it gets is new.
     ///
     /// # Errors
     /// The bus's, or [`Error::NotThere`].
-    pub async fn new(bus: B) -> Result<Self, Error<B::Error>> {
-        let (sensor, imu) = (SensorClass::Consumer, Mpu6050::new(bus, RATE).await?);
+    pub async fn new(bus: B, rate: u32) -> Result<Self, Error<B::Error>> {
+        let (sensor, imu) = (SensorClass::Consumer, Mpu6050::new(bus, rate).await?);
         let tracker = EkfTracker::new(Config { sensor, ..Config::default() });
         Ok(Self { imu, tracker, uncertainty: PathUncertainty::new(sensor) })
     }

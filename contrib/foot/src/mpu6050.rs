@@ -1,4 +1,4 @@
-//! An MPU-6050 (InvenSense's register map, revision 4.2).
+//! An MPU-6050 (the maker's register map, revision 4.2).
 
 use embedded_hal_async::i2c::I2c;
 
@@ -13,8 +13,8 @@ const WHO_AM_I: u8 = 0x75;
 
 /// With the low-pass filter on, a thousand samples a second are divided.
 const UNDIVIDED: u32 = 1000;
-/// 188 Hz.
-const LOW_PASS: u8 = 1;
+/// 44 Hz, below half of 100 samples a second: what a heel strike shakes beyond that would fold into the motion.
+const LOW_PASS: u8 = 3;
 /// ±2000 °/s: heel strikes reach 600 and more.
 const GYROSCOPE: u8 = 3 << 3;
 /// ±16 g: heel strikes reach 8.

@@ -262,6 +262,7 @@ impl<T: Scalar> Clipping<T> {
                 // It was missed about the axis as that stood in the middle of the stretch.
                 let mut about = SVector::<T, 3>::zeros();
                 about.as_array_mut()[index] = angle;
+                // From the identity the same as in the body, and linked already.
                 let since = Orientation::identity().turned_in_earth(&run.turned);
                 miss(&MissedTurn { turn: since.to_body(&about), pushed: run.pushed });
             }

@@ -75,8 +75,10 @@ impl<T: Scalar> Strides<T> {
     /// Ends the stance there is, if any.
     pub(crate) fn finish(&mut self) -> Option<Stride<T>> {
         let footprint = self.standing.take()?;
-        // From the first to itself it is no stride.
-        let last = self.last.get_or_insert(footprint);
+        let Some(last) = self.last else {
+            self.last = Some(footprint);
+            return None;
+        };
         let [x, y, _] = *(footprint.position - last.position).as_array();
         let length = x.hypot(y);
         if length < T::from_f64(Self::SHORTEST) {
@@ -84,10 +86,10 @@ impl<T: Scalar> Strides<T> {
         }
         let heading = y.atan2(x);
         let heading_change = self.heading.map_or(T::ZERO, |before| wrapped(heading - before));
-        let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
         self.path_length += length;
-        *last = footprint;
+        self.last = Some(footprint);
         self.heading = Some(heading);
+        let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
         Some(Stride {
             time_us: footprint.time_us,
             position: footprint.position,

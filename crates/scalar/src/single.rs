@@ -4,8 +4,8 @@ use core::f32::consts::{FRAC_2_PI, TAU};
 
 use kestirim_arithmetic::sqrt;
 
-/// √(x² + y²); the squares are scaled where they would overflow or vanish. Never inlined: three square roots
-/// at every place of use would be half a kilobyte each.
+/// √(x² + y²); the squares are scaled where they would overflow or vanish. Never inlined: without
+/// an instruction for them, three square roots at every place of use would be half a kilobyte each.
 #[inline(never)]
 pub(crate) fn hypot(x: f32, y: f32) -> f32 {
     const SCALE: f32 = 18_446_744_073_709_551_616.0; // 2⁶⁴
@@ -47,7 +47,8 @@ pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
     }
 }
 
-/// An angle beyond 8192 rad in −π..=π; beyond 2²¹ rad, where neighbours are a quarter of a radian apart, that of 2²¹.
+/// An angle beyond 8192 rad in −π..=π; from 2²¹ rad on, where neighbours are a quarter of a radian apart, that of
+/// ±(2²¹ − 2⁻¹⁰) rad.
 /// The remainder of a division would link a kilobyte.
 #[cold]
 #[inline(never)]
@@ -55,7 +56,7 @@ fn within_a_turn(x: f32) -> f32 {
     /// 2⁶⁴ / (1024 · 2π): what a step is of a turn, whose whole ones overflow.
     const OF_A_TURN: i64 = 2_867_080_569_611_329;
     // Such an angle is a multiple of 2⁻¹⁰ rad.
-    let steps = (x * 1024.0) as i32;
+    let steps = ((x * 1024.0) as i32).max(-i32::MAX);
     let turn = (i64::from(steps).wrapping_mul(OF_A_TURN) >> 32) as i32;
     turn as f32 * (TAU / 4_294_967_296.0)
 }

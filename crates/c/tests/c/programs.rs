@@ -108,10 +108,10 @@ fn cmake_finds_the_library() -> Result<()> {
     Ok(())
 }
 
-/// What a program with the pedestrian's tracker calls at least, and the most flash that may take with a floating-point
-/// unit, bytes.
+/// What a program with the pedestrian's tracker calls at least.
 const SMALLEST: [&str; 3] =
     ["kestirim_pedestrian_init", "kestirim_pedestrian_update", "kestirim_pedestrian_position"];
+/// The most flash that those may take with a floating-point unit, bytes.
 const LARGEST_FOOT: u64 = 14_000;
 
 /// A bare-metal target, and the machine that QEMU plays.

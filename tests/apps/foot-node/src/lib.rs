@@ -68,7 +68,6 @@ impl Node {
     }
 
     fn track(&mut self, sample: &Imu) -> Option<Message> {
-        self.time_us = sample.time_us;
         let sample = ImuSample {
             time_us: sample.time_us,
             specific_force: SVector::from(sample.specific_force),
@@ -80,6 +79,7 @@ impl Node {
         };
         self.accepted = self.accepted.saturating_add(1);
         let time_us = sample.time_us;
+        self.time_us = time_us;
         if let Some(stride) = estimate.stride {
             self.uncertainty.add(&stride);
             let (position, length) = (*stride.position.as_array(), stride.length);

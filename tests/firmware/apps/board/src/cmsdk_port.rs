@@ -47,11 +47,16 @@ impl CmsdkPort {
 
     /// Sends a byte, unless the one before is still on its way.
     pub fn send(self, byte: u8) -> bool {
-        let is_free = STATE.read() & SENDING == 0;
+        let is_free = !self.is_sending();
         if is_free {
             DATA.write(byte.into());
         }
         is_free
+    }
+
+    /// Whether a byte is still on its way.
+    pub fn is_sending(self) -> bool {
+        STATE.read() & SENDING != 0
     }
 
     /// Takes note that a byte has been sent.

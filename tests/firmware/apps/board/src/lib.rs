@@ -8,8 +8,8 @@
 //! An application that needs more memory takes the machine `mps2-an386` (the feature of that name), of which there is
 //! a serial port, polled ([`CmsdkUart`]) or by interrupts ([`CmsdkPort`]).
 //!
-//! `defmt` writes to the semihosting console. All `unsafe` code of the applications on Arm is in `registers.rs`
-//! and `system.rs`.
+//! `defmt` writes to the semihosting console. All `unsafe` code of the applications on Arm is in `registers.rs`,
+//! in `system.rs`, and in `mps2-an386`, which names that machine's interrupts.
 
 #![no_std]
 

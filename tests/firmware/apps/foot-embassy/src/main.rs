@@ -54,6 +54,7 @@ async fn send(mut sender: Sender) {
         let (frame, is_last) = OUTGOING.receive().await;
         let Ok(()) = sender.write_all(&frame).await;
         if is_last {
+            let Ok(()) = sender.flush().await;
             defmt::info!("farewell");
             board::exit();
         }

@@ -8,7 +8,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::pipe::Pipe;
 use embassy_sync::signal::Signal;
 use embedded_io_async::{ErrorType, Read, Write};
-use mps2_an386::Interrupt;
+use mps2_an386::interrupt;
 
 /// What has arrived and is not read yet.
 static ARRIVED: Pipe<CriticalSectionRawMutex, 64> = Pipe::new();
@@ -24,11 +24,8 @@ pub(crate) struct Sender(CmsdkPort);
 /// Both halves of the first port. It is called once: there is one port.
 pub(crate) fn first() -> (Receiver, Sender) {
     let port = CmsdkPort::first();
-    #[allow(unsafe_code)] // The handlers share with the tasks what is made for that.
-    unsafe {
-        NVIC::unmask(Interrupt::UARTRX0);
-        NVIC::unmask(Interrupt::UARTTX0);
-    }
+    mps2_an386::unmask(interrupt::UARTRX0);
+    mps2_an386::unmask(interrupt::UARTTX0);
     (Receiver(port), Sender(port))
 }
 
@@ -40,7 +37,7 @@ impl Read for Receiver {
     async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
         let count = ARRIVED.read(bytes).await;
         // There is room again for the byte that the handler may have left in the port.
-        NVIC::pend(Interrupt::UARTRX0);
+        NVIC::pend(interrupt::UARTRX0);
         Ok(count)
     }
 }
@@ -60,13 +57,15 @@ impl Write for Sender {
     }
 
     async fn flush(&mut self) -> Result<(), Infallible> {
+        while self.0.is_sending() {
+            SENT.wait().await;
+        }
         Ok(())
     }
 }
 
-#[allow(unsafe_code)] // The name by which the table of interrupts finds it.
-#[unsafe(export_name = "UARTRX0")]
-extern "C" fn received() {
+#[interrupt]
+fn UARTRX0() {
     let port = CmsdkPort::served();
     if ARRIVED.is_full() {
         port.postpone();
@@ -76,9 +75,8 @@ extern "C" fn received() {
     }
 }
 
-#[allow(unsafe_code)] // The name by which the table of interrupts finds it.
-#[unsafe(export_name = "UARTTX0")]
-extern "C" fn sent() {
+#[interrupt]
+fn UARTTX0() {
     CmsdkPort::served().sent();
     SENT.signal(());
 }

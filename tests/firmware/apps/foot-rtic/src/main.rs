@@ -1,5 +1,6 @@
 //! The foot's node on RTIC: the interrupt of the serial port hands bytes to a task of lower priority, which tracks and
-//! answers. A byte that arrives while it tracks interrupts it; with nothing to do the processor sleeps.
+//! answers. A byte that arrives while it tracks interrupts it; with nothing to do the processor sleeps. (Sending polls the
+//! port: see `foot-embassy` for interrupts there, too.)
 
 #![no_std]
 #![no_main]
@@ -36,6 +37,13 @@ mod app {
         (Shared {}, Local { arrived })
     }
 
+    #[idle]
+    fn idle(_: idle::Context) -> ! {
+        loop {
+            cortex_m::asm::wfi();
+        }
+    }
+
     #[task(binds = UARTRX0, priority = 2, local = [arrived])]
     fn receive(context: receive::Context) {
         let (arrived, port) = (context.local.arrived, CmsdkPort::served());
@@ -58,6 +66,7 @@ mod app {
                 while !port.send(byte) {}
             }
             if answer.is_last {
+                while port.is_sending() {}
                 defmt::info!("farewell");
                 board::exit();
             }

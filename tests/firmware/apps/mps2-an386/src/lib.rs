@@ -2,9 +2,9 @@
 //! svd2rust would make of the chip's description, if there were one.
 
 #![no_std]
-#![allow(unsafe_code)] // A table of addresses that the processor reads.
 
 use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
 
 // Under the name by which `#[interrupt]` and RTIC look for both.
 pub use self::Interrupt as interrupt;
@@ -25,7 +25,18 @@ pub enum Interrupt {
     GPIO0 = 6,
 }
 
-// SAFETY: the numbers are those of the machine, and of this enum.
+/// Lets an interrupt through.
+///
+/// A handler shares with the rest of the program what is made for that, as everything in safe code is.
+pub fn unmask(interrupt: Interrupt) {
+    #[allow(unsafe_code)]
+    // There are no critical sections by masks in these programs, which this could break.
+    unsafe {
+        NVIC::unmask(interrupt);
+    }
+}
+
+#[allow(unsafe_code)] // The numbers are those of the machine, and of this enum.
 unsafe impl InterruptNumber for Interrupt {
     fn number(self) -> u16 {
         self as u16
@@ -38,6 +49,7 @@ pub union Vector {
     reserved: usize,
 }
 
+#[allow(unsafe_code)] // Handlers, by their names.
 unsafe extern "C" {
     fn UARTRX0();
     fn UARTTX0();
@@ -45,6 +57,7 @@ unsafe extern "C" {
 }
 
 /// The handlers, where `cortex-m-rt` has the linker look for them.
+#[allow(unsafe_code)] // A table of addresses that the processor reads.
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]
 pub static __INTERRUPTS: [Vector; 7] = [
