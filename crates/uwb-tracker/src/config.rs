@@ -66,7 +66,31 @@ pub(crate) fn bias_shape<T: Scalar>(size: T) -> [T; 2] {
     [constant, (T::ONE - constant) * constant * T::from_f64(1.0 / OFFICE)]
 }
 
+/// Excess in 10 m by common bias: of an office 6 m wide, both are the same …
+const EXCESS_BY_BIAS: f64 = 10.0 / OFFICE;
+/// … but there they cannot be told apart, and so hardly any is expected: a share of that.
+const LEAST_EXCESS: f64 = 0.1;
+
+/// Standard deviations of what all ranges are too long by, of that in an office, and of by what more in 10 m of distance,
+/// which makes what a place of this [`size`] is beyond that, m.
+pub(crate) fn common_sigmas<T: Scalar>(bias: T, size: T) -> [T; 2] {
+    let beyond = (T::ONE - size.recip()).max(T::from_f64(LEAST_EXCESS));
+    [bias, bias * T::from_f64(EXCESS_BY_BIAS) * beyond]
+}
+
 impl<T: Scalar> Config<T> {
+    /// What a tracker makes of it among these anchors: lengths in proportion to those of an office.
+    #[must_use]
+    pub fn of_place(self, anchors: &[Anchor<T>]) -> Self {
+        self.scaled(size(anchors))
+    }
+
+    /// Standard deviations, among these anchors, of what all ranges are too long by, m, and of by what more in 10 m of
+    /// distance, m.
+    pub fn common_sigmas(&self, anchors: &[Anchor<T>]) -> [T; 2] {
+        common_sigmas(self.common_bias_sigma, size(anchors))
+    }
+
     /// The same for anchors of this [`size`].
     pub(crate) fn scaled(self, size: T) -> Self {
         Self {

@@ -31,4 +31,4 @@ pub use sample::{InertialSample, OdometrySample, Outcome, RangeSample, Report};
 pub use tracker::{
     CalibratedPlaneTracker, CalibratedSpaceTracker, PlaneTracker, SpaceTracker, Tracker,
 };
-pub use wheels::WheelTracker;
+pub use wheels::{WheelTracker, noise as wheel_noise};

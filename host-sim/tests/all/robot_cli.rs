@@ -55,6 +55,22 @@ fn the_track_has_a_row_for_every_epoch() {
 }
 
 #[test]
+fn a_smoothed_track_stands_beside_the_trackers_and_in_the_file() {
+    let room = Room::clean();
+    let track = room.desk.named("track.csv");
+    let report = room.report(&["--height", "1", "--smooth", "--track", &track]);
+    let rmse = |of: &Value| of["accuracy"]["rmse_m"].as_f64().unwrap();
+    assert!(rmse(&report["smoothed"]) < rmse(&report), "{report}");
+    assert_eq!(report["smoothed"]["anchors"].as_array().map(Vec::len), Some(4));
+    let (header, rows) = rows_of::<6>(&track);
+    assert_eq!((header.as_str(), rows.len()), ("t,x,y,z,sx,sy,sz,health", 400));
+    let plain = room.desk.named("plain.csv");
+    let report = room.report(&["--height", "1", "--track", &plain]);
+    assert_eq!(report.get("smoothed"), None);
+    assert_ne!(rows_of::<6>(&plain).1, rows);
+}
+
+#[test]
 fn a_room_on_a_map_is_followed_like_one_at_the_origin() {
     let room = Room::clean();
     let [east, north] = [512_345.0, 5_412_345.0];

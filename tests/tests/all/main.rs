@@ -24,6 +24,7 @@ mod robot_on_target;
 mod robot_recordings;
 mod robot_robust;
 mod robot_sigmas;
+mod robot_smoothed;
 mod robot_table;
 mod snapshots;
 mod surface_is_complete;

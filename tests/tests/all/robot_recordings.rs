@@ -218,7 +218,9 @@ fn found(folder: &Path, name: &str, scalar: &str) -> Found {
     };
     let course = points::read_course(&folder.join("truth.csv"), ["z"]).expect("heights");
     let known_m = mean(&course.rows().iter().map(|(_, [z])| *z).collect::<Vec<_>>());
-    let track = |settings: &Settings| Robot::track(&recording, settings, Detail::Every);
+    let track = |settings: &Settings| {
+        Robot::track(&recording, settings, Detail::Every).map(|tracks| tracks.traces)
+    };
     let rmse = |traces: &[Trace]| Accuracy::of_recording(&recording, traces).map(|it| it.rmse_m);
     let at_known = track(&settings(Some(known_m))).expect("a track");
     let without = settings(None);

@@ -8,12 +8,13 @@ use std::path::Path;
 use host_sim::metrics::mean;
 use host_sim::system::{Files, Settings, System};
 use host_sim::systems::robot::Robot;
-use host_sim::systems::robot::{settings, track};
+use host_sim::systems::robot::{recording as robot, settings, track};
+use kestirim_replay::robot::{Epoch, Setup};
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{BLOCKED, Points, Recording};
 
 /// A tag that moves, with a dense truth: the recording, and its dimensions.
-const MOVING: [(&str, &str); 13] = [
+pub(crate) const MOVING: [(&str, &str); 13] = [
     ("esp32_los2", "2"),
     ("esp32_wall2", "2"),
     ("labyrinth", "2"),
@@ -30,7 +31,7 @@ const MOVING: [(&str, &str); 13] = [
 ];
 
 /// A tag that stands, some with a person before an anchor; and one that mostly stands behind walls.
-const STANDING: [(&str, &str); 12] = [
+pub(crate) const STANDING: [(&str, &str); 12] = [
     ("trek_4vnm", "2"),
     ("trek_4vnm2", "2"),
     ("trek_4vba0", "2"),
@@ -50,7 +51,7 @@ const NINE_TENTHS: f64 = 4.605;
 
 /// What the positions of a recording, or of some, were worth.
 #[derive(Clone, Copy)]
-struct Told {
+pub(crate) struct Told {
     /// Mean square of the error and of its standard deviation, m².
     squares: [f64; 2],
     /// The share of true places that the 90 % regions hold.
@@ -58,12 +59,18 @@ struct Told {
 }
 
 impl Told {
-    fn ratio(&self) -> f64 {
+    /// Root mean square error, m.
+    pub(crate) fn rmse_m(&self) -> f64 {
+        self.squares[0].sqrt()
+    }
+
+    /// That over the root mean square of the standard deviations.
+    pub(crate) fn ratio(&self) -> f64 {
         (self.squares[0] / self.squares[1]).sqrt()
     }
 
     /// Each recording alike.
-    fn together(all: &[Self]) -> Self {
+    pub(crate) fn together(all: &[Self]) -> Self {
         let of = |part: fn(&Self) -> f64| mean(&all.iter().map(part).collect::<Vec<_>>());
         Self { squares: [of(|it| it.squares[0]), of(|it| it.squares[1])], held: of(|it| it.held) }
     }
@@ -73,15 +80,38 @@ impl Told {
         assert!((0.8..0.98).contains(&self.held), "{}", self.held);
     }
 
-    fn print(&self, name: &str) {
+    /// Of epochs of each part.
+    pub(crate) fn of_parts(recording: &robot::Recording, parts: &[&[Epoch]]) -> Self {
+        let (mut errors, mut sigmas, mut held) = (Vec::new(), Vec::new(), Vec::new());
+        for (part, epochs) in recording.parts.iter().zip(parts) {
+            // Of a tag put down what counts is the last position.
+            let last = if recording.is_static() { epochs.len() - 1 } else { 0 };
+            for epoch in &epochs[last..] {
+                let truth = part.truth.as_ref().and_then(|truth| truth.at(epoch.time_us));
+                let Some(((position, [xx, xy, yy]), truth)) =
+                    epoch.position.zip(epoch.spread).zip(truth)
+                else {
+                    continue;
+                };
+                let (x, y) = (position[0] - truth[0], position[1] - truth[1]);
+                errors.push(x * x + y * y);
+                sigmas.push(xx + yy);
+                let squared = (yy * x * x - 2.0 * xy * x * y + xx * y * y) / (xx * yy - xy * xy);
+                held.push(f64::from(squared <= NINE_TENTHS));
+            }
+        }
+        Self { squares: [mean(&errors), mean(&sigmas)], held: mean(&held) }
+    }
+
+    pub(crate) fn print(&self, name: &str) {
         let [error, sigma] = self.squares.map(|square| 100.0 * square.sqrt());
         let held = 100.0 * self.held;
         println!("| `{name}` | {error:.1} | {sigma:.1} | {:.2} | {held:.0} % |", self.ratio());
     }
 }
 
-/// Tracks a recording as `host-sim replay robot` does, at the true height.
-fn told(folder: &Path, name: &str, dimensions: &str, biases: Option<Vec<f64>>) -> Told {
+/// A recording as `host-sim replay robot` reads it, at the true height, and what is known beforehand.
+pub(crate) fn opened(folder: &Path, name: &str, dimensions: &str) -> (robot::Recording, Setup) {
     let folder = folder.join(name);
     let mut files = Files::default();
     for (field, name) in [
@@ -104,28 +134,17 @@ fn told(folder: &Path, name: &str, dimensions: &str, biases: Option<Vec<f64>>) -
     let recording = Robot::read(&files, &Settings::new(Robot::settings(None))).expect(name);
     let mut settings = Settings::new(Robot::settings(Some(&recording)));
     settings.set("dim", dimensions).expect("a dimension");
-    let mut setup = settings::of_recording(&recording, &settings).expect("a setup");
+    let setup = settings::of_recording(&recording, &settings).expect("a setup");
+    (recording, setup)
+}
+
+/// Tracks a recording.
+fn told(folder: &Path, name: &str, dimensions: &str, biases: Option<Vec<f64>>) -> Told {
+    let (recording, mut setup) = opened(folder, name, dimensions);
     setup.biases = biases.or(setup.biases);
     let traces = track::track(&recording, &setup).expect("a track");
-    let (mut errors, mut sigmas, mut held) = (Vec::new(), Vec::new(), Vec::new());
-    for (part, trace) in recording.parts.iter().zip(&traces) {
-        // Of a tag put down what counts is the last position.
-        let last = if folder.join("points.csv").exists() { trace.epochs.len() - 1 } else { 0 };
-        for epoch in &trace.epochs[last..] {
-            let truth = part.truth.as_ref().and_then(|truth| truth.at(epoch.time_us));
-            let Some(((position, [xx, xy, yy]), truth)) =
-                epoch.position.zip(epoch.spread).zip(truth)
-            else {
-                continue;
-            };
-            let (x, y) = (position[0] - truth[0], position[1] - truth[1]);
-            errors.push(x * x + y * y);
-            sigmas.push(xx + yy);
-            let squared = (yy * x * x - 2.0 * xy * x * y + xx * y * y) / (xx * yy - xy * xy);
-            held.push(f64::from(squared <= NINE_TENTHS));
-        }
-    }
-    let told = Told { squares: [mean(&errors), mean(&sigmas)], held: mean(&held) };
+    let parts: Vec<_> = traces.iter().map(|trace| trace.epochs.as_slice()).collect();
+    let told = Told::of_parts(&recording, &parts);
     told.print(name);
     told
 }

@@ -10,6 +10,7 @@ mod error;
 mod event;
 mod height;
 mod setup;
+mod smoother;
 mod trace;
 mod trackers;
 mod tuning;
@@ -21,6 +22,7 @@ pub use self::error::Error;
 pub use self::event::{Event, Inertial, Range, RangeRow, Sensors, Wheels};
 pub use self::height::{FoundHeight, HeightSearch};
 pub use self::setup::{Dimensions, Setup, TrackerKind};
+pub use self::smoother::{Smoothed, Tracked, Unsmoothed, smooth};
 pub use self::trace::{Epoch, Trace, doubts, follow, track};
 pub use self::trackers::{
     Beginning, Follow, Noise, Reception, build, build_changed, build_published,

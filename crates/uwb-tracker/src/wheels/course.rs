@@ -1,6 +1,10 @@
 //! One opinion of where a robot on wheels is.
 
 use super::drive::Drive;
+use super::noise::{
+    DRIFT_SIGMA, GAIN_SIGMA, SLIP, TURN_TO_HEADING, UNKNOWN_SPEED, UNKNOWN_TIME, UNKNOWN_TURN,
+    WAY_TO_HEADING,
+};
 use super::state::{BIAS, COSINE, COUNT, DRIFT, EXCESS, GAIN, SINE, X, Y};
 use crate::{Error, OdometrySample};
 use kestirim_kalman::{Covariance, Gaussian, Innovation};
@@ -20,20 +24,6 @@ pub(super) struct Course<T: Scalar> {
 
 /// Variance of c and s before anything is known of the heading, for a scale of 1 or so.
 const HEADING_VARIANCE: f64 = 0.5;
-/// Standard deviations to begin with: of the drift, rad in 100 s; of the turns' gain (beside its sign).
-const DRIFT_SIGMA: f64 = 1.0;
-const GAIN_SIGMA: f64 = 0.5;
-/// Variance that a metre of the way adds to each coordinate, m²/m: the wheels slip by 10 cm in a metre.
-const SLIP: f64 = 0.01;
-/// … and to the heading, 1/m, and a turn, 1/rad.
-const WAY_TO_HEADING: f64 = 1e-4;
-const TURN_TO_HEADING: f64 = 1e-3;
-/// Without wheels the robot drives on somehow, at this speed at least, m/s, in one direction for so long, s; and turns: the
-/// variance of the heading, 1/s.
-const UNKNOWN_SPEED: f64 = 0.5;
-const UNKNOWN_TIME: f64 = 2.0;
-const UNKNOWN_TURN: f64 = 0.1;
-
 impl<T: Scalar> Course<T> {
     /// From a position (of a start in the plane: x, y and what is no state here), with a common bias and an
     /// excess in 10 m of these standard deviations (m) and turns of this sign.

@@ -2,11 +2,12 @@
 
 mod course;
 mod drive;
+pub mod noise;
 pub(crate) mod state;
 
 use self::course::Course;
 use self::state::{COSINE, COUNT, SINE};
-use crate::config::size;
+use crate::config::{common_sigmas, size};
 use crate::health::{self, Counters, Place, count_heard};
 use crate::link::Link;
 use crate::measurement::ProportionalRange;
@@ -45,17 +46,11 @@ pub struct WheelTracker<T: Scalar, const A: usize> {
     counters: Counters<T>,
 }
 
-/// Age beyond which a sample of the wheels is not used (µs).
-const WHEELS_US: u64 = 2_000_000;
 /// Mean NIS of ranges from which on the wheels are taken to slip, or to be others' than the robot's; below it, their
 /// noise grows with it.
 const NIS_OF_SLIP: f64 = 4.0;
 /// A course that is so much less probable than the other (−2 ln) is given up: one of 20,000.
 const DECIDED: f64 = 20.0;
-/// Excess in 10 m by common bias: of an office 6 m wide, both are the same …
-const EXCESS_BY_BIAS: f64 = 10.0 / 6.0;
-/// … but there they cannot be told apart, and so hardly any is expected: a share of that.
-const LEAST_EXCESS: f64 = 0.1;
 /// Least scale of wheels that have a heading.
 const LEAST_SCALE: f64 = 0.1;
 
@@ -191,7 +186,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     #[inline]
     fn fresh_wheels(&self, time_us: u64) -> Option<&OdometrySample<T>> {
         let is_fresh =
-            |wheels: &&OdometrySample<T>| time_us.saturating_sub(wheels.time_us) <= WHEELS_US;
+            |wheels: &&OdometrySample<T>| time_us.saturating_sub(wheels.time_us) <= noise::FRESH_US;
         self.wheels.as_ref().filter(is_fresh)
     }
 
@@ -288,11 +283,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let fresh_us = self.pace.fresh_us();
         let found = start::<T, 2, 5, A>(&self.config, &self.links, self.time_us, fresh_us, tries);
         let Some(found) = found else { return false };
-        // The common bias is that of an office; what the place is beyond that makes an excess in proportion.
-        let bias = self.config.common_bias_sigma / self.size;
-        let beyond = (T::ONE - self.size.recip()).max(T::from_f64(LEAST_EXCESS));
-        let excess = bias * T::from_f64(EXCESS_BY_BIAS) * beyond;
-        let course = |gain| Some(Course::begun(&found, [bias, excess], gain));
+        let biases = common_sigmas(self.config.common_bias_sigma / self.size, self.size);
+        let course = |gain| Some(Course::begun(&found, biases, gain));
         self.courses = [course(T::ONE), course(-T::ONE)];
         for link in &mut self.links {
             *link = link.begun(&self.config);

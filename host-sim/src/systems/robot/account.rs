@@ -2,11 +2,12 @@
 
 pub mod accuracy;
 
-use kestirim_replay::robot::{Trace, doubts};
+use kestirim_replay::robot::{Smoothed, Trace, doubts};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::recording::Recording;
+use super::track::Tracks;
 use super::{Robot, height, settings};
 use crate::Error;
 use crate::system::{Account, Settings, System, Table};
@@ -21,6 +22,8 @@ struct Report {
     import: Vec<String>,
     warnings: Vec<String>,
     accuracy: Option<Accuracy>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    smoothed: Option<SmoothedReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     height: Option<HeightReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -37,6 +40,24 @@ struct HeightReport {
     biases_m: Vec<f64>,
 }
 
+/// What a smoother made of it, and what it found out of the anchors: what all of them measure too long, m, and what more in
+/// 10 m of distance, m.
+#[derive(Debug, Clone, Serialize)]
+struct SmoothedReport {
+    accuracy: Option<Accuracy>,
+    common_bias_m: f64,
+    excess_in_10_m: f64,
+    anchors: Vec<AnchorReport>,
+}
+
+/// What an anchor measures too long beyond all others, m.
+#[derive(Debug, Clone, Serialize)]
+struct AnchorReport {
+    anchor: String,
+    bias_m: f64,
+    sigma_m: f64,
+}
+
 /// Where the tag was found at a marked point, m.
 #[derive(Debug, Clone, Serialize)]
 struct PointReport {
@@ -50,8 +71,9 @@ struct PointReport {
 pub(super) fn account(
     recording: &Recording,
     settings: &Settings,
-    traces: &[Trace],
+    tracks: &Tracks,
 ) -> Result<Account, Error> {
+    let traces = tracks.traces.as_slice();
     let points = points(recording, traces);
     let found = settings::of_recording(recording, settings)?.found;
     let report = Report {
@@ -60,8 +82,9 @@ pub(super) fn account(
         rejected: traces.iter().map(Trace::rejected).sum(),
         lost_s: traces.iter().map(Trace::lost_s).sum(),
         import: recording.import.clone(),
-        warnings: warnings(recording, traces, points.as_deref()),
+        warnings: warnings(recording, tracks, points.as_deref()),
         accuracy: Accuracy::of_recording(recording, traces),
+        smoothed: tracks.smoothed().map(|smoothed| of_smoothed(recording, smoothed)),
         height: found.as_ref().map(|found| HeightReport {
             metres: found.metres,
             sigma_m: found.sigma_m,
@@ -88,6 +111,10 @@ pub(super) fn account(
     for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
         account.fact(name, value);
     }
+    let smoothed = report.smoothed.as_ref().and_then(|smoothed| smoothed.accuracy.as_ref());
+    for (name, value) in smoothed.iter().flat_map(|accuracy| accuracy.in_words()).skip(1) {
+        account.fact(format!("{name}, smoothed"), value);
+    }
     Ok(account)
 }
 
@@ -100,12 +127,30 @@ fn points(recording: &Recording, traces: &[Trace]) -> Option<Vec<PointReport>> {
     recording.is_static().then(|| found.collect())
 }
 
-fn warnings(
-    recording: &Recording,
-    traces: &[Trace],
-    points: Option<&[PointReport]>,
-) -> Vec<String> {
+fn of_smoothed(recording: &Recording, smoothed: &Smoothed) -> SmoothedReport {
+    let parts = smoothed.parts.iter().map(Vec::as_slice);
+    let anchors = recording.anchors.names.iter().zip(&smoothed.biases);
+    let [common_bias_m, excess_in_10_m] = smoothed.common;
+    SmoothedReport {
+        accuracy: Accuracy::of_parts(recording, parts),
+        common_bias_m,
+        excess_in_10_m,
+        anchors: anchors
+            .map(|(anchor, &[bias_m, sigma_m])| AnchorReport {
+                anchor: anchor.clone(),
+                bias_m,
+                sigma_m,
+            })
+            .collect(),
+    }
+}
+
+fn warnings(recording: &Recording, tracks: &Tracks, points: Option<&[PointReport]>) -> Vec<String> {
+    let traces = &tracks.traces;
     let mut warnings = recording.warnings.clone();
+    if let Some(Err(reason)) = tracks.smoothed {
+        warnings.push(format!("not smoothed: {reason}"));
+    }
     match points.map(|points| recording.parts.len() - points.len()) {
         Some(0) => {}
         Some(missing) => {
@@ -120,12 +165,12 @@ fn warnings(
 }
 
 /// Position and standard deviations, as far as they are known, at every epoch or at every point.
-pub(super) fn table(recording: &Recording, traces: &[Trace]) -> Table {
+pub(super) fn table(recording: &Recording, tracks: &Tracks) -> Table {
     let first = if recording.is_static() { "point" } else { "t" };
     let mut table = Table::new(&[first, "x", "y", "z", "sx", "sy", "sz"]);
-    for (part, trace) in recording.parts.iter().zip(traces) {
-        let last = recording.is_static().then(|| trace.epochs.len().saturating_sub(1));
-        for epoch in &trace.epochs[last.unwrap_or_default()..] {
+    for (part, epochs) in recording.parts.iter().zip(tracks.best()) {
+        let last = recording.is_static().then(|| epochs.len().saturating_sub(1));
+        for epoch in &epochs[last.unwrap_or_default()..] {
             let Some(position) = epoch.position else { continue };
             let label =
                 if recording.is_static() { part.name.clone() } else { seconds(epoch.time_us) };

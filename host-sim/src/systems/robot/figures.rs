@@ -7,7 +7,7 @@ use kestirim_replay::robot::{Event, Reception, Setup, Trace, TrackerKind};
 
 use self::plan::{ellipse, rectangle, room};
 use super::recording::Recording;
-use super::track::track;
+use super::track::{Tracks, track};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
@@ -25,20 +25,28 @@ const PAUSE_S: f64 = 0.5;
 pub(super) fn draw(
     recording: &Recording,
     setup: &Setup,
-    traces: &[Trace],
+    tracks: &Tracks,
     answer: &mut Answer,
 ) -> Result<(), Error> {
     let unfiltered = Setup { tracker: TrackerKind::Lsq, ..setup.clone() };
     let unfiltered = track(recording, &unfiltered)?;
-    let (shown, raw) = (Shown::new(recording, traces), Shown::new(recording, &unfiltered));
+    let (shown, raw) = (Shown::new(recording, &tracks.traces), Shown::new(recording, &unfiltered));
+    let smoothed = tracks.smoothed_traces();
+    let smoothed = smoothed.as_deref().map(|traces| Shown::new(recording, traces));
     let room = setup.room.map(|corners| rectangle("room", corners).coloured(Colour::Limit));
     let positions = raw.track("trilateration alone", Mark::Dots).coloured(Colour::Published);
-    let errors = [
+    let mut errors = vec![
         raw.error("trilateration alone").coloured(Colour::Published),
         shown.error("tracker").coloured(Colour::Ours),
     ];
+    let mut others: Vec<_> = room.into_iter().chain([positions]).collect();
+    if let Some(smoothed) = &smoothed {
+        let mark = if recording.is_static() { Mark::Dots } else { Mark::Line };
+        others.push(smoothed.track("smoothed", mark).coloured(Colour::Other(1)));
+        errors.push(smoothed.error("smoothed").coloured(Colour::Other(1)));
+    }
     answer.figures = vec![
-        shown.plan("plan", room.into_iter().chain([positions]).collect()),
+        shown.plan("plan", others),
         shown.ranges("ranges"),
         shown.health("health"),
         shown.position("position"),

@@ -18,7 +18,7 @@ pub mod track;
 pub use kestirim_simulate::robot as simulate;
 use std::sync::Arc;
 
-use kestirim_replay::robot::{self, Trace};
+use kestirim_replay::robot;
 
 use self::calibrate::Calibrate;
 use self::figures::streams;
@@ -26,6 +26,7 @@ use self::online::Tag;
 use self::paper::experiment;
 use self::recording::{Driven, Recording};
 use self::simulate::scenario::office_anchors;
+use self::track::Tracks;
 use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
@@ -87,7 +88,7 @@ impl System for Robot {
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Ranges];
 
     type Recording = Recording;
-    type Trace = Vec<Trace>;
+    type Trace = Tracks;
     type Experiment = experiment::Report;
 
     fn settings(recording: Option<&Recording>) -> Vec<Setting> {
@@ -117,33 +118,37 @@ impl System for Robot {
         robot::check(&recording.anchors, parts, settings::known_height(recording, settings))
     }
 
-    fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Vec<Trace>, Error> {
-        track::track(recording, &settings::of_recording(recording, settings)?)
+    fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Tracks, Error> {
+        let setup = settings::of_recording(recording, settings)?;
+        if settings.is_on("smooth") {
+            return Tracks::smoothed_too(recording, &setup);
+        }
+        Ok(Tracks { traces: track::track(recording, &setup)?, smoothed: None })
     }
 
     fn account(
         recording: &Recording,
         settings: &Settings,
-        traces: &Vec<Trace>,
+        tracks: &Tracks,
     ) -> Result<Account, Error> {
-        account::account(recording, settings, traces)
+        account::account(recording, settings, tracks)
     }
 
     fn figures(
         recording: &Recording,
         settings: &Settings,
-        traces: &Vec<Trace>,
+        tracks: &Tracks,
         answer: &mut Answer,
     ) -> Result<(), Error> {
-        figures::draw(recording, &settings::of_recording(recording, settings)?, traces, answer)
+        figures::draw(recording, &settings::of_recording(recording, settings)?, tracks, answer)
     }
 
-    fn table(_: &str, recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Table {
-        account::table(recording, traces)
+    fn table(_: &str, recording: &Recording, _: &Settings, tracks: &Tracks) -> Table {
+        account::table(recording, tracks)
     }
 
-    fn streams(recording: &Recording, _: &Settings, traces: &Vec<Trace>) -> Vec<Stream> {
-        streams::streams(recording, traces)
+    fn streams(recording: &Recording, _: &Settings, tracks: &Tracks) -> Vec<Stream> {
+        streams::streams(recording, tracks)
     }
 
     fn firmware(recording: Option<&Recording>, settings: &Settings) -> String {

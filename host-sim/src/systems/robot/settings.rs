@@ -100,13 +100,18 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
         )
         .live(),
         Setting::one_of("scalar", "Number type of the tracker", &ScalarKind::F32).live(),
+        Setting::switch(
+            "smooth",
+            "Smooth: each position from what was measured before and after, too (not for firmware)",
+            false,
+        ),
         Setting::switch("calibrated", "Use the calibration of the anchors", true).live(),
     ]
 }
 
 /// Why a setting has no effect as the recording and the others are.
 pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
-    use TrackerKind::{Aekf, AekfPublished, Default, Ekf, Lsq};
+    use TrackerKind::{Aekf, AekfPublished, Default, Ekf, Lsq, Nls};
     let tracker = settings.chosen::<TrackerKind>("tracker");
     let has = |what: fn(&Recording) -> bool| recording.is_some_and(what);
     match name {
@@ -130,6 +135,9 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
         "gate" if !settings.is_on("gating") => Some(Idle::foreign("does not act with --no-gating")),
         "huber-long" | "huber-short" if !settings.is_on("huber") => {
             Some(Idle::foreign("does not act with --no-huber"))
+        }
+        "smooth" if matches!(tracker, Lsq | Nls) => {
+            Some(Idle::foreign("is for a tracker that knows its standard deviation"))
         }
         "calibrated" if has(|recording| recording.biases.is_none()) => {
             Some(Idle::foreign("is for recordings with --calibration"))

@@ -36,9 +36,11 @@ fn every_synthetic_recording_opens_with_the_same_figures() {
 
 #[test]
 fn every_setting_changes_the_plan() {
-    let opened = open("crowded-round");
+    let [crowded, line] = ["crowded-round", "line"].map(open);
     // As text: gaps are NaN, which equals nothing.
-    let plan = |sent: &Value| format!("{:?}", figure(&answer(&*opened, sent), "plan"));
+    let of =
+        |opened: &dyn Opened, sent: &Value| format!("{:?}", figure(&answer(opened, sent), "plan"));
+    let plan = |sent: &Value| of(&*crowded, sent);
     let initial = plan(&json!({}));
     let mut turned = Vec::new();
     for sent in [
@@ -63,6 +65,11 @@ fn every_setting_changes_the_plan() {
             settings::table(None).iter().map(|it| it.name).filter(|it| sent.get(it).is_some()),
         );
     }
+    // A smoother refuses people who are in the way for long.
+    let smooth = json!({ "smooth": true });
+    assert_ne!(of(&*line, &json!({})), of(&*line, &smooth));
+    assert!(answer(&*crowded, &smooth).warnings[0].starts_with("not smoothed: "));
+    turned.push("smooth");
     assert_eq!(turned.len(), settings::table(None).len());
 }
 

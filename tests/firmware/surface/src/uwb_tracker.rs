@@ -19,6 +19,12 @@ fn configs<T: Scalar>() {
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
 }
 
+fn places<T: Scalar>() {
+    let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
+    keep::<Config<T>>(config().of_place(slice(&anchors)));
+    keep::<[T; 2]>(config().common_sigmas(slice(&anchors)));
+}
+
 /// Any configuration.
 fn config<T: Scalar>() -> Config<T> {
     let config = any(Config::calibrated(number()));
@@ -131,6 +137,7 @@ fn heights<T: Scalar, const A: usize>() {
 fn all_of<T: Scalar>() {
     call_each([
         configs::<T>,
+        places::<T>,
         tracks::<T, 2, 4, 4>,
         tracks::<T, 2, 5, 9>,
         tracks::<T, 3, 6, 4>,

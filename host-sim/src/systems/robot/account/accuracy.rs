@@ -31,11 +31,19 @@ impl Accuracy {
     /// How far what came out is from the truth: at every epoch of a moving tag, at the last of each point; none if
     /// nobody knows it.
     pub fn of_recording(recording: &Recording, traces: &[Trace]) -> Option<Self> {
+        Self::of_parts(recording, traces.iter().map(|trace| trace.epochs.as_slice()))
+    }
+
+    /// The same of epochs of each part.
+    pub fn of_parts<'a>(
+        recording: &Recording,
+        parts: impl IntoIterator<Item = &'a [Epoch]>,
+    ) -> Option<Self> {
         let mut points = Vec::new();
-        for (part, trace) in recording.parts.iter().zip(traces) {
+        for (part, epochs) in recording.parts.iter().zip(parts) {
             match &part.truth {
-                Some(Truth::Course(course)) => return Self::of_track(&trace.epochs, course),
-                Some(Truth::Point(point)) => points.push((trace.epochs.last(), *point)),
+                Some(Truth::Course(course)) => return Self::of_track(epochs, course),
+                Some(Truth::Point(point)) => points.push((epochs.last(), *point)),
                 None => {}
             }
         }

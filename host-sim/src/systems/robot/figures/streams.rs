@@ -1,16 +1,17 @@
 //! A recording and its track as streams, for other programs.
 
-use kestirim_replay::robot::{Event, Trace};
+use kestirim_replay::robot::{Epoch, Event};
 
 use crate::stream::Stream;
 use crate::systems::robot::recording::Recording;
+use crate::systems::robot::track::Tracks;
 
 /// What was measured, what the tracker makes of it, and the truth as far as it is known. Points that were
 /// recorded one by one begin at the same time, so each has topics of its own.
-pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
+pub fn streams(recording: &Recording, tracks: &Tracks) -> Vec<Stream> {
     let seconds = |time_us: i64| time_us as f64 * 1e-6;
     let mut streams = Vec::new();
-    for (part, trace) in recording.parts.iter().zip(traces) {
+    for (index, (part, trace)) in recording.parts.iter().zip(&tracks.traces).enumerate() {
         let topic = |name: &str| match part.name.as_str() {
             "" => format!("/robot/{name}"),
             point => format!("/robot/{point}/{name}"),
@@ -22,12 +23,17 @@ pub fn streams(recording: &Recording, traces: &[Trace]) -> Vec<Stream> {
         });
         let names = ["anchor_index", "range_m", "taken", "nis"];
         streams.push(Stream::new(topic("ranges"), &names, ranges.collect()));
-        let estimate = trace.epochs.iter().map(|epoch| {
+        let estimate = |epoch: &Epoch| {
             let [x, y, z] = epoch.position.unwrap_or([f64::NAN; 3]);
             (seconds(epoch.time_us), vec![x, y, z, epoch.sigma_m().unwrap_or(f64::NAN)])
-        });
+        };
         let names = ["x_m", "y_m", "z_m", "sigma_m"];
-        streams.push(Stream::new(topic("estimate"), &names, estimate.collect()));
+        let rows = trace.epochs.iter().map(estimate).collect();
+        streams.push(Stream::new(topic("estimate"), &names, rows));
+        if let Some(epochs) = tracks.smoothed().and_then(|smoothed| smoothed.parts.get(index)) {
+            let rows = epochs.iter().map(estimate).collect();
+            streams.push(Stream::new(topic("smoothed"), &names, rows));
+        }
         if let Some(truth) = &part.truth {
             let times = trace.epochs.iter().map(|epoch| epoch.time_us);
             let known =
@@ -70,15 +76,14 @@ mod tests {
     use crate::system::ScalarKind;
     use crate::systems::robot::recording::Driven;
     use crate::systems::robot::settings::of_the_office;
-    use crate::systems::robot::track::track;
 
     #[test]
     fn rows_fit_their_columns_and_every_point_has_its_topics() {
         let setup = of_the_office(ScalarKind::F32);
-        for (driven, expected) in [(Driven::Line, 3), (Driven::Points, 45)] {
+        for (driven, expected) in [(Driven::Line, 4), (Driven::Points, 60)] {
             let recording = Recording::synthetic(driven, 1);
-            let traces = track(&recording, &setup).unwrap();
-            let streams = streams(&recording, &traces);
+            let tracks = Tracks::smoothed_too(&recording, &setup).unwrap();
+            let streams = streams(&recording, &tracks);
             assert_eq!(streams.len(), expected);
             for stream in &streams {
                 assert!(!stream.rows.is_empty(), "{}", stream.topic);

@@ -6,7 +6,7 @@ use kestirim_replay::robot::{Beginning, Noise, Setup, Trace, TrackerKind, build_
 use crate::Error;
 use crate::systems::robot::recording::{Recording, Truth};
 use crate::systems::robot::settings::of_the_office;
-use crate::systems::robot::track::{track, track_by};
+use crate::systems::robot::track::{Tracks, track, track_by};
 
 /// A recording, and what each tracker makes of it.
 pub(super) struct Day {
@@ -20,8 +20,8 @@ pub(super) struct Day {
     pub(super) from_the_truth: [Vec<Trace>; 2],
     /// Our default without calibration …
     pub(super) ours: Vec<Trace>,
-    /// … and with it.
-    pub(super) calibrated: Vec<Trace>,
+    /// … and with it, smoothed, too.
+    pub(super) calibrated: Tracks,
 }
 
 impl Day {
@@ -42,7 +42,7 @@ impl Day {
             honest: [ekf?, aekf?],
             from_the_truth: [true_ekf?, true_aekf?],
             ours: track(&recording, &plain)?,
-            calibrated: track(&recording, &calibrated)?,
+            calibrated: Tracks::smoothed_too(&recording, &calibrated)?,
             recording,
         })
     }

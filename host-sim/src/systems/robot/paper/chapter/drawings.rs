@@ -111,21 +111,26 @@ fn three(day: &Day, ids: [&str; 3], numbers: [&str; 3], what: &str) -> [Figure; 
 pub(super) fn ours(day: &Day, id: &str, title: &str) -> Figure {
     let raw = Shown::new(&day.recording, &day.unfiltered);
     let uncalibrated = Shown::new(&day.recording, &day.ours);
-    let others = vec![
+    let mut others = vec![
         raw.track("trilateration", Mark::Dots).coloured(Colour::Published),
         uncalibrated.track("uncalibrated", Mark::Line).coloured(Colour::Other(4)),
     ];
-    let figure = Shown::new(&day.recording, &day.calibrated).plan(id, others);
+    if let Some(smoothed) = day.calibrated.smoothed_traces() {
+        let smoothed =
+            Shown::new(&day.recording, &smoothed).track("smoothed, calibrated", Mark::Line);
+        others.push(smoothed.coloured(Colour::Other(1)));
+    }
+    let figure = Shown::new(&day.recording, &day.calibrated.traces).plan(id, others);
     titled(
         within(figure, &day.recording),
         title,
-        "The default tracker with its anchors calibrated, with 95 % ellipses, without calibration, and trilateration.",
+        "The default tracker with its anchors calibrated, with 95 % ellipses, without calibration, and trilateration; what a smoother makes of it that knows what came after, too.",
     )
 }
 
 /// The ranges of the round, with what was left out.
 pub(super) fn round_ranges(day: &Day) -> Figure {
-    let ranges = Shown::new(&day.recording, &day.calibrated).ranges("robot-round-ranges");
+    let ranges = Shown::new(&day.recording, &day.calibrated.traces).ranges("robot-round-ranges");
     titled(
         ranges,
         "A round among people: ranges",
@@ -145,7 +150,7 @@ pub(super) fn round_errors(day: &Day) -> Figure {
             of("trilateration", &day.unfiltered, Colour::Published),
             of("the paper's EKF, honest start", ekf, Colour::Other(3)),
             of("our default", &day.ours, Colour::Other(4)),
-            of("our default, calibrated", &day.calibrated, Colour::Ours),
+            of("our default, calibrated", &day.calibrated.traces, Colour::Ours),
         ],
     );
     titled(

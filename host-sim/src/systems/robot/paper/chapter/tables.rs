@@ -103,6 +103,6 @@ pub(super) fn round(day: &Day) -> Comparison {
         .row("the paper's EKF, honest start", "", rmse(ekf), "")
         .row("the paper's AEKF, honest start", "", rmse(aekf), "")
         .row("our default", "", rmse(&day.ours), "")
-        .row("our default, anchors calibrated", "", rmse(&day.calibrated), "")
+        .row("our default, anchors calibrated", "", rmse(&day.calibrated.traces), "")
         .note("One day; not in the paper.")
 }

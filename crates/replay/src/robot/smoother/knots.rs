@@ -1,0 +1,140 @@
+//! When the tag was somewhere, and what was measured then.
+
+use super::super::{Epoch, Event, Range, Setup};
+use super::Tracked;
+
+/// A time at which the tag was somewhere.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Knot {
+    /// Which part of the recording.
+    pub(super) part: usize,
+    /// Where to begin, m; in the plane the height is known.
+    pub(super) begin: [f64; 3],
+    /// What the tracker said.
+    pub(super) epoch: Epoch,
+}
+
+/// A range, freed of what its anchor is known to measure too long.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Measured {
+    /// When.
+    pub(super) knot: usize,
+    /// The anchor's place in the list.
+    pub(super) anchor: usize,
+    /// How long, m.
+    pub(super) metres: f64,
+}
+
+/// All of them, in the order of time, part by part.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Knots {
+    pub(super) knots: Vec<Knot>,
+    pub(super) measured: Vec<Measured>,
+    /// How many parts there are.
+    pub(super) parts: usize,
+    /// Whether the tag was put down.
+    pub(super) is_static: bool,
+}
+
+/// With as many anchors as dimensions nothing is left over, and nothing can be told of errors.
+const LEAST_LEFT_OVER: f64 = 0.25;
+
+impl Knots {
+    /// A tag that moves has a knot an epoch; one that was put down has one a part. None if the tracker never found it.
+    pub(super) fn new(setup: &Setup, parts: &[Tracked<'_>], is_static: bool) -> Option<Self> {
+        let mut all = Self { parts: parts.len(), is_static, ..Self::default() };
+        for (part, Tracked { events, trace }) in parts.iter().enumerate() {
+            let mut found = trace.epochs.iter().filter_map(|epoch| epoch.position);
+            let begin = if is_static { found.next_back() } else { found.next() };
+            let Some(mut begin) = begin else { continue };
+            let mut epochs = trace.epochs.iter();
+            for event in *events {
+                match event {
+                    Event::Range(range) => all.take(setup, range),
+                    Event::EpochEnd { .. } if !is_static => {
+                        let Some(&epoch) = epochs.next() else { continue };
+                        begin = epoch.position.unwrap_or(begin);
+                        all.knots.push(Knot { part, begin, epoch });
+                    }
+                    _ => {}
+                }
+            }
+            if let (true, Some(&epoch)) = (is_static, trace.epochs.last()) {
+                all.knots.push(Knot { part, begin, epoch });
+            }
+            // Ranges that came too late for any epoch.
+            let end = all.knots.len();
+            all.measured.retain(|measured| measured.knot < end);
+        }
+        (!all.knots.is_empty()).then_some(all)
+    }
+
+    /// The share of errors that last which positions in so many dimensions leave in the residuals of ranges. A place is found
+    /// from as many errors as anchors are heard there, and fits to as many as it has dimensions. A tag that moves cannot
+    /// follow them: nearly all are left.
+    pub(super) fn left_over(&self, dimensions: usize) -> f64 {
+        if !self.is_static {
+            return 1.0;
+        }
+        let mut heard: Vec<_> = self.measured.iter().map(|it| (it.knot, it.anchor)).collect();
+        heard.sort_unstable();
+        heard.dedup();
+        let at_a_place = heard.len() as f64 / self.knots.len() as f64;
+        (1.0 - dimensions as f64 / at_a_place).max(LEAST_LEFT_OVER)
+    }
+
+    /// Keeps a range of the knot to come, if it is one.
+    fn take(&mut self, setup: &Setup, range: &Range) {
+        let metres = range.metres - setup.bias(range.anchor);
+        if metres.is_finite() && range.metres > 0.0 && range.anchor < setup.anchors.len() {
+            self.measured.push(Measured { knot: self.knots.len(), anchor: range.anchor, metres });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{RangeRow, Sensors, Trace, track};
+    use super::*;
+
+    const ANCHORS: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [6.0, 0.0, 1.0], [0.0, 6.0, 1.0]];
+
+    fn tracked(setup: &Setup) -> (Vec<Event>, Trace) {
+        let rows = (0..60).map(|index: i64| {
+            let anchor = (index % 3) as usize;
+            let metres = (ANCHORS[anchor][0] - 2.0).hypot(ANCHORS[anchor][1] - 1.0);
+            // One is no number, and one comes after its epoch.
+            let range = Some(if index == 30 { f64::NAN } else { metres });
+            let time_us = if index == 40 { 0 } else { index / 3 * 100_000 };
+            RangeRow { time_us, anchor, range }
+        });
+        let events = Sensors::ranges(rows.collect()).events();
+        let trace = track(setup, &events).unwrap();
+        (events, trace)
+    }
+
+    #[test]
+    fn every_range_stands_at_an_epoch() {
+        let setup = Setup::new(&ANCHORS, 1.0);
+        let (events, trace) = tracked(&setup);
+        let part = Tracked { events: &events, trace: &trace };
+        for (is_static, expected) in [(false, trace.epochs.len()), (true, 1)] {
+            let knots = Knots::new(&setup, &[part], is_static).unwrap();
+            assert_eq!((knots.knots.len(), knots.measured.len()), (expected, 59));
+            assert!(knots.measured.iter().all(|it| it.knot < expected && it.metres > 0.0));
+        }
+        let nothing = Trace::default();
+        let part = Tracked { events: &events, trace: &nothing };
+        assert!(Knots::new(&setup, &[part], false).is_none());
+    }
+
+    #[test]
+    fn three_anchors_leave_a_third_of_what_lasts() {
+        let setup = Setup::new(&ANCHORS, 1.0);
+        let (events, trace) = tracked(&setup);
+        let part = Tracked { events: &events, trace: &trace };
+        let of = |is_static| Knots::new(&setup, &[part], is_static).unwrap().left_over(2);
+        assert!((of(true) - 1.0 / 3.0).abs() < 1e-9);
+        assert_eq!(of(false), 1.0);
+    }
+}

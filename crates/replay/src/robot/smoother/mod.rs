@@ -1,0 +1,204 @@
+//! The whole recording at once: where a tag was, given what was measured before and after.
+//!
+//! A fixed-interval smoother in the form of nonlinear least squares (Bell, *The iterated Kalman smoother as a Gauss–Newton
+//! method*, 1994). Ranges and motion have the tracker's models; each anchor's constant error is a parameter of the whole
+//! run, and so are the turns' gain and drift of a robot on wheels. Ranges are weighed as Student's distribution has it,
+//! with a heavier tail where they are too long; how large their noise is, and how long it lasts, is estimated.
+
+mod free;
+mod knots;
+mod noise;
+mod problem;
+mod wheels;
+
+use kestirim_health::{Reason, State};
+use kestirim_uwb_tracker::Config;
+
+use self::free::Free;
+use self::knots::Knots;
+use self::problem::{Problem, Solved};
+use self::wheels::Driven;
+use super::{Dimensions, Epoch, Event, Setup, Trace};
+
+/// A part of a recording, and what a tracker made of it, from which the smoother begins.
+#[derive(Debug, Clone, Copy)]
+pub struct Tracked<'a> {
+    /// What the sensors said.
+    pub events: &'a [Event],
+    /// Where the tracker found the tag.
+    pub trace: &'a Trace,
+}
+
+/// What a smoother made of a recording.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Smoothed {
+    /// Of each part that was tracked: of a tag that moves, its trace's epochs from the first range; of one that was put
+    /// down, a single one.
+    pub parts: Vec<Vec<Epoch>>,
+    /// What each anchor measures too long, m, beyond what was known beforehand and what all of them do, with its standard
+    /// deviation, m.
+    pub biases: Vec<[f64; 2]>,
+    /// What all of them measure too long, m, and what more in 10 m of distance, m.
+    pub common: [f64; 2],
+}
+
+/// Why a recording is not smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unsmoothed {
+    /// There is no position to begin with.
+    #[error("the tracker found no position to begin with")]
+    NoPosition,
+    /// The ranges do not tell where the tag was.
+    #[error("the ranges do not tell where the tag was")]
+    NotObservable,
+    /// There are more epochs than are smoothed together.
+    #[error("it has more than {MOST_KNOTS} epochs")]
+    TooLong,
+    /// What came out is less certain than the tracker's positions, or the tracker tells no standard deviation.
+    #[error("it would be less certain than the tracker is")]
+    LessCertain,
+    /// What came out contradicts the tracker.
+    #[error("it would contradict the tracker by more than twice its standard deviation")]
+    Contradicts,
+}
+
+/// So many epochs are smoothed together, in about a gigabyte with the most anchors.
+const MOST_KNOTS: usize = 50_000;
+/// By how many of the tracker's standard deviations the smoothed track may differ from the tracker's, root mean square.
+const MOST_SIGMAS: f64 = 2.0;
+
+/// Smooths the parts of a recording together. A static recording is one place a part; else the tag moves.
+///
+/// # Errors
+/// [`Unsmoothed`]: it does not pay, or cannot be relied upon.
+pub fn smooth(
+    setup: &Setup,
+    parts: &[Tracked<'_>],
+    is_static: bool,
+) -> Result<Smoothed, Unsmoothed> {
+    let is_calibrated = setup.biases.is_some();
+    let config = if is_calibrated { Config::calibrated } else { Config::uncalibrated };
+    let config = setup.tuning.of_the_robust(config(setup.height_m));
+    let knots = Knots::new(setup, parts, is_static).ok_or(Unsmoothed::NoPosition)?;
+    if knots.knots.len() > MOST_KNOTS {
+        return Err(Unsmoothed::TooLong);
+    }
+    let solved = match setup.dimensions {
+        Dimensions::Three => {
+            Problem::<6, 3, _>::new(setup, &config, &knots, Free::<3, 6>::new(setup, &config))
+                .solve()
+        }
+        Dimensions::Two if setup.is_wheeled() && !is_static => {
+            let to_a_side = [1.0, -1.0].map(|gain| {
+                let motion = Driven::new(parts, &knots, gain);
+                Problem::<4, 2, _>::new(setup, &config, &knots, motion).solve()
+            });
+            to_a_side.into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost))
+        }
+        Dimensions::Two => {
+            Problem::<4, 2, _>::new(setup, &config, &knots, Free::<2, 4>::new(setup, &config))
+                .solve()
+        }
+    };
+    accepted(solved.ok_or(Unsmoothed::NotObservable)?, &knots)
+}
+
+/// The result, if it is worth more than the tracker's and agrees with it.
+fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
+    let [mut moved, mut ours, mut trackers] = [0.0; 3];
+    for (knot, epoch) in knots.knots.iter().zip(&solved.epochs) {
+        let (Some(before), Some(now)) = (knot.epoch.position, epoch.position) else { continue };
+        let (Some(was), Some(is)) = (knot.epoch.sigma_m(), epoch.sigma_m()) else { continue };
+        moved += (now[0] - before[0]).powi(2) + (now[1] - before[1]).powi(2);
+        trackers += was * was;
+        ours += is * is;
+    }
+    if !ours.is_finite() || trackers <= 0.0 || ours > trackers {
+        return Err(Unsmoothed::LessCertain);
+    }
+    if moved > MOST_SIGMAS * MOST_SIGMAS * trackers {
+        return Err(Unsmoothed::Contradicts);
+    }
+    let mut parts: Vec<Vec<Epoch>> = vec![Vec::new(); knots.parts];
+    for (knot, mut epoch) in knots.knots.iter().zip(solved.epochs) {
+        epoch.health = if epoch.is_vague() { Reason::NotObservable.state() } else { State::Good };
+        parts[knot.part].push(epoch);
+    }
+    Ok(Smoothed { parts, biases: solved.biases, common: solved.common })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{RangeRow, Sensors, track};
+    use super::*;
+
+    const ANCHORS: [[f64; 3]; 5] =
+        [[0.0, 0.0, 2.0], [8.0, 0.0, 1.0], [8.0, 6.0, 2.0], [0.0, 6.0, 1.0], [4.0, -1.0, 1.5]];
+    const ERRORS: [f64; 5] = [0.15, -0.1, 0.05, -0.15, 0.1];
+
+    fn place(time_s: f64) -> [f64; 2] {
+        [4.0 + 2.5 * (0.3 * time_s).cos(), 3.0 + 2.0 * (0.4 * time_s).sin()]
+    }
+
+    /// A round among anchors with errors of their own, and noise of five centimetres that repeats.
+    fn round() -> Vec<Event> {
+        let rows = (0..3000).map(|index: i64| {
+            let (anchor, time_us) = ((index % 5) as usize, index / 5 * 100_000);
+            let [x, y] = place(time_us as f64 * 1e-6);
+            let [ax, ay, az] = ANCHORS[anchor];
+            let distance = ((x - ax).powi(2) + (y - ay).powi(2) + (az - 1.0).powi(2)).sqrt();
+            let draw = (index as f64 * 12.9898).sin() * 43758.5453;
+            let noise = 0.05 * 12_f64.sqrt() * (draw - draw.floor() - 0.5);
+            RangeRow { time_us, anchor, range: Some(distance + ERRORS[anchor] + noise) }
+        });
+        Sensors::ranges(rows.collect()).events()
+    }
+
+    fn rmse(epochs: &[Epoch]) -> f64 {
+        let squares = epochs.iter().filter_map(|epoch| {
+            let ([x, y, _], [a, b]) = (epoch.position?, place(epoch.time_us as f64 * 1e-6));
+            Some((x - a).powi(2) + (y - b).powi(2))
+        });
+        let squares: Vec<f64> = squares.collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn the_errors_of_anchors_are_found_and_no_longer_in_the_positions() {
+        let (setup, events) = (Setup::new(&ANCHORS, 1.0), round());
+        let trace = track(&setup, &events).unwrap();
+        let parts = [Tracked { events: &events, trace: &trace }];
+        let smoothed = smooth(&setup, &parts, false).unwrap();
+        let [before, after] = [rmse(&trace.epochs), rmse(&smoothed.parts[0])];
+        assert!(after < 0.35 * before && after < 0.04, "{before} {after}");
+        let sigma = smoothed.parts[0][300].sigma_m().unwrap();
+        assert!((0.3..3.0).contains(&(after / sigma)), "{after} {sigma}");
+        // What all have in common may be said of each.
+        let mean = smoothed.biases.iter().map(|[bias, _]| bias).sum::<f64>() / 5.0;
+        for ([bias, _], expected) in smoothed.biases.iter().zip(ERRORS) {
+            assert!((bias - mean - expected + 0.01).abs() < 0.04, "{:?}", smoothed.biases);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_smoothed_is_said() {
+        let setup = Setup::new(&ANCHORS, 1.0);
+        let parts = [Tracked { events: &[], trace: &Trace::default() }];
+        assert_eq!(smooth(&setup, &parts, false), Err(Unsmoothed::NoPosition));
+        let many = vec![
+            Epoch {
+                time_us: 0,
+                position: Some([1.0; 3]),
+                spread: Some([0.01, 0.0, 0.01]),
+                height_variance: None,
+                health: State::Good,
+            };
+            MOST_KNOTS + 1
+        ];
+        let ends: Vec<_> = (0..many.len()).map(|k| Event::EpochEnd { time_us: k as i64 }).collect();
+        let trace = Trace { epochs: many, ..Trace::default() };
+        let parts = [Tracked { events: &ends, trace: &trace }];
+        assert_eq!(smooth(&setup, &parts, false), Err(Unsmoothed::TooLong));
+    }
+}

@@ -1,0 +1,196 @@
+//! The noise of each anchor's ranges: how large it is, and how long it lasts.
+
+use super::knots::{Knots, Measured};
+
+/// Degrees of freedom of Student's distribution for a range that is too long, and for one that is too short. Obstacles
+/// lengthen: the fewer, the less such a range counts.
+const FREEDOM: [f64; 2] = [2.0, 5.0];
+/// No scale is smaller, m: a reflection nearby is as much.
+const LEAST_SIGMA: f64 = 0.05;
+/// Errors that last are looked for in so long, s.
+const BLOCK_US: i64 = 5_000_000;
+
+/// The noise of all anchors.
+#[derive(Debug, Clone)]
+pub(super) struct Noise {
+    links: Vec<Link>,
+}
+
+/// The noise of an anchor.
+#[derive(Debug, Clone, Copy)]
+struct Link {
+    /// Scale, m.
+    sigma: f64,
+    /// As many ranges as this are worth one whose error is its own: 1 and above.
+    inflation: f64,
+}
+
+/// What a range counts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weighed {
+    /// The inverse of its variance, 1/m².
+    pub(super) information: f64,
+    /// −2 ln of its probability, but for a constant.
+    pub(super) cost: f64,
+}
+
+impl Noise {
+    /// Of so many anchors with this standard deviation, m.
+    pub(super) fn new(anchors: usize, sigma: f64) -> Self {
+        Self { links: vec![Link { sigma, inflation: 1.0 }; anchors] }
+    }
+
+    /// What a range counts that is expected to be longer by `residual`, m, than it was measured.
+    pub(super) fn weigh(&self, anchor: usize, residual: f64) -> Weighed {
+        let Link { sigma, inflation } = self.links[anchor];
+        let (freedom, square) = (freedom(residual), (residual / sigma).powi(2));
+        let share = inflation.recip();
+        Weighed {
+            information: share * (freedom + 1.0) / ((freedom + square) * sigma * sigma),
+            cost: share * ((freedom + 1.0) * (square / freedom).ln_1p() + 2.0 * sigma.ln()),
+        }
+    }
+
+    /// Learns from the residuals (m) of all ranges, and the variances that the positions add to them (m²); whether anything
+    /// changed by more than a hundredth.
+    ///
+    /// The scale as expectation and maximisation have it (Lange, Little and Taylor 1989). How long errors last from the means
+    /// over five seconds, which vary the more: of n ranges with errors of their own, the squared sum is n times the
+    /// mean square. An error that lasts says nothing new with the next range. Of such errors a share is `left_over` in
+    /// the residuals.
+    pub(super) fn learn(
+        &mut self,
+        knots: &Knots,
+        left_over: f64,
+        residual_of: impl Fn(&Measured) -> (f64, f64),
+    ) -> bool {
+        let mut sums = vec![Sum::default(); self.links.len()];
+        for measured in &knots.measured {
+            let (residual, variance) = residual_of(measured);
+            let knot = &knots.knots[measured.knot];
+            let block = (knot.part, knot.epoch.time_us.div_euclid(BLOCK_US));
+            sums[measured.anchor].add(self.links[measured.anchor].sigma, residual, variance, block);
+        }
+        for sum in &mut sums {
+            sum.end_block();
+        }
+        let heard = sums.iter().filter(|sum| sum.count > 0.0);
+        let inflation = |sum: &Sum| sum.inflation() / left_over;
+        let mean = heard.clone().map(inflation).sum::<f64>() / heard.count().max(1) as f64;
+        let mut changed = false;
+        for (link, sum) in self.links.iter_mut().zip(&sums).filter(|(_, sum)| sum.count > 0.0) {
+            let sigma = (sum.squares / sum.count).sqrt().max(LEAST_SIGMA);
+            // An anchor that positions follow shows less of its errors than it has.
+            let inflation = inflation(sum).max(mean);
+            let moved = |before: f64, now: f64| (now - before).abs() > 0.01 * before;
+            changed |= moved(link.sigma, sigma) || moved(link.inflation, inflation);
+            *link = Link { sigma, inflation };
+        }
+        changed
+    }
+}
+
+fn freedom(residual: f64) -> f64 {
+    FREEDOM[usize::from(residual >= 0.0)]
+}
+
+/// What is summed over the ranges of an anchor.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    count: f64,
+    /// Weighed squares, m².
+    squares: f64,
+    /// The block at hand, and the sum of its weighed residuals, m.
+    block: (usize, i64),
+    of_block: f64,
+    /// Over all blocks: squared sums, and sums of squares, m².
+    squared_sums: f64,
+    single_squares: f64,
+}
+
+impl Sum {
+    fn add(&mut self, sigma: f64, residual: f64, variance: f64, block: (usize, i64)) {
+        if block != self.block {
+            self.end_block();
+            self.block = block;
+        }
+        let freedom = freedom(residual);
+        let weight = |square: f64| (freedom + 1.0) / (freedom + square / (sigma * sigma));
+        let square = residual * residual + variance;
+        self.count += 1.0;
+        self.squares += weight(square) * square;
+        let clipped = weight(residual * residual).min(1.0) * residual;
+        self.of_block += clipped;
+        self.single_squares += clipped * clipped;
+    }
+
+    fn end_block(&mut self) {
+        self.squared_sums += self.of_block * self.of_block;
+        self.of_block = 0.0;
+    }
+
+    fn inflation(&self) -> f64 {
+        if self.single_squares > 0.0 {
+            (self.squared_sums / self.single_squares).max(1.0)
+        } else {
+            1.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::Epoch;
+    use super::super::knots::Knot;
+    use super::*;
+    use kestirim_health::State;
+
+    /// Two anchors, one range of each every tenth of a second.
+    fn knots(count: usize) -> Knots {
+        let knot = |index: usize| Knot {
+            part: 0,
+            begin: [0.0; 3],
+            epoch: Epoch {
+                time_us: index as i64 * 100_000,
+                position: None,
+                spread: None,
+                height_variance: None,
+                health: State::Good,
+            },
+        };
+        let measured = |knot| [0, 1].map(|anchor| Measured { knot, anchor, metres: 0.0 });
+        Knots {
+            knots: (0..count).map(knot).collect(),
+            measured: (0..count).flat_map(measured).collect(),
+            ..Knots::default()
+        }
+    }
+
+    #[test]
+    fn the_scale_and_how_long_errors_last_are_found() {
+        let knots = knots(5000);
+        let mut noise = Noise::new(2, 1.0);
+        // The first anchor's errors are its own, to and fro; the second's last for five seconds.
+        let residual = |measured: &Measured| {
+            let step = if measured.anchor == 0 { measured.knot } else { measured.knot / 50 };
+            let draw = (step as f64 * 12.9898).sin() * 43758.5453;
+            (0.2 * (draw - draw.floor() - 0.5) * 12_f64.sqrt(), 0.0)
+        };
+        let rounds = (0..50).take_while(|_| noise.learn(&knots, 1.0, residual)).count();
+        assert!(rounds < 50, "it ends");
+        for link in &noise.links {
+            assert!((0.1..0.3).contains(&link.sigma), "{noise:?}");
+        }
+        // What lasts is one error in fifty ranges; and nobody's last shorter than the mean.
+        let [own, lasting] = [noise.links[0].inflation, noise.links[1].inflation];
+        assert!((40.0..60.0).contains(&lasting) && (20.0..30.0).contains(&own), "{noise:?}");
+    }
+
+    #[test]
+    fn what_is_far_too_long_hardly_counts() {
+        let noise = Noise::new(1, 0.1);
+        let [near, long, short] = [0.01, -5.0, 5.0].map(|residual| noise.weigh(0, residual));
+        assert!(long.information < 1e-2 * near.information && long.cost > near.cost);
+        assert!(long.information < short.information, "obstacles lengthen");
+    }
+}
