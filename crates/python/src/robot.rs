@@ -1,8 +1,8 @@
 //! Where a tag is, from ranges to anchors.
 
 use kestirim_replay::robot::{
-    Course, Dimensions, Epoch, Error, FoundHeight, Inertial, MOST, RangeRow, Sensors, Setup, Trace,
-    Wheels, doubts, track,
+    Course, Dimensions, Epoch, Error, FoundHeight, Inertial, MOST, RangeRow, Sensors, Setup,
+    Smoothed, Trace, Tracked, Unsmoothed, Wheels, doubts, smooth, track,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,7 +17,7 @@ const MISSING: &str = "expected height, metres above the floor (or dim=3)";
 
 /// A tag's track.
 #[pyfunction]
-#[pyo3(signature = (anchors, t, anchor, range, height, heights, biases, imu, wheels, room, dim, scalar))]
+#[pyo3(signature = (anchors, t, anchor, range, height, heights, biases, imu, wheels, room, dim, scalar, smooth))]
 pub(crate) fn robot<'py>(
     py: Python<'py>,
     anchors: Table<'py>,
@@ -32,6 +32,7 @@ pub(crate) fn robot<'py>(
     room: Option<[f64; 4]>,
     dim: usize,
     scalar: &str,
+    smooth: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let places = rows::<3>(&anchors)?;
     if places.len() > MOST {
@@ -80,16 +81,23 @@ pub(crate) fn robot<'py>(
         has_wheels: !sensors.wheels.is_empty(),
         ..Setup::new(places, height.unwrap_or(mean))
     };
-    let followed = py.detach(|| follow(setup, sensors, is_height_missing));
-    let (trace, found) = followed.map_err(refused)?;
-    results(py, trace, found.as_ref(), &log)
+    let followed = py.detach(|| follow(setup, sensors, is_height_missing, smooth));
+    results(py, followed.map_err(refused)?, &log)
+}
+
+/// What came of a log.
+struct Followed {
+    trace: Trace,
+    found: Option<FoundHeight>,
+    smoothed: Option<Result<Smoothed, Unsmoothed>>,
 }
 
 fn follow(
     setup: Setup,
     mut sensors: Sensors,
     is_height_missing: bool,
-) -> Result<(Trace, Option<FoundHeight>), Error> {
+    is_smoothed: bool,
+) -> Result<Followed, Error> {
     sensors.drop_far_ahead();
     let events = sensors.events();
     let setup = if is_height_missing {
@@ -98,7 +106,10 @@ fn follow(
     } else {
         setup
     };
-    Ok((track(&setup, &events)?, setup.found))
+    let trace = track(&setup, &events)?;
+    let parts = [Tracked { events: &events, trace: &trace }];
+    let smoothed = is_smoothed.then(|| smooth(&setup, &parts, false));
+    Ok(Followed { trace, found: setup.found, smoothed })
 }
 
 /// Ranges in the order of their log, of which one that did not come is not a number; refuses what no log can mean.
@@ -128,15 +139,28 @@ fn refused(error: Error) -> PyErr {
 
 fn results<'py>(
     py: Python<'py>,
-    trace: Trace,
-    found: Option<&FoundHeight>,
+    followed: Followed,
     log: &[RangeRow],
 ) -> PyResult<Bound<'py, PyDict>> {
+    let Followed { trace, found, smoothed } = followed;
     let (taken, nis) = by_row(&trace, log);
     let lost = trace.lost_s();
     let why = doubts(std::slice::from_ref(&trace), false);
     let epochs = &trace.epochs;
     let of = |epoch: &Epoch| epoch.sigmas_m().map(|sigma| sigma.unwrap_or(f64::NAN));
+    let found = found.as_ref();
+    let left = smoothed.as_ref().and_then(|it| it.as_ref().err()).map(ToString::to_string);
+    let smoothed = smoothed.and_then(Result::ok).map(|smoothed| {
+        let epochs = smoothed.parts.first().map(Vec::as_slice).unwrap_or_default();
+        Results::new(py)
+            .table("position", epochs.iter().filter_map(|it| it.position).collect())?
+            .table("sigma", epochs.iter().map(of).collect())?
+            .line("health", epochs.iter().map(|epoch| code(epoch.health)).collect())?
+            .table("biases", smoothed.biases)?
+            .with("common_bias", smoothed.common[0])?
+            .with("excess_in_10_m", smoothed.common[1])
+            .map(Results::done)
+    });
     Ok(Results::new(py)
         .line("t", epochs.iter().map(|epoch| epoch.time_us as f64 / 1e6).collect())?
         .table("position", epochs.iter().map(|it| it.position.unwrap_or([f64::NAN; 3])).collect())?
@@ -148,6 +172,8 @@ fn results<'py>(
         .with("height_sigma", found.map(|found| found.sigma_m))?
         .line("taken", taken)?
         .line("nis", nis)?
+        .with("smoothed", smoothed.transpose()?)?
+        .with("not_smoothed", left)?
         .done())
 }
 

@@ -83,6 +83,32 @@ def test_equals_replay_with_imu_and_calibration(data: Path, replay: Replay, tmp_
     equal(ours, theirs, track)
 
 
+@pytest.mark.parametrize(("name", "height", "wheels"), [("plaza1", 0.0, True), ("esp32_wall2", 0.2, False)])
+def test_smoothed_as_replay_smooths(data: Path, replay: Replay, name: str, height: float, wheels: bool) -> None:
+    folder = data / "robot" / name
+    log, options, files = Ranges(folder), {}, ["--anchors", folder / "anchors.csv", "--log", folder / "ranges.csv"]
+    if wheels:
+        files += ["--odom", folder / "odom.csv"]
+        odom = table(folder / "odom.csv")
+        speeds = (0.5 * (odom["v_left"] + odom["v_right"]), (odom["v_right"] - odom["v_left"]) / odom["track"])
+        options = {"wheels": (odom["t"], *speeds)}
+    theirs, track = replay("robot", *files, "--height", str(height), "--smooth")
+    ours = kestirim.robot(log.anchors, log.t, log.anchor, log.range, height=height, smooth=True, **options)  # type: ignore[arg-type]
+    if "smoothed" not in theirs:
+        assert ours.smoothed is None and f"not smoothed: {ours.not_smoothed}" in theirs["warnings"]
+        return
+    assert ours.smoothed is not None and ours.not_smoothed is None
+    assert len(ours.smoothed.t) == len(ours.t) == len(track)
+    for axis, column in enumerate("xyz"):
+        assert said(ours.smoothed.position[:, axis], 6) == [row[column] for row in track]
+        assert said(ours.smoothed.sigma[:, axis], 4) == [row[f"s{column}"] for row in track]
+    assert [STATES[code] for code in ours.smoothed.health] == [row["health"] for row in track]
+    assert ours.smoothed.biases.tolist() == [[it["bias_m"], it["sigma_m"]] for it in theirs["smoothed"]["anchors"]]
+    assert ours.smoothed.common_bias == theirs["smoothed"]["common_bias_m"]
+    assert ours.smoothed.excess_in_10_m == theirs["smoothed"]["excess_in_10_m"]
+    assert list(ours.smoothed.to_dataframe().columns)[:3] == ["t", "position_x", "position_y"]
+
+
 def test_equals_replay_with_wheels_and_heights(data: Path, replay: Replay, tmp_path: Path) -> None:
     folder = data / "robot/plaza1"
     log, odom = Ranges(folder), table(folder / "odom.csv")

@@ -32,7 +32,7 @@ from ._blocks import (
     place,
 )
 from ._kestirim import KestirimError, __version__
-from ._results import FlightTrack, Health, ImuLog, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
+from ._results import FlightTrack, Health, ImuLog, ReceiverTrack, SmoothedTag, Strides, TagTrack, UserTrack, Walk
 from ._systems import UavModel, drone, gnss, pedestrian, read_imu, robot, uav
 
 __all__ = [
@@ -54,6 +54,7 @@ __all__ = [
     "Riccati",
     "RobustKalmanFilter",
     "RobustlyFiltered",
+    "SmoothedTag",
     "Strides",
     "TagTrack",
     "UavModel",

@@ -65,6 +65,14 @@ class _ImuLog(TypedDict):
     understood: tuple[str, ...]
     warnings: tuple[str, ...]
 
+class _SmoothedTag(TypedDict):
+    position: _Floats
+    sigma: _Floats
+    health: _Codes
+    biases: _Floats
+    common_bias: float
+    excess_in_10_m: float
+
 class _TagTrack(TypedDict):
     t: _Floats
     position: _Floats
@@ -75,6 +83,8 @@ class _TagTrack(TypedDict):
     lost: float
     height: Optional[float]
     height_sigma: Optional[float]
+    smoothed: Optional[_SmoothedTag]
+    not_smoothed: Optional[str]
     reasons: tuple[str, ...]
 
 class _UserTrack(TypedDict):
@@ -235,6 +245,7 @@ def robot(
     room: Optional[tuple[float, float, float, float]],
     dim: int,
     scalar: str,
+    smooth: bool,
 ) -> _TagTrack: ...
 def drone(
     t: _Floats,

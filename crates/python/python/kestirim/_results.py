@@ -125,6 +125,24 @@ class ImuLog(Frame):
 
 
 @dataclass(frozen=True)
+class SmoothedTag(Frame):
+    """Where a tag was, given what was measured before and after: the rows of its track; and what its a anchors measure."""
+
+    position: Floats
+    """(m, 3) m, room."""
+    sigma: Floats
+    """(m, 3) m: standard deviations; not a number where nothing tells one (z in the plane)."""
+    health: Codes
+    """(m,) values of `Health`."""
+    biases: Floats = dataclasses.field(metadata={"rows": False})
+    """(a, 2) m: what each measures too long beyond all others and what was known, and its standard deviation."""
+    common_bias: float
+    """m: what all of them measure too long."""
+    excess_in_10_m: float
+    """m: what more they do in 10 m of distance."""
+
+
+@dataclass(frozen=True)
 class TagTrack(Frame):
     """Where a tag was: m times at which there were ranges, of n ranges."""
 
@@ -144,6 +162,10 @@ class TagTrack(Frame):
     """m: the height that the ranges told, if it was not given."""
     height_sigma: Optional[float]
     """m: its standard deviation."""
+    smoothed: Optional[SmoothedTag]
+    """The same smoothed, if that was asked for and tells more."""
+    not_smoothed: Optional[str]
+    """Why it is not, in words, if it was asked for and is not."""
     reasons: tuple[str, ...]
     """Why the track is not good, in words; empty if it is."""
 

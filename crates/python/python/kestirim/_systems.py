@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _kestirim
 from ._check import Floats, floats, ints, maybe_floats
 from ._kestirim import KestirimError
-from ._results import FlightTrack, ImuLog, ReceiverTrack, Strides, TagTrack, UserTrack, Walk
+from ._results import FlightTrack, ImuLog, ReceiverTrack, SmoothedTag, Strides, TagTrack, UserTrack, Walk
 
 Scalar = Literal["f32", "f64", "fixed"]
 
@@ -117,6 +117,7 @@ def robot(
     room: Optional[tuple[float, float, float, float]] = None,
     dim: Literal[2, 3] = 2,
     scalar: Scalar = "f32",
+    smooth: bool = False,
 ) -> TagTrack:
     """Where a tag was, from ranges to ultra-wideband anchors.
 
@@ -130,6 +131,7 @@ def robot(
     wheels: times (k,) s, speeds (k,) m/s and turn rates (k,) rad/s.
     room: x0, y0, x1, y1, m: two opposite corners in which the tag is.
     dim: 2 in the plane at a known height, 3 in space.
+    smooth: find each position from what was measured before and after, too, and what the anchors measure too long: `smoothed`.
 
     The same as `host-sim replay robot`, to the bit.
     """
@@ -151,8 +153,23 @@ def robot(
         room,
         dim,
         scalar,
+        smooth,
     )
-    return TagTrack(**results)
+    smoothed = results["smoothed"]
+    return TagTrack(
+        t=results["t"],
+        position=results["position"],
+        sigma=results["sigma"],
+        health=results["health"],
+        taken=results["taken"],
+        nis=results["nis"],
+        lost=results["lost"],
+        height=results["height"],
+        height_sigma=results["height_sigma"],
+        smoothed=None if smoothed is None else SmoothedTag(t=results["t"], **smoothed),
+        not_smoothed=results["not_smoothed"],
+        reasons=results["reasons"],
+    )
 
 
 def drone(
