@@ -112,7 +112,7 @@ impl Arc {
     ) -> Option<Slip> {
         let jump = self.carriers.geometry_free(phase) - self.geometry_free;
         let spread = limits.deviations * libm::sqrt(self.geometry_free_variance);
-        let away = time.since(self.last);
+        let away = time.since(self.last).abs();
         let slip = if away > limits.gap || away.is_nan() {
             Some(Slip::Gap)
         } else if lock_lost && limits.loss_of_lock {

@@ -36,12 +36,37 @@ impl<const N: usize> PppFilter<N> {
         receiver: &Receiver<'_>,
         observations: &[SatelliteObservation<'_>],
     ) -> Result<Solution<N>, Error> {
+        self.step(time, 1.0, receiver, observations)
+    }
+
+    /// Takes in an epoch that was observed before the one that was taken in last: for a recording that is gone through from
+    /// its end. A satellite's `lock_lost` says then that its lock was lost on the way to the epoch that came after.
+    ///
+    /// # Errors
+    /// [`Error`]: why the epoch has no solution. The filter is as it was.
+    pub fn process_backwards(
+        &mut self,
+        time: GpsTime,
+        receiver: &Receiver<'_>,
+        observations: &[SatelliteObservation<'_>],
+    ) -> Result<Solution<N>, Error> {
+        self.step(time, -1.0, receiver, observations)
+    }
+
+    /// `direction` is 1 or −1.
+    fn step(
+        &mut self,
+        time: GpsTime,
+        direction: f64,
+        receiver: &Receiver<'_>,
+        observations: &[SatelliteObservation<'_>],
+    ) -> Result<Solution<N>, Error> {
         if !self.config.is_valid() {
             return Err(Error::InvalidConfiguration);
         }
         let mut next = match self.running {
             Some(mut running) => {
-                running.advance(time, &self.config)?;
+                running.advance(time, direction, &self.config)?;
                 running
             }
             None => Running::start(time, &code_position(observations)?, &self.config),

@@ -110,9 +110,14 @@ impl<const N: usize> Running<N> {
         }
     }
 
-    /// Predicts to the time of an epoch.
-    pub(crate) fn advance(&mut self, time: GpsTime, config: &Config) -> Result<(), Error> {
-        let elapsed = time.since(self.time);
+    /// Predicts to the time of an epoch, which comes later (`direction` 1) or earlier (−1).
+    pub(crate) fn advance(
+        &mut self,
+        time: GpsTime,
+        direction: f64,
+        config: &Config,
+    ) -> Result<(), Error> {
+        let elapsed = direction * time.since(self.time);
         if elapsed <= 0.0 || elapsed.is_nan() {
             return Err(Error::TimeNotAdvancing);
         }
@@ -350,7 +355,7 @@ impl<const N: usize> Running<N> {
         let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
             let arc = self.channel(self.find(observation.satellite)?)?.arc;
             let jump = arc.jump(self.repaired(observation), observation.code);
-            (self.time.since(arc.last()) <= config.slips.gap).then_some(jump)
+            (self.time.since(arc.last()).abs() <= config.slips.gap).then_some(jump)
         }));
         ClockJump::of(&jumps, median(&jumps, |jump| *jump))
     }
@@ -391,7 +396,7 @@ impl<const N: usize> Running<N> {
             {
                 None
             }
-            Some(channel) => Some(self.time.since(channel.arc.last())),
+            Some(channel) => Some(self.time.since(channel.arc.last()).abs()),
         };
         let states = (COMMON..N).filter(|state| self.offset != Some(*state));
         let free = states.filter_map(|state| Some((state, unseen(state)?)));

@@ -70,6 +70,46 @@ fn a_clean_sky_is_fixed_to_millimetres() {
     }
 }
 
+/// From the end, what is known at the first epoch is what the whole run tells, and slips are seen on the way back, too.
+#[test]
+fn a_run_is_gone_through_from_its_end() {
+    let victim = highest();
+    let mut filter = filter(Motion::Static);
+    let back = |filter: &mut PppFilter<N>, seconds: f64| {
+        let mut observations = observe(seconds, &marker());
+        // A slip after 1800 s, seen as one before, and the gap of a satellite.
+        for observation in observations.iter_mut().filter(|it| it.satellite == victim) {
+            observation.phase[0] += if seconds > 1800.0 { 100.0 } else { 0.0 };
+        }
+        observations.retain(|it| it.satellite == victim || !(900.0..1500.0).contains(&seconds));
+        filter.process_backwards(START.plus(seconds), &Receiver::default(), &observations)
+    };
+    let mut last = None;
+    for k in (0..=120).rev() {
+        let seconds = 30.0 * f64::from(k);
+        match back(&mut filter, seconds) {
+            Ok(solution) => {
+                let report = solution.satellites.iter().find(|it| it.satellite == victim);
+                let slipped = report.and_then(|report| report.slipped);
+                let expected = match k {
+                    120 => Some(Slipped::New),
+                    60 => Some(Slipped::Seen(Slip::GeometryFree)),
+                    29 => Some(Slipped::Seen(Slip::Gap)),
+                    _ => None,
+                };
+                assert_eq!(slipped, expected, "{k}");
+                last = Some(solution);
+            }
+            Err(error) => assert!((30..50).contains(&k) && error == Error::TooFewSatellites),
+        }
+    }
+    let last = last.expect("a solution");
+    assert!(error(&last) < 2e-3, "{}", error(&last));
+    for seconds in [0.0, 30.0, f64::NAN] {
+        assert_eq!(back(&mut filter, seconds).unwrap_err(), Error::TimeNotAdvancing);
+    }
+}
+
 #[test]
 fn a_slip_that_no_detector_sees_is_found_by_the_filter() {
     let victim = highest();

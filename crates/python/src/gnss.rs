@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use kestirim_gnss_ppp::Corrections;
 use kestirim_health::Health;
 use kestirim_ppp_filter::{Config, Health as Quality, Motion};
-use kestirim_replay::gnss::{FilterKind, Followed, Paths, Recording, Systems, follow};
+use kestirim_replay::gnss::{FilterKind, Followed, Order, Paths, Recording, Systems, follow};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -56,7 +56,16 @@ pub(crate) fn gnss<'py>(
             let recording = Recording::read(&paths).map_err(refused)?;
             let epochs = recording.epochs(until);
             let receiver = recording.receiver(Corrections::ALL);
-            let followed = follow(&recording, epochs, &receiver, config, systems, false, || ());
+            let followed = follow(
+                &recording,
+                epochs,
+                &receiver,
+                config,
+                systems,
+                Order::Forwards,
+                false,
+                || (),
+            );
             if followed.fixes.is_empty() {
                 let sentence = format!("none of {} epochs has a solution", epochs.len());
                 return Err(KestirimError::new_err(sentence));

@@ -3,10 +3,10 @@
 //! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
-use host_sim::metrics::rms;
+use host_sim::metrics::{error_over_sigma, rms};
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
-use kestirim_replay::gnss::{Accuracy, Recording};
+use kestirim_replay::gnss::{Accuracy, Order, Recording, Systems, follow};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, ESBC_MULTI, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -54,6 +54,36 @@ fn galileo_beside_gps() {
     assert!(end <= 7.5 && rms <= 11.5 && convergence <= 23.0);
     let [_, rms, _] = run("ESBC with Galileo, kinematic", Config::new(KINEMATIC));
     assert!(rms <= 31.5);
+}
+
+/// Forwards and backwards, from the first epoch on.
+#[test]
+fn smoothed_from_the_first_epoch_on() {
+    for (what, station, still, moving) in
+        [("ESBC", ESBC, 4.5, 28.0), ("ESBC with Galileo", ESBC_MULTI, 7.0, 26.0)]
+    {
+        let Some(recording) = read(station) else { return };
+        let receiver = recording.receiver(Corrections::ALL);
+        let truth = Vector3::from(station.truth);
+        for (motion, most) in [(Motion::Static, still), (KINEMATIC, moving)] {
+            let pass = |order| {
+                let epochs = recording.epochs(Some(station.until));
+                let config = Config::new(motion);
+                follow(&recording, epochs, &receiver, config, Systems::All, order, false, || ())
+            };
+            let [forwards, backwards] = [Order::Forwards, Order::Backwards].map(pass);
+            let both = forwards.smoothed(&backwards);
+            assert_eq!(both.fixes.len(), forwards.fixes.len());
+            let pairs = both.fixes.iter().zip(&both.deviations);
+            let told: Vec<_> = pairs
+                .map(|(fix, sd)| ((fix.position - truth).norm(), Vector3::from(*sd).norm()))
+                .collect();
+            let found = 1e3 * rms(&told.iter().map(|(error, _)| *error).collect::<Vec<_>>());
+            let ratio = error_over_sigma(told).expect("deviations");
+            println!("{what}, {motion:?}, smoothed: {found:.1} mm, over its deviation {ratio:.2}");
+            assert!(found <= most && (0.3..1.5).contains(&ratio), "{what}: {found} mm, {ratio}");
+        }
+    }
 }
 
 /// All phases jump by a millisecond at noon, as those of a receiver that tells its clock to them alone.

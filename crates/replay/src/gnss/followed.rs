@@ -150,23 +150,35 @@ pub struct Followed {
     pub residuals: Vec<(f64, SatelliteReport)>,
 }
 
+/// In which order epochs are given to a filter.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Order {
+    /// As they were observed.
+    #[default]
+    Forwards,
+    /// From the last to the first.
+    Backwards,
+}
+
 /// Feeds a filter with the satellites of some `systems` in `epochs`; `with_residuals` keeps what became of each
-/// observation. `next` is called after each epoch.
+/// observation. `next` is called after each epoch. What came of them is in the order of time, however they were gone
+/// through.
 pub fn follow(
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     config: Config,
     systems: Systems,
+    order: Order,
     with_residuals: bool,
     next: impl FnMut(),
 ) -> Followed {
     if recording.has_galileo() && systems != Systems::Gps {
         let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
-        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+        feed(filter, recording, epochs, receiver, systems, order, with_residuals, next)
     } else {
         let filter = PppFilter::<STATES>::new(config);
-        feed(filter, recording, epochs, receiver, systems, with_residuals, next)
+        feed(filter, recording, epochs, receiver, systems, order, with_residuals, next)
     }
 }
 
@@ -176,6 +188,7 @@ fn feed<const N: usize>(
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     systems: Systems,
+    order: Order,
     with_residuals: bool,
     mut next: impl FnMut(),
 ) -> Followed {
@@ -186,25 +199,39 @@ fn feed<const N: usize>(
     let mut lost = [false; 256];
     // Tells which satellites stand below the mask, and nothing else.
     let mut about = recording.approximate_position().map(Vector3::from);
-    for epoch in epochs {
+    let is_backwards = order == Order::Backwards;
+    for index in 0..epochs.len() {
+        let epoch = &epochs[if is_backwards { epochs.len() - 1 - index } else { index }];
         let t = recording.seconds(epoch);
         let satellites = || epoch.satellites.iter().filter(|observed| systems.has(observed.prn));
         let mut unused = Unused { observed: satellites().count(), ..Unused::default() };
         observations.clear();
-        if epoch.power_failure {
-            lost.fill(true);
+        // A file says what was lost since the epoch before.
+        let note_lost = |lost: &mut [bool; 256]| {
+            if epoch.power_failure {
+                lost.fill(true);
+            }
+            for observed in satellites() {
+                lost[usize::from(observed.prn)] |= observed.loss_of_lock.contains(&true);
+            }
+        };
+        if !is_backwards {
+            note_lost(&mut lost);
         }
         for observed in satellites() {
-            let lost = &mut lost[usize::from(observed.prn)];
-            *lost |= observed.loss_of_lock.contains(&true);
+            let lost = lost[usize::from(observed.prn)];
             match recording.products().observation(epoch.time, observed) {
                 Ok(observation) => {
-                    observations.push(SatelliteObservation { lock_lost: *lost, ..observation });
+                    observations.push(SatelliteObservation { lock_lost: lost, ..observation });
                 }
                 Err(reason) => followed.miss(observed.prn, reason, &mut unused),
             }
         }
-        match filter.process(epoch.time, receiver, &observations) {
+        let solution = match order {
+            Order::Forwards => filter.process(epoch.time, receiver, &observations),
+            Order::Backwards => filter.process_backwards(epoch.time, receiver, &observations),
+        };
+        match solution {
             Ok(solution) => {
                 for report in &solution.satellites {
                     lost[usize::from(report.satellite)] = false;
@@ -218,8 +245,14 @@ fn feed<const N: usize>(
                 followed.outages.add(Outage { error, t, unused });
             }
         }
+        if is_backwards {
+            note_lost(&mut lost);
+        }
         followed.unused.add(&unused);
         next();
+    }
+    if is_backwards {
+        followed.turn();
     }
     followed
 }
@@ -247,6 +280,18 @@ impl Followed {
             Health::Contradicted(contradiction) => Some((fix.t, *contradiction)),
             _ => None,
         })
+    }
+
+    /// Puts what was gone through from its end into the order of time.
+    fn turn(&mut self) {
+        self.fixes.reverse();
+        self.deviations.reverse();
+        self.delays.reverse();
+        self.healths.reverse();
+        self.heard.reverse();
+        self.clock_jumps.reverse();
+        self.residuals.reverse();
+        self.converged_since = None;
     }
 
     fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {

@@ -37,7 +37,8 @@ pub(super) fn account(
     let warnings = warning::of_recording(recording, setup, track.main());
     let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
         let warnings = [first, &warning::outages(followed)].concat();
-        Report::new(recording, setup, *filter, followed, warnings)
+        let smoothed = track.smoothed.as_ref().filter(|_| *filter == setup.main());
+        Report::new(recording, setup, *filter, followed, smoothed, warnings)
     };
     if setup.filter == Choice::All {
         let comparison = Comparison {

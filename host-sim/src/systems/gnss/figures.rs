@@ -39,6 +39,7 @@ pub(super) fn draw(track: &Track, truth: Option<&Vector3<f64>>) -> Vec<Figure> {
     let close = "Over √(Qᵥ/γ), a colour a satellite; the legend shows the rejected ones.";
     vec![
         errors(Figure::new("error", "Distance"), filters, about)
+            .with_all(track.smoothed.as_ref().map(|it| error("smoothed", it, about)))
             .caption(format!("Distance from {origin}.")),
         components(Figure::new("components", "East, north, up"), main, about)
             .caption(caption(&format!("To the east, north and up of {origin}."))),
@@ -78,10 +79,15 @@ pub fn errors<'a>(
     truth: &Vector3<f64>,
 ) -> Figure {
     let line = |(filter, followed): (FilterKind, &Followed)| {
-        let errors = followed.fixes.iter().map(|fix| (fix.position - truth).norm());
-        Series::line(filter.title(), hours(followed), errors.collect()).coloured(colour(filter))
+        error(filter.title(), followed, truth).coloured(colour(filter))
     };
     figure.axes("time, h", "3-D error, m").logarithmic().with_all(filters.into_iter().map(line))
+}
+
+/// The distance from a place over the hours, m.
+fn error(name: impl Into<String>, followed: &Followed, place: &Vector3<f64>) -> Series {
+    let errors = followed.fixes.iter().map(|fix| (fix.position - place).norm());
+    Series::line(name, hours(followed), errors.collect())
 }
 
 /// The position to the east, north and up of a place over the hours, m.

@@ -139,13 +139,13 @@ impl System for Gnss {
 
     fn table(output: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
         match output {
-            "track" => account::tables::track(track.main()),
+            "track" => account::tables::track(track.best()),
             _ => account::tables::residuals(&track.main().residuals),
         }
     }
 
     fn text(output: &str, ending: &str, recording: &Recording, track: &Track) -> Option<String> {
-        (output == "track").then(|| account::track_text(ending, recording, track.main()))?
+        (output == "track").then(|| account::track_text(ending, recording, track.best()))?
     }
 
     fn streams(recording: &Recording, settings: &Settings, track: &Track) -> Vec<Stream> {

@@ -72,6 +72,11 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
             8.0,
         )
         .undecided(),
+        Setting::switch(
+            "smooth",
+            "Smooth: put together what is found forwards and backwards (not for firmware)",
+            false,
+        ),
         Setting::any_of::<Part>(
             "without",
             "Part of the model that is left out, to see what it is worth; may be given again",
@@ -134,6 +139,8 @@ pub struct Setup {
     pub thresholds: [Option<f64>; 2],
     /// What is corrected.
     pub corrections: Corrections,
+    /// Whether the recording is gone through backwards, too.
+    pub is_smoothed: bool,
     /// The last epoch, s since the midnight before the first one; none: all are taken.
     pub until: Option<f64>,
     /// Where the marker really is, ECEF, m; none: what the recording knows.
@@ -151,6 +158,7 @@ impl Setup {
             published: false,
             thresholds: [None; 2],
             corrections: Corrections::ALL,
+            is_smoothed: false,
             until: None,
             truth: None,
         }
@@ -174,6 +182,7 @@ impl Setup {
             published: settings.is_on("published"),
             thresholds: ["k0", "k1"].map(|name| settings.number(name)),
             corrections: left_out.fold(Corrections::ALL, |all, part| all.without(part.into())),
+            is_smoothed: settings.is_on("smooth"),
             until: settings.number("until"),
             truth: settings.text("truth").and_then(|text| place(&text).ok()),
         }

@@ -1,6 +1,6 @@
 //! Feeds filters with a recording: one, or all for comparison.
 
-use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, follow};
+use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Order, Recording, follow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -15,6 +15,8 @@ pub struct Track {
     pub filters: Vec<(FilterKind, Followed)>,
     /// Which of them is shown closely.
     main: usize,
+    /// What that one found, put together with what it finds from the end, if that was asked for.
+    pub smoothed: Option<Followed>,
 }
 
 impl Track {
@@ -31,26 +33,37 @@ impl Track {
             return Err(Error::Usage(sentence));
         }
         let (chosen, main) = (setup.filter.filters(), setup.main());
-        let progress = output::late_progress((epochs.len() * chosen.len()) as u64, "epochs");
+        let passes = chosen.len() + usize::from(setup.is_smoothed);
+        let progress = output::late_progress((epochs.len() * passes) as u64, "epochs");
         let receiver = recording.receiver(setup.corrections);
-        let one = |&filter: &FilterKind| {
-            let with_residuals = detail == Detail::Every && filter == main;
-            let config = setup.config(filter);
+        let pass = |filter: FilterKind, order: Order| {
+            let with_residuals =
+                detail == Detail::Every && filter == main && order == Order::Forwards;
+            let (config, systems) = (setup.config(filter), setup.systems);
             let next = || progress.inc();
-            let systems = setup.systems;
-            (filter, follow(recording, epochs, &receiver, config, systems, with_residuals, next))
+            follow(recording, epochs, &receiver, config, systems, order, with_residuals, next)
         };
-        let filters: Vec<_> = chosen.par_iter().map(one).collect();
+        let forwards = || -> Vec<_> {
+            chosen.par_iter().map(|&filter| (filter, pass(filter, Order::Forwards))).collect()
+        };
+        let backwards = || setup.is_smoothed.then(|| pass(main, Order::Backwards));
+        let (filters, backwards) = rayon::join(forwards, backwards);
         if filters.iter().all(|(_, followed)| followed.fixes.is_empty()) {
             return Err(unsolved(recording, epochs, &filters));
         }
         let main = chosen.iter().position(|filter| *filter == main).unwrap_or_default();
-        Ok(Self { filters, main })
+        let smoothed = backwards.map(|backwards| filters[main].1.smoothed(&backwards));
+        Ok(Self { filters, main, smoothed })
     }
 
     /// The filter that is shown closely.
     pub fn main(&self) -> &Followed {
         &self.filters[self.main].1
+    }
+
+    /// What is written as its track: smoothed, if that was asked for.
+    pub fn best(&self) -> &Followed {
+        self.smoothed.as_ref().unwrap_or_else(|| self.main())
     }
 
     /// The place about which positions are shown, ECEF, m: the truth, or else the last position.

@@ -80,6 +80,8 @@ fn filters<const N: usize>() {
         try_on(&mut filter, |filter| {
             let solution = any(PppFilter::process(filter, time, &receiver, slice(&observations))?);
             keep(Solution::deviations_enu(&solution));
+            let back = PppFilter::process_backwards(filter, time, &receiver, slice(&observations));
+            keep(any(back)?.position);
             keep(Health::in_short(solution.health));
             Ok::<_, Error>(())
         });

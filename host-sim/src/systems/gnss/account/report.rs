@@ -7,6 +7,7 @@ use kestirim_replay::gnss::{Accuracy, Both, FilterKind, Followed, Recording, Sli
 use nalgebra::Vector3;
 use serde::Serialize;
 
+use crate::metrics::{error_over_sigma, percentile, rms};
 use crate::system::System;
 use crate::systems::gnss::Gnss;
 use crate::systems::gnss::settings::{Mode, Setup};
@@ -64,6 +65,64 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// How far from the truth, if it is known.
     pub accuracy: Option<Accuracy>,
+    /// What comes out forwards and backwards together, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothed: Option<SmoothedReport>,
+}
+
+/// What a filter found forwards and backwards.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SmoothedReport {
+    /// How many epochs have a position.
+    pub positions: usize,
+    /// The position that is known best, ECEF, m: of a receiver at rest, its place.
+    pub position_ecef_m: [f64; 3],
+    /// Its standard deviations to the east, north and up, m.
+    pub sd_enu_m: [f64; 3],
+    /// Of all positions from the first on, if the truth is known: root mean square distance, m …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rms_3d_m: Option<f64>,
+    /// … the largest, m …
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_3d_m: Option<f64>,
+    /// … and the first over the root mean square standard deviation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_over_sigma: Option<f64>,
+}
+
+impl SmoothedReport {
+    fn of(smoothed: &Followed, truth: Option<&Vector3<f64>>) -> Option<Self> {
+        let pairs = || smoothed.fixes.iter().zip(&smoothed.deviations);
+        let norm = |deviations: &[f64; 3]| Vector3::from(*deviations).norm();
+        let (best, sd_enu_m) = pairs().min_by(|a, b| norm(a.1).total_cmp(&norm(b.1)))?;
+        let told: Option<Vec<_>> = truth.map(|truth| {
+            pairs().map(|(fix, sd)| ((fix.position - truth).norm(), norm(sd))).collect()
+        });
+        let errors =
+            told.as_ref().map(|told| told.iter().map(|(error, _)| *error).collect::<Vec<_>>());
+        Some(Self {
+            positions: smoothed.fixes.len(),
+            position_ecef_m: best.position.into(),
+            sd_enu_m: *sd_enu_m,
+            rms_3d_m: errors.as_deref().map(rms),
+            max_3d_m: errors.as_deref().map(|errors| percentile(errors, 100.0)),
+            error_over_sigma: told.and_then(error_over_sigma),
+        })
+    }
+
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        let [x, y, z] = self.position_ecef_m;
+        let sigma = enu(self.sd_enu_m);
+        let mut facts = vec![(
+            "smoothed, best position (ECEF)",
+            format!("{x:.4} m, {y:.4} m, {z:.4} m ({sigma})"),
+        )];
+        if let (Some(rms), Some(most)) = (self.rms_3d_m, self.max_3d_m) {
+            let rms = format!("{}, at most {}", millimetres(rms), millimetres(most));
+            facts.push(("smoothed, RMS from the first epoch", rms));
+        }
+        facts
+    }
 }
 
 /// What was rejected of a satellite.
@@ -85,6 +144,7 @@ impl Report {
         setup: &Setup,
         filter: FilterKind,
         followed: &Followed,
+        smoothed: Option<&Followed>,
         warnings: Vec<String>,
     ) -> Option<Self> {
         let (last, fix) = (followed.last?, followed.fixes.last()?);
@@ -118,6 +178,7 @@ impl Report {
             most_rejected: most_rejected(followed),
             unused: followed.unused,
             warnings,
+            smoothed: smoothed.and_then(|it| SmoothedReport::of(it, truth.as_ref())),
             accuracy: truth.and_then(|truth| {
                 let Followed { fixes, deviations, .. } = followed;
                 let accuracy = Accuracy::of(fixes, begin, &truth)?;
@@ -223,6 +284,7 @@ impl Report {
             let minutes = |minutes: f64| format!("{minutes:.1} min");
             fact("convergence", accuracy.convergence_min.map_or_else(never, minutes));
         }
+        facts.extend(self.smoothed.iter().flat_map(SmoothedReport::facts));
         facts
     }
 }
