@@ -17,7 +17,7 @@ const STACK_BYTES: usize = 16 << 20;
 
 /// A receiver's positions.
 #[pyfunction]
-#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, mask, until))]
+#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, mask, until, smooth))]
 pub(crate) fn gnss<'py>(
     py: Python<'py>,
     obs: PathBuf,
@@ -31,6 +31,7 @@ pub(crate) fn gnss<'py>(
     systems: &str,
     mask: Option<f64>,
     until: Option<f64>,
+    smooth: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let motion = match process_noise {
         None => Motion::Static,
@@ -56,16 +57,12 @@ pub(crate) fn gnss<'py>(
             let recording = Recording::read(&paths).map_err(refused)?;
             let epochs = recording.epochs(until);
             let receiver = recording.receiver(Corrections::ALL);
-            let followed = follow(
-                &recording,
-                epochs,
-                &receiver,
-                config,
-                systems,
-                Order::Forwards,
-                false,
-                || (),
-            );
+            let pass =
+                |order| follow(&recording, epochs, &receiver, config, systems, order, false, || ());
+            let mut followed = pass(Order::Forwards);
+            if smooth {
+                followed = followed.smoothed(&pass(Order::Backwards));
+            }
             if followed.fixes.is_empty() {
                 let sentence = format!("none of {} epochs has a solution", epochs.len());
                 return Err(KestirimError::new_err(sentence));

@@ -286,4 +286,5 @@ def gnss(
     systems: str,
     mask: Optional[float],
     until: Optional[float],
+    smooth: bool,
 ) -> _ReceiverTrack: ...

@@ -311,6 +311,7 @@ def gnss(
     systems: Literal["all", "gps", "galileo"] = "all",
     mask: Optional[float] = None,
     until: Optional[float] = None,
+    smooth: bool = False,
 ) -> ReceiverTrack:
     """Where a GPS and Galileo receiver is, to a centimetre, from files; any may be packed with gzip.
 
@@ -321,6 +322,7 @@ def gnss(
     process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
     for one at rest. filter: what is done about observations that do not fit.
     systems: satellites that serve. mask: rad, lowest elevation, 8° unless it is said. until: s, the last epoch.
+    smooth: put together what is found forwards and backwards, from the first epoch on.
 
     The same as `host-sim replay gnss`, to the bit.
     """
@@ -336,6 +338,7 @@ def gnss(
         systems,
         mask,
         until,
+        smooth,
     )
     return ReceiverTrack(**results)
 
