@@ -130,7 +130,9 @@ fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{RangeRow, Sensors, track};
+    use proptest::prelude::*;
+
+    use super::super::{RangeRow, Sensors, Wheels, track};
     use super::*;
 
     const ANCHORS: [[f64; 3]; 5] =
@@ -200,5 +202,57 @@ mod tests {
         let trace = Trace { epochs: many, ..Trace::default() };
         let parts = [Tracked { events: &ends, trace: &trace }];
         assert_eq!(smooth(&setup, &parts, false), Err(Unsmoothed::TooLong));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+
+        /// Anchors on top of each other, ranges of anything, at times of anything: what comes out is a number, or a refusal.
+        #[test]
+        fn whatever_was_measured(
+            anchors in prop::collection::vec(prop::array::uniform3(-20.0..20.0_f64), 3..6),
+            on_a_line: bool,
+            rows in prop::collection::vec(
+                (
+                    0_i64..5_000_000,
+                    0_usize..7,
+                    prop_oneof![9 => 0.1..30.0_f64, 1 => any::<f64>()],
+                ),
+                0..200,
+            ),
+            speed in -2.0..2.0_f64,
+            turn_rate in prop_oneof![-2.0..2.0_f64, -1e3..1e3_f64],
+            in_space: bool,
+            is_static: bool,
+        ) {
+            let anchors: Vec<_> =
+                anchors.iter().map(|&[x, y, z]| if on_a_line { [x, x, 0.0] } else { [x, y, z] }).collect();
+            let mut time_us = 0;
+            let mut sensors = Sensors::default();
+            for (number, &(step_us, anchor, range)) in rows.iter().enumerate() {
+                // Most of them a tenth of a second apart, some at once.
+                time_us += if number % 7 == 0 { step_us } else { step_us % 100_000 };
+                let range = Some(range);
+                sensors.ranges.push(RangeRow { time_us, anchor: anchor % anchors.len(), range });
+                if number % 3 == 0 {
+                    sensors.wheels.push(Wheels { time_us, speed, turn_rate });
+                }
+            }
+            let setup = Setup {
+                has_wheels: !in_space,
+                dimensions: if in_space { Dimensions::Three } else { Dimensions::Two },
+                ..Setup::new(&anchors, 1.0)
+            };
+            let events = sensors.events();
+            let Ok(trace) = track(&setup, &events) else { return Ok(()) };
+            let parts = [Tracked { events: &events, trace: &trace }];
+            let Ok(smoothed) = smooth(&setup, &parts, is_static) else { return Ok(()) };
+            for epoch in &smoothed.parts[0] {
+                let [x, y, z] = epoch.position.unwrap();
+                prop_assert!((x + y + z).is_finite());
+                prop_assert!(epoch.sigma_m().is_some_and(|sigma| sigma.is_finite() && sigma >= 0.0));
+            }
+            prop_assert!(smoothed.biases.iter().flatten().all(|it| it.is_finite()));
+        }
     }
 }
