@@ -104,8 +104,9 @@ def test_smoothed_as_replay_smooths(data: Path, replay: Replay, name: str, heigh
         assert said(ours.smoothed.sigma[:, axis], 4) == [row[f"s{column}"] for row in track]
     assert [STATES[code] for code in ours.smoothed.health] == [row["health"] for row in track]
     assert ours.smoothed.biases.tolist() == [[it["bias_m"], it["sigma_m"]] for it in theirs["smoothed"]["anchors"]]
-    assert ours.smoothed.common_bias == theirs["smoothed"]["common_bias_m"]
-    assert ours.smoothed.excess_in_10_m == theirs["smoothed"]["excess_in_10_m"]
+    shared = ours.smoothed.common_bias + ours.smoothed.excess_in_10_m
+    names = ("common_bias_m", "common_bias_sigma_m", "excess_in_10_m", "excess_in_10_m_sigma")
+    assert shared == tuple(theirs["smoothed"][name] for name in names)
     assert list(ours.smoothed.to_dataframe().columns)[:3] == ["t", "position_x", "position_y"]
 
 

@@ -93,8 +93,8 @@ impl<const N: usize> Chain<N> {
         }
     }
 
-    /// Adds what is known of a parameter beforehand.
-    pub(crate) fn expect(&mut self, parameter: usize, residual: f64, information: f64) {
+    /// Adds the prior of a parameter: by how much it misses what it is about, and the inverse of its variance.
+    pub(crate) fn add_prior(&mut self, parameter: usize, residual: f64, information: f64) {
         self.corner[(parameter, parameter)] += information;
         self.corner_right[parameter] -= information * residual;
     }
@@ -193,7 +193,7 @@ mod tests {
         };
         for parameter in 0..2 {
             let (residual, information) = (draw(), 0.5);
-            chain.expect(parameter, residual, information);
+            chain.add_prior(parameter, residual, information);
             let mut row = DVector::zeros(size);
             row[2 * STATES + parameter] = 1.0;
             add(&row, residual, information);

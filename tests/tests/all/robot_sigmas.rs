@@ -85,7 +85,7 @@ impl Told {
         let (mut errors, mut sigmas, mut held) = (Vec::new(), Vec::new(), Vec::new());
         for (part, epochs) in recording.parts.iter().zip(parts) {
             // Of a tag put down what counts is the last position.
-            let last = if recording.is_static() { epochs.len() - 1 } else { 0 };
+            let last = if recording.is_static() { epochs.len().saturating_sub(1) } else { 0 };
             for epoch in &epochs[last..] {
                 let truth = part.truth.as_ref().and_then(|truth| truth.at(epoch.time_us));
                 let Some(((position, [xx, xy, yy]), truth)) =

@@ -70,8 +70,8 @@ class _SmoothedTag(TypedDict):
     sigma: _Floats
     health: _Codes
     biases: _Floats
-    common_bias: float
-    excess_in_10_m: float
+    common_bias: list[float]
+    excess_in_10_m: list[float]
 
 class _TagTrack(TypedDict):
     t: _Floats

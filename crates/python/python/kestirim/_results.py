@@ -126,7 +126,7 @@ class ImuLog(Frame):
 
 @dataclass(frozen=True)
 class SmoothedTag(Frame):
-    """Where a tag was, given what was measured before and after: the rows of its track; and what its a anchors measure."""
+    """Where a tag was, given what was measured before and after, at the times of its track; and the errors of a anchors."""
 
     position: Floats
     """(m, 3) m, room."""
@@ -135,11 +135,11 @@ class SmoothedTag(Frame):
     health: Codes
     """(m,) values of `Health`."""
     biases: Floats = dataclasses.field(metadata={"rows": False})
-    """(a, 2) m: what each measures too long beyond all others and what was known, and its standard deviation."""
-    common_bias: float
-    """m: what all of them measure too long."""
-    excess_in_10_m: float
-    """m: what more they do in 10 m of distance."""
+    """(a, 2) m: what each measures too long in addition to all of them and to what was known, and its standard deviation."""
+    common_bias: tuple[float, float]
+    """m: what all of them measure too long, and its standard deviation."""
+    excess_in_10_m: tuple[float, float]
+    """m: what more they do in 10 m of distance, and its standard deviation."""
 
 
 @dataclass(frozen=True)

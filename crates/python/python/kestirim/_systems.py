@@ -166,9 +166,21 @@ def robot(
         lost=results["lost"],
         height=results["height"],
         height_sigma=results["height_sigma"],
-        smoothed=None if smoothed is None else SmoothedTag(t=results["t"], **smoothed),
+        smoothed=None if smoothed is None else _smoothed(results["t"], smoothed),
         not_smoothed=results["not_smoothed"],
         reasons=results["reasons"],
+    )
+
+
+def _smoothed(t: Floats, found: _kestirim._SmoothedTag) -> SmoothedTag:
+    return SmoothedTag(
+        t=t,
+        position=found["position"],
+        sigma=found["sigma"],
+        health=found["health"],
+        biases=found["biases"],
+        common_bias=(found["common_bias"][0], found["common_bias"][1]),
+        excess_in_10_m=(found["excess_in_10_m"][0], found["excess_in_10_m"][1]),
     )
 
 

@@ -44,6 +44,17 @@ impl Epoch {
         self.sigma_m().is_some_and(|sigma| sigma > VAGUE_M)
     }
 
+    /// Adds what a height that was found leaves uncertain: of itself, and a root mean square distance in the plane, in
+    /// no direction more than in another.
+    pub(super) fn widen(&mut self, found: &FoundHeight) {
+        let half = 0.5 * found.position_sigma_m * found.position_sigma_m;
+        self.height_variance = Some(found.sigma_m * found.sigma_m);
+        if let Some([xx, _, yy]) = self.spread.as_mut() {
+            *xx += half;
+            *yy += half;
+        }
+    }
+
     /// Standard deviation of the position in the plane, root of its variances' sum, m.
     pub fn sigma_m(&self) -> Option<f64> {
         self.spread.map(|[xx, _, yy]| (xx + yy).max(0.0).sqrt())
@@ -70,16 +81,10 @@ impl Trace {
         self.ranges.len() - self.taken()
     }
 
-    /// Adds what a height that was found leaves uncertain: of itself, and a root mean square distance in the plane, in
-    /// no direction more than in another.
+    /// Adds to every epoch what a height that was found leaves uncertain.
     fn widen(&mut self, found: &FoundHeight) {
-        let half = 0.5 * found.position_sigma_m * found.position_sigma_m;
         for epoch in &mut self.epochs {
-            epoch.height_variance = Some(found.sigma_m * found.sigma_m);
-            if let Some([xx, _, yy]) = epoch.spread.as_mut() {
-                *xx += half;
-                *yy += half;
-            }
+            epoch.widen(found);
         }
     }
 

@@ -7,6 +7,7 @@ use crate::health::Counters;
 use crate::link::Link;
 use crate::pace::Pace;
 use crate::stillness::Stillness;
+use crate::wheels::noise::LARGEST_SPEED;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
 use heapless::Vec;
 use kestirim_kalman::Gaussian;
@@ -55,10 +56,8 @@ pub(crate) const LOST_US: u64 = 60_000_000;
 /// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
 /// after an exchange of messages.
 pub(crate) const LATE_US: u64 = 100_000;
-/// Largest plausible acceleration of what carries a tag, m/s² …
+/// Largest plausible acceleration of what carries a tag, m/s².
 const LARGEST_ACCELERATION: f64 = 500.0;
-/// … and largest speed, m/s or rad/s.
-const LARGEST_SPEED: f64 = 100.0;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Between ranges, the estimate follows the IMU in steps of this (µs).

@@ -1,5 +1,7 @@
-//! What wheels are doubted by, and what radios of a wide place measure too long in proportion to the distance: for the
-//! tracker, and for programs that smooth its track.
+//! Process noise of wheel odometry: for the tracker, and for programs that smooth its track.
+
+/// No robot drives faster, m/s, or turns faster, rad/s.
+pub const LARGEST_SPEED: f64 = 100.0;
 
 /// Variance that a metre of the way adds to each coordinate, m²/m: the wheels slip by 10 cm in a metre.
 pub const SLIP: f64 = 0.01;

@@ -40,17 +40,22 @@ struct HeightReport {
     biases_m: Vec<f64>,
 }
 
-/// What a smoother made of it, and what it found out of the anchors: what all of them measure too long, m, and what more in
-/// 10 m of distance, m.
+/// What a smoother made of it, and what it found out of the anchors.
 #[derive(Debug, Clone, Serialize)]
 struct SmoothedReport {
     accuracy: Option<Accuracy>,
+    /// What all anchors measure too long, m, in addition to what was known beforehand …
     common_bias_m: f64,
+    common_bias_sigma_m: f64,
+    /// … and what more in 10 m of distance, m.
     excess_in_10_m: f64,
+    excess_in_10_m_sigma: f64,
     anchors: Vec<AnchorReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<PointReport>>,
 }
 
-/// What an anchor measures too long beyond all others, m.
+/// What an anchor measures too long in addition to all of them, m.
 #[derive(Debug, Clone, Serialize)]
 struct AnchorReport {
     anchor: String,
@@ -74,7 +79,7 @@ pub(super) fn account(
     tracks: &Tracks,
 ) -> Result<Account, Error> {
     let traces = tracks.traces.as_slice();
-    let points = points(recording, traces);
+    let points = points(recording, traces.iter().map(Trace::last));
     let found = settings::of_recording(recording, settings)?.found;
     let report = Report {
         system: Robot::NAME,
@@ -111,30 +116,47 @@ pub(super) fn account(
     for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
         account.fact(name, value);
     }
-    let smoothed = report.smoothed.as_ref().and_then(|smoothed| smoothed.accuracy.as_ref());
-    for (name, value) in smoothed.iter().flat_map(|accuracy| accuracy.in_words()).skip(1) {
-        account.fact(format!("{name}, smoothed"), value);
+    if let Some(smoothed) = &report.smoothed {
+        for (name, value) in smoothed.accuracy.iter().flat_map(Accuracy::in_words) {
+            account.fact(format!("{name}, smoothed"), value);
+        }
+        let biases = smoothed.anchors.iter().map(|it| (&it.anchor, it.bias_m, it.sigma_m));
+        for (anchor, bias_m, sigma_m) in biases {
+            let bias = [smoothed.common_bias_m + bias_m, sigma_m].map(|metres| 100.0 * metres);
+            account.fact(
+                format!("anchor {anchor} too long, smoothed"),
+                format!("{:.0} ± {:.0} cm", bias[0], bias[1]),
+            );
+        }
     }
     Ok(account)
 }
 
 /// The points at which there is a position; none of a moving tag.
-fn points(recording: &Recording, traces: &[Trace]) -> Option<Vec<PointReport>> {
-    let found = recording.parts.iter().zip(traces).filter_map(|(part, trace)| {
-        let [x, y, z] = trace.last()?;
+fn points(
+    recording: &Recording,
+    last: impl Iterator<Item = Option<[f64; 3]>>,
+) -> Option<Vec<PointReport>> {
+    let found = recording.parts.iter().zip(last).filter_map(|(part, position)| {
+        let [x, y, z] = position?;
         Some(PointReport { point: part.name.clone(), x, y, z })
     });
     recording.is_static().then(|| found.collect())
 }
 
 fn of_smoothed(recording: &Recording, smoothed: &Smoothed) -> SmoothedReport {
-    let parts = smoothed.parts.iter().map(Vec::as_slice);
+    let parts = || smoothed.parts.iter().map(Vec::as_slice);
+    let last = parts().map(|epochs| epochs.last().and_then(|epoch| epoch.position));
     let anchors = recording.anchors.names.iter().zip(&smoothed.biases);
-    let [common_bias_m, excess_in_10_m] = smoothed.common;
+    let [[common_bias_m, common_bias_sigma_m], [excess_in_10_m, excess_in_10_m_sigma]] =
+        smoothed.common;
     SmoothedReport {
-        accuracy: Accuracy::of_parts(recording, parts),
+        accuracy: Accuracy::of_parts(recording, parts()),
+        points: points(recording, last),
         common_bias_m,
+        common_bias_sigma_m,
         excess_in_10_m,
+        excess_in_10_m_sigma,
         anchors: anchors
             .map(|(anchor, &[bias_m, sigma_m])| AnchorReport {
                 anchor: anchor.clone(),

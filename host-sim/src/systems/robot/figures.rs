@@ -41,9 +41,8 @@ pub(super) fn draw(
     ];
     let mut others: Vec<_> = room.into_iter().chain([positions]).collect();
     if let Some(smoothed) = &smoothed {
-        let mark = if recording.is_static() { Mark::Dots } else { Mark::Line };
-        others.push(smoothed.track("smoothed", mark).coloured(Colour::Other(1)));
-        errors.push(smoothed.error("smoothed").coloured(Colour::Other(1)));
+        others.push(smoothed.track("smoothed", smoothed.line()).coloured(Colour::Other(5)));
+        errors.push(smoothed.error("smoothed").coloured(Colour::Other(5)));
     }
     answer.figures = vec![
         shown.plan("plan", others),
@@ -221,6 +220,12 @@ impl<'a> Shown<'a> {
             .with_all(ours)
     }
 
+    /// A line, or points where each part has a single position.
+    pub fn line(&self) -> Mark {
+        let is_single = |trace: &Trace| trace.epochs.len() < 2;
+        if self.traces.iter().all(is_single) { Mark::Points } else { Mark::Line }
+    }
+
     /// Horizontal error over time; empty where no truth is known.
     pub fn error(&self, name: &str) -> Series {
         let of = |part: usize, trace: &Trace| {
@@ -231,7 +236,7 @@ impl<'a> Shown<'a> {
             let epochs = trace.epochs.iter();
             epochs.filter_map(|e| Some((e.time_us, error(e.position, e.time_us)?))).collect()
         };
-        self.over_time(name, Mark::Line, of)
+        self.over_time(name, self.line(), of)
     }
 
     fn truth(&self, part: usize, time_us: i64) -> Option<[f64; 2]> {

@@ -111,7 +111,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
 
 /// Why a setting has no effect as the recording and the others are.
 pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
-    use TrackerKind::{Aekf, AekfPublished, Default, Ekf, Lsq, Nls};
+    use TrackerKind::{Aekf, AekfPublished, Default, Ekf, Lsq};
     let tracker = settings.chosen::<TrackerKind>("tracker");
     let has = |what: fn(&Recording) -> bool| recording.is_some_and(what);
     match name {
@@ -128,6 +128,7 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
             Some(Idle::foreign("is for --tracker ekf, aekf or default"))
         }
         "gating" | "gate" | "huber" | "huber-long" | "huber-short" | "learning" | "decay"
+        | "smooth"
             if tracker != Default =>
         {
             Some(Idle::foreign("is for --tracker default"))
@@ -135,9 +136,6 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
         "gate" if !settings.is_on("gating") => Some(Idle::foreign("does not act with --no-gating")),
         "huber-long" | "huber-short" if !settings.is_on("huber") => {
             Some(Idle::foreign("does not act with --no-huber"))
-        }
-        "smooth" if matches!(tracker, Lsq | Nls) => {
-            Some(Idle::foreign("is for a tracker that knows its standard deviation"))
         }
         "calibrated" if has(|recording| recording.biases.is_none()) => {
             Some(Idle::foreign("is for recordings with --calibration"))

@@ -5,7 +5,7 @@ use nalgebra::{DVector, Matrix2, SMatrix, SVector};
 
 use super::super::Setup;
 use super::knots::Knot;
-use super::problem::{Motion, anchors};
+use super::problem::Motion;
 use crate::chain::Tie;
 
 /// Position and velocity of D axes each, N = 2 D.
@@ -24,12 +24,15 @@ const SLOWER: f64 = 4.0;
 const LONG: f64 = 1e4;
 /// An interval of a smaller share of the time constant has a series, in which nothing cancels.
 const SHORT: f64 = 0.02;
+/// Variance that any interval adds to a coordinate, m²: epochs some microseconds apart would be tied more firmly than
+/// numbers have digits.
+const LEAST_NOISE: f64 = 1e-8;
 /// No tag is faster beforehand, m²/s².
 const FASTEST: f64 = 4.0;
 
 impl<const D: usize, const N: usize> Free<D, N> {
     pub(super) fn new(setup: &Setup, config: &Config<f64>) -> Self {
-        let density = config.of_place(&anchors(setup)).acceleration_density;
+        let density = config.of_place(&setup.anchors()).acceleration_density;
         Self { density, decay_time: config.decay_time.map_or(LONG, |time| SLOWER * time) }
     }
 
@@ -43,12 +46,13 @@ impl<const D: usize, const N: usize> Free<D, N> {
         } else {
             tau.powi(3) * (share - 2.0 * lost + 0.5 * (1.0 - kept * kept))
         };
-        let both = 0.5 * (tau * lost).powi(2);
-        let velocity = 0.5 * tau * (1.0 - kept * kept);
+        let position = self.density * position + LEAST_NOISE;
+        let both = self.density * 0.5 * (tau * lost).powi(2);
+        let velocity = self.density * 0.5 * tau * (1.0 - kept * kept);
         // Of the noise's inverse, L Lᵀ: Lᵀ weighs.
-        let root = 1.0 / (position - both * both / velocity).sqrt();
-        let weight = Matrix2::new(root, -root * both / velocity, 0.0, 1.0 / velocity.sqrt());
-        (Matrix2::new(1.0, tau * lost, 0.0, kept), weight / self.density.sqrt())
+        let root = (position - both * both / velocity).sqrt().recip();
+        let weight = Matrix2::new(root, -root * both / velocity, 0.0, velocity.sqrt().recip());
+        (Matrix2::new(1.0, tau * lost, 0.0, kept), weight)
     }
 }
 
@@ -62,7 +66,7 @@ impl<const D: usize, const N: usize> Motion<N> for Free<D, N> {
         SVector::from_fn(|i, _| if i < D { knot.begin[i] } else { 0.0 })
     }
 
-    fn expected(&self) -> SVector<f64, N> {
+    fn prior(&self) -> SVector<f64, N> {
         // As fast as the model has it after a long time.
         let speed = (0.5 * self.density * self.decay_time).min(FASTEST);
         SVector::from_fn(|i, _| if i < D { 0.0 } else { speed.recip() })
@@ -105,6 +109,7 @@ mod tests {
                 let gain = nalgebra::Vector2::new(moved, (-since / 8.0).exp());
                 expected += gain * gain.transpose() * (0.3 * interval / f64::from(steps));
             }
+            expected[(0, 0)] += LEAST_NOISE;
             let error = (noise - expected).component_div(&expected).amax();
             assert!(error < 1e-3, "{interval} s: {noise} {expected}");
         }

@@ -1,6 +1,6 @@
 //! When the tag was somewhere, and what was measured then.
 
-use super::super::{Epoch, Event, Range, Setup};
+use super::super::{Dimensions, Epoch, Event, Range, Reception, Setup};
 use super::Tracked;
 
 /// A time at which the tag was somewhere.
@@ -36,7 +36,7 @@ pub(super) struct Knots {
     pub(super) is_static: bool,
 }
 
-/// With as many anchors as dimensions nothing is left over, and nothing can be told of errors.
+/// The least share that is believed: with as many anchors as dimensions nothing is left over.
 const LEAST_LEFT_OVER: f64 = 0.25;
 
 impl Knots {
@@ -47,13 +47,19 @@ impl Knots {
             let mut found = trace.epochs.iter().filter_map(|epoch| epoch.position);
             let begin = if is_static { found.next_back() } else { found.next() };
             let Some(mut begin) = begin else { continue };
-            let mut epochs = trace.epochs.iter();
+            // Of every range, in order, what became of it, and of every end of an epoch.
+            let (mut ranges, mut epochs) = (trace.ranges.iter(), trace.epochs.iter());
             for event in *events {
                 match event {
-                    Event::Range(range) => all.take(setup, range),
+                    Event::Range(_) => all.take(setup, ranges.next()),
+                    Event::Height { metres, .. } if setup.dimensions == Dimensions::Two => {
+                        begin[2] = *metres;
+                    }
                     Event::EpochEnd { .. } if !is_static => {
                         let Some(&epoch) = epochs.next() else { continue };
-                        begin = epoch.position.unwrap_or(begin);
+                        if let Some([x, y, z]) = epoch.position {
+                            begin = [x, y, z];
+                        }
                         all.knots.push(Knot { part, begin, epoch });
                     }
                     _ => {}
@@ -62,7 +68,7 @@ impl Knots {
             if let (true, Some(&epoch)) = (is_static, trace.epochs.last()) {
                 all.knots.push(Knot { part, begin, epoch });
             }
-            // Ranges that came too late for any epoch.
+            // Ranges after the last epoch.
             let end = all.knots.len();
             all.measured.retain(|measured| measured.knot < end);
         }
@@ -83,10 +89,12 @@ impl Knots {
         (1.0 - dimensions as f64 / at_a_place).max(LEAST_LEFT_OVER)
     }
 
-    /// Keeps a range of the knot to come, if it is one.
-    fn take(&mut self, setup: &Setup, range: &Range) {
-        let metres = range.metres - setup.bias(range.anchor);
-        if metres.is_finite() && range.metres > 0.0 && range.anchor < setup.anchors.len() {
+    /// Keeps a range of the knot to come, unless the tracker refused it: as no range, as one that came too late, or as one
+    /// that it had already. One that it weighed and left out may be of use.
+    fn take(&mut self, setup: &Setup, range: Option<&(Range, Reception)>) {
+        let Some((range, reception)) = range else { return };
+        if reception.taken || reception.nis.is_some() {
+            let metres = range.metres - setup.bias(range.anchor);
             self.measured.push(Measured { knot: self.knots.len(), anchor: range.anchor, metres });
         }
     }
@@ -103,7 +111,7 @@ mod tests {
         let rows = (0..60).map(|index: i64| {
             let anchor = (index % 3) as usize;
             let metres = (ANCHORS[anchor][0] - 2.0).hypot(ANCHORS[anchor][1] - 1.0);
-            // One is no number, and one comes after its epoch.
+            // One is no number, and one comes more than a second late.
             let range = Some(if index == 30 { f64::NAN } else { metres });
             let time_us = if index == 40 { 0 } else { index / 3 * 100_000 };
             RangeRow { time_us, anchor, range }
@@ -120,7 +128,7 @@ mod tests {
         let part = Tracked { events: &events, trace: &trace };
         for (is_static, expected) in [(false, trace.epochs.len()), (true, 1)] {
             let knots = Knots::new(&setup, &[part], is_static).unwrap();
-            assert_eq!((knots.knots.len(), knots.measured.len()), (expected, 59));
+            assert_eq!((knots.knots.len(), knots.measured.len()), (expected, 58));
             assert!(knots.measured.iter().all(|it| it.knot < expected && it.metres > 0.0));
         }
         let nothing = Trace::default();

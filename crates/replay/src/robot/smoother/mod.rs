@@ -1,7 +1,7 @@
 //! The whole recording at once: where a tag was, given what was measured before and after.
 //!
 //! A fixed-interval smoother in the form of nonlinear least squares (Bell, *The iterated Kalman smoother as a Gauss–Newton
-//! method*, 1994). Ranges and motion have the tracker's models; each anchor's constant error is a parameter of the whole
+//! method*, 1994). Ranges and motion have the tracker's models, but for a velocity that decays more slowly; each anchor's constant error is a parameter of the whole
 //! run, and so are the turns' gain and drift of a robot on wheels. Ranges are weighed as Student's distribution has it,
 //! with a heavier tail where they are too long; how large their noise is, and how long it lasts, is estimated.
 
@@ -19,27 +19,28 @@ use self::knots::Knots;
 use self::problem::{Problem, Solved};
 use self::wheels::Driven;
 use super::{Dimensions, Epoch, Event, Setup, Trace};
+use crate::metrics::rms;
 
 /// A part of a recording, and what a tracker made of it, from which the smoother begins.
 #[derive(Debug, Clone, Copy)]
 pub struct Tracked<'a> {
     /// What the sensors said.
     pub events: &'a [Event],
-    /// Where the tracker found the tag.
+    /// Where the tracker found the tag, and what became of every range.
     pub trace: &'a Trace,
 }
 
 /// What a smoother made of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Smoothed {
-    /// Of each part that was tracked: of a tag that moves, its trace's epochs from the first range; of one that was put
-    /// down, a single one.
+    /// Of each part: of a tag that moves, its trace's epochs; of one that was put down, a single one; none of a part in which
+    /// the tracker never found it.
     pub parts: Vec<Vec<Epoch>>,
     /// What each anchor measures too long, m, beyond what was known beforehand and what all of them do, with its standard
     /// deviation, m.
     pub biases: Vec<[f64; 2]>,
-    /// What all of them measure too long, m, and what more in 10 m of distance, m.
-    pub common: [f64; 2],
+    /// What all of them measure too long, m, and what more in 10 m of distance, m, each with its standard deviation.
+    pub common: [[f64; 2]; 2],
 }
 
 /// Why a recording is not smoothed.
@@ -52,6 +53,9 @@ pub enum Unsmoothed {
     /// The ranges do not tell where the tag was.
     #[error("the ranges do not tell where the tag was")]
     NotObservable,
+    /// The positions do not settle.
+    #[error("the positions do not settle")]
+    NotConverged,
     /// There are more epochs than are smoothed together.
     #[error("it has more than {MOST_KNOTS} epochs")]
     TooLong,
@@ -63,9 +67,10 @@ pub enum Unsmoothed {
     Contradicts,
 }
 
-/// So many epochs are smoothed together, in about a gigabyte with the most anchors.
+/// So many epochs are smoothed together, in about 250 MB with the most anchors.
 const MOST_KNOTS: usize = 50_000;
-/// By how many of the tracker's standard deviations the smoothed track may differ from the tracker's, root mean square.
+/// By how many of the tracker's standard deviations the smoothed positions may differ from the tracker's, root mean
+/// square.
 const MOST_SIGMAS: f64 = 2.0;
 
 /// Smooths the parts of a recording together. A static recording is one place a part; else the tag moves.
@@ -90,39 +95,51 @@ pub fn smooth(
                 .solve()
         }
         Dimensions::Two if setup.is_wheeled() && !is_static => {
-            let to_a_side = [1.0, -1.0].map(|gain| {
-                let motion = Driven::new(parts, &knots, gain);
+            // To which side turns are counted: what is more probable.
+            let to_a_side = [1.0, -1.0].map(|side| {
+                let motion = Driven::new(parts, &knots, side);
                 Problem::<4, 2, _>::new(setup, &config, &knots, motion).solve()
             });
-            to_a_side.into_iter().flatten().min_by(|a, b| a.cost.total_cmp(&b.cost))
+            match to_a_side {
+                [Ok(left), Ok(right)] if left.cost <= right.cost => Ok(left),
+                [Ok(left), Err(_)] => Ok(left),
+                [_, right] => right,
+            }
         }
         Dimensions::Two => {
             Problem::<4, 2, _>::new(setup, &config, &knots, Free::<2, 4>::new(setup, &config))
                 .solve()
         }
     };
-    accepted(solved.ok_or(Unsmoothed::NotObservable)?, &knots)
+    accepted(solved?, &knots)
 }
 
-/// The result, if it is worth more than the tracker's and agrees with it.
+/// The result, if it is worth more than the tracker's and agrees with it, at most epochs.
 fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
-    let [mut moved, mut ours, mut trackers] = [0.0; 3];
+    let (mut certain, mut moved) = (Vec::new(), Vec::new());
     for (knot, epoch) in knots.knots.iter().zip(&solved.epochs) {
         let (Some(before), Some(now)) = (knot.epoch.position, epoch.position) else { continue };
         let (Some(was), Some(is)) = (knot.epoch.sigma_m(), epoch.sigma_m()) else { continue };
-        moved += (now[0] - before[0]).powi(2) + (now[1] - before[1]).powi(2);
-        trackers += was * was;
-        ours += is * is;
+        certain.push(is / was);
+        moved.push((now[0] - before[0]).hypot(now[1] - before[1]) / was);
     }
-    if !ours.is_finite() || trackers <= 0.0 || ours > trackers {
+    let median = |mut shares: Vec<f64>| {
+        shares.sort_by(f64::total_cmp);
+        shares.get(shares.len() / 2).copied()
+    };
+    if !median(certain).is_some_and(|share| share <= 1.0) {
         return Err(Unsmoothed::LessCertain);
     }
-    if moved > MOST_SIGMAS * MOST_SIGMAS * trackers {
+    if !rms(&moved).is_finite() || rms(&moved) > MOST_SIGMAS {
         return Err(Unsmoothed::Contradicts);
     }
     let mut parts: Vec<Vec<Epoch>> = vec![Vec::new(); knots.parts];
     for (knot, mut epoch) in knots.knots.iter().zip(solved.epochs) {
-        epoch.health = if epoch.is_vague() { Reason::NotObservable.state() } else { State::Good };
+        if epoch.is_vague() {
+            epoch.health = Reason::NotObservable.state();
+        } else if knot.epoch.is_vague() || knot.epoch.position.is_none() {
+            epoch.health = State::Good;
+        }
         parts[knot.part].push(epoch);
     }
     Ok(Smoothed { parts, biases: solved.biases, common: solved.common })
@@ -132,7 +149,7 @@ fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::{RangeRow, Sensors, Wheels, track};
+    use super::super::{FoundHeight, RangeRow, Sensors, Wheels, track};
     use super::*;
 
     const ANCHORS: [[f64; 3]; 5] =
@@ -181,6 +198,43 @@ mod tests {
         for ([bias, _], expected) in smoothed.biases.iter().zip(ERRORS) {
             assert!((bias - mean - expected + 0.01).abs() < 0.04, "{:?}", smoothed.biases);
         }
+    }
+
+    /// A driver that stamps the ranges of a round one after the other, some microseconds apart.
+    #[test]
+    fn epochs_may_be_microseconds_apart() {
+        let (setup, events) = (Setup::new(&ANCHORS, 1.0), round());
+        let mut rows: Vec<RangeRow> = Vec::new();
+        for event in &events {
+            let Event::Range(range) = event else { continue };
+            let time_us = range.time_us + 5 * (rows.len() % 5) as i64;
+            rows.push(RangeRow { time_us, anchor: range.anchor, range: Some(range.metres) });
+        }
+        let events = Sensors::ranges(rows).events();
+        let trace = track(&setup, &events).unwrap();
+        let parts = [Tracked { events: &events, trace: &trace }];
+        let smoothed = smooth(&setup, &parts, false).unwrap();
+        let (error, sigma) = (rmse(&smoothed.parts[0]), smoothed.parts[0][1500].sigma_m().unwrap());
+        assert!(error < 0.04 && (0.3..3.0).contains(&(error / sigma)), "{error} {sigma}");
+    }
+
+    #[test]
+    fn a_height_that_was_found_adds_to_the_deviations() {
+        let (setup, events) = (Setup::new(&ANCHORS, 1.0), round());
+        let found = FoundHeight {
+            metres: 1.0,
+            sigma_m: 0.2,
+            position_sigma_m: 0.1,
+            biases: Vec::new(),
+            is_of_ranges: true,
+        };
+        let sigma = |setup: &Setup| {
+            let trace = track(setup, &events).unwrap();
+            let parts = [Tracked { events: &events, trace: &trace }];
+            smooth(setup, &parts, false).unwrap().parts[0][300].sigma_m().unwrap()
+        };
+        let [known, found] = [sigma(&setup), sigma(&setup.clone().at(found))];
+        assert!((found - known.hypot(0.1)).abs() < 1e-9, "{known} {found}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::knots::{Knots, Measured};
 const FREEDOM: [f64; 2] = [2.0, 5.0];
 /// No scale is smaller, m: a reflection nearby is as much.
 const LEAST_SIGMA: f64 = 0.05;
-/// Errors that last are looked for in so long, s.
+/// Errors that last are looked for in so long, µs, or in the whole stay of a tag that is put down.
 const BLOCK_US: i64 = 5_000_000;
 
 /// The noise of all anchors.
@@ -38,6 +38,14 @@ impl Noise {
     /// Of so many anchors with this standard deviation, m.
     pub(super) fn new(anchors: usize, sigma: f64) -> Self {
         Self { links: vec![Link { sigma, inflation: 1.0 }; anchors] }
+    }
+
+    /// Takes each range's error for its own: so that two solutions can be compared of which each found errors to last as long as
+    /// it likes.
+    pub(super) fn forget_lasting(&mut self) {
+        for link in &mut self.links {
+            link.inflation = 1.0;
+        }
     }
 
     /// What a range counts that is expected to be longer by `residual`, m, than it was measured.

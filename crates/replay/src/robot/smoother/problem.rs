@@ -1,9 +1,10 @@
 //! The least squares of a recording, and how they are solved.
 
-use kestirim_uwb_tracker::{Anchor, Config};
+use kestirim_uwb_tracker::Config;
 use nalgebra::{DVector, SVector};
 
 use super::super::{Epoch, Setup};
+use super::Unsmoothed;
 use super::knots::{Knot, Knots, Measured};
 use super::noise::Noise;
 use crate::chain::{Chain, Solution, Tie, Want};
@@ -14,7 +15,7 @@ pub(super) trait Motion<const N: usize> {
     fn begin(&self, knot: &Knot) -> SVector<f64, N>;
 
     /// Inverse variances of every part's first state beforehand, about zero.
-    fn expected(&self) -> SVector<f64, N>;
+    fn prior(&self) -> SVector<f64, N>;
 
     /// Parameters of the motion: what they are about beforehand, and by what standard deviation.
     fn parameters(&self) -> Vec<[f64; 2]> {
@@ -41,16 +42,13 @@ const ROUGH_ROUNDS: usize = 4;
 const BIAS_SHARE: f64 = 1.2;
 /// A step of any position that is shorter ends the improving, m.
 const SMALL_STEP: f64 = 1e-3;
-/// A step that makes the cost larger is halved, down to this share.
+/// With the noise as it was found, positions are improved so often, until none moves by more than this, m.
+const LAST_STEPS: usize = 20;
+const SETTLED: f64 = 0.01;
+/// A step that makes the cost larger is halved, down to this share, below which there is none.
 const LEAST_SHARE: f64 = 0.1;
 /// Inverse variance of every part's first position about where it is, 1/m²: so that equations always have a solution.
 const HARDLY: f64 = 1e-6;
-
-/// The anchors as a tracker has them.
-pub(super) fn anchors(setup: &Setup) -> Vec<Anchor<f64>> {
-    let anchor = |&position| Anchor { position: SVector::from(position), bias: 0.0 };
-    setup.anchors.iter().map(anchor).collect()
-}
 
 /// Unknowns of a tag in D dimensions, N of each knot; and as parameters each anchor's own error, the error common to
 /// all, its excess in 10 m, and those of the motion.
@@ -73,9 +71,9 @@ pub(super) struct Solved {
     pub(super) epochs: Vec<Epoch>,
     /// What each anchor measures too long beyond all others, with its standard deviation, m.
     pub(super) biases: Vec<[f64; 2]>,
-    /// What all do, and what more in 10 m, m.
-    pub(super) common: [f64; 2],
-    /// −2 ln of how probable all is, but for a constant.
+    /// What all do, and what more in 10 m, m, each with its standard deviation.
+    pub(super) common: [[f64; 2]; 2],
+    /// −2 ln of how probable all is if each range's error is its own, but for a constant.
     pub(super) cost: f64,
 }
 
@@ -91,7 +89,7 @@ struct Expected<const N: usize> {
 
 impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
     pub(super) fn new(setup: &'a Setup, config: &Config<f64>, knots: &'a Knots, motion: M) -> Self {
-        let anchors = anchors(setup);
+        let anchors = setup.anchors::<f64>();
         let scaled = config.of_place(&anchors);
         let common = match setup.biases {
             // What is left of the common error is one of each anchor.
@@ -112,8 +110,11 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         }
     }
 
-    /// The most probable track; none if nothing tells it.
-    pub(super) fn solve(mut self) -> Option<Solved> {
+    /// The most probable track.
+    ///
+    /// # Errors
+    /// [`Unsmoothed::NotObservable`] or [`Unsmoothed::NotConverged`].
+    pub(super) fn solve(mut self) -> Result<Solved, Unsmoothed> {
         let known = self.known.clone();
         for round in 0..ROUNDS {
             let is_rough = round < ROUGH_ROUNDS;
@@ -121,11 +122,11 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
                 self.known[index][1] = known[1] * if is_rough { 0.01 } else { 1.0 };
             }
             for _ in 0..STEPS {
-                if self.improve()? < SMALL_STEP {
+                if self.improve().ok_or(Unsmoothed::NotObservable)? < SMALL_STEP {
                     break;
                 }
             }
-            let solution = self.certainty()?;
+            let solution = self.certainty().ok_or(Unsmoothed::NotObservable)?;
             let mut noise = self.noise.clone();
             let changed = noise.learn(self.knots, self.knots.left_over(D), |measured| {
                 let expected = self.expected(measured);
@@ -137,9 +138,20 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
                 break;
             }
         }
-        self.improve()?;
-        let (solution, cost) = (self.certainty()?, self.equations(None));
-        Some(self.solved(&solution, cost))
+        let mut moved = f64::INFINITY;
+        for _ in 0..LAST_STEPS {
+            moved = self.improve().ok_or(Unsmoothed::NotObservable)?;
+            if moved < SMALL_STEP {
+                break;
+            }
+        }
+        if moved > SETTLED {
+            return Err(Unsmoothed::NotConverged);
+        }
+        let solution = self.certainty().ok_or(Unsmoothed::NotObservable)?;
+        self.noise.forget_lasting();
+        let cost = self.equations(None);
+        Ok(self.solved(&solution, cost))
     }
 
     fn chain(&self) -> Chain<N> {
@@ -160,17 +172,19 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         let solution = chain.solve(Want::Step)?;
         let (states, parameters) = (self.states.clone(), self.parameters.clone());
         let mut share = 1.0;
-        loop {
+        while share > LEAST_SHARE {
             let steps = states.iter().zip(&solution.states);
             self.states = steps.map(|(state, step)| state + step * share).collect();
             self.parameters = &parameters + &solution.parameters * share;
-            if self.equations(None) <= cost + 1e-9 * cost.abs() || share < LEAST_SHARE {
-                break;
+            if self.equations(None) <= cost + 1e-9 * cost.abs() {
+                let moved = solution.states.iter().map(|step| share * step.rows(0, D).norm());
+                return Some(moved.fold(0.0, f64::max));
             }
             share *= 0.5;
         }
-        let moved = solution.states.iter().map(|step| share * step.rows(0, D).norm());
-        Some(moved.fold(0.0, f64::max))
+        // No step makes it better.
+        (self.states, self.parameters) = (states, parameters);
+        Some(0.0)
     }
 
     fn expected(&self, measured: &Measured) -> Expected<N> {
@@ -197,7 +211,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         for (index, [about, sigma]) in self.known.iter().enumerate() {
             let (residual, information) = (self.parameters[index] - about, sigma.powi(-2));
             if let Some(chain) = chain.as_deref_mut() {
-                chain.expect(index, residual, information);
+                chain.add_prior(index, residual, information);
             }
             cost += information * residual * residual;
         }
@@ -210,7 +224,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
             cost += weighed.cost;
         }
         let own = self.parameters.rows(count, self.known.len() - count).into_owned();
-        let expected = self.motion.expected();
+        let expected = self.motion.prior();
         for (index, knot) in knots.iter().enumerate() {
             if index == 0 || knots[index - 1].part != knot.part {
                 cost += self.begin(chain.as_deref_mut(), index, &expected);
@@ -260,12 +274,16 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         let epochs = epochs.map(|((knot, state), covariance)| {
             let at = |axis: usize| if axis < D { state[axis] } else { knot.begin[axis] };
             let height = (D == 3).then(|| covariance[(2, 2)]);
-            Epoch {
+            let mut epoch = Epoch {
                 position: Some(std::array::from_fn(at)),
                 spread: Some([covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]]),
-                height_variance: height.or(knot.epoch.height_variance),
+                height_variance: height,
                 ..knot.epoch
+            };
+            if let Some(found) = &self.setup.found {
+                epoch.widen(found);
             }
+            epoch
         });
         let count = self.setup.anchors.len();
         let bias = |index| {
@@ -274,7 +292,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         Solved {
             epochs: epochs.collect(),
             biases: (0..count).map(bias).collect(),
-            common: [self.parameters[count], self.parameters[count + 1]],
+            common: [bias(count), bias(count + 1)],
             cost,
         }
     }

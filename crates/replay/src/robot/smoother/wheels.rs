@@ -30,19 +30,24 @@ enum Step {
 
 /// Variances that any step adds, of a coordinate, m², and of c and s: so that no tie is rigid.
 const LEAST_NOISE: [f64; 2] = [1e-8, 1e-10];
-/// The drift's own wandering, rad²/s.
-const WANDERING: f64 = 1e-8;
+/// Variance that any time adds to the heading, rad²/s: the drift is not quite constant.
+const HEADING_WALK: f64 = 1e-8;
 /// Standard deviation of the drift beforehand, rad/s.
 const DRIFT_SIGMA: f64 = 0.01 * noise::DRIFT_SIGMA;
 
 impl Driven {
     pub(super) fn new(parts: &[Tracked<'_>], knots: &Knots, side: f64) -> Self {
         let of_part = |Tracked { events, .. }: &Tracked<'_>| {
-            let wheels = events.iter().filter_map(|event| match event {
-                Event::Wheels(wheels) => Some(*wheels),
-                _ => None,
-            });
-            wheels.collect::<Vec<_>>()
+            let is_plausible = |rate: f64| rate.is_finite() && rate.abs() <= noise::LARGEST_SPEED;
+            let mut samples: Vec<Wheels> = Vec::new();
+            for event in *events {
+                let Event::Wheels(wheels) = event else { continue };
+                let is_later = samples.last().is_none_or(|last| last.time_us < wheels.time_us);
+                if is_later && is_plausible(wheels.speed) && is_plausible(wheels.turn_rate) {
+                    samples.push(*wheels);
+                }
+            }
+            samples
         };
         let samples: Vec<_> = parts.iter().map(of_part).collect();
         let steps = knots.knots.windows(2).map(|pair| {
@@ -113,7 +118,7 @@ impl Way {
                     let (way, turn) = (way.abs(), turn.abs());
                     all.noise[0] += way * noise::SLIP;
                     all.noise[1] += way * noise::WAY_TO_HEADING + turn * noise::TURN_TO_HEADING;
-                    all.noise[1] += interval * WANDERING;
+                    all.noise[1] += interval * HEADING_WALK;
                 }
                 Step::Unknown { speed, interval } => {
                     let square = (speed * speed).max(noise::UNKNOWN_SPEED.powi(2));
@@ -131,7 +136,7 @@ impl Motion<4> for Driven {
         SVector::from([knot.begin[0], knot.begin[1], 0.0, 0.0])
     }
 
-    fn expected(&self) -> SVector<f64, 4> {
+    fn prior(&self) -> SVector<f64, 4> {
         // A scale of one or so, in any direction.
         SVector::from([0.0, 0.0, 1.0, 1.0])
     }

@@ -6,7 +6,7 @@ use crate::stream::Stream;
 use crate::systems::robot::recording::Recording;
 use crate::systems::robot::track::Tracks;
 
-/// What was measured, what the tracker makes of it, and the truth as far as it is known. Points that were
+/// What was measured, what the tracker makes of it, and a smoother if it was asked for, and the truth as far as it is known. Points that were
 /// recorded one by one begin at the same time, so each has topics of its own.
 pub fn streams(recording: &Recording, tracks: &Tracks) -> Vec<Stream> {
     let seconds = |time_us: i64| time_us as f64 * 1e-6;

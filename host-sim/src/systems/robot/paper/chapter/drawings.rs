@@ -115,17 +115,17 @@ pub(super) fn ours(day: &Day, id: &str, title: &str) -> Figure {
         raw.track("trilateration", Mark::Dots).coloured(Colour::Published),
         uncalibrated.track("uncalibrated", Mark::Line).coloured(Colour::Other(4)),
     ];
+    let mut caption =
+        "The default tracker with its anchors calibrated, with 95 % ellipses, without calibration, and trilateration"
+            .to_owned();
     if let Some(smoothed) = day.calibrated.smoothed_traces() {
-        let smoothed =
-            Shown::new(&day.recording, &smoothed).track("smoothed, calibrated", Mark::Line);
-        others.push(smoothed.coloured(Colour::Other(1)));
+        let smoothed = Shown::new(&day.recording, &smoothed);
+        let track = smoothed.track("smoothed, calibrated", smoothed.line());
+        others.push(track.coloured(Colour::Other(5)));
+        caption.push_str("; and the calibrated one smoothed, from what came before and after");
     }
     let figure = Shown::new(&day.recording, &day.calibrated.traces).plan(id, others);
-    titled(
-        within(figure, &day.recording),
-        title,
-        "The default tracker with its anchors calibrated, with 95 % ellipses, without calibration, and trilateration; what a smoother makes of it that knows what came after, too.",
-    )
+    titled(within(figure, &day.recording), title, &format!("{caption}."))
 }
 
 /// The ranges of the round, with what was left out.
