@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use kestirim_gnss_ppp::Corrections;
 use kestirim_health::Health;
 use kestirim_ppp_filter::{Config, Health as Quality, Motion};
-use kestirim_replay::gnss::{FilterKind, Followed, Order, Paths, Recording, Systems, follow};
+use kestirim_replay::gnss::{FilterKind, Followed, Order, Pass, Paths, Recording, Systems, follow};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -57,11 +57,13 @@ pub(crate) fn gnss<'py>(
             let recording = Recording::read(&paths).map_err(refused)?;
             let epochs = recording.epochs(until);
             let receiver = recording.receiver(Corrections::ALL);
-            let pass =
-                |order| follow(&recording, epochs, &receiver, config, systems, order, false, || ());
-            let mut followed = pass(Order::Forwards);
+            let run = |order| {
+                let pass = Pass { systems, order, with_residuals: false };
+                follow(&recording, epochs, &receiver, config, pass, || ())
+            };
+            let mut followed = run(Order::Forwards);
             if smooth {
-                followed = followed.smoothed(&pass(Order::Backwards));
+                followed = followed.smoothed(&run(Order::Backwards));
             }
             if followed.fixes.is_empty() {
                 let sentence = format!("none of {} epochs has a solution", epochs.len());

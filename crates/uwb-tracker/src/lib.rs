@@ -18,6 +18,7 @@ mod start;
 mod stillness;
 mod take_in;
 mod tracker;
+pub mod wheel_noise;
 mod wheels;
 
 pub use config::Config;
@@ -31,4 +32,4 @@ pub use sample::{InertialSample, OdometrySample, Outcome, RangeSample, Report};
 pub use tracker::{
     CalibratedPlaneTracker, CalibratedSpaceTracker, PlaneTracker, SpaceTracker, Tracker,
 };
-pub use wheels::{WheelTracker, noise as wheel_noise};
+pub use wheels::WheelTracker;

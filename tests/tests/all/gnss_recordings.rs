@@ -6,7 +6,7 @@
 use host_sim::metrics::{error_over_sigma, rms};
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
-use kestirim_replay::gnss::{Accuracy, Order, Recording, Systems, follow};
+use kestirim_replay::gnss::{Accuracy, Order, Pass, Recording, follow};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, ESBC_MULTI, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -66,12 +66,13 @@ fn smoothed_from_the_first_epoch_on() {
         let receiver = recording.receiver(Corrections::ALL);
         let truth = Vector3::from(station.truth);
         for (motion, most) in [(Motion::Static, still), (KINEMATIC, moving)] {
-            let pass = |order| {
+            let run = |order| {
                 let epochs = recording.epochs(Some(station.until));
                 let config = Config::new(motion);
-                follow(&recording, epochs, &receiver, config, Systems::All, order, false, || ())
+                let pass = Pass { order, ..Pass::default() };
+                follow(&recording, epochs, &receiver, config, pass, || ())
             };
-            let [forwards, backwards] = [Order::Forwards, Order::Backwards].map(pass);
+            let [forwards, backwards] = [Order::Forwards, Order::Backwards].map(run);
             let both = forwards.smoothed(&backwards);
             assert_eq!(both.fixes.len(), forwards.fixes.len());
             let pairs = both.fixes.iter().zip(&both.deviations);

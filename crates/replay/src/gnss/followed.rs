@@ -160,25 +160,33 @@ pub enum Order {
     Backwards,
 }
 
-/// Feeds a filter with the satellites of some `systems` in `epochs`; `with_residuals` keeps what became of each
-/// observation. `next` is called after each epoch. What came of them is in the order of time, however they were gone
-/// through.
+/// How a filter goes through epochs.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pass {
+    /// Whose satellites it is given.
+    pub systems: Systems,
+    /// In which order.
+    pub order: Order,
+    /// Whether to keep what became of each observation.
+    pub with_residuals: bool,
+}
+
+/// Feeds a filter with `epochs`. `next` is called after each. What came of them is in the order of time, however they
+/// were gone through.
 pub fn follow(
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     config: Config,
-    systems: Systems,
-    order: Order,
-    with_residuals: bool,
+    pass: Pass,
     next: impl FnMut(),
 ) -> Followed {
-    if recording.has_galileo() && systems != Systems::Gps {
+    if recording.has_galileo() && pass.systems != Systems::Gps {
         let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
-        feed(filter, recording, epochs, receiver, systems, order, with_residuals, next)
+        feed(filter, recording, epochs, receiver, pass, next)
     } else {
         let filter = PppFilter::<STATES>::new(config);
-        feed(filter, recording, epochs, receiver, systems, order, with_residuals, next)
+        feed(filter, recording, epochs, receiver, pass, next)
     }
 }
 
@@ -187,11 +195,10 @@ fn feed<const N: usize>(
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
-    systems: Systems,
-    order: Order,
-    with_residuals: bool,
+    pass: Pass,
     mut next: impl FnMut(),
 ) -> Followed {
+    let Pass { systems, order, with_residuals } = pass;
     let mask = filter.config().elevation_mask;
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
     let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();

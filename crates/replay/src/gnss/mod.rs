@@ -18,7 +18,7 @@ pub use self::accuracy::{Accuracy, BEGINNING};
 pub use self::check::check;
 pub use self::choices::{FilterKind, STATES, STATES_WITH_GALILEO, Systems};
 pub use self::coverage::names;
-pub use self::followed::{Both, Fix, Followed, Last, Order, Slips, Tally, follow};
+pub use self::followed::{Both, Fix, Followed, Last, Order, Pass, Slips, Tally, follow};
 pub use self::model::{Epoch, epoch};
 pub use self::outage::{Outage, Outages, Unused};
 pub use self::products::{Products, Satellite, Unusable};

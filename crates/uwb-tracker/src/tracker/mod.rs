@@ -7,7 +7,7 @@ use crate::health::Counters;
 use crate::link::Link;
 use crate::pace::Pace;
 use crate::stillness::Stillness;
-use crate::wheels::noise::LARGEST_SPEED;
+use crate::wheel_noise::LARGEST_SPEED;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
 use heapless::Vec;
 use kestirim_kalman::Gaussian;

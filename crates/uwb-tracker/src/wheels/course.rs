@@ -1,11 +1,11 @@
 //! One opinion of where a robot on wheels is.
 
 use super::drive::Drive;
-use super::noise::{
+use super::state::{BIAS, COSINE, COUNT, DRIFT, EXCESS, GAIN, SINE, X, Y};
+use crate::wheel_noise::{
     DRIFT_SIGMA, GAIN_SIGMA, SLIP, TURN_TO_HEADING, UNKNOWN_SPEED, UNKNOWN_TIME, UNKNOWN_TURN,
     WAY_TO_HEADING,
 };
-use super::state::{BIAS, COSINE, COUNT, DRIFT, EXCESS, GAIN, SINE, X, Y};
 use crate::{Error, OdometrySample};
 use kestirim_kalman::{Covariance, Gaussian, Innovation};
 use kestirim_scalar::{Columns, Components, Scalar};

@@ -2,7 +2,6 @@
 
 mod course;
 mod drive;
-pub mod noise;
 pub(crate) mod state;
 
 use self::course::Course;
@@ -15,7 +14,9 @@ use crate::pace::Pace;
 use crate::start::start;
 use crate::take_in::take_in;
 use crate::tracker::{LATE_US, LOST_SIGMA, LOST_US, plausible_wheels};
-use crate::{Anchor, Config, Error, Health, OdometrySample, Outcome, RangeSample, Report};
+use crate::{
+    Anchor, Config, Error, Health, OdometrySample, Outcome, RangeSample, Report, wheel_noise,
+};
 use heapless::Vec;
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::{Components, Scalar};
@@ -185,8 +186,9 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
 
     #[inline]
     fn fresh_wheels(&self, time_us: u64) -> Option<&OdometrySample<T>> {
-        let is_fresh =
-            |wheels: &&OdometrySample<T>| time_us.saturating_sub(wheels.time_us) <= noise::FRESH_US;
+        let is_fresh = |wheels: &&OdometrySample<T>| {
+            time_us.saturating_sub(wheels.time_us) <= wheel_noise::FRESH_US
+        };
         self.wheels.as_ref().filter(is_fresh)
     }
 

@@ -1,6 +1,6 @@
 //! Feeds filters with a recording: one, or all for comparison.
 
-use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Order, Recording, follow};
+use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Order, Pass, Recording, follow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -36,17 +36,16 @@ impl Track {
         let passes = chosen.len() + usize::from(setup.is_smoothed);
         let progress = output::late_progress((epochs.len() * passes) as u64, "epochs");
         let receiver = recording.receiver(setup.corrections);
-        let pass = |filter: FilterKind, order: Order| {
+        let run = |filter: FilterKind, order: Order| {
             let with_residuals =
                 detail == Detail::Every && filter == main && order == Order::Forwards;
-            let (config, systems) = (setup.config(filter), setup.systems);
-            let next = || progress.inc();
-            follow(recording, epochs, &receiver, config, systems, order, with_residuals, next)
+            let pass = Pass { systems: setup.systems, order, with_residuals };
+            follow(recording, epochs, &receiver, setup.config(filter), pass, || progress.inc())
         };
         let forwards = || -> Vec<_> {
-            chosen.par_iter().map(|&filter| (filter, pass(filter, Order::Forwards))).collect()
+            chosen.par_iter().map(|&filter| (filter, run(filter, Order::Forwards))).collect()
         };
-        let backwards = || setup.is_smoothed.then(|| pass(main, Order::Backwards));
+        let backwards = || setup.is_smoothed.then(|| run(main, Order::Backwards));
         let (filters, backwards) = rayon::join(forwards, backwards);
         if filters.iter().all(|(_, followed)| followed.fixes.is_empty()) {
             return Err(unsolved(recording, epochs, &filters));

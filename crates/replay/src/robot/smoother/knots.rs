@@ -28,7 +28,7 @@ pub(super) struct Measured {
 /// All of them, in the order of time, part by part.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Knots {
-    pub(super) knots: Vec<Knot>,
+    pub(super) points: Vec<Knot>,
     pub(super) measured: Vec<Measured>,
     /// How many parts there are.
     pub(super) parts: usize,
@@ -60,19 +60,19 @@ impl Knots {
                         if let Some([x, y, z]) = epoch.position {
                             begin = [x, y, z];
                         }
-                        all.knots.push(Knot { part, begin, epoch });
+                        all.points.push(Knot { part, begin, epoch });
                     }
                     _ => {}
                 }
             }
             if let (true, Some(&epoch)) = (is_static, trace.epochs.last()) {
-                all.knots.push(Knot { part, begin, epoch });
+                all.points.push(Knot { part, begin, epoch });
             }
             // Ranges after the last epoch.
-            let end = all.knots.len();
+            let end = all.points.len();
             all.measured.retain(|measured| measured.knot < end);
         }
-        (!all.knots.is_empty()).then_some(all)
+        (!all.points.is_empty()).then_some(all)
     }
 
     /// The share of errors that last which positions in so many dimensions leave in the residuals of ranges. A place is found
@@ -85,7 +85,7 @@ impl Knots {
         let mut heard: Vec<_> = self.measured.iter().map(|it| (it.knot, it.anchor)).collect();
         heard.sort_unstable();
         heard.dedup();
-        let at_a_place = heard.len() as f64 / self.knots.len() as f64;
+        let at_a_place = heard.len() as f64 / self.points.len() as f64;
         (1.0 - dimensions as f64 / at_a_place).max(LEAST_LEFT_OVER)
     }
 
@@ -95,7 +95,7 @@ impl Knots {
         let Some((range, reception)) = range else { return };
         if reception.taken || reception.nis.is_some() {
             let metres = range.metres - setup.bias(range.anchor);
-            self.measured.push(Measured { knot: self.knots.len(), anchor: range.anchor, metres });
+            self.measured.push(Measured { knot: self.points.len(), anchor: range.anchor, metres });
         }
     }
 }
@@ -128,7 +128,7 @@ mod tests {
         let part = Tracked { events: &events, trace: &trace };
         for (is_static, expected) in [(false, trace.epochs.len()), (true, 1)] {
             let knots = Knots::new(&setup, &[part], is_static).unwrap();
-            assert_eq!((knots.knots.len(), knots.measured.len()), (expected, 58));
+            assert_eq!((knots.points.len(), knots.measured.len()), (expected, 58));
             assert!(knots.measured.iter().all(|it| it.knot < expected && it.metres > 0.0));
         }
         let nothing = Trace::default();

@@ -86,7 +86,7 @@ pub fn smooth(
     let config = if is_calibrated { Config::calibrated } else { Config::uncalibrated };
     let config = setup.tuning.of_the_robust(config(setup.height_m));
     let knots = Knots::new(setup, parts, is_static).ok_or(Unsmoothed::NoPosition)?;
-    if knots.knots.len() > MOST_KNOTS {
+    if knots.points.len() > MOST_KNOTS {
         return Err(Unsmoothed::TooLong);
     }
     let solved = match setup.dimensions {
@@ -117,7 +117,7 @@ pub fn smooth(
 /// The result, if it is worth more than the tracker's and agrees with it, at most epochs.
 fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
     let (mut certain, mut moved) = (Vec::new(), Vec::new());
-    for (knot, epoch) in knots.knots.iter().zip(&solved.epochs) {
+    for (knot, epoch) in knots.points.iter().zip(&solved.epochs) {
         let (Some(before), Some(now)) = (knot.epoch.position, epoch.position) else { continue };
         let (Some(was), Some(is)) = (knot.epoch.sigma_m(), epoch.sigma_m()) else { continue };
         certain.push(is / was);
@@ -134,7 +134,7 @@ fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
         return Err(Unsmoothed::Contradicts);
     }
     let mut parts: Vec<Vec<Epoch>> = vec![Vec::new(); knots.parts];
-    for (knot, mut epoch) in knots.knots.iter().zip(solved.epochs) {
+    for (knot, mut epoch) in knots.points.iter().zip(solved.epochs) {
         if epoch.is_vague() {
             epoch.health = Reason::NotObservable.state();
         } else if knot.epoch.is_vague() || knot.epoch.position.is_none() {

@@ -75,7 +75,7 @@ impl Noise {
         let mut sums = vec![Sum::default(); self.links.len()];
         for measured in &knots.measured {
             let (residual, variance) = residual_of(measured);
-            let knot = &knots.knots[measured.knot];
+            let knot = &knots.points[measured.knot];
             let block = (knot.part, knot.epoch.time_us.div_euclid(BLOCK_US));
             sums[measured.anchor].add(self.links[measured.anchor].sigma, residual, variance, block);
         }
@@ -168,7 +168,7 @@ mod tests {
         };
         let measured = |knot| [0, 1].map(|anchor| Measured { knot, anchor, metres: 0.0 });
         Knots {
-            knots: (0..count).map(knot).collect(),
+            points: (0..count).map(knot).collect(),
             measured: (0..count).flat_map(measured).collect(),
             ..Knots::default()
         }

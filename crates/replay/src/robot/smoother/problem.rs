@@ -102,7 +102,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         Self {
             setup,
             knots,
-            states: knots.knots.iter().map(|knot| motion.begin(knot)).collect(),
+            states: knots.points.iter().map(|knot| motion.begin(knot)).collect(),
             parameters: DVector::from_iterator(known.len(), known.iter().map(|known| known[0])),
             noise: Noise::new(anchors.len(), scaled.range_sigma),
             motion,
@@ -155,7 +155,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
     }
 
     fn chain(&self) -> Chain<N> {
-        Chain::new(self.knots.knots.len(), self.known.len())
+        Chain::new(self.knots.points.len(), self.known.len())
     }
 
     /// The covariances where the unknowns are now.
@@ -191,7 +191,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         let &Measured { knot, anchor, metres } = measured;
         let (state, place) = (&self.states[knot], self.setup.anchors[anchor]);
         let at =
-            |axis: usize| if axis < D { state[axis] } else { self.knots.knots[knot].begin[axis] };
+            |axis: usize| if axis < D { state[axis] } else { self.knots.points[knot].begin[axis] };
         let apart: [f64; 3] = std::array::from_fn(|axis| at(axis) - place[axis]);
         let distance = apart.iter().map(|it| it * it).sum::<f64>().sqrt().max(1e-6);
         let (common, excess) = (self.setup.anchors.len(), self.setup.anchors.len() + 1);
@@ -206,7 +206,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
 
     /// The cost where the unknowns are now; adds the normal equations there, if they are wanted.
     fn equations(&self, mut chain: Option<&mut Chain<N>>) -> f64 {
-        let (knots, count) = (&self.knots.knots, self.setup.anchors.len() + 2);
+        let (knots, count) = (&self.knots.points, self.setup.anchors.len() + 2);
         let mut cost = 0.0;
         for (index, [about, sigma]) in self.known.iter().enumerate() {
             let (residual, information) = (self.parameters[index] - about, sigma.powi(-2));
@@ -270,7 +270,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
     }
 
     fn solved(&self, solution: &Solution<N>, cost: f64) -> Solved {
-        let epochs = self.knots.knots.iter().zip(&self.states).zip(&solution.covariances);
+        let epochs = self.knots.points.iter().zip(&self.states).zip(&solution.covariances);
         let epochs = epochs.map(|((knot, state), covariance)| {
             let at = |axis: usize| if axis < D { state[axis] } else { knot.begin[axis] };
             let height = (D == 3).then(|| covariance[(2, 2)]);

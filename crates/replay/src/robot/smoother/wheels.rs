@@ -70,14 +70,11 @@ fn steps(samples: &[Wheels], [begin_us, end_us]: [i64; 2]) -> Vec<Step> {
         let until_us = sample.map_or(end_us, |sample| sample.time_us).clamp(now_us, end_us);
         let interval = (until_us - now_us) as f64 * 1e-6;
         let counted = sample.filter(|sample| sample.time_us.abs_diff(now_us) <= noise::FRESH_US);
-        steps.push(match counted {
-            Some(Wheels { speed, turn_rate, .. }) => {
-                Step::Counted { way: speed * interval, turn: turn_rate * interval, interval }
-            }
-            None => {
-                let last = next.checked_sub(1).and_then(|last| samples.get(last));
-                Step::Unknown { speed: last.map_or(0.0, |sample| sample.speed), interval }
-            }
+        steps.push(if let Some(Wheels { speed, turn_rate, .. }) = counted {
+            Step::Counted { way: speed * interval, turn: turn_rate * interval, interval }
+        } else {
+            let last = next.checked_sub(1).and_then(|last| samples.get(last));
+            Step::Unknown { speed: last.map_or(0.0, |sample| sample.speed), interval }
         });
         (now_us, next) = (until_us, next + 1);
     }
@@ -88,7 +85,7 @@ fn steps(samples: &[Wheels], [begin_us, end_us]: [i64; 2]) -> Vec<Step> {
 #[derive(Debug, Clone, Copy, Default)]
 struct Way {
     /// Ahead and left, m, and their derivatives by gain and drift.
-    way: [f64; 2],
+    moved: [f64; 2],
     by: [[f64; 2]; 2],
     /// The turns as counted, rad, and how long they were counted, s.
     turned: f64,
@@ -105,13 +102,13 @@ impl Way {
                 Step::Counted { way, turn, interval } => {
                     let (turned, elapsed) = (all.turned + 0.5 * turn, all.elapsed + 0.5 * interval);
                     let (sine, cosine) = (gain * turned + drift * elapsed).sin_cos();
-                    let moved = [way * cosine, way * sine];
+                    let step = [way * cosine, way * sine];
                     for axis in 0..2 {
-                        all.way[axis] += moved[axis];
+                        all.moved[axis] += step[axis];
                     }
                     for (by, angle) in all.by.iter_mut().zip([turned, elapsed]) {
-                        by[0] -= moved[1] * angle;
-                        by[1] += moved[0] * angle;
+                        by[0] -= step[1] * angle;
+                        by[1] += step[0] * angle;
                     }
                     all.turned += turn;
                     all.elapsed += interval;
@@ -155,9 +152,9 @@ impl Motion<4> for Driven {
         let (gain, drift) = (own[0], own[1]);
         let way = Way::of(&self.steps[index], gain, drift);
         let (sine, cosine) = (gain * way.turned + drift * way.elapsed).sin_cos();
-        let ([c, s], [ahead, left]) = ([before[2], before[3]], way.way);
+        let ([c, s], [ahead, left]) = ([before[2], before[3]], way.moved);
         let turned = |[ahead, left]: [f64; 2]| [c * ahead - s * left, s * ahead + c * left];
-        let (moved, headed) = (turned(way.way), turned([cosine, sine]));
+        let (moved, headed) = (turned(way.moved), turned([cosine, sine]));
         let residual = SVector::from([
             after[0] - before[0] - moved[0],
             after[1] - before[1] - moved[1],
