@@ -50,7 +50,7 @@ impl Driven {
             samples
         };
         let samples: Vec<_> = parts.iter().map(of_part).collect();
-        let steps = knots.knots.windows(2).map(|pair| {
+        let steps = knots.points.windows(2).map(|pair| {
             let times = [pair[0].epoch.time_us, pair[1].epoch.time_us];
             let of_part =
                 if pair[0].part == pair[1].part { &samples[pair[0].part][..] } else { &[] };
