@@ -124,7 +124,8 @@ impl<T: Scalar> Orientation<T> {
     }
 
     /// v + 2·w·(q × v) + 2·q × (q × v): 15 multiplications; −w turns the other way.
-    #[inline]
+    #[cfg_attr(for_size, inline(never))]
+    #[cfg_attr(not(for_size), inline)]
     fn rotate(&self, v: &SVector<T, 3>, w: T) -> SVector<T, 3> {
         let q = [self.x, self.y, self.z];
         let v = *v.as_array();

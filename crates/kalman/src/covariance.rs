@@ -161,18 +161,21 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     }
 
     /// [`Covariance::shear`] for indices known to be below N and different.
-    #[inline(always)]
+    ///
+    /// For speed, each pair has instructions of its own; for size, all share one function.
+    #[cfg_attr(for_size, inline(never))]
+    #[cfg_attr(not(for_size), inline(always))]
     pub(crate) fn shear_at(&mut self, i: usize, j: usize, a: T) {
-        let cross = self.at(i, j);
+        let cross = self.known(i, j);
         for other in 0..N {
             if other != i {
-                let step = a * self.at(j, other);
-                *self.entry(i, other) += step;
+                let step = a * self.known(j, other);
+                self.change(i, other, |entry| entry + step);
             }
         }
         // E P Eᵀ adds a·P[i, j] with the old and once more with the new cross term.
-        let sheared = self.at(i, j);
-        *self.entry(i, i) += a * (cross + sheared);
+        let sheared = self.known(i, j);
+        self.change(i, i, |entry| entry + a * (cross + sheared));
     }
 
     /// Sets the variance of state `I`, and its covariances with the others to zero.
@@ -223,13 +226,13 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// The same for all but row and column `I`.
+    /// The same for all but row and column `i`.
     #[inline(always)]
-    pub(crate) fn downdate_beside<const I: usize>(&mut self, gain: &[T; N], g: &[T; N]) {
+    pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
         self.absorb_rounding();
         for column in 0..N {
             for row in column..N {
-                if row != I && column != I {
+                if row != i && column != i {
                     self.lower.data.0[column][row] -= gain[row] * g[column];
                 }
             }
@@ -240,7 +243,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     #[inline(always)]
     pub(crate) fn scale_component(&mut self, i: usize, factor: T) {
         for other in 0..N {
-            *self.entry(i, other) *= factor;
+            self.change(i, other, |entry| entry * factor);
         }
     }
 
@@ -264,6 +267,15 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     pub(crate) fn known(&self, i: usize, j: usize) -> T {
         let place = i.min(j).wrapping_mul(N).wrapping_add(i.max(j));
         self.lower.data.0.as_flattened().get(place).copied().unwrap_or(T::ZERO)
+    }
+
+    /// The same, to be changed.
+    #[inline(always)]
+    fn change(&mut self, i: usize, j: usize, change: impl FnOnce(T) -> T) {
+        let place = i.min(j).wrapping_mul(N).wrapping_add(i.max(j));
+        if let Some(entry) = self.lower.data.0.as_flattened_mut().get_mut(place) {
+            *entry = change(*entry);
+        }
     }
 
     /// P\[i, j\] for indices known to be below N.

@@ -226,16 +226,22 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         variance: T,
     ) -> Result<Innovation<T>, Error> {
         const { assert!(I < N, "the state has no such component") };
-        let mut cross = [T::ZERO; N];
-        for (i, cross) in cross.iter_mut().enumerate() {
-            *cross = self.covariance.at(I, i);
-        }
-        let weights = Weights::new(innovation, cross[I], variance)?;
+        Ok(self.update_at(I, innovation, variance)?.report())
+    }
+
+    /// The same for an index known to be below N.
+    ///
+    /// For speed, each index has instructions of its own; for size, all share one function.
+    #[cfg_attr(for_size, inline(never))]
+    #[cfg_attr(not(for_size), inline(always))]
+    fn update_at(&mut self, index: usize, innovation: T, variance: T) -> Result<Weights<T>, Error> {
+        let weights = Weights::new(innovation, self.covariance.known(index, index), variance)?;
+        let cross = core::array::from_fn(|other| self.covariance.known(index, other));
         let mut gain = [T::ZERO; N];
         self.move_mean(&weights, &cross, &mut gain)?;
-        self.covariance.downdate_beside::<I>(&gain, &cross);
-        self.covariance.scale_component(I, weights.by_variance(variance));
-        Ok(weights.report())
+        self.covariance.downdate_beside(index, &gain, &cross);
+        self.covariance.scale_component(index, weights.by_variance(variance));
+        Ok(weights)
     }
 
     /// Whether the state has all that a row names.

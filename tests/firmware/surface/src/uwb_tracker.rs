@@ -21,8 +21,8 @@ fn configs<T: Scalar>() {
 
 fn places<T: Scalar>() {
     let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
-    keep::<Config<T>>(config().of_place(slice(&anchors)));
-    keep::<[T; 2]>(config().common_sigmas(slice(&anchors)));
+    keep::<Config<T>>(Config::of_place(config(), slice(&anchors)));
+    keep::<[T; 2]>(Config::common_sigmas(&config(), slice(&anchors)));
 }
 
 /// Any configuration.
