@@ -1,6 +1,8 @@
 //! What the filters' tests do not tell apart: single parts, at their bounds, from means that are not zero.
 
-use kestirim_kalman::{Covariance, Error, Gate, Gaussian, SparseRow, Verdict};
+use kestirim_kalman::{
+    Covariance, Error, Gate, Gaussian, LinearObservation, Observation, SparseRow, Verdict,
+};
 use nalgebra::{Vector2, matrix, vector};
 
 fn covariance() -> Covariance<f64, 2> {
@@ -99,4 +101,12 @@ fn another_noise_weighs_as_if_it_had_been_the_first() {
         (weighed.expect("noise"), estimate().weigh(&row, 0.7, 4.0).expect("a measurement"));
     assert_eq!(weighed, expected);
     assert_eq!(weighed.noise(), 4.0);
+}
+
+#[test]
+fn a_linear_observation_differs_by_what_is_expected() {
+    let row = SparseRow::new([(0, 2.0), (1, 0.5)]);
+    let observation = LinearObservation { row, measured: 4.0 };
+    let (innovation, _) = observation.linearise(&estimate().mean).expect("a row of the state");
+    assert!((innovation - (4.0 - 2.5)).abs() < 1e-12, "{innovation}");
 }
