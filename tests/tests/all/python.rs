@@ -45,7 +45,6 @@ fn run(program: &str, arguments: &[&str]) -> io::Result<Output> {
         .env("CARGO_TARGET_DIR", build)
         // What is tested holds without it, and it takes minutes. The level of optimisation is kept: speed is tested, too.
         .env("CARGO_PROFILE_RELEASE_LTO", "off")
-        .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
         .env("KESTIRIM_HOST_SIM", env!("CARGO_BIN_EXE_replay"))
         .env("PIP_DISABLE_PIP_VERSION_CHECK", "1")
         .env_remove("PYTHONPATH")

@@ -92,7 +92,7 @@ pub(crate) fn library(cargo: &mut Command, target: Option<&str>, fixed: bool) ->
 pub(crate) fn quickly(command: &mut Command) -> &mut Command {
     command
         .env("CARGO_PROFILE_RELEASE_S_LTO", "off")
-        .env("CARGO_PROFILE_RELEASE_S_CODEGEN_UNITS", "16")
+        .env("CARGO_PROFILE_RELEASE_S_CODEGEN_UNITS", "4")
 }
 
 /// A folder of recordings, if they are there.
