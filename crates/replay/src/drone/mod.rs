@@ -3,6 +3,7 @@
 //! A [`Search`] makes an [`Estimate`] of each [`Stop`] at which the drone measured. Places are metres in the plane, heights
 //! metres above the user.
 
+mod check;
 mod cloud;
 mod error;
 mod estimate;
@@ -10,6 +11,7 @@ mod flight;
 mod search;
 mod trace;
 
+pub use self::check::check;
 pub use self::cloud::Cloud;
 pub use self::error::Error;
 pub use self::estimate::Estimate;

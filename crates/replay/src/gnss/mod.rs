@@ -13,6 +13,7 @@ mod outage;
 mod products;
 mod recording;
 mod smoothed;
+mod track_file;
 
 pub use self::accuracy::{Accuracy, BEGINNING};
 pub use self::check::check;
@@ -23,3 +24,4 @@ pub use self::model::{Epoch, epoch};
 pub use self::outage::{Outage, Outages, Unused};
 pub use self::products::{Products, Satellite, Unusable};
 pub use self::recording::{FEWEST_SATELLITES, Paths, Recording};
+pub use self::track_file::track_text;

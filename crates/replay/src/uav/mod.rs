@@ -3,6 +3,7 @@
 //! [`Deviations`] are a [`Log`] less the steady flight of its [`Model`]; [`Deviations::follow`] makes a [`Followed`] of them
 //! as the [`Options`] say. Angles are radians, the airspeed m/s, times µs of the log's clock.
 
+mod check;
 mod deviations;
 mod error;
 mod estimators;
@@ -12,6 +13,7 @@ mod noise;
 mod options;
 mod poles;
 
+pub use self::check::check;
 pub use self::deviations::Deviations;
 pub use self::error::Error;
 pub use self::estimators::{Assumed, Estimate, Filter, Followed, KEPT, filter, rows, sized};

@@ -10,7 +10,6 @@
 )]
 
 pub mod account;
-mod check;
 pub mod figures;
 mod online;
 pub mod paper;
@@ -30,7 +29,7 @@ use crate::system::{
     Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
     Setting, Settings, System, Table,
 };
-use kestirim_replay::drone::Track;
+use kestirim_replay::drone::{self, Track};
 
 /// The system.
 #[derive(Debug, Clone, Copy)]
@@ -89,7 +88,11 @@ impl System for Drone {
     }
 
     fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
-        check::check(recording)
+        let Recording::Flight(recorded) = recording else {
+            return vec![Finding::note("log", "a synthetic flight: nothing is wrong with it")];
+        };
+        let flight = &recorded.flight;
+        drone::check(&flight.stops, flight.quantity, flight.unusable)
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {

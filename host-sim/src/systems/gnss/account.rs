@@ -3,7 +3,6 @@
 pub mod comparison;
 pub mod report;
 pub mod tables;
-mod track_file;
 mod warning;
 
 use kestirim_ppp_filter::Health;
@@ -11,7 +10,6 @@ use kestirim_replay::gnss::{FilterKind, Followed, Recording};
 
 use self::comparison::Comparison;
 use self::report::Report;
-pub(super) use self::track_file::text as track_text;
 use super::Gnss;
 use super::settings::{Choice, Mode, Setup};
 use super::track::Track;

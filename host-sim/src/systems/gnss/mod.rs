@@ -145,7 +145,7 @@ impl System for Gnss {
     }
 
     fn text(output: &str, ending: &str, recording: &Recording, track: &Track) -> Option<String> {
-        (output == "track").then(|| account::track_text(ending, recording, track.best()))?
+        (output == "track").then(|| gnss::track_text(ending, recording, track.best()))?
     }
 
     fn streams(recording: &Recording, settings: &Settings, track: &Track) -> Vec<Stream> {

@@ -11,7 +11,6 @@
 )]
 
 pub mod account;
-mod check;
 pub mod figures;
 mod online;
 pub mod paper;
@@ -21,6 +20,8 @@ pub mod track;
 
 pub use kestirim_simulate::uav as simulate;
 use std::sync::Arc;
+
+use kestirim_replay::uav;
 
 use self::figures::streams;
 use self::paper::{experiment, report};
@@ -94,7 +95,10 @@ impl System for Uav {
     }
 
     fn check(recording: &Recording, _: &Settings) -> Vec<Finding> {
-        check::check(recording)
+        let Recording::Logged(logged) = recording else {
+            return vec![Finding::note("log", "a synthetic flight: nothing is wrong with it")];
+        };
+        uav::check(&logged.log, logged.model.as_ref())
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Track, Error> {

@@ -1,28 +1,23 @@
 //! What a recorded flight shows before the user is searched.
 
-use kestirim_replay::drone::Quantity;
+use kestirim_health::Reason;
 
-use super::recording::Recording;
+use super::{Quantity, Stop};
+use crate::Finding;
 use crate::metrics::{median, standard_deviation};
-use crate::system::{Finding, Reason};
 
 /// So many measurements in a row with the same level, to the last digit, while the drone moves: the radio is stuck.
 const STUCK: usize = 8;
 
-/// What the recording shows.
-pub(super) fn check(recording: &Recording) -> Vec<Finding> {
-    let Recording::Flight(recorded) = recording else {
-        return vec![Finding::note("log", "a synthetic flight: nothing is wrong with it")];
-    };
-    let flight = &recorded.flight;
-    let stops = &flight.stops;
+/// What the measurements show; besides, so many lines were unusable.
+pub fn check(stops: &[Stop], quantity: Quantity, unusable: usize) -> Vec<Finding> {
     let heights: Vec<f64> = stops.iter().map(|stop| stop.height).collect();
     let losses: Vec<f64> = stops.iter().map(|stop| stop.loss).collect();
     let far = |axis: usize| {
         let along = stops.iter().map(|stop| stop.place[axis]);
         along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
     };
-    let what = match flight.quantity {
+    let what = match quantity {
         Quantity::PathLoss => "path losses",
         Quantity::Level => "levels",
     };
@@ -37,13 +32,13 @@ pub(super) fn check(recording: &Recording) -> Vec<Finding> {
             format!("the {what} vary by {:.1} dB", standard_deviation(&losses)),
         ),
     ];
-    if flight.unusable > 0 {
-        let found = format!("{} lines without a height or a level", flight.unusable);
+    if unusable > 0 {
+        let found = format!("{unusable} lines without a height or a level");
         findings.push(Finding::note("missing", found));
     }
     // What comes before the sign of a received level: −30 to −140 dBm.
     let positive = losses.iter().filter(|loss| **loss < 0.0).count();
-    if flight.quantity == Quantity::PathLoss && positive * 2 > losses.len() {
+    if quantity == Quantity::PathLoss && positive * 2 > losses.len() {
         findings.push(Finding::fault(
             "sign",
             Reason::Units,

@@ -1,10 +1,10 @@
 //! What the log of a flight shows before an estimator follows it.
 
-use kestirim_replay::uav::STATE_COLUMNS;
+use kestirim_health::Reason;
 
-use super::recording::Recording;
+use super::{Log, Model, STATE_COLUMNS};
+use crate::Finding;
 use crate::metrics::{median, standard_deviation};
-use crate::system::{Finding, Reason};
 
 /// A measurement that jumps by so many usual changes and back is a spike.
 const SPIKE: f64 = 30.0;
@@ -13,18 +13,14 @@ const MANY: f64 = 0.002;
 /// So many samples in a row that stay the same to the last digit while others change are stuck.
 const STUCK: usize = 50;
 
-/// What the recording shows.
-pub(super) fn check(recording: &Recording) -> Vec<Finding> {
-    let Recording::Logged(logged) = recording else {
-        return vec![Finding::note("log", "a synthetic flight: nothing is wrong with it")];
-    };
-    let log = &logged.log;
+/// What the log shows. Outputs are named by the model, or without one are the states.
+pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
     let count = log.samples.len();
     let mut findings = vec![Finding::note(
         "rate",
         format!("{count} samples at {:.1} Hz, {} gaps", 1.0 / log.interval_s, log.gaps),
     )];
-    let name = |output: usize| match &logged.model {
+    let name = |output: usize| match model {
         Some(model) => model.outputs.get(output).map_or("", |(name, _)| name),
         None => STATE_COLUMNS.get(output).copied().unwrap_or_default(),
     };

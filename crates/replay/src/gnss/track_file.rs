@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use kestirim_gnss_ppp::{Corrections, Geodetic};
 use kestirim_ppp_filter::Health;
-use kestirim_replay::gnss::{Followed, Recording};
+
+use super::{Followed, Recording};
 
 /// Days between the first of January 1970 and day zero of the modified Julian date.
 const UNIX_DAY: i64 = 40_587;
@@ -25,12 +26,8 @@ struct Row {
     trusted: Option<bool>,
 }
 
-/// The track in the format that a file's ending asks for; none of another ending.
-pub(in crate::systems::gnss) fn text(
-    ending: &str,
-    recording: &Recording,
-    followed: &Followed,
-) -> Option<String> {
+/// The track in the format of a file's ending: `pos` (RTKLIB), `nmea`, `kml` or `gpx`; none of another ending.
+pub fn track_text(ending: &str, recording: &Recording, followed: &Followed) -> Option<String> {
     let format: fn(&[Row]) -> String = match ending {
         "pos" => pos,
         "nmea" => nmea,
