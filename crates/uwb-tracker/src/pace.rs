@@ -51,7 +51,8 @@ impl Pace {
     #[inline(never)] // Rare.
     fn hear_apart(&mut self, time_us: u32) {
         let is_first = self.newest_us == Self::NEVER_US;
-        let is_newer = time_us.wrapping_sub(self.newest_us) as i32 > 0;
+        // What is older than any range that is used is not late: there was an outage of most of the clock's round.
+        let is_newer = self.newest_us.wrapping_sub(time_us) > Self::MOST_US;
         if !is_first {
             self.learn(if is_newer { Self::LONGEST_US } else { 0 });
         }
@@ -81,5 +82,83 @@ impl Pace {
     pub(crate) fn fresh_us(&self) -> u64 {
         let rounds_us = self.mean_us.saturating_mul(self.fresh);
         u64::from(rounds_us.clamp(Self::LEAST_US, Self::MOST_US))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pace;
+
+    /// The pace of six anchors that are heard in turn, at these times (µs).
+    fn heard(times_us: impl IntoIterator<Item = u64>) -> Pace {
+        let mut pace = Pace::new(6);
+        times_us.into_iter().for_each(|time_us| pace.hear(time_us));
+        pace
+    }
+
+    #[test]
+    fn two_rounds_of_the_anchors_are_fresh_within_bounds() {
+        for (interval_us, fresh_us) in
+            [(10_000, 1_000_000), (100_000, 1_200_000), (400_000, 4_800_000), (900_000, 8_000_000)]
+        {
+            for count in [2, 100] {
+                let pace = heard((1..=count).map(|k| k * interval_us));
+                assert_eq!(pace.fresh_us(), fresh_us, "{count} ranges every {interval_us} µs");
+            }
+        }
+        assert_eq!(heard([5_000_000]).fresh_us(), 1_000_000, "of one range");
+    }
+
+    #[test]
+    fn another_pace_is_learnt_in_sixteen_ranges() {
+        let (quick, slow) = ((1..50).map(|k| k * 100_000), (1..=16).map(|k| k * 600_000));
+        let pace = heard(quick.chain(slow.map(|us| us + 4_900_000)));
+        // Of the way from 1.2 to 7.2 s the share 1 − 1/e or a little more.
+        let learnt = (pace.fresh_us() as f64 - 1.2e6) / 6e6;
+        assert!((0.6..0.7).contains(&learnt), "{learnt}");
+    }
+
+    #[test]
+    fn an_outage_counts_as_two_seconds() {
+        let times_us = [0, 400_000, 800_000];
+        for outage_us in [2_000_000, 2_000_001, 3_600_000_000] {
+            let pace = heard(times_us.into_iter().chain([800_000 + outage_us]));
+            // A sixteenth of the way from 0.4 to 2 s.
+            assert_eq!(pace.fresh_us(), 6_000_000, "{outage_us} µs");
+            // It goes on from there.
+            let end_us = 800_000 + outage_us;
+            let pace = heard(times_us.into_iter().chain([end_us, end_us + 500_000]));
+            assert_eq!(pace.fresh_us(), 6_000_000, "{outage_us} µs");
+        }
+    }
+
+    #[test]
+    fn a_range_that_is_late_is_no_interval() {
+        let late = heard([0, 400_000, 800_000, 500_000]);
+        assert_eq!(late.fresh_us(), 4_500_000);
+        let times_us = [8_000_000, 8_400_000, 8_800_000];
+        assert_eq!(heard(times_us.into_iter().chain([800_000])).fresh_us(), 4_500_000);
+        // Nothing is used that is older.
+        assert_eq!(heard(times_us.into_iter().chain([799_999])).fresh_us(), 6_000_000);
+        // The next is that of the newest.
+        let next = heard([0, 400_000, 800_000, 500_000, 1_175_000]);
+        assert_eq!(next.fresh_us(), 4_500_000);
+    }
+
+    #[test]
+    fn a_clock_of_32_bits_goes_round() {
+        let begin_us = u64::from(u32::MAX) - 1_000_000;
+        let pace = heard((0..50).map(|k| begin_us + k * 400_000));
+        assert_eq!(pace.fresh_us(), 4_800_000);
+    }
+
+    #[test]
+    fn ranges_of_one_anchor_in_a_row_are_told() {
+        let mut pace = Pace::new(6);
+        let others = [3, 3, 1, 3].map(|anchor| pace.collect(0, anchor));
+        assert_eq!(others, [true, false, true, true]);
+        assert_eq!(pace.fresh_us(), heard([0; 4]).fresh_us());
+        pace.collect(400_000, 1);
+        assert_eq!(pace.fresh_us(), 4_800_000, "they count as heard");
     }
 }
