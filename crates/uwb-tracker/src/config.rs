@@ -149,3 +149,89 @@ impl<T: Scalar> Config<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Anchors on the four sides of a place, so far from its centre, which is not the origin.
+    fn place(reach: f64) -> [Anchor<f64>; 4] {
+        [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|[x, y]| Anchor {
+            position: SVector::from([50.0 + reach * x, -20.0 + reach * y, 2.0]),
+            bias: 0.0,
+        })
+    }
+
+    fn limits(config: &Config<f64>) -> [f64; 2] {
+        [0.0, f64::MAX].map(|variance| config.learning.expect("it learns").limited(variance))
+    }
+
+    #[test]
+    fn in_a_place_twice_as_large_as_an_office_lengths_are_twice_as_large() {
+        let usual = Config::uncalibrated(1.0);
+        assert_eq!(usual.of_place(&place(5.9)), usual);
+        let large = usual.of_place(&place(12.0));
+        for (large, usual) in [
+            (large.range_sigma, usual.range_sigma),
+            (large.common_bias_sigma, usual.common_bias_sigma),
+            (large.bias_sigma, usual.bias_sigma),
+            (large.acceleration_density, usual.acceleration_density),
+            (limits(&large)[0], limits(&usual)[0]),
+            (limits(&large)[1], limits(&usual)[1]),
+        ] {
+            assert!((large / usual - 2.0).abs() < 1e-6, "{large} of {usual}");
+        }
+        assert_eq!((large.huber, large.gate, large.height), (usual.huber, usual.gate, 1.0));
+    }
+
+    #[test]
+    fn a_place_has_a_size_whatever_the_anchors() {
+        assert_eq!(size::<f64>(&[]), 1.0);
+        assert_eq!(size(&place(0.0)), 1.0);
+        assert_eq!(size(&place(1e6)), 30.0);
+        // One anchor farther away, and with it the centre by half a metre.
+        let mut anchors = place(6.0);
+        anchors[0].position[0] += 2.0;
+        let reach = (7.5 + 6.5 + 2.0 * 0.5_f64.hypot(6.0)) / 4.0;
+        assert!((size(&anchors) - reach / 6.0).abs() < 1e-5, "{}", size(&anchors));
+    }
+
+    #[test]
+    fn the_common_bias_is_that_of_a_range_from_the_centre_to_the_anchors() {
+        for size in [1.0, 2.0, 5.0, 30.0] {
+            let [constant, slope] = bias_shape(size);
+            assert!((constant + slope * OFFICE * size - 1.0).abs() < 1e-6, "{size}");
+            // And near an anchor it is an office's.
+            assert!((constant * size - 1.0).abs() < 1e-6, "{size}");
+        }
+    }
+
+    #[test]
+    fn excess_is_what_a_place_is_beyond_an_office() {
+        let config = Config::uncalibrated(1.0);
+        // All of it, 30 cm in 6 m, would be 50 cm in 10 m: of an office a tenth, of twice its size half.
+        for (reach, excess) in [(6.0, 0.05), (12.0, 0.25), (24.0, 0.375)] {
+            let [common, found] = config.common_sigmas(&place(reach));
+            assert!((common - 0.3).abs() < 1e-6, "{reach} m: {common}");
+            assert!((found - excess).abs() < 1e-6, "{reach} m: {found}");
+        }
+    }
+
+    #[test]
+    fn no_range_is_believed_beyond_its_anchors_calibration() {
+        for (config, sigma) in [(Config::calibrated(1.0), 0.05), (Config::uncalibrated(1.0), 0.1)] {
+            assert!((limits(&config)[0].sqrt() - sigma).abs() < 1e-6, "{config:?}");
+            assert!((config.bias_sigma - sigma).abs() < 1e-6, "{config:?}");
+        }
+    }
+
+    #[test]
+    fn the_textbooks_filter_doubts_and_forgets_nothing() {
+        let [robust, plain] = [Config::uncalibrated(1.0), Config::plain(1.0)];
+        let doubts = |config: &Config<f64>| {
+            let (learning, huber) = (config.learning.is_some(), config.huber.is_some());
+            [learning, huber, config.gate.is_some(), config.decay_time.is_some()]
+        };
+        assert_eq!((doubts(&robust), doubts(&plain)), ([true; 4], [false; 4]));
+    }
+}

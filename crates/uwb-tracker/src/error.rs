@@ -57,3 +57,36 @@ impl core::error::Error for Error {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::collections::BTreeSet;
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn every_reason_is_a_sentence_of_its_own() {
+        let all = [
+            Error::Estimate(kestirim_kalman::Error::NotPositive),
+            Error::NotFinite,
+            Error::ImplausibleRange,
+            Error::ImplausibleMotion,
+            Error::NoSuchAnchor,
+            Error::TooManyAnchors,
+            Error::TooFewAnchors,
+            Error::Duplicate,
+            Error::OutOfOrder,
+        ];
+        let sentences: BTreeSet<_> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(sentences.len(), all.len());
+        for sentence in &sentences {
+            assert!(sentence.starts_with(char::is_lowercase) && !sentence.ends_with('.'));
+            assert!(sentence.len() < 120, "{sentence}");
+        }
+        let has_source = |error: &&Error| core::error::Error::source(*error).is_some();
+        assert_eq!(all.iter().filter(has_source).count(), 1);
+    }
+}

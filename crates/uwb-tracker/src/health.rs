@@ -247,3 +247,6 @@ fn bias_sigma<'a, T: Scalar, const D: usize>(
     });
     Some(weighted_dilution(weighted).ok()? * best.sqrt())
 }
+
+#[cfg(test)]
+mod tests;

@@ -234,3 +234,6 @@ impl<T: Scalar, const A: usize> Place<T, A> {
         common < 2 || far >= 2
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -89,3 +89,62 @@ impl<T: Scalar> Link<T> {
         Self { next_us: self.next_us, range: self.range, ..Self::new(self.anchor, config) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BIAS: f64 = 0.5;
+
+    fn link() -> Link<f64> {
+        let anchor = Anchor { position: SVector::zeros(), bias: BIAS };
+        Link::new(anchor, &Config::calibrated(1.0))
+    }
+
+    #[test]
+    fn a_range_is_fresh_up_to_an_age() {
+        let mut link = link();
+        assert!(!link.is_heard());
+        assert_eq!(link.fresh(0, 1000), None);
+        link.hear(5000, 3.0);
+        assert!(link.is_heard());
+        assert_eq!(link.fresh(5000, 1000), Some((3.0, 0)));
+        assert_eq!(link.fresh(6000, 1000), Some((3.0, 1000)));
+        assert_eq!(link.fresh(6001, 1000), None);
+        // A late range of another anchor asks for a time before this one.
+        assert_eq!(link.fresh(4000, 1000), Some((3.0, 0)));
+    }
+
+    #[test]
+    fn a_range_is_admitted_once_and_without_its_bias() {
+        let mut link = link();
+        let sample = |time_us| RangeSample { time_us, anchor: 0, range: 3.0 + BIAS };
+        assert_eq!(link.admit(&sample(0)), Ok(3.0));
+        link.hear(5000, 3.0);
+        assert_eq!(link.admit(&sample(5001)), Ok(3.0));
+        assert_eq!(link.admit(&sample(5000)), Err(Error::Duplicate));
+        assert_eq!(link.admit(&sample(4999)), Err(Error::OutOfOrder));
+        assert_eq!(link.admit(&sample(0)), Err(Error::OutOfOrder));
+    }
+
+    #[test]
+    fn a_new_estimate_keeps_the_range_and_nothing_else() {
+        let config = Config::calibrated(1.0);
+        let mut link = link();
+        link.hear(5000, 3.0);
+        (link.noise, link.is_blocked) = (MeasurementNoise::new(9.0), true);
+        let begun = link.begun(&config);
+        assert_eq!(begun.fresh(5000, 0), Some((3.0, 0)));
+        assert!(!begun.is_blocked);
+        assert_eq!(begun.noise.variance(), config.range_sigma * config.range_sigma);
+    }
+
+    #[test]
+    fn an_anchor_is_somewhere() {
+        let anchor = link().anchor;
+        assert_eq!(anchor.check(), Ok(()));
+        assert_eq!(Anchor { bias: f64::NAN, ..anchor }.check(), Err(Error::NotFinite));
+        let position = SVector::from([0.0, f64::INFINITY, 0.0]);
+        assert_eq!(Anchor { position, ..anchor }.check(), Err(Error::NotFinite));
+    }
+}

@@ -89,3 +89,22 @@ pub struct Report<T> {
     /// Innovation (m), its variance and NIS, before any weakening; none without an estimate.
     pub innovation: Option<Innovation<T>>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_radio_measures_is_within_its_bounds() {
+        let check = |range: f64| RangeSample { time_us: 0, anchor: 0, range }.check();
+        for range in [-1.0, 0.0, 200.0] {
+            assert_eq!(check(range), Ok(()), "{range}");
+        }
+        for range in [-1.001, 200.001] {
+            assert_eq!(check(range), Err(Error::ImplausibleRange), "{range}");
+        }
+        for range in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(check(range), Err(Error::NotFinite), "{range}");
+        }
+    }
+}

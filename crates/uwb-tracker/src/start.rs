@@ -85,16 +85,13 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
 }
 
 /// The position that the ranges make without one that is too long; none if they do not agree then either. What is left must
-/// have a range to spare. Each turn leaves out another one.
+/// have a range to spare, without which the solver finds none. Each turn leaves out another one.
 fn without_one<T: Scalar, const D: usize, const A: usize>(
     solver: &Solver<T>,
     observations: &Vec<Observation<T>, A>,
     most: T,
     turn: u8,
 ) -> Option<Fix<T, D>> {
-    if observations.len() < D + 2 {
-        return None;
-    }
     let index = usize::from(turn).checked_rem(observations.len())?;
     let blocked = observations.get(index)?;
     let mut rest = Vec::<Observation<T>, A>::new();
@@ -109,3 +106,6 @@ fn without_one<T: Scalar, const D: usize, const A: usize>(
     let is_blocked = excess * excess > blocked.variance * most && excess > T::ZERO;
     (is_blocked && fix.cost <= most).then_some(fix)
 }
+
+#[cfg(test)]
+mod tests;

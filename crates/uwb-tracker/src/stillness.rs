@@ -74,3 +74,107 @@ impl<T: Scalar> Stillness<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tag whose accelerometer is heard a hundred times a second.
+    struct Ride {
+        stillness: Stillness<f64>,
+        time_us: u64,
+    }
+
+    impl Ride {
+        /// One that has stood for two seconds.
+        fn at_rest() -> Self {
+            let ride = Self { stillness: Stillness::new(), time_us: 0 };
+            ride.on(200, 0.0, 0.0)
+        }
+
+        /// So many samples on, shaken by so much to and fro and pushed (m/s²).
+        fn on(mut self, samples: u64, shake: f64, push: f64) -> Self {
+            for sample in 0..samples {
+                self.time_us += 10_000;
+                let shake = if sample % 2 == 0 { shake } else { -shake };
+                let acceleration = SVector::from([0.1, shake, 9.8]);
+                self.stillness.update(self.time_us, &acceleration, push);
+            }
+            self
+        }
+
+        /// Whether it stands so long after the last sample (µs).
+        fn stands_after(&self, later_us: u64) -> bool {
+            self.stillness.is_still(self.time_us + later_us)
+        }
+    }
+
+    #[test]
+    fn a_tag_stands_that_is_shaken_by_less_than_a_third_of_a_metre_per_second_squared() {
+        assert!(!Stillness::<f64>::new().is_still(0));
+        assert!(Ride::at_rest().stands_after(0));
+        assert!(Ride::at_rest().on(200, 0.28, 0.0).stands_after(0));
+        assert!(!Ride::at_rest().on(200, 0.32, 0.0).stands_after(0));
+    }
+
+    #[test]
+    fn rest_has_to_be_seen_for_a_third_of_a_second() {
+        let begun = |samples| {
+            Ride { stillness: Stillness::new(), time_us: 0 }.on(samples, 0.0, 0.0).stands_after(0)
+        };
+        assert!(!begun(30) && begun(45));
+    }
+
+    #[test]
+    fn a_steady_push_is_no_rest() {
+        assert!(Ride::at_rest().on(100, 0.0, 0.29).stands_after(0));
+        assert!(!Ride::at_rest().on(100, 0.0, 0.31).stands_after(0));
+    }
+
+    #[test]
+    fn stillness_is_known_for_half_a_second() {
+        let ride = Ride::at_rest();
+        assert!(ride.stands_after(500_000) && !ride.stands_after(500_001));
+        let after = |gap_us| Ride { time_us: ride.time_us + gap_us, ..Ride::at_rest() };
+        assert!(after(490_000).on(1, 0.0, 0.0).stands_after(0));
+        assert!(!after(490_001).on(1, 0.0, 0.0).stands_after(0), "it begins anew");
+    }
+
+    #[test]
+    fn after_a_jolt_a_tag_does_not_stand_for_the_time_of_a_step() {
+        // Shaken by less, it stands as soon as the squares are forgotten.
+        assert!(Ride::at_rest().on(100, 0.9, 0.0).on(45, 0.0, 0.0).stands_after(0));
+        let jolted = || Ride::at_rest().on(100, 1.2, 0.0);
+        assert!(!jolted().on(70, 0.0, 0.0).stands_after(0));
+        assert!(jolted().on(85, 0.0, 0.0).stands_after(0));
+    }
+
+    #[test]
+    fn one_wild_sample_is_no_jolt_however_wild() {
+        let knocked = |shake| Ride::at_rest().on(1, shake, 0.0).on(90, 0.0, 0.0);
+        assert!(!Ride::at_rest().on(1, 15.0, 0.0).stands_after(0));
+        assert!(knocked(15.0).stands_after(0));
+    }
+
+    #[test]
+    fn what_is_constant_is_forgotten_in_three_seconds() {
+        let mut ride = Ride::at_rest();
+        for (samples, stands) in [(20, false), (280, true)] {
+            for _ in 0..samples {
+                ride.time_us += 10_000;
+                // It was put on its side.
+                ride.stillness.update(ride.time_us, &SVector::from([9.8, 0.0, 0.0]), 0.0);
+            }
+            assert_eq!(ride.stands_after(0), stands, "after {samples} samples");
+        }
+    }
+
+    #[test]
+    fn few_samples_show_rest_as_well() {
+        let mut stillness = Stillness::new();
+        for sample in 1..=10 {
+            stillness.update(300_000 * sample, &SVector::from([0.1, 0.0, 9.8]), 0.0);
+        }
+        assert!(stillness.is_still(3_000_000));
+    }
+}

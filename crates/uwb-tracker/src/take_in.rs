@@ -76,3 +76,142 @@ fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<
     let variance = weighed.variance() * (weighed.innovation().abs() / limit.sqrt());
     Some((variance - weighed.spread()).max(weighed.noise()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Anchor;
+    use kestirim_kalman::{Covariance, LinearObservation, SparseRow};
+    use kestirim_uwb_ranging::Huber;
+    use nalgebra::{SVector, vector};
+
+    /// Variance of the position before, and of a range, m².
+    const SPREAD: f64 = 0.03;
+    const NOISE: f64 = 0.01;
+    const DEVIATION: f64 = 0.2;
+
+    fn estimate() -> Gaussian<f64, 2> {
+        Gaussian::new(vector![5.0, 0.0], Covariance::from_variances(&[SPREAD, 1.0]))
+    }
+
+    fn link(config: &Config<f64>) -> Link<f64> {
+        Link::new(Anchor { position: SVector::zeros(), bias: 0.0 }, config)
+    }
+
+    /// A range along the first axis, which is so much longer than expected, as judged by `link` among others that `agree`:
+    /// the outcome, and how far it moved the estimate (m).
+    fn taken(
+        link: &mut Link<f64>,
+        config: &Config<f64>,
+        excess: f64,
+        agree: bool,
+    ) -> (Outcome, f64) {
+        let mut estimate = estimate();
+        let observation =
+            LinearObservation { row: SparseRow::new([(0, 1.0)]), measured: 5.0 + excess };
+        let (outcome, seen) =
+            take_in(&mut estimate, link, &observation, config, true, || agree).expect("a range");
+        assert!((seen.innovation - excess).abs() < 1e-9, "{seen:?}");
+        assert!((seen.variance - SPREAD - NOISE).abs() < 1e-9, "{seen:?}");
+        link.noise = self::link(config).noise;
+        (outcome, estimate.mean[0] - 5.0)
+    }
+
+    /// Without a gate.
+    fn doubting() -> Config<f64> {
+        let huber = Some(Huber { long: 0.5, short: 2.5 });
+        Config { range_sigma: NOISE.sqrt(), huber, ..Config::plain(1.0) }
+    }
+
+    #[test]
+    fn beyond_its_limit_a_range_moves_an_estimate_no_farther() {
+        let config = doubting();
+        // Too short: 2.5 deviations. Too long: half the radio's deviation, and one of the estimate.
+        let long = (0.25 * NOISE + SPREAD).sqrt();
+        for (limit, sign) in [(2.5 * DEVIATION, -1.0), (long, 1.0)] {
+            let gain = SPREAD / (SPREAD + NOISE);
+            for (excess, outcome) in [
+                (0.5 * limit, Outcome::Taken),
+                (0.999 * limit, Outcome::Taken),
+                (1.001 * limit, Outcome::Weakened),
+                (10.0 * limit, Outcome::Weakened),
+            ] {
+                let found = taken(&mut link(&config), &config, excess * sign, true);
+                let moved = gain * excess.min(limit) * sign;
+                assert_eq!(found.0, outcome, "{excess} {sign}");
+                assert!((found.1 - moved).abs() < 1e-9, "{excess} {sign}: {found:?}, {moved}");
+            }
+        }
+        let plain = Config { huber: None, ..config };
+        assert_eq!(taken(&mut link(&plain), &plain, 10.0, true).0, Outcome::Taken);
+    }
+
+    #[test]
+    fn a_range_of_no_more_doubt_than_its_noise_is_not_believed_more() {
+        // Nothing is known to spread, so that the limit is the radio's alone.
+        let config = doubting();
+        let row = SparseRow::new([(0, 1.0)]);
+        let known = Gaussian::new(vector![5.0, 0.0], Covariance::from_variances(&[0.0, 1.0]));
+        let weighed = known.weigh(&row, 0.06, NOISE).expect("a range");
+        let noise = weakened(&weighed, &config).expect("it is beyond half a deviation");
+        assert!((noise - NOISE * 0.06 / 0.05).abs() < 1e-9, "{noise}");
+    }
+
+    /// With a gate at five deviations, and learning.
+    fn gated() -> Config<f64> {
+        let config = Config::calibrated(1.0);
+        Config { range_sigma: NOISE.sqrt(), huber: None, ..config }
+    }
+
+    #[test]
+    fn a_range_that_is_wild_for_a_while_is_followed_or_blocked() {
+        let config = gated();
+        for (excess, agree) in [(3.0, true), (3.0, false), (-3.0, true), (-3.0, false)] {
+            let blocked = excess > 0.0 && agree;
+            let mut link = link(&config);
+            for _ in 0..20 {
+                assert_eq!(taken(&mut link, &config, excess, agree), (Outcome::Rejected, 0.0));
+                assert!(!link.is_blocked);
+            }
+            let (outcome, moved) = taken(&mut link, &config, excess, agree);
+            assert_eq!(link.is_blocked, blocked);
+            if blocked {
+                assert_eq!((outcome, moved), (Outcome::Rejected, 0.0));
+            } else {
+                assert_eq!(outcome, Outcome::Recovered);
+                assert!(moved / excess > 0.9, "{moved}");
+            }
+            assert_eq!(taken(&mut link, &config, 0.1, agree).0, Outcome::Taken);
+            assert!(!link.is_blocked, "nothing is in the way any more");
+        }
+        assert_eq!(taken(&mut link(&config), &config, 4.9 * DEVIATION, true).0, Outcome::Taken);
+        assert_eq!(taken(&mut link(&config), &config, 5.1 * DEVIATION, true).0, Outcome::Rejected);
+        let open = Config { gate: None, ..config };
+        assert_eq!(taken(&mut link(&open), &open, 100.0, true).0, Outcome::Taken);
+    }
+
+    /// What a single range makes of the variance of its anchor's.
+    fn learnt(excess: f64, redundant: bool) -> f64 {
+        let config = gated();
+        let mut link = link(&config);
+        let observation =
+            LinearObservation { row: SparseRow::new([(0, 1.0)]), measured: 5.0 + excess };
+        take_in(&mut estimate(), &mut link, &observation, &config, redundant, || true)
+            .expect("a range");
+        link.noise.variance()
+    }
+
+    #[test]
+    fn an_anchors_noise_is_learnt_where_others_tell_the_place() {
+        assert!((learnt(0.9, false) - NOISE).abs() < 1e-12);
+        // A hundredth of what is left of the innovation, and of what the estimate does not know.
+        let share = NOISE / (SPREAD + NOISE);
+        let learns =
+            |excess: f64| 0.99 * NOISE + 0.01 * ((excess * share).powi(2) + SPREAD * share);
+        assert!((learnt(0.9, true) - learns(0.9)).abs() < 1e-9);
+        // Of what is wild no more than the gate admits.
+        for excess in [5.1 * DEVIATION, 100.0] {
+            assert!((learnt(excess, true) - learns(5.0 * DEVIATION)).abs() < 1e-9, "{excess}");
+        }
+    }
+}

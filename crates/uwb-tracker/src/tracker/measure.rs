@@ -19,7 +19,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let Some(estimate) = &mut self.estimate else {
             return Ok(self.collect(sample, range));
         };
-        let observes_bias = N > 2 * D && self.heard as usize >= D + 2;
+        let observes_bias = self.heard as usize >= D + 2;
         let place = link.anchor.position;
         let observation = Range::<T, D> {
             measured: range,
@@ -28,7 +28,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             observes_bias,
             bias_shape: self.bias_shape,
         };
-        let redundant = self.heard as usize > D + usize::from(observes_bias);
+        let redundant = self.heard as usize > D;
         let (blocked, heard) = (link.is_blocked, self.heard);
         let agree = || self.counters.others_agree(blocked, heard, D);
         let (outcome, seen) =

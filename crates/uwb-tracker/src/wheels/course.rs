@@ -24,6 +24,9 @@ pub(super) struct Course<T: Scalar> {
 
 /// Variance of c and s before anything is known of the heading, for a scale of 1 or so.
 const HEADING_VARIANCE: f64 = 0.5;
+/// A course that is so much less probable than the other (−2 ln) is given up: one of 20,000.
+const DECIDED: f64 = 20.0;
+
 impl<T: Scalar> Course<T> {
     /// From a position (of a start in the plane: x, y and what is no state here), with a common bias and an
     /// excess in 10 m of these standard deviations (m) and turns of this sign.
@@ -111,5 +114,151 @@ fn wrapped<T: Scalar>(angle: T) -> T {
     } else {
         let (sine, cosine) = angle.sin_cos();
         sine.atan2(cosine)
+    }
+}
+
+/// Both courses, until one is much more probable than the other.
+pub(super) fn decided<T: Scalar>(courses: [Option<Course<T>>; 2]) -> [Option<Course<T>>; 2] {
+    let [Some(mut first), Some(mut second)] = courses else { return courses };
+    let most = T::from_f64(DECIDED);
+    if first.cost > second.cost + most {
+        return [None, Some(second)];
+    }
+    if second.cost > first.cost + most {
+        return [Some(first), None];
+    }
+    // Only their difference counts.
+    let least = first.cost.min(second.cost);
+    first.cost -= least;
+    second.cost -= least;
+    [Some(first), Some(second)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+
+    /// Wheels that are half of what they say, turned by 0.7 rad, which count turns by a factor and a drift wrong.
+    fn course() -> Course<f64> {
+        let mut mean = SVector::zeros();
+        (mean[X], mean[Y]) = (3.0, -4.0);
+        (mean[COSINE], mean[SINE]) = (2.0 * 0.7_f64.cos(), 2.0 * 0.7_f64.sin());
+        (mean[GAIN], mean[DRIFT]) = (1.5, 1.0);
+        Course { estimate: Gaussian::new(mean, Covariance::zero()), turned: 0.0, cost: 0.0 }
+    }
+
+    fn wheels(speed: f64, turn_rate: f64) -> OdometrySample<f64> {
+        OdometrySample { time_us: 0, speed, turn_rate }
+    }
+
+    #[test]
+    fn a_constant_turn_is_an_arc() {
+        for way in [0.5, -0.5] {
+            let mut course = course();
+            for _ in 0..600 {
+                course.drive(0.05, &wheels(way, 0.2), 1.0).expect("a step");
+            }
+            // 1 m/s, and 1.5 times the turn rate and a hundredth more, for half a minute: one and a half rounds.
+            let (speed, rate, time) = (2.0 * way, 0.31, 30.0);
+            let (begin, end) = (0.7, 0.7 + rate * time);
+            let x = 3.0 + speed / rate * (f64::sin(end) - f64::sin(begin));
+            let y = -4.0 - speed / rate * (f64::cos(end) - f64::cos(begin));
+            let mean = &course.estimate.mean;
+            assert!((mean[X] - x).hypot(mean[Y] - y) < 1e-3, "{mean} {x} {y}");
+            assert!(course.turned.abs() <= PI, "{}", course.turned);
+            assert!((course.turned - (rate * time - 2.0 * PI)).abs() < 1e-9, "{}", course.turned);
+        }
+    }
+
+    #[test]
+    fn wheels_slip_by_way_and_turn_and_doubt() {
+        for (speed, turn_rate, doubt) in
+            [(1.0, 0.0, 1.0), (-1.0, 0.0, 1.0), (1.0, 0.0, 3.0), (0.0, 0.5, 2.0), (0.0, -0.5, 2.0)]
+        {
+            let mut course = course();
+            course.drive(0.1, &wheels(speed, turn_rate), doubt).expect("a step");
+            let variances = course.estimate.covariance.variances();
+            let (way, turn) = (0.1 * speed.abs() * doubt, 0.1 * f64::abs(turn_rate) * doubt);
+            for (index, variance) in [(X, way * SLIP), (Y, way * SLIP)]
+                .into_iter()
+                .chain([COSINE, SINE].map(|it| (it, way * WAY_TO_HEADING + turn * TURN_TO_HEADING)))
+            {
+                assert!((variances[index] - variance).abs() < 1e-12, "{index}: {variances}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_wheels_it_drives_on_somehow() {
+        // In a direction for two seconds, and so at random; at half a metre a second at least.
+        for (last, speed) in [(0.0, 0.5), (0.3, 0.5), (2.0, 2.0), (-2.0, 2.0)] {
+            let mut course = course();
+            course.drift(4.0, last).expect("a step");
+            assert_eq!(course.estimate.mean, self::course().estimate.mean);
+            let variances = course.estimate.covariance.variances();
+            for index in [X, Y] {
+                assert!((variances[index] - 4.0 * 2.0 * speed * speed).abs() < 1e-9, "{variances}");
+            }
+            for index in [COSINE, SINE] {
+                assert!((variances[index] - 0.4).abs() < 1e-9, "{variances}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_course_begins_at_the_start_and_knows_no_heading() {
+        let matrix = SMatrix::<f64, 5, 5>::from_diagonal_element(9.0);
+        let mut matrix = matrix;
+        (matrix[(0, 0)], matrix[(1, 0)], matrix[(1, 1)]) = (2.0, 0.5, 1.0);
+        let mean = SVector::from([3.0, -4.0, 1.0, 1.0, 1.0]);
+        let start = Gaussian::new(mean, Covariance::from_lower_triangle(&matrix));
+        let course = Course::begun(&start, [0.3, 0.2], -1.0);
+        let expected = SVector::from([3.0, -4.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0]);
+        assert_eq!(course.estimate.mean, expected);
+        let p = &course.estimate.covariance;
+        assert_eq!([(0, 0), (0, 1), (1, 1)].map(|(i, j)| p.get(i, j)), [2.0, 0.5, 1.0].map(Some));
+        let sigmas = p.variances().map(f64::sqrt);
+        for (index, sigma) in [(DRIFT, 1.0), (GAIN, 0.5), (BIAS, 0.3), (EXCESS, 0.2)] {
+            assert!((sigmas[index] - sigma).abs() < 1e-9, "{index}: {sigmas}");
+        }
+        // Of a scale of 1 in any direction each coordinate has a variance of a half.
+        assert_eq!([COSINE, SINE].map(|index| p.get(index, index)), [Some(0.5); 2]);
+        assert_eq!((course.turned, course.cost), (0.0, 0.0));
+    }
+
+    #[test]
+    fn an_angle_is_the_same_within_half_a_turn() {
+        for step in -400..=400 {
+            let angle = 0.05 * f64::from(step);
+            let wrapped = wrapped(angle);
+            assert!(wrapped.abs() <= PI + 1e-9, "{angle}: {wrapped}");
+            let (sine, cosine) = wrapped.sin_cos();
+            assert!((sine - angle.sin()).hypot(cosine - angle.cos()) < 1e-9, "{angle}: {wrapped}");
+        }
+    }
+
+    #[test]
+    fn a_range_costs_what_its_probability_tells() {
+        let mut course = course();
+        let seen = |nis| Innovation { innovation: 1.0, variance: 0.5, nis };
+        course.charge(&seen(3.0), 25.0);
+        course.charge(&seen(1000.0), 25.0);
+        assert!((course.cost - (28.0 + 2.0 * 0.5_f64.ln())).abs() < 1e-12, "{}", course.cost);
+    }
+
+    #[test]
+    fn a_course_is_given_up_that_is_much_less_probable() {
+        let costs = |first, second| {
+            let course = |cost| Some(Course { cost, ..course() });
+            decided([course(first), course(second)]).map(|course| course.map(|course| course.cost))
+        };
+        assert_eq!(costs(7.0, 27.0), [Some(0.0), Some(20.0)]);
+        assert_eq!(costs(27.0, 7.0), [Some(20.0), Some(0.0)]);
+        assert_eq!(costs(7.0, 27.1), [Some(7.0), None]);
+        assert_eq!(costs(27.1, 7.0), [None, Some(7.0)]);
+        assert!(decided::<f64>([None, None]).iter().all(Option::is_none));
+        let alone = decided([None, Some(Course { cost: 50.0, ..course() })]);
+        assert!(alone[0].is_none() && alone[1].is_some_and(|course| course.cost == 50.0));
     }
 }

@@ -60,3 +60,51 @@ impl<T: Scalar> Process<T, COUNT> for Drive<T> {
         covariance.add_variance::<BIAS>(self.interval * T::from_f64(Self::BIAS_DENSITY));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kestirim_kalman::Covariance;
+    use nalgebra::{SMatrix, SVector};
+
+    #[test]
+    fn a_step_is_the_linear_process_of_its_physics() {
+        let drive = Drive {
+            interval: 0.4,
+            way: [0.6, -0.2],
+            turn: 0.3,
+            position_noise: 0.02,
+            heading_noise: 0.003,
+        };
+        // A covariance in which all depends on all.
+        let root = SMatrix::<f64, COUNT, COUNT>::from_fn(|i, j| {
+            0.1 * ((3 * i + 5 * j) % 7) as f64 + f64::from(u8::from(i == j))
+        });
+        let before = root * root.transpose();
+        let mean = SVector::from([1.0, 2.0, 0.8, -0.5, 0.3, 1.1, 0.2, 0.1]);
+        let mut estimate = Gaussian::new(mean, Covariance::from_lower_triangle(&before));
+        estimate.advance(&drive).expect("a step");
+
+        // K δ with K = [c, −s; s, c]; the turns' drift (rad in 100 s) and gain turn (c, s).
+        let mut f = SMatrix::<f64, COUNT, COUNT>::identity();
+        let [ahead, left] = drive.way;
+        (f[(X, COSINE)], f[(X, SINE)], f[(Y, COSINE)], f[(Y, SINE)]) = (ahead, -left, left, ahead);
+        let moved = f * mean;
+        let mut turned = SMatrix::<f64, COUNT, COUNT>::identity();
+        for (state, by) in [(DRIFT, 0.01 * drive.interval), (GAIN, drive.turn)] {
+            (turned[(COSINE, state)], turned[(SINE, state)]) =
+                (-mean[SINE] * by, mean[COSINE] * by);
+        }
+        let f = turned * f;
+        let mut after = f * before * f.transpose();
+        // Drift wanders by a hundredth of a radian in 100 s, the bias by a centimetre in ten, each second.
+        for (state, variance) in
+            [(X, 0.02), (Y, 0.02), (COSINE, 0.003), (SINE, 0.003), (DRIFT, 0.4e-4), (BIAS, 0.4e-5)]
+        {
+            after[(state, state)] += variance;
+        }
+        assert!((estimate.mean - moved).amax() < 1e-12, "{} {moved}", estimate.mean);
+        let difference = estimate.covariance.to_matrix() - after;
+        assert!(difference.amax() < 1e-9, "{difference}");
+    }
+}

@@ -4,7 +4,7 @@ mod course;
 mod drive;
 pub(crate) mod state;
 
-use self::course::Course;
+use self::course::{Course, decided};
 use self::state::{COSINE, COUNT, SINE};
 use crate::config::{common_sigmas, size};
 use crate::health::{self, Counters, Place, count_heard};
@@ -50,8 +50,6 @@ pub struct WheelTracker<T: Scalar, const A: usize> {
 /// Mean NIS of ranges from which on the wheels are taken to slip, or to be others' than the robot's; below it, their
 /// noise grows with it.
 const NIS_OF_SLIP: f64 = 4.0;
-/// A course that is so much less probable than the other (−2 ln) is given up: one of 20,000.
-const DECIDED: f64 = 20.0;
 /// Least scale of wheels that have a heading.
 const LEAST_SCALE: f64 = 0.1;
 
@@ -297,19 +295,5 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     }
 }
 
-/// Both courses, until one is much more probable than the other.
-fn decided<T: Scalar>(courses: [Option<Course<T>>; 2]) -> [Option<Course<T>>; 2] {
-    let [Some(mut first), Some(mut second)] = courses else { return courses };
-    let most = T::from_f64(DECIDED);
-    if first.cost > second.cost + most {
-        return [None, Some(second)];
-    }
-    if second.cost > first.cost + most {
-        return [Some(first), None];
-    }
-    // Only their difference counts.
-    let least = first.cost.min(second.cost);
-    first.cost -= least;
-    second.cost -= least;
-    [Some(first), Some(second)]
-}
+#[cfg(test)]
+mod tests;
