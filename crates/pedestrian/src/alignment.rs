@@ -213,3 +213,6 @@ fn sways<T: Scalar>(rate: &SVector<T, 3>, spread: T) -> bool {
 fn largest<T: Scalar>(vector: &SVector<T, 3>) -> T {
     vector.as_array().iter().fold(T::ZERO, |largest, component| largest.max(component.abs()))
 }
+
+#[cfg(test)]
+mod tests;

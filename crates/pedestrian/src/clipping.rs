@@ -270,3 +270,6 @@ impl<T: Scalar> Clipping<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -41,3 +41,29 @@ impl Clock {
         self.last_us = Some(time_us);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_what_has_elapsed_and_at_most_a_fifth_of_a_second() {
+        let mut clock = Clock::default();
+        assert_eq!(clock.tick::<f64>(5_000_000), Ok(Tick::First));
+        clock.set(5_000_000);
+        let tick = |elapsed_us: u64| clock.tick::<f64>(5_000_000 + elapsed_us);
+        assert_eq!(tick(0), Ok(Tick::Duplicate));
+        for (elapsed_us, interval, gap) in [
+            (1, 1e-6, false),
+            (100_000, 0.1, false),
+            (100_001, 0.100_001, true),
+            (200_001, 0.2, true),
+        ] {
+            let Ok(Tick::Elapsed { interval: found, gap: is_gap }) = tick(elapsed_us) else {
+                panic!("{elapsed_us} µs are a step");
+            };
+            assert!((found - interval).abs() < 1e-9 && is_gap == gap, "{elapsed_us}: {found}");
+        }
+        assert_eq!(clock.tick::<f64>(4_999_999), Err(Error::TimeBackwards));
+    }
+}

@@ -224,3 +224,6 @@ fn level<T: Scalar, N: Navigator<T>>(
         navigator.restart(sensor, orientation);
     }
 }
+
+#[cfg(test)]
+mod tests;

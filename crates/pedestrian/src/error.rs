@@ -28,3 +28,24 @@ impl fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::collections::BTreeSet;
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn every_reason_is_a_sentence_of_its_own() {
+        let all = [Error::NotFinite, Error::Implausible, Error::TimeBackwards, Error::NoMemory];
+        let sentences: BTreeSet<_> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(sentences.len(), all.len());
+        for sentence in &sentences {
+            assert!(sentence.starts_with(char::is_lowercase) && !sentence.ends_with('.'));
+            assert!(sentence.len() < 120, "{sentence}");
+        }
+    }
+}

@@ -187,3 +187,6 @@ fn smoothed<T: Scalar>(average: &mut T, size: T) -> T {
     *average += (size - *average) * T::from_f64(1.0 / 8.0);
     *average
 }
+
+#[cfg(test)]
+mod tests;

@@ -179,20 +179,44 @@ mod tests {
     use kestirim_scalar::Q12_20;
     use nalgebra::Vector3;
 
-    /// Two stands of two seconds, a minute apart, with this heading error, distance and field of the second.
-    fn rate<T: Scalar>(error: f64, distance: f64, field: Vector3<f64>) -> Option<f64> {
+    /// The second of two stands.
+    #[derive(Clone, Copy)]
+    struct Second {
+        /// Error of the heading (rad).
+        error: f64,
+        /// How far it is from the first (m).
+        distance: f64,
+        field: Vector3<f64>,
+        /// When it begins (s).
+        begin: u64,
+        /// How long both last (hundredths of a second).
+        samples: u64,
+        /// By how much the sensor is turned (rad).
+        turned: f64,
+    }
+
+    const FIELD: Vector3<f64> = Vector3::new(0.15, 0.05, -0.45);
+    const SAME: Second =
+        Second { error: 0.05, distance: 0.3, field: FIELD, begin: 60, samples: 200, turned: 0.0 };
+
+    fn rate<T: Scalar>(second: Second) -> Option<f64> {
         // The sensor's own iron, the same in both.
         let iron = Vector3::new(0.05, -0.02, 0.03);
         let mut heading = MagneticHeading::<T>::default();
-        let first = Vector3::new(0.15, 0.05, -0.45);
-        for (begin, error, distance, field) in [(0, 0.0, 0.0, first), (60, error, distance, field)]
+        let first =
+            Second { error: 0.0, distance: 0.0, field: FIELD, begin: 0, turned: 0.0, ..second };
+        let about_up =
+            |angle| Orientation::identity().turned_in_earth(&Vector3::new(0.0, 0.0, angle));
+        // What a sensor hears beside its field is of the other sign in the second.
+        for (Second { error, distance, field, begin, samples, turned }, sign) in
+            [(first, 1.0), (second, -1.0)]
         {
-            for k in 0..200_u64 {
-                let believed =
-                    Orientation::identity().turned_in_earth(&Vector3::new(0.0, 0.0, error));
+            for k in 0..samples {
+                let noise = if k % 2 == 0 { sign } else { -sign };
+                let believed = about_up(error + turned);
                 let estimate = Estimate {
                     time_us: begin * 1_000_000 + k * 10_000,
-                    position: SVector::from([T::from_f64(distance), T::ZERO, T::ZERO]),
+                    position: Vector3::new(4.0 + distance, -3.0, 0.0).map(T::from_f64),
                     velocity: SVector::zeros(),
                     orientation: Orientation::from_quaternion(
                         believed.quaternion().map(T::from_f64),
@@ -201,13 +225,16 @@ mod tests {
                     stance: true,
                     stride: None,
                 };
-                let measured = (field + iron).map(T::from_f64);
+                let wild = Vector3::new(0.02, -0.03, 0.01) * noise;
+                let measured = about_up(turned).to_body(&field) + iron + wild;
+                let force = Vector3::new(0.0, 0.0, 9.8) + Vector3::new(0.4, 0.3, 0.2) * noise;
                 let sample = ImuSample {
                     time_us: estimate.time_us,
-                    specific_force: Vector3::new(0.0, 0.0, 9.8).map(T::from_f64),
+                    specific_force: force.map(T::from_f64),
                     angular_rate: SVector::zeros(),
                 };
-                heading.update(&sample, &estimate, Some(&measured), T::from_f64(0.2));
+                let field = measured.map(T::from_f64);
+                heading.update(&sample, &estimate, Some(&field), T::from_f64(0.2));
             }
             heading.finish(T::from_f64(0.2));
         }
@@ -216,19 +243,22 @@ mod tests {
 
     #[test]
     fn a_foot_that_comes_back_shows_the_drift_of_its_heading() {
-        let field = Vector3::new(0.15, 0.05, -0.45);
-        for rate in [rate::<f64>(0.05, 0.3, field), rate::<Q12_20>(0.05, 0.3, field)] {
+        for rate in [rate::<f64>(SAME), rate::<Q12_20>(SAME)] {
             let rate = rate.expect("a rate");
             assert!((rate * 58.0 / 0.05 - 1.0).abs() < 0.05, "{rate}");
         }
+        assert!(rate::<f64>(Second { samples: 102, ..SAME }).is_some());
     }
 
     #[test]
     fn what_may_be_another_place_shows_nothing() {
-        let field = Vector3::new(0.15, 0.05, -0.45);
-        assert_eq!(rate::<f64>(0.05, 0.7, field), None, "too far away");
-        assert_eq!(rate::<f64>(0.05, 0.3, field * 1.1), None, "a stronger field");
-        assert_eq!(rate::<f64>(0.05, 0.3, Vector3::new(0.2, 0.05, -0.43)), None, "another dip");
-        assert_eq!(rate::<f64>(0.01, 0.3, field), None, "no more than two stands differ by");
+        let nothing = |second, why| assert_eq!(rate::<f64>(second), None, "{why}");
+        nothing(Second { distance: 0.7, ..SAME }, "too far away");
+        nothing(Second { field: FIELD * 1.1, ..SAME }, "a stronger field");
+        nothing(Second { field: Vector3::new(0.2, 0.05, -0.43), ..SAME }, "another dip");
+        nothing(Second { error: 0.01, ..SAME }, "no more than two stands differ by");
+        nothing(Second { error: 0.01, begin: 240, ..SAME }, "nor after minutes");
+        nothing(Second { turned: 1.6, ..SAME }, "the sensor's own iron is elsewhere");
+        nothing(Second { samples: 98, ..SAME }, "a stance of walking");
     }
 }

@@ -74,3 +74,32 @@ fn refusal<T: Scalar>(vector: &SVector<T, 3>) -> Error {
 fn within<T: Scalar>(vector: &SVector<T, 3>, limit: T) -> bool {
     vector.as_array().iter().all(|component| component.abs() < limit)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_axis_is_within_what_a_sensor_measures() {
+        let check = |force: SVector<f64, 3>, rate: SVector<f64, 3>| {
+            ImuSample { time_us: 0, specific_force: force, angular_rate: rate }.check()
+        };
+        let size = |large_force, large_rate| Ok(Size { large_force, large_rate });
+        for axis in 0..3 {
+            for sign in [1.0, -1.0] {
+                let on = |value: f64| {
+                    SVector::from_fn(|other, _| if other == axis { value * sign } else { 0.1 })
+                };
+                let calm = on(1.0);
+                assert_eq!(check(on(17.9), on(4.1)), size(false, false));
+                assert_eq!(check(on(18.0), on(4.1)), size(true, false));
+                assert_eq!(check(on(17.9), on(4.2)), size(false, true));
+                assert_eq!(check(on(9806.0), on(1745.0)), size(true, true));
+                assert_eq!(check(on(9807.0), calm), Err(Error::Implausible));
+                assert_eq!(check(calm, on(1746.0)), Err(Error::Implausible));
+                assert_eq!(check(on(f64::INFINITY), calm), Err(Error::NotFinite));
+                assert_eq!(check(calm, on(f64::NAN)), Err(Error::NotFinite));
+            }
+        }
+    }
+}

@@ -110,3 +110,81 @@ fn wrapped<T: Scalar>(angle: T) -> T {
         angle
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+
+    /// Stances of half a second and swings of another, at these places.
+    fn walked<const K: usize>(places: [[f64; 2]; K]) -> ([Option<Stride<f64>>; K], f64) {
+        let mut strides = Strides::new();
+        let mut begin_us = 0;
+        let found = places.map(|[x, y]| {
+            let position = SVector::from([x, y, 0.3]);
+            let mut found = None;
+            for step in 0..100 {
+                let stride = strides.update(begin_us + step * 10_000, position, step < 50);
+                assert!(stride.is_none() || step == 50, "a stride is told once, and at its end");
+                found = found.or(stride);
+            }
+            begin_us += 1_000_000;
+            found
+        });
+        assert!(strides.finish().is_none(), "no stance is open");
+        (found, strides.path_length())
+    }
+
+    #[test]
+    fn a_stride_leads_from_stance_to_stance() {
+        let ([begin, first, shuffle, second], path) =
+            walked([[0.0, 0.0], [0.6, 0.8], [0.6, 0.71], [-0.4, 0.8]]);
+        assert_eq!((begin, shuffle), (None, None));
+        let (first, second) = (first.expect("a stride"), second.expect("a stride"));
+        assert!((first.length - 1.0).abs() < 1e-9 && (path - 2.0).abs() < 1e-9, "{first:?}");
+        assert_eq!(first.time_us, 1_490_000);
+        assert_eq!(first.position, SVector::from([0.6, 0.8, 0.3]));
+        assert!((first.duration - 1.0).abs() < 1e-9 && first.heading_change == 0.0, "{first:?}");
+        // The shuffle is no stance of its own: what follows it began before.
+        assert!((second.length - 1.0).abs() < 1e-9 && (second.duration - 2.0).abs() < 1e-9);
+        assert!((second.heading_change - (PI - 0.8_f64.atan2(0.6))).abs() < 1e-9, "{second:?}");
+    }
+
+    #[test]
+    fn a_walk_round_a_square_turns_by_right_angles() {
+        for side in [1.0, -1.0] {
+            let corner = |k: usize| match k % 4 {
+                0 => [0.0, 0.0],
+                1 => [1.0, 0.0],
+                2 => [1.0, side],
+                _ => [0.0, side],
+            };
+            let (strides, _) = walked::<10>(core::array::from_fn(corner));
+            for stride in strides.iter().skip(2) {
+                let turn = stride.expect("a stride").heading_change;
+                assert!((turn - side * PI / 2.0).abs() < 1e-9, "{turn}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_stance_that_goes_on_is_a_stride_when_the_walk_ends() {
+        let mut strides = Strides::new();
+        assert!(strides.update(0, SVector::zeros(), true).is_none());
+        assert!(strides.update(10, SVector::zeros(), false).is_none());
+        assert!(strides.update(20, SVector::from([0.0, 0.101, 0.0]), true).is_none());
+        assert!((strides.finish().expect("a stride").length - 0.101).abs() < 1e-12);
+        assert!((strides.path_length() - 0.101).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_angle_is_the_same_within_half_a_turn() {
+        for step in -125..=125 {
+            let angle = 0.05 * f64::from(step);
+            let wrapped = wrapped(angle);
+            assert!(wrapped.abs() <= PI, "{angle}: {wrapped}");
+            let (sine, cosine) = wrapped.sin_cos();
+            assert!((sine - angle.sin()).hypot(cosine - angle.cos()) < 1e-9, "{angle}: {wrapped}");
+        }
+    }
+}

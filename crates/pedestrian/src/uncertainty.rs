@@ -99,6 +99,30 @@ mod tests {
     }
 
     #[test]
+    fn round_a_corner_each_stride_goes_astray_by_the_heading_of_its_time() {
+        let mut uncertainty = PathUncertainty::<f64>::new(SensorClass::Consumer);
+        let (mut position, mut astray) = ([0.0, 0.0], [0.0, 0.0]);
+        for k in 1..=100_u32 {
+            // Fifty strides of 1.5 s ahead, and fifty to the left.
+            let axis = usize::from(k > 50);
+            position[axis] += 0.5;
+            astray[1 - axis] += 0.5 * 0.002 * 1.5 * f64::from(k);
+            uncertainty.add(&Stride {
+                time_us: 0,
+                position: SVector::from([position[0], position[1], 0.0]),
+                length: 0.5,
+                duration: 1.5,
+                heading_change: 0.0,
+            });
+        }
+        let found = uncertainty.standard_deviation();
+        for axis in 0..2 {
+            let expected = astray[axis].hypot(0.01 * position[axis]).hypot(0.028 * 101_f64.sqrt());
+            assert!((found[axis] - expected).abs() < 1e-9, "{found} {expected}");
+        }
+    }
+
+    #[test]
     fn every_number_says_the_same() {
         let double = straight::<f64>(500);
         for other in [straight::<f32>(500), straight::<Q12_20>(500)] {

@@ -141,3 +141,88 @@ impl<T: Scalar> RecentMinimum<T> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    const BIN_US: u32 = RecentMinimum::<f64>::BIN_US;
+
+    #[test]
+    fn a_minimum_is_kept_for_so_many_bins() {
+        let bins = 5;
+        let mut minimum = RecentMinimum::new(bins);
+        assert_eq!(minimum.push(1_000, 1.0), 1.0);
+        let mut forgotten = None;
+        for k in 1..200_u32 {
+            let time_us = 1_000 + k * 10_000;
+            if minimum.push(time_us, 5.0) == 5.0 {
+                forgotten = forgotten.or(Some(time_us));
+            }
+        }
+        // With the bin that is being filled: when the sixth begins after that of the value.
+        assert_eq!(forgotten, Some(1_000 + 6 * BIN_US));
+        assert_eq!(minimum.smallest(), 5.0);
+        assert_eq!(minimum.push(2_000_000, 0.5), 0.5);
+        assert_eq!(minimum.push(2_000_000, 0.7), 0.5);
+    }
+
+    #[test]
+    fn bins_are_passed_over_in_a_gap() {
+        for (gap_us, kept) in [(3 * BIN_US, true), (5 * BIN_US, true), (6 * BIN_US, false)] {
+            let mut minimum = RecentMinimum::new(5);
+            minimum.push(u32::MAX - 50_000, 1.0);
+            let found = minimum.push((u32::MAX - 50_000).wrapping_add(gap_us), 5.0);
+            assert_eq!(found == 1.0, kept, "{gap_us} µs");
+        }
+        // A long one empties all, and the next bin begins at its end.
+        let mut minimum = RecentMinimum::new(15);
+        minimum.push(0, 1.0);
+        assert_eq!(minimum.push(3_600_000_000, 5.0), 5.0);
+        assert_eq!(minimum.push(3_600_000_000 + BIN_US - 1, 4.0), 4.0);
+        assert_eq!(minimum.push(3_600_000_000 + 16 * BIN_US - 1, 9.0), 4.0);
+        assert_eq!(minimum.push(3_600_000_000 + 16 * BIN_US, 9.0), 9.0);
+    }
+
+    /// A foot that turns at this rate (rad/s), after so long a time (µs).
+    fn turning(detector: &mut Adaptive<f64>, time_us: u32, rate: f64) -> bool {
+        let force_g = SVector::from([0.0, 0.0, 1.0]);
+        let angular_rate = SVector::from([rate, 0.0, 0.0]);
+        detector.update(&Motion { time_us, force_g, angular_rate }).stance
+    }
+
+    #[test]
+    fn the_bound_grows_fourfold_in_the_second_after_half_of_one_without_a_stance() {
+        for (waited, grown) in [(0.3, 1.0), (0.5, 1.0), (1.5, 4.0), (2.5, 7.0), (60.0, 31.0)] {
+            for (share, stands) in [(0.97, true), (1.03, false)] {
+                let mut detector = Adaptive::default();
+                // It turned by a rate whose square is 1 and never less …
+                for k in 0..20 {
+                    turning(&mut detector, k * 10_000, 1.0);
+                }
+                // … was lost from sight, with a stance just before …
+                detector.last_stance_us = Some(190_000);
+                let time_us = 190_000 + (waited * 1e6) as u32;
+                detector.minimum = RecentMinimum::new(Adaptive::<f64>::MEMORY_BINS);
+                detector.minimum.push(time_us, 0.5);
+                // … and turns by more: twice the smallest is the bound.
+                let rate = (grown * share).sqrt();
+                assert_eq!(turning(&mut detector, time_us, rate), stands, "{waited} s, {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn below_a_third_of_a_radian_a_second_a_foot_always_stands() {
+        let mut detector = Adaptive::default();
+        for k in 0..100 {
+            assert!(turning(&mut detector, k * 10_000, 0.0));
+        }
+        for (rate, stands) in [(0.31, true), (0.33, false)] {
+            let mut detector = detector;
+            let all = (100..106).map(|k| turning(&mut detector, k * 10_000, rate));
+            assert_eq!(all.last(), Some(stands), "{rate} rad/s");
+        }
+    }
+}

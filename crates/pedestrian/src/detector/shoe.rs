@@ -86,3 +86,63 @@ impl<T: Scalar> StanceDetector<T> for FixedShoe<T> {
         Verdict { stance: statistic < self.threshold, statistic }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    /// T of a foot after a tenth of a second of this force (g) and rate (rad/s), sample by sample.
+    fn statistic(motion: impl Fn(usize) -> ([f64; 3], [f64; 3])) -> f64 {
+        let mut shoe = Shoe::default();
+        let mut last = 0.0;
+        for k in 0..40 {
+            let (force_g, rate) = motion(k);
+            let (force_g, angular_rate) = (SVector::from(force_g), SVector::from(rate));
+            last = shoe.update(&Motion { time_us: k as u32 * 2_500, force_g, angular_rate });
+        }
+        last
+    }
+
+    #[test]
+    fn a_foot_at_rest_shows_nothing_however_it_lies() {
+        assert!(statistic(|_| ([0.0, 0.6, -0.8], [0.0; 3])) < 1e-12);
+    }
+
+    #[test]
+    fn the_statistic_is_the_published_one() {
+        assert!((statistic(|_| ([0.0, 0.6, 0.8], [0.2, -0.1, 0.4])) - 0.21).abs() < 1e-9);
+        // A force that shakes by 0.1 g beside gravity: κ times its square.
+        let shaken = statistic(|k| ([if k % 2 == 0 { 0.1 } else { -0.1 }, 0.0, 1.0], [0.0; 3]));
+        assert!((shaken / (2.885 * 0.01) - 1.0).abs() < 0.03, "{shaken}");
+        // One that is a little larger or smaller than gravity: κ times the square of that.
+        for force in [1.02, 0.98] {
+            let found = statistic(|_| ([0.0, force, 0.0], [0.0; 3]));
+            assert!((found / (2.885 * 0.02 * 0.02) - 1.0).abs() < 0.03, "{force} g: {found}");
+        }
+    }
+
+    #[test]
+    fn one_sample_contributes_no_more_than_fits_into_fixed_point() {
+        let turned = statistic(|k| ([0.0, 0.0, 1.0], [if k == 39 { 1e6 } else { 0.0 }, 0.0, 0.0]));
+        assert!((turned - 60.0 / 19.0).abs() < 1e-6, "{turned}");
+        let hit = statistic(|k| ([0.0, 0.0, if k == 20 { 1e3 } else { 1.0 }], [0.0; 3]));
+        assert!(hit < 1e-6, "{hit}: it is out of the window");
+    }
+
+    #[test]
+    fn a_fixed_threshold_is_one() {
+        let mut detector = FixedShoe::new(0.5);
+        for (rate, stance) in [(0.7, true), (0.72, false), (0.0, true)] {
+            let (mut verdict, angular_rate) = (None, SVector::from([rate, 0.0, 0.0]));
+            for k in 0..20 {
+                let force_g = SVector::from([0.0, 0.0, 1.0]);
+                verdict =
+                    Some(detector.update(&Motion { time_us: k * 10_000, force_g, angular_rate }));
+            }
+            let verdict = verdict.expect("samples");
+            assert!((verdict.statistic - rate * rate).abs() < 1e-9, "{verdict:?}");
+            assert_eq!(verdict.stance, stance, "{rate} rad/s");
+        }
+    }
+}

@@ -110,3 +110,57 @@ impl<T: Scalar> StanceDetector<T> for AngularRateEnergy<T> {
         Verdict { stance: energy < self.threshold, statistic: T::ZERO }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    /// Whether a foot stands after a second of this force along an axis (g) and this rate (rad/s), sample by sample.
+    fn stands(mut detector: impl StanceDetector<f64>, motion: impl Fn(u32) -> (f64, f64)) -> bool {
+        let mut stance = false;
+        for k in 0..100 {
+            let (force, rate) = motion(k);
+            let force_g = SVector::from([0.0, 0.6 * force, 0.8 * force]);
+            let angular_rate = SVector::from([0.0, rate * 0.6, rate * 0.8]);
+            stance = detector.update(&Motion { time_us: k * 10_000, force_g, angular_rate }).stance;
+        }
+        stance
+    }
+
+    #[test]
+    fn a_magnitude_is_within_a_tenth_of_gravity() {
+        for (force, stance) in
+            [(1.0, true), (1.09, true), (0.91, true), (1.11, false), (0.89, false)]
+        {
+            let detector = Magnitude::new(Magnitude::<f64>::THRESHOLD_G);
+            assert_eq!(stands(detector, |_| (force, 9.0)), stance, "{force} g");
+        }
+    }
+
+    #[test]
+    fn a_variance_does_not_see_what_is_constant() {
+        let detector = || MovingVariance::new(0.01);
+        assert!(stands(detector(), |_| (3.0, 9.0)));
+        // To and fro by a tenth of gravity is a variance of a hundredth.
+        let shaken =
+            |by: f64| stands(detector(), |k| (if k % 2 == 0 { 1.0 + by } else { 1.0 - by }, 0.0));
+        assert!(shaken(0.098) && !shaken(0.102));
+        // However hard the blow, seven are counted: over ten samples 0.7² is taken off a tenth of their square.
+        let hit = |threshold| {
+            stands(MovingVariance::new(threshold), |k| (if k == 95 { 1e9 } else { 1.0 }, 0.0))
+        };
+        assert!(hit(4.42) && !hit(4.40));
+    }
+
+    #[test]
+    fn an_energy_is_the_mean_square_of_the_rate() {
+        let detector = || AngularRateEnergy::new(0.25);
+        assert!(stands(detector(), |_| (5.0, 0.49)) && !stands(detector(), |_| (1.0, 0.51)));
+        let hit = |threshold| {
+            stands(AngularRateEnergy::new(threshold), |k| (1.0, if k == 98 { 1e9 } else { 0.0 }))
+        };
+        // Five samples, one of which counts as 60.
+        assert!(hit(12.1) && !hit(11.9));
+    }
+}

@@ -131,3 +131,49 @@ impl<T: Scalar, const K: usize> SlidingMean<T, K> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values that repeat after 101 samples.
+    fn value(k: usize) -> f64 {
+        (k * 37 % 101) as f64
+    }
+
+    /// Whether the means are those of the samples within the last stretch (µs), one every so many µs.
+    fn are_means(span_us: u32, interval_us: u32) {
+        let mut window = SlidingMean::<f64, 2>::new(span_us);
+        // The clock goes round on the way.
+        let time_us = |k: usize| (u32::MAX - 100_000).wrapping_add(k as u32 * interval_us);
+        for k in 0..300 {
+            let means = window.push(time_us(k), [value(k), -value(k)]);
+            let within = |&j: &usize| time_us(k).wrapping_sub(time_us(j)) < span_us;
+            let kept = (0..=k).rev().take(CAPACITY).take_while(within);
+            let (count, sum) =
+                kept.fold((0.0, 0.0), |(count, sum), j| (count + 1.0, sum + value(j)));
+            assert!((means[0] - sum / count).abs() < 1e-9, "{k}: {means:?}, {sum} / {count}");
+            assert_eq!(means[1], -means[0]);
+        }
+    }
+
+    #[test]
+    fn means_are_those_of_the_last_stretch_of_time() {
+        are_means(50_000, 10_000);
+        are_means(47_500, 5_000);
+        are_means(50_000, 60_000);
+        // Of a fast stream the newest that fit.
+        are_means(50_000, 1_000);
+    }
+
+    #[test]
+    fn rounding_does_not_stay_for_ever() {
+        let mut window = SlidingMean::<f32, 1>::new(47_500);
+        let mut mean = 0.0;
+        for k in 0..CAPACITY as u32 + 10 {
+            let [found] = window.push(k * 10_000, [if k == 3 { 1e9 } else { 0.3 }]);
+            mean = found;
+        }
+        assert!((mean - 0.3).abs() < 1e-6, "{mean}");
+    }
+}

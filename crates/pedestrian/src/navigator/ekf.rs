@@ -162,3 +162,6 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         self.orientation
     }
 }
+
+#[cfg(test)]
+mod tests;

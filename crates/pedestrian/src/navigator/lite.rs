@@ -93,3 +93,6 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
         *self.ahrs.orientation()
     }
 }
+
+#[cfg(test)]
+mod tests;

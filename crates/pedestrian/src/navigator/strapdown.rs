@@ -61,3 +61,62 @@ pub(super) fn cross<T: Scalar>(a: &SVector<T, 3>, b: &SVector<T, 3>) -> SVector<
     let (a, b) = (*a.as_array(), *b.as_array());
     SVector::from([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// A step of a body with this force (g) and rate (rad/s).
+    fn step(interval: f64, force_g: Vector3<f64>, angular_rate: Vector3<f64>) -> Step<f64> {
+        Step { interval, force_g, angular_rate, turn: angular_rate * interval }
+    }
+
+    #[test]
+    fn a_body_at_rest_stays_and_one_without_support_falls() {
+        let orientation = Orientation::identity();
+        let mut resting = Strapdown::<f64>::at_rest();
+        let pushed = resting.integrate(&orientation, &step(0.5, Vector3::z(), Vector3::zeros()));
+        assert!((pushed - Vector3::z() * (0.5 * STANDARD_GRAVITY)).norm() < 1e-12);
+        assert!(resting.velocity.norm() < 1e-12 && resting.position.norm() < 1e-12);
+        let mut falling = Strapdown::<f64>::at_rest();
+        for _ in 0..2 {
+            falling.integrate(&orientation, &step(0.5, Vector3::zeros(), Vector3::zeros()));
+        }
+        assert!((falling.velocity - Vector3::z() * -STANDARD_GRAVITY).norm() < 1e-12);
+        assert!((falling.position - Vector3::z() * (-0.5 * STANDARD_GRAVITY)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_force_turns_with_the_body_within_a_step() {
+        // Upside down it points the other way.
+        let turned = Orientation::identity().turned_in_earth(&Vector3::new(0.3, -0.2, 0.9));
+        let (force, rate) = (Vector3::new(0.4, -0.3, 0.8), Vector3::new(3.0, -2.0, 1.0));
+        let dt = 0.01;
+        let pushed = Strapdown::<f64>::at_rest().integrate(&turned, &step(dt, force, rate));
+        // The sum over a thousand parts of the step.
+        let mut sum = Vector3::zeros();
+        for part in 0..1000 {
+            let share = (f64::from(part) + 0.5) / 1000.0;
+            let then = turned.turned_in_body(&(rate * (dt * share)));
+            sum += then.to_earth(&force) * (STANDARD_GRAVITY * dt / 1000.0);
+        }
+        assert!((pushed - sum).norm() < 2e-5, "{pushed} {sum}");
+    }
+
+    #[test]
+    fn a_foot_that_rolls_moves_its_sensor_above_the_contact() {
+        let turned = Orientation::identity().turned_in_earth(&Vector3::new(0.3, -0.2, 0.9));
+        let rate = Vector3::new(0.5, -0.7, 0.2);
+        let velocity = velocity_of_rolling(&turned, &rate, 0.07);
+        let expected = turned.to_earth(&rate).cross(&Vector3::new(0.0, 0.0, 0.07));
+        assert!((velocity - expected).norm() < 1e-12, "{velocity} {expected}");
+        assert!(velocity.norm() > 0.01);
+    }
+
+    #[test]
+    fn a_cross_product_is_one() {
+        let (a, b) = (Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.5, 4.0, -1.5));
+        assert!((cross(&a, &b) - a.cross(&b)).norm() < 1e-12);
+    }
+}
