@@ -21,6 +21,14 @@ pub enum Error {
     EmptyExchange,
     /// A table whose entries are not in rising order.
     UnorderedTable,
+    /// No anchor has this number.
+    NoSuchAnchor,
+    /// This message, or a later one of the same anchor, came before.
+    Repeated,
+    /// A clock that differs by more than 100 ppm from another is none: an anchor has begun anew.
+    ImplausibleClock,
+    /// A difference of distances that is larger than the distance between the anchors.
+    ImplausibleDifference,
 }
 
 impl fmt::Display for Error {
@@ -33,6 +41,10 @@ impl fmt::Display for Error {
             Self::NotConverged => "the iterations did not converge",
             Self::EmptyExchange => "the intervals of an exchange are zero",
             Self::UnorderedTable => "the entries of a table are not in rising order",
+            Self::NoSuchAnchor => "there is no anchor of this number",
+            Self::Repeated => "this message came before",
+            Self::ImplausibleClock => "no clock differs so much from another",
+            Self::ImplausibleDifference => "the difference is larger than the anchors' distance",
         })
     }
 }

@@ -39,7 +39,7 @@ pub struct Config<T> {
 }
 
 /// From the centre of an office to its anchors, m.
-const OFFICE: f64 = 6.0;
+pub(crate) const OFFICE: f64 = 6.0;
 
 /// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to each, on average.
 ///

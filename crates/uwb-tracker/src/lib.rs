@@ -2,6 +2,7 @@
 #![no_std]
 
 mod config;
+mod differences;
 mod epoch;
 mod error;
 mod health;
@@ -22,13 +23,14 @@ pub mod wheel_noise;
 mod wheels;
 
 pub use config::Config;
+pub use differences::DifferenceTracker;
 pub use epoch::{EpochMethod, EpochSolver};
 pub use error::Error;
 pub use health::{Health, State};
 pub use height::HeightFinder;
 pub use link::Anchor;
 pub use published::{PublishedConfig, PublishedOutcome, PublishedTracker};
-pub use sample::{InertialSample, OdometrySample, Outcome, RangeSample, Report};
+pub use sample::{DifferenceSample, InertialSample, OdometrySample, Outcome, RangeSample, Report};
 pub use tracker::{
     CalibratedPlaneTracker, CalibratedSpaceTracker, PlaneTracker, SpaceTracker, Tracker,
 };

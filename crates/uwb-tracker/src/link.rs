@@ -84,6 +84,16 @@ impl<T: Scalar> Link<T> {
         self.range = range;
     }
 
+    /// Forgets the last range: it is as if none had come.
+    pub(crate) fn forget(&mut self) {
+        self.next_us = 0;
+    }
+
+    /// Lengthens the last range, m.
+    pub(crate) fn shift(&mut self, by: T) {
+        self.range += by;
+    }
+
     /// The same link for a new estimate: noise and gate begin anew.
     pub(crate) fn begun(&self, config: &Config<T>) -> Self {
         Self { next_us: self.next_us, range: self.range, ..Self::new(self.anchor, config) }

@@ -32,6 +32,30 @@ impl<T: Scalar> RangeSample<T> {
     }
 }
 
+/// By how much one anchor is farther than another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct DifferenceSample<T> {
+    /// When the message of the second anchor was received (µs since any moment).
+    pub time_us: u64,
+    /// Indices of two anchors in the list that the tracker was made with.
+    pub anchors: [usize; 2],
+    /// Distance to the second less distance to the first, m.
+    pub difference: T,
+}
+
+impl<T: Scalar> DifferenceSample<T> {
+    /// Refuses what no radio measures.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        if self.difference.abs() <= T::from_f64(RangeSample::<T>::LONGEST) {
+            return Ok(());
+        }
+        let is_finite = self.difference.is_finite();
+        Err(if is_finite { Error::ImplausibleRange } else { Error::NotFinite })
+    }
+}
+
 /// Sample of an IMU on the tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,12 +1,16 @@
 //! What stored estimators are. Raise the version of one that is stored otherwise than before.
 
-use crate::{EpochSolver, HeightFinder, PublishedTracker, Tracker, WheelTracker};
+use crate::{
+    DifferenceTracker, EpochSolver, HeightFinder, PublishedTracker, Tracker, WheelTracker,
+};
 use kestirim_scalar::Scalar;
 use kestirim_snapshot::layout;
 
 layout! {
     [T: Scalar, const D: usize, const N: usize, const A: usize] for Tracker<T, D, N, A>
         as "uwb/tracker", 1, T, [D, N, A];
+    [T: Scalar, const D: usize, const N: usize, const A: usize] for DifferenceTracker<T, D, N, A>
+        as "uwb/differences", 1, T, [D, N, A];
     [T: Scalar, const A: usize] for WheelTracker<T, A> as "uwb/wheels", 1, T, [A];
     [T: Scalar, const D: usize, const N: usize, const A: usize] for PublishedTracker<T, D, N, A>
         as "uwb/published", 1, T, [D, N, A];

@@ -1,3 +1,4 @@
 //! What the simulation draws.
 
+pub mod radio;
 pub mod scenario;

@@ -10,16 +10,16 @@ use kestirim_scalar::Scalar;
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Takes in a range at the estimate's own time.
     #[inline(always)]
-    pub(super) fn measure(
+    pub(crate) fn measure(
         &mut self,
         sample: &RangeSample<T>,
         range: T,
+        observes_bias: bool,
     ) -> Result<Report<T>, Error> {
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Some(estimate) = &mut self.estimate else {
             return Ok(self.collect(sample, range));
         };
-        let observes_bias = self.heard as usize >= D + 2;
         let place = link.anchor.position;
         let observation = Range::<T, D> {
             measured: range,
@@ -53,7 +53,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
 
     /// Keeps a range for a first position, and makes one if it can.
     #[inline(never)] // Rare, and large.
-    pub(super) fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
+    pub(crate) fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
         let mut again = false;
         if let Some(link) = self.links.get_mut(sample.anchor) {
             again = link.fresh(self.time_us, self.pace.fresh_us()).is_some();

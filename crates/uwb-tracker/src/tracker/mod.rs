@@ -30,21 +30,21 @@ pub type CalibratedSpaceTracker<T, const A: usize> = Tracker<T, 3, 6, A>;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
-    config: Config<T>,
-    links: Vec<Link<T>, A>,
-    estimate: Option<Gaussian<T, N>>,
+    pub(crate) config: Config<T>,
+    pub(crate) links: Vec<Link<T>, A>,
+    pub(crate) estimate: Option<Gaussian<T, N>>,
     /// Time of the estimate, µs.
-    time_us: u64,
+    pub(crate) time_us: u64,
     stillness: Stillness<T>,
     wheels: Option<OdometrySample<T>>,
     /// Time until which standstills are not taken in, µs.
     doubted_until_us: u64,
     heard: u8,
-    pace: Pace,
+    pub(crate) pace: Pace,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
     /// How the common bias depends on the distance: a constant, and a slope, 1/m.
-    bias_shape: [T; 2],
+    pub(crate) bias_shape: [T; 2],
     counters: Counters<T>,
 }
 
@@ -138,10 +138,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let range = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?.admit(sample)?;
         if sample.time_us <= self.time_us {
             self.check_time(sample.time_us)?;
-            return self.measure(sample, range);
+            return self.measure(sample, range, self.observes_bias());
         }
         let before = self.timed();
-        let report = self.advance(sample.time_us, None).and_then(|()| self.measure(sample, range));
+        let report = self
+            .advance(sample.time_us, None)
+            .and_then(|()| self.measure(sample, range, self.observes_bias()));
         if report.is_err() {
             self.restore(before);
         }
@@ -189,6 +191,18 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.check_time(sample.time_us)?;
         self.wheels = Some(*sample);
         Ok(())
+    }
+
+    /// Whether there is a position.
+    #[inline]
+    pub(crate) fn is_located(&self) -> bool {
+        self.estimate.is_some()
+    }
+
+    /// Whether enough anchors are heard to tell a common bias from a distance.
+    #[inline(always)]
+    fn observes_bias(&self) -> bool {
+        self.heard as usize >= D + 2
     }
 
     #[inline]

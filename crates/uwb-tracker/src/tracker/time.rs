@@ -8,7 +8,7 @@ use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
 /// Estimate, its time, anchors heard, end of a doubt.
-pub(super) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
+pub(crate) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Age beyond which odometry is not used (µs).
@@ -24,18 +24,18 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
 
     /// Fields that [`Tracker::advance`] changes.
     #[inline]
-    pub(super) fn timed(&self) -> Timed<T, N> {
+    pub(crate) fn timed(&self) -> Timed<T, N> {
         (self.estimate, self.time_us, self.heard, self.doubted_until_us)
     }
 
     #[inline]
-    pub(super) fn restore(&mut self, before: Timed<T, N>) {
+    pub(crate) fn restore(&mut self, before: Timed<T, N>) {
         (self.estimate, self.time_us, self.heard, self.doubted_until_us) = before;
     }
 
     /// Moves the estimate on to `time_us`; gives it up if it has become worthless.
     #[inline]
-    pub(super) fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
+    pub(crate) fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
         let elapsed = time_us.saturating_sub(self.time_us);
         if elapsed == 0 {
             return Ok(());

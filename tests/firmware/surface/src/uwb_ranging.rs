@@ -2,9 +2,10 @@
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
-    AntennaDelay, Calibration, Channel, ClockOffset, DataRate, DoubleSided, HeightSearch, Huber,
-    LevelBias, Observation, Quartiles, Room, SingleSided, Solver, Ticks, Timestamp, Trilateration,
-    dilution_of_precision, expected_range, survey, trilaterate, weighted_dilution,
+    AntennaDelay, Broadcast, Calibration, Channel, ClockOffset, DataRate, DoubleSided, Downlink,
+    Heard, HeightSearch, Huber, LevelBias, Observation, Quartiles, Room, SingleSided, Solver,
+    Ticks, Timestamp, Trilateration, dilution_of_precision, expected_range, survey, trilaterate,
+    weighted_dilution,
 };
 
 use super::values::{
@@ -58,6 +59,7 @@ fn exchanges<T: Scalar>() {
 fn biases<T: Scalar>() {
     keep::<LevelBias<T, 18>>(LevelBias::aps011_prf64());
     keep::<LevelBias<T, 18>>(LevelBias::aps011_prf16());
+    keep::<LevelBias<T, 18>>(LevelBias::dw1000_prf64());
     levels::<T, 2>();
     levels::<T, 9>();
     let mut quartiles = any(Quartiles::<T>::within(number(), number()));
@@ -129,6 +131,24 @@ fn heights<T: Scalar, const A: usize>() {
     keep(HeightSearch::height(&search));
 }
 
+fn messages<T: Scalar, const A: usize>() {
+    let downlink = Downlink::<T, A>::new([matrix(); A], number(), number());
+    let Ok(mut downlink) = any(downlink) else { return };
+    for _ in 0..rounds() {
+        let heard = any([Heard { anchor: whole(), sequence: whole(), received: timestamp() }; 4]);
+        let message = Broadcast {
+            time_us: whole(),
+            anchor: whole(),
+            sequence: whole(),
+            sent: timestamp(),
+            received: timestamp(),
+            heard: slice(&heard),
+        };
+        try_on(&mut downlink, |downlink| Downlink::take(downlink, &message));
+    }
+    keep(Downlink::clock_offset(&downlink, whole()));
+}
+
 fn triangles<T: Scalar, const A: usize, const D: usize>() {
     let Ok(cell) = any(Trilateration::<T, A, D>::new([matrix(); A])) else { return };
     keep(Trilateration::position(&cell, &numbers(), number()));
@@ -145,6 +165,8 @@ fn all_of<T: Scalar>() {
         anchors::<T, 4>,
         anchors::<T, 9>,
         heights::<T, 4>,
+        messages::<T, 4>,
+        messages::<T, 9>,
         triangles::<T, 4, 2>,
         triangles::<T, 9, 3>,
     ]);

@@ -3,8 +3,9 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Room, Solver};
 use kestirim_uwb_tracker::{
-    Anchor, Config, EpochMethod, EpochSolver, Error, Health, HeightFinder, InertialSample,
-    OdometrySample, PublishedConfig, PublishedTracker, RangeSample, Tracker, WheelTracker,
+    Anchor, Config, DifferenceSample, DifferenceTracker, EpochMethod, EpochSolver, Error, Health,
+    HeightFinder, InertialSample, OdometrySample, PublishedConfig, PublishedTracker, RangeSample,
+    Tracker, WheelTracker,
 };
 
 use super::values::{
@@ -78,6 +79,22 @@ fn drives<T: Scalar, const A: usize>() {
     keep(WheelTracker::health(&tracker, whole()));
 }
 
+fn listens<T: Scalar, const D: usize, const N: usize, const A: usize>() {
+    let anchors = any([Anchor { position: matrix(), bias: number() }; 4]);
+    let tracker = DifferenceTracker::<T, D, N, A>::new(config(), slice(&anchors));
+    let Ok(mut tracker) = any(tracker) else { return };
+    for _ in 0..rounds() {
+        let anchors = [whole(), whole()];
+        let sample = any(DifferenceSample { time_us: whole(), anchors, difference: number() });
+        try_on(&mut tracker, |tracker| DifferenceTracker::difference(tracker, &sample));
+        try_on(&mut tracker, |tracker| DifferenceTracker::set_height(tracker, number()));
+    }
+    keep(DifferenceTracker::position(&tracker));
+    keep(DifferenceTracker::velocity(&tracker));
+    keep(DifferenceTracker::estimate(&tracker));
+    keep(DifferenceTracker::health(&tracker, whole()));
+}
+
 fn sample<T: Scalar>() -> RangeSample<T> {
     any(RangeSample { time_us: whole(), anchor: whole(), range: number() })
 }
@@ -142,6 +159,8 @@ fn all_of<T: Scalar>() {
         tracks::<T, 2, 5, 9>,
         tracks::<T, 3, 6, 4>,
         tracks::<T, 3, 7, 9>,
+        listens::<T, 2, 5, 4>,
+        listens::<T, 3, 7, 9>,
         drives::<T, 4>,
         drives::<T, 9>,
         epochs::<T, 2, 4>,
