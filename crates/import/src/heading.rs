@@ -18,6 +18,10 @@ const fn of(quantity: Quantity, name: &'static str, aliases: &'static [&'static 
     Known { name, quantity: Some(quantity), aliases }
 }
 
+const fn named_only(name: &'static str, aliases: &'static [&'static str]) -> Known {
+    Known { name, quantity: None, aliases }
+}
+
 /// What is wanted by readers; time and the axes of an inertial sensor are known to [`crate::names`].
 const KNOWN: &[Known] = &[
     Known {
@@ -37,6 +41,20 @@ const KNOWN: &[Known] = &[
         ],
     },
     of(Quantity::Length, "range", &["range", "distance", "dist", "d", "r"]),
+    named_only("anchor_a", &["anchora", "ida", "firstanchor"]),
+    named_only("anchor_b", &["anchorb", "idb", "secondanchor"]),
+    of(
+        Quantity::Length,
+        "difference",
+        &["difference", "diff", "tdoa", "tdoameas", "distancediff", "distancedifference"],
+    ),
+    named_only("t1", &["t1", "polltx", "polltxts", "pollsent"]),
+    named_only("t2", &["t2", "pollrx", "pollrxts", "pollreceived"]),
+    named_only("t3", &["t3", "resptx", "resptxts", "responsesent"]),
+    named_only("t4", &["t4", "resprx", "resprxts", "responsereceived"]),
+    named_only("t5", &["t5", "finaltx", "finaltxts", "finalsent"]),
+    named_only("t6", &["t6", "finalrx", "finalrxts", "finalreceived"]),
+    of(Quantity::Level, "rx_dbm", &["rx", "rxlevel", "rxpower", "rssi"]),
     of(Quantity::Length, "x", &["x", "posx", "positionx", "xpos", "xposition", "px"]),
     of(Quantity::Length, "y", &["y", "posy", "positiony", "ypos", "yposition", "py"]),
     of(Quantity::Length, "z", &["z", "posz", "positionz", "zpos", "zposition", "pz"]),

@@ -6,12 +6,15 @@
 //! | TREK1000, `DecaRanging` | `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`: mm, and ms of the tag's clock, in hexadecimal (TREK1000 User Manual, 8.1.1). `mr` is read if there is no `mc`, `ma` is between anchors |
 //! | Qorvo MDEK1001 | `les`: `1151[5.00,8.00,2.25]=6.48 … est[…]`; `lec`: `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,…,POS,…` (DWM1001 Firmware API Guide, shell commands): m |
 //! | Makerfabs `MaUWB` | `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,911,738,0,0,0,0),ancid:(0,1,2,3,-1,-1,-1,-1)` (AT command manual): cm |
+//! | six stamps an exchange | `t,anchor,t1,t2,t3,t4,t5,t6`, perhaps with `rx_dbm`: poll, response and final message, each sent and received, as the counter of 40 bits has it, in decimal or as `0x…` |
+//! | differences of distances | `t,anchor_a,anchor_b,difference`; Crazyflie's client: `Timestamp,tdoa2.d7-0,tdoa2.d0-1,…` |
 //! | a column an anchor | `t,d0,d1,…`, `time_ms,range_A1 [cm],…`; the log of Crazyflie's client: `Timestamp,ranging.distance0,…` |
 //!
 //! A line may begin with a time: a number, a date, or a time of day (`12:00:00.250 -> AT+RANGE=…`). A range of zero is
 //! none.
 
 mod lines;
+mod tables;
 mod topics;
 mod wide;
 
@@ -39,12 +42,40 @@ pub struct Range {
     pub metres: f64,
 }
 
-/// A log of ranges.
+/// Six stamps of a poll, a response and a final message, each sent and received.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exchange {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// The anchor's place in the list.
+    pub anchor: usize,
+    /// Readings of the two radios' counters, below 2⁴⁰.
+    pub stamps: [u64; 6],
+    /// The level at which the radio received it, as it estimates it, dBm.
+    pub level_dbm: Option<f64>,
+}
+
+/// By how much the second of two anchors is farther than the first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// Time of the log's clock, µs.
+    pub time_us: i64,
+    /// The anchors' places in the list.
+    pub anchors: [usize; 2],
+    /// m
+    pub metres: f64,
+}
+
+/// A log of ranges, of exchanges that are not ranges yet, or of differences.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranging {
     /// In the order of the log.
     pub ranges: Vec<Range>,
-    /// How many ranges are to anchors that are not in the list; they are left out.
+    /// In the order of the log.
+    pub exchanges: Vec<Exchange>,
+    /// In the order of the log.
+    pub differences: Vec<Difference>,
+    /// How many of them are of anchors that are not in the list; they are left out.
     pub unlisted: usize,
     /// What was recognised, in one line.
     pub conclusion: String,
@@ -58,6 +89,10 @@ struct Found {
     labels: BTreeMap<String, usize>,
     /// Time in µs, label, m.
     ranges: Vec<(i64, usize, f64)>,
+    /// Time in µs, label, stamps, level in dBm.
+    exchanges: Vec<(i64, usize, [u64; 6], Option<f64>)>,
+    /// Time in µs, labels, m.
+    differences: Vec<(i64, [usize; 2], f64)>,
 }
 
 impl Found {
@@ -65,12 +100,33 @@ impl Found {
         if metres == 0.0 {
             return;
         }
+        let label = self.label(label);
+        self.ranges.push((time_us, label, metres));
+    }
+
+    fn add_exchange(&mut self, time_us: i64, label: &str, stamps: [u64; 6], level: Option<f64>) {
+        let label = self.label(label);
+        self.exchanges.push((time_us, label, stamps, level));
+    }
+
+    fn add_difference(&mut self, time_us: i64, labels: &[String; 2], metres: f64) {
+        let labels = [self.label(&labels[0]), self.label(&labels[1])];
+        self.differences.push((time_us, labels, metres));
+    }
+
+    fn label(&mut self, label: &str) -> usize {
         let next = self.labels.len();
-        let label = match self.labels.get(label) {
+        match self.labels.get(label) {
             Some(&known) => known,
             None => *self.labels.entry(label.to_owned()).or_insert(next),
-        };
-        self.ranges.push((time_us, label, metres));
+        }
+    }
+
+    /// Times of all, µs.
+    fn times(&self) -> impl Iterator<Item = i64> {
+        let exchanges = self.exchanges.iter().map(|(time_us, ..)| *time_us);
+        let differences = self.differences.iter().map(|(time_us, ..)| *time_us);
+        self.ranges.iter().map(|(time_us, ..)| *time_us).chain(exchanges).chain(differences)
     }
 }
 
@@ -84,7 +140,7 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
         None => of_text(&Text::new(bytes)?, anchors, options)?,
     };
     let Some((found, conclusion, damage)) = read else { return Ok(None) };
-    if found.ranges.iter().any(|(time_us, ..)| time_us.unsigned_abs() > LATEST_US) {
+    if found.times().any(|time_us| time_us.unsigned_abs() > LATEST_US) {
         return Err(Error::undecided(
             "expected times in s, found one beyond any clock",
             "--units t=",
@@ -95,21 +151,27 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
         labels.sort_by_key(|(_, index)| **index);
         labels.into_iter().map(|(label, _)| place(label, anchors)).collect()
     };
-    if !found.ranges.is_empty() && places.iter().all(Option::is_none) {
+    if found.times().next().is_some() && places.iter().all(Option::is_none) {
         let names: Vec<_> = found.labels.keys().map(|label| quoted(label)).collect();
         let known: Vec<_> = anchors.iter().map(|name| quoted(name)).collect();
         let problem =
             format!("expected ranges to anchors {}, found {}", known.join(", "), names.join(", "));
         return Err(Error::log(problem));
     }
-    let mut unlisted = 0;
-    let ranges = found.ranges.into_iter().filter_map(|(time_us, label, metres)| {
-        let anchor = places.get(label).copied().flatten();
-        unlisted += usize::from(anchor.is_none());
-        Some(Range { time_us, anchor: anchor?, metres })
-    });
-    let ranges = ranges.collect();
-    Ok(Some(Ranging { ranges, unlisted, conclusion, damage }))
+    let all = found.times().count();
+    let anchor = |label: usize| places.get(label).copied().flatten();
+    let range = |&(time_us, label, metres)| Some(Range { time_us, anchor: anchor(label)?, metres });
+    let exchange = |&(time_us, label, stamps, level_dbm)| {
+        Some(Exchange { time_us, anchor: anchor(label)?, stamps, level_dbm })
+    };
+    let difference = |&(time_us, [one, other], metres): &(i64, [usize; 2], f64)| {
+        Some(Difference { time_us, anchors: [anchor(one)?, anchor(other)?], metres })
+    };
+    let ranges: Vec<_> = found.ranges.iter().filter_map(range).collect();
+    let exchanges: Vec<_> = found.exchanges.iter().filter_map(exchange).collect();
+    let differences: Vec<_> = found.differences.iter().filter_map(difference).collect();
+    let unlisted = all - ranges.len() - exchanges.len() - differences.len();
+    Ok(Some(Ranging { ranges, exchanges, differences, unlisted, conclusion, damage }))
 }
 
 fn of_text(
@@ -117,7 +179,10 @@ fn of_text(
     anchors: &[String],
     options: &Options,
 ) -> Result<Option<(Found, String, Damage)>, Error> {
-    match lines::read(text, options)? {
+    if let Some(read) = lines::read(text, options)? {
+        return Ok(Some(read));
+    }
+    match tables::read(text, options)? {
         Some(read) => Ok(Some(read)),
         None => wide::read(text, anchors, options),
     }
@@ -205,6 +270,49 @@ mod tests {
         }
         for text in ["t,anchor,range\n0,A0,1\n", "t,x,y,z\n0,1,2,3\n"] {
             assert_eq!(ranges(text, &["A0", "A1"], &plain).unwrap_err(), "nothing known", "{text}");
+        }
+    }
+
+    #[test]
+    fn stamps_are_understood() {
+        let plain = Options::default();
+        let ticks = [1_099_511_627_000, 500, 64_000_500, 64_000_570, 191_800_570, 191_802_070];
+        let text = |header: &str, row: &str| {
+            let row = ticks.iter().fold(row.to_owned(), |row, it| format!("{row},{it}"));
+            format!("{header}\n0.0{row},-80\n0.1{row},\n0.2,A1,1,2,,4,5,6,-80\n")
+        };
+        for header in [
+            "t,anchor,t1,t2,t3,t4,t5,t6,rx_dbm",
+            "time,anchor_id,T1,T2,T3,T4,T5,T6,RSSI [dBm]",
+            "t,anchor,poll_tx,poll_rx,resp_tx,resp_rx,final_tx,final_rx,rx_dbm",
+        ] {
+            let read = ranges(&text(header, ",A1"), &["A0", "A1"], &plain).unwrap();
+            let found: Vec<_> = read.exchanges.iter().map(|it| (it.anchor, it.stamps)).collect();
+            assert_eq!(found, [(1, ticks); 2], "{header}");
+            let levels: Vec<_> = read.exchanges.iter().map(|it| it.level_dbm).collect();
+            assert_eq!(levels, [Some(-80.0), None], "{header}");
+            assert!(read.ranges.is_empty() && read.damage.count() == 0, "{header}");
+        }
+        let hexadecimal = "t,anchor,t1,t2,t3,t4,t5,t6\n0,A0,0xFFFFFFFFFF,1,2,3,4,5\n";
+        let read = ranges(hexadecimal, &["A0"], &plain).unwrap();
+        assert_eq!(read.exchanges[0].stamps[0], (1 << 40) - 1);
+        let beyond = hexadecimal.replace("0xF", "0x1F");
+        assert!(ranges(&beyond, &["A0"], &plain).unwrap_err().contains("below 2^40"));
+    }
+
+    #[test]
+    fn differences_are_understood() {
+        let plain = Options::default();
+        let expected = [(0, [0, 1], 0.5), (100_000, [1, 2], -1.25)];
+        for text in [
+            "t,anchor_a,anchor_b,difference\n0,A0,A1,0.5\n0.1,A1,A2,-1.25\n",
+            "t,idA,idB,tdoa_meas\n0,0,1,0.5\n0.1,1,2,-1.25\n",
+            "time_ms;anchorA;anchorB;difference [cm]\n0;A0;A1;50\n100;A1;A2;-125\n",
+            "Timestamp,tdoa2.d0-1,tdoa2.d1-2\n0,0.5,0\n100,0.5,-1.25\n",
+        ] {
+            let read = ranges(text, &["A0", "A1", "A2"], &plain).unwrap();
+            let found = read.differences.iter().map(|it| (it.time_us, it.anchors, it.metres));
+            assert_eq!(found.collect::<Vec<_>>(), expected, "{text}");
         }
     }
 

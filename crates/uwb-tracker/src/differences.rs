@@ -218,7 +218,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         };
         let range = arrival + difference;
         let own = RangeSample { time_us: sample.time_us, anchor: second, range };
-        let report = self.tracker.measure(&own, range, true)?;
+        let redundant = self.tracker.heard as usize > D + 1;
+        let report = self.tracker.measure(&own, range, [true, redundant])?;
         if let (Some(measured), Some(link)) = (begun, self.tracker.links.get_mut(first)) {
             link.hear(sample.time_us, measured);
         }

@@ -9,6 +9,7 @@ pub mod live;
 mod replay;
 mod run;
 pub mod serve;
+mod survey;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -40,6 +41,7 @@ pub fn command(arguments: &[OsString]) -> Command {
         .subcommand(replay::command())
         .subcommand(check::command())
         .subcommand(calibrate::command())
+        .subcommand(survey::command())
         .subcommand(Design::augment_args(Command::new("design").about(
             "Design observers: gains, discretisations and covariances of a file of cases",
         )))
@@ -91,6 +93,7 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
         "replay" => replay::run(matches),
         "check" => check::run(matches),
         "calibrate" => calibrate::run(matches),
+        "survey" => survey::run(matches),
         "design" => read::<Design>(matches)?.run(),
         "serve" => read::<Serve>(matches)?.run(),
         "live" => live::run(matches),

@@ -44,6 +44,8 @@ pub trait AnySystem: Sync {
     fn settings(&self) -> Vec<Setting>;
     /// [`System::cell`].
     fn cell(&self) -> Vec<Setting>;
+    /// [`System::survey`].
+    fn survey(&self) -> Option<Box<dyn Calibration>>;
     /// [`System::calibration`].
     fn calibration(&self) -> Option<Box<dyn Calibration>>;
 
@@ -110,6 +112,9 @@ impl<S: System> AnySystem for S {
         S::cell()
     }
 
+    fn survey(&self) -> Option<Box<dyn Calibration>> {
+        S::survey()
+    }
     fn calibration(&self) -> Option<Box<dyn Calibration>> {
         S::calibration()
     }

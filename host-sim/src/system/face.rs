@@ -190,6 +190,11 @@ pub trait System: Sync + 'static {
         Ok(None)
     }
 
+    /// The command that finds where a system's stations are, from what they measure of each other; none if there is none.
+    fn survey() -> Option<Box<dyn Calibration>> {
+        None
+    }
+
     /// The command that finds what the sensors measure wrong; none if there is none.
     fn calibration() -> Option<Box<dyn Calibration>> {
         None

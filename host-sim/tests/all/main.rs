@@ -21,6 +21,7 @@ mod live_systems;
 mod outputs_cli;
 #[path = "../program/mod.rs"]
 mod program;
+mod radio_cli;
 mod robot_cli;
 mod room;
 #[path = "../sender/mod.rs"]

@@ -41,6 +41,14 @@ pub fn check<'a>(
     height: KnownHeight,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
+    let parts: Vec<&[Event]> = parts.into_iter().collect();
+    let is_difference = |event: &&Event| matches!(event, Event::Difference(_));
+    let differences = parts.iter().map(|part| part.iter().filter(is_difference).count());
+    let differences: usize = differences.sum();
+    if differences > 0 {
+        findings.push(Finding::note("differences", format!("{differences} of distances")));
+        return findings;
+    }
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, anchors.names.len(), &name));

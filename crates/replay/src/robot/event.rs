@@ -9,6 +9,8 @@ use super::Course;
 pub enum Event {
     /// A range was measured.
     Range(Range),
+    /// It was heard by how much one anchor is farther than another.
+    Difference(Difference),
     /// The IMU was read.
     Inertial(Inertial),
     /// The wheels were read.
@@ -60,11 +62,23 @@ pub struct Range {
     pub metres: f64,
 }
 
+/// By how much the second of two anchors is farther than the first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// When it was heard, µs.
+    pub time_us: i64,
+    /// The anchors' places in the list.
+    pub anchors: [usize; 2],
+    /// The difference, m.
+    pub metres: f64,
+}
+
 impl Event {
     /// When it was, µs.
     pub const fn time_us(&self) -> i64 {
         match self {
             Self::Range(Range { time_us, .. })
+            | Self::Difference(Difference { time_us, .. })
             | Self::Inertial(Inertial { time_us, .. })
             | Self::Wheels(Wheels { time_us, .. })
             | Self::Height { time_us, .. }
@@ -89,6 +103,8 @@ pub struct RangeRow {
 pub struct Sensors {
     /// Ranges.
     pub ranges: Vec<RangeRow>,
+    /// Differences of distances: of a tag that has no ranges.
+    pub differences: Vec<Difference>,
     /// Samples of the IMU.
     pub inertial: Vec<Inertial>,
     /// Samples of the wheels.
@@ -107,6 +123,7 @@ impl Sensors {
     /// wrong time would make everything after it too late.
     pub fn drop_far_ahead(&mut self) -> usize {
         far_ahead_dropped(&mut self.ranges, |row| row.time_us)
+            + far_ahead_dropped(&mut self.differences, |difference| difference.time_us)
             + far_ahead_dropped(&mut self.inertial, |sample| sample.time_us)
             + far_ahead_dropped(&mut self.wheels, |sample| sample.time_us)
     }
@@ -117,15 +134,13 @@ impl Sensors {
         let mut events = Vec::with_capacity(2 * self.ranges.len() + self.inertial.len());
         let mut motion = self.motion().into_iter().peekable();
         let mut latest_us = i64::MIN;
-        for epoch in self.ranges.chunk_by(|a, b| a.time_us == b.time_us) {
-            let time_us = epoch[0].time_us;
+        let rows = self.radio();
+        for epoch in rows.chunk_by(|a, b| a.0 == b.0) {
+            let time_us = epoch[0].0;
             events.extend(from_fn(|| motion.next_if(|event| event.time_us() <= time_us)));
             let height = self.height.as_ref().and_then(|course| course.held(time_us));
             events.extend(height.map(|[metres]| Event::Height { time_us, metres }));
-            events.extend(epoch.iter().filter_map(|row| {
-                let (anchor, metres) = (row.anchor, row.range?);
-                Some(Event::Range(Range { time_us, anchor, metres }))
-            }));
+            events.extend(epoch.iter().filter_map(|(_, event)| *event));
             if time_us > latest_us {
                 latest_us = time_us;
                 events.push(Event::EpochEnd { time_us });
@@ -133,6 +148,17 @@ impl Sensors {
         }
         events.extend(motion);
         events
+    }
+
+    /// Ranges and differences with their times, or that there was none.
+    fn radio(&self) -> Vec<(i64, Option<Event>)> {
+        let range = |row: &RangeRow| {
+            let (time_us, anchor) = (row.time_us, row.anchor);
+            let of = |metres| Event::Range(Range { time_us, anchor, metres });
+            (time_us, row.range.map(of))
+        };
+        let difference = |it: &Difference| (it.time_us, Some(Event::Difference(*it)));
+        self.ranges.iter().map(range).chain(self.differences.iter().map(difference)).collect()
     }
 
     /// Samples of IMU and wheels.
@@ -195,6 +221,7 @@ mod tests {
             inertial: vec![inertial(1), inertial(12), inertial(30)],
             wheels: vec![wheels(2), wheels(11)],
             height: Some(Course::new(vec![(0, [1.0])])),
+            ..Sensors::default()
         };
         let times: Vec<_> = sensors.events().iter().map(Event::time_us).collect();
         assert_eq!(times, [1, 2, 10, 10, 10, 11, 12, 20, 20, 5, 5, 30]);

@@ -2,14 +2,14 @@
 
 use kestirim_health::{Health, Reason, State};
 
-use super::{Error, Event, Follow, FoundHeight, Range, Reception, Setup, build};
+use super::{Difference, Error, Event, Follow, FoundHeight, Range, Reception, Setup, build};
 
 /// What a tracker made of one part of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
     /// One entry for each time at which there are ranges, in order.
     pub epochs: Vec<Epoch>,
-    /// Every range that was one, and what became of it.
+    /// Every range that was one, and what became of it. A difference stands here with its second anchor.
     pub ranges: Vec<(Range, Reception)>,
 }
 
@@ -165,6 +165,10 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
         let reception = tracker.take(time_us.saturating_sub(start_us).max(0) as u64, event);
         match event {
             Event::Range(range) => trace.ranges.push((*range, reception)),
+            Event::Difference(Difference { time_us, anchors: [_, anchor], metres }) => {
+                let (time_us, anchor, metres) = (*time_us, *anchor, *metres);
+                trace.ranges.push((Range { time_us, anchor, metres }, reception));
+            }
             Event::EpochEnd { .. } => {
                 let (position, spread) = (tracker.position(), tracker.spread());
                 let height_variance = tracker.height_variance();

@@ -2,6 +2,7 @@
 
 mod each_epoch;
 mod elsewhere;
+mod listening;
 mod published;
 mod recursive;
 mod wheeled;
@@ -16,6 +17,7 @@ use nalgebra::SVector;
 
 use self::each_epoch::EachEpoch;
 use self::elsewhere::Elsewhere;
+use self::listening::Listening;
 use self::published::Published;
 pub use self::published::{Beginning, Noise};
 use self::recursive::Recursive;
@@ -115,13 +117,14 @@ fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usi
             let is_calibrated = setup.biases.is_some();
             let config = if is_calibrated { Config::calibrated } else { Config::uncalibrated };
             let config = tuning.of_the_robust(config(height));
-            if setup.is_wheeled() {
+            let ranges: Box<dyn Follow> = if setup.is_wheeled() {
                 Box::new(Wheeled::<T>::new(setup, config)?)
             } else if is_calibrated {
                 Box::new(Recursive::<T, D, N>::new(setup, config)?)
             } else {
                 Box::new(Recursive::<T, D, WITH_BIAS>::new(setup, config)?)
-            }
+            };
+            Box::new(Listening::<T, D, WITH_BIAS>::beside(ranges, setup, config)?)
         }
     })
 }

@@ -8,13 +8,14 @@ use crate::{Error, Outcome, RangeSample, Report};
 use kestirim_scalar::Scalar;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// Takes in a range at the estimate's own time.
+    /// Takes in a range at the estimate's own time: whether the common bias is observed, and whether there are more ranges than
+    /// unknowns.
     #[inline(always)]
     pub(crate) fn measure(
         &mut self,
         sample: &RangeSample<T>,
         range: T,
-        observes_bias: bool,
+        [observes_bias, redundant]: [bool; 2],
     ) -> Result<Report<T>, Error> {
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Some(estimate) = &mut self.estimate else {
@@ -28,7 +29,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             observes_bias,
             bias_shape: self.bias_shape,
         };
-        let redundant = self.heard as usize > D;
         let (blocked, heard) = (link.is_blocked, self.heard);
         let agree = || self.counters.others_agree(blocked, heard, D);
         let (outcome, seen) =

@@ -39,7 +39,7 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     wheels: Option<OdometrySample<T>>,
     /// Time until which standstills are not taken in, µs.
     doubted_until_us: u64,
-    heard: u8,
+    pub(crate) heard: u8,
     pub(crate) pace: Pace,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
@@ -138,12 +138,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let range = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?.admit(sample)?;
         if sample.time_us <= self.time_us {
             self.check_time(sample.time_us)?;
-            return self.measure(sample, range, self.observes_bias());
+            return self.measure(sample, range, self.means());
         }
         let before = self.timed();
         let report = self
             .advance(sample.time_us, None)
-            .and_then(|()| self.measure(sample, range, self.observes_bias()));
+            .and_then(|()| self.measure(sample, range, self.means()));
         if report.is_err() {
             self.restore(before);
         }
@@ -199,10 +199,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.estimate.is_some()
     }
 
-    /// Whether enough anchors are heard to tell a common bias from a distance.
+    /// Whether enough anchors are heard to tell a common bias from a distance, and whether there are more than unknowns.
     #[inline(always)]
-    fn observes_bias(&self) -> bool {
-        self.heard as usize >= D + 2
+    fn means(&self) -> [bool; 2] {
+        [self.heard as usize >= D + 2, self.heard as usize > D]
     }
 
     #[inline]

@@ -13,6 +13,7 @@ mod online;
 pub mod paper;
 pub mod recording;
 pub mod settings;
+mod survey;
 pub mod track;
 
 pub use kestirim_simulate::robot as simulate;
@@ -48,7 +49,8 @@ impl System for Robot {
         FileField::required("anchors", "Anchors: CSV anchor,x,y,z (m)").live(),
         FileField::required(
             "log",
-            "Ranges: CSV t,anchor,range (s, m) of a moving tag, or with --points point,k,anchor,range (m) of a tag \
+            "Ranges: CSV t,anchor,range (s, m) of a moving tag, stamps t,anchor,t1,…,t6, differences \
+             t,anchor_a,anchor_b,difference, or with --points point,k,anchor,range (m) of a tag \
              put down, epochs k 0.1 s apart; or a ROS 1 bag or MCAP file with messages of ranges",
         )
         .imported(),
@@ -170,6 +172,10 @@ impl System for Robot {
 
     fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
         Ok(Some(Arc::new(Tag::read(settings, files)?)))
+    }
+
+    fn survey() -> Option<Box<dyn Calibration>> {
+        Some(Box::new(survey::Survey))
     }
 
     fn calibration() -> Option<Box<dyn Calibration>> {

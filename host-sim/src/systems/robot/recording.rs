@@ -139,7 +139,8 @@ impl Recording {
         let truth = files.one("truth").map(|path| points::read_course(path, ["x", "y"]));
         let height = files.one("height").map(|path| points::read_course(path, ["z"]));
         let (truth, height) = (truth.transpose()?, height.transpose()?);
-        let mut sensors = Sensors { ranges: log.rows, height, ..Sensors::default() };
+        let (ranges, differences) = (log.rows, log.differences);
+        let mut sensors = Sensors { ranges, differences, height, ..Sensors::default() };
         if let Some(path) = files.one("imu") {
             let (samples, found) = motion::read_inertial(path, options)?;
             sensors.inertial = samples;

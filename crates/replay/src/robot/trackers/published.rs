@@ -75,7 +75,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Published<T, D, 
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Published<T, D, N, A> {
-    #[expect(clippy::match_wildcard_for_single_variants, reason = "nor of any other sensor")]
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         let number = T::from_f64;
         let taken = match *event {

@@ -63,7 +63,8 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
                 }
                 set
             }
-            Event::EpochEnd { .. } => true,
+            // Of no use to it.
+            Event::Difference(_) | Event::EpochEnd { .. } => true,
         };
         Reception::unweighed(taken)
     }

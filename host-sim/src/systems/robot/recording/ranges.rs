@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use kestirim_import::{Options, ranging};
-use kestirim_replay::robot::{Anchors, RangeRow};
+use kestirim_replay::robot::{Anchors, Difference, Exchange, RangeRow};
 
 use crate::Error;
 use crate::table::{self, Column, Found, Log, Row};
@@ -22,11 +22,13 @@ const LAST_EPOCH: f64 = 1e9;
 pub struct RangeLog {
     /// In the order of the log.
     pub rows: Vec<RangeRow>,
+    /// Differences in place of ranges, of a tag that only listens.
+    pub differences: Vec<Difference>,
     /// How many lines name an anchor that is not in the list; they are left out.
     pub unlisted: usize,
 }
 
-/// Reads the log of a moving tag: as its radio printed it, a column an anchor, or a table with columns `t,anchor,range` (s,
+/// Reads the log of a moving tag: as its radio printed it, stamps, differences, a column an anchor, or a table with columns `t,anchor,range` (s,
 /// m).
 ///
 /// # Errors
@@ -74,9 +76,20 @@ fn of_radio(
             anchor: range.anchor,
             range: Some(range.metres),
         };
-        let rows = read.ranges.iter().map(row).collect();
+        let exchange = |it: &ranging::Exchange| RangeRow {
+            time_us: it.time_us,
+            anchor: it.anchor,
+            range: Exchange::new(it.stamps).metres(it.level_dbm),
+        };
+        let rows = read.ranges.iter().map(row).chain(read.exchanges.iter().map(exchange)).collect();
+        let difference = |&ranging::Difference { time_us, anchors, metres }: &_| Difference {
+            time_us,
+            anchors,
+            metres,
+        };
+        let differences = read.differences.iter().map(difference).collect();
         let found = Found { import: vec![read.conclusion], warnings: read.damage.sentences() };
-        (RangeLog { rows, unlisted: read.unlisted }, found)
+        (RangeLog { rows, differences, unlisted: read.unlisted }, found)
     }))
 }
 

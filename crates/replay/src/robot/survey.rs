@@ -1,0 +1,249 @@
+//! Where anchors stand, from the ranges between them.
+//!
+//! A free network: places that fit the ranges best, robustly (Student's distribution with one degree of freedom, after Cauchy), by
+//! damped least squares from many starts; its covariance is that of inner constraints (Baarda 1973), about the anchors' centre.
+
+mod network;
+
+use self::network::{Network, Shape};
+
+/// Ranges between two anchors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// The anchors' places in the list, the smaller first.
+    pub anchors: [usize; 2],
+    /// The median of what was measured, in either direction, m.
+    pub metres: f64,
+    /// How many ranges there were.
+    pub count: usize,
+}
+
+/// Where anchors stand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Survey {
+    /// Their places, m: the first is the origin, the second on the positive x axis, the next that is beside it at positive y in
+    /// the plane z = 0, and the next beside that plane above it.
+    pub places: Vec<[f64; 3]>,
+    /// Standard deviations of each place along the axes, m, about the centre of all.
+    pub sigmas: Vec<[f64; 3]>,
+    /// Standard deviation of a range by what is left of them all, m; none where none is to spare.
+    pub range_sigma: Option<f64>,
+    /// Pairs that do not fit, and by what they are too long, m.
+    pub left_out: Vec<(Pair, f64)>,
+    /// Anchors of which another place fits nearly as well.
+    pub ambiguous: Vec<usize>,
+}
+
+/// Why anchors cannot be placed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unplaced {
+    /// Too few of them are known.
+    #[error("{dimensions} dimensions need ranges between {} anchors at least, found {found}", dimensions + 1)]
+    TooFew {
+        /// In how many dimensions.
+        dimensions: usize,
+        /// How many anchors there are.
+        found: usize,
+    },
+    /// These have fewer ranges to others than there are dimensions, or are in one line or plane with those.
+    #[error("the ranges do not determine where these anchors are, counted from 0: {0:?}")]
+    Loose(Vec<usize>),
+    /// All stand in one plane, or so nearly that the ranges do not tell on which side of it each is.
+    #[error(
+        "the anchors stand in one plane, or nearly: their ranges do not tell three coordinates"
+    )]
+    Flat,
+}
+
+/// A deviation of this many standard deviations does not fit.
+const OUTLIER: f64 = 5.0;
+/// What radios err by where nothing better is known, and what they at least do, m.
+const USUAL_SIGMA: f64 = 0.1;
+const LEAST_SIGMA: f64 = 0.02;
+/// Costs that differ by no more leave two shapes undecided: half of two standard deviations' square.
+const ALIKE: f64 = 2.0;
+/// Shapes of which an anchor differs by more are different, m.
+const DIFFERENT: f64 = 0.5;
+/// A place whose standard deviation is beyond this is none, m.
+const LOOSE: f64 = 2.0;
+
+/// Pairs of what was measured: anchors and m, each as often as one likes; the median of each pair.
+pub fn pairs(ranges: impl IntoIterator<Item = ([usize; 2], f64)>) -> Vec<Pair> {
+    let mut all = std::collections::BTreeMap::<[usize; 2], Vec<f64>>::new();
+    for ([one, other], metres) in ranges {
+        if one != other && metres.is_finite() && metres > 0.0 {
+            all.entry([one.min(other), one.max(other)]).or_default().push(metres);
+        }
+    }
+    let pair = |(anchors, metres): ([usize; 2], Vec<f64>)| Pair {
+        anchors,
+        metres: crate::metrics::median(&metres),
+        count: metres.len(),
+    };
+    all.into_iter().map(pair).collect()
+}
+
+/// Places so many anchors from the ranges between them, in two or three dimensions. Their mirror image fits as well: only
+/// who sees the room can tell.
+///
+/// # Errors
+/// [`Unplaced`].
+pub fn survey(anchors: usize, pairs: &[Pair], dimensions: usize) -> Result<Survey, Unplaced> {
+    if anchors <= dimensions {
+        return Err(Unplaced::TooFew { dimensions, found: anchors });
+    }
+    let mut network = Network { anchors, dimensions, pairs, sigma: USUAL_SIGMA };
+    let loose = network.loose();
+    if !loose.is_empty() {
+        return Err(Unplaced::Loose(loose));
+    }
+    let mut shapes = network.shapes();
+    let spare = pairs.len().saturating_sub(network.unknowns());
+    let mut range_sigma = None;
+    if spare > 0
+        && let Some(best) = shapes.first()
+    {
+        // The scale of what fits, once that is known.
+        let sigma = network.spread(best, spare).max(LEAST_SIGMA);
+        range_sigma = Some(sigma);
+        network.sigma = sigma;
+        shapes = shapes.iter().map(|shape| network.settled(shape)).collect();
+        shapes.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+    }
+    let Some(best) = shapes.first() else { return Err(Unplaced::Loose((0..anchors).collect())) };
+    let ambiguous = ambiguous(&network, best, &shapes);
+    let best = best.turned(dimensions);
+    let sigmas = network.sigmas(&best).ok_or(Unplaced::Flat)?;
+    let vague: Vec<_> =
+        (0..anchors).filter(|&i| sigmas[i].iter().any(|sigma| *sigma > LOOSE)).collect();
+    if vague.len() == anchors {
+        return Err(Unplaced::Flat);
+    }
+    if !vague.is_empty() {
+        return Err(Unplaced::Loose(vague));
+    }
+    let left_out = pairs.iter().filter_map(|pair| {
+        let excess = pair.metres - best.distance(pair.anchors);
+        (excess.abs() > OUTLIER * network.sigma).then(|| (pair.clone(), excess))
+    });
+    let left_out = left_out.collect();
+    Ok(Survey { places: best.places, sigmas, range_sigma, left_out, ambiguous })
+}
+
+/// Anchors that stand elsewhere in another shape that fits nearly as well.
+fn ambiguous(network: &Network<'_>, best: &Shape, shapes: &[Shape]) -> Vec<usize> {
+    let alike = shapes.iter().filter(|shape| shape.cost - best.cost < ALIKE);
+    let mut found: Vec<usize> = alike.flat_map(|shape| network.moved(best, shape)).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HALL: [[f64; 3]; 6] = [
+        [0.0, 0.0, 0.3],
+        [20.0, 0.5, 4.0],
+        [19.0, 12.0, 0.5],
+        [1.0, 11.0, 3.5],
+        [10.0, 13.0, 4.5],
+        [9.0, -1.0, 1.0],
+    ];
+
+    fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+        (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
+    }
+
+    /// All pairs, which err by up to ± 5 cm.
+    fn measured(places: &[[f64; 3]]) -> Vec<Pair> {
+        let all = (0..places.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        let noise = |k: usize| ((k * 7919) % 11) as f64 * 0.01 - 0.05;
+        let range =
+            |(k, [i, j]): (usize, [usize; 2])| ([i, j], distance(places[i], places[j]) + noise(k));
+        pairs(all.enumerate().map(range))
+    }
+
+    /// The largest difference of distances, which no frame changes, m.
+    fn worst(found: &Survey, places: &[[f64; 3]]) -> f64 {
+        let all = (0..places.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        let error = |(i, j): (usize, usize)| {
+            (distance(found.places[i], found.places[j]) - distance(places[i], places[j])).abs()
+        };
+        all.map(error).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_hall_is_found_in_space() {
+        let found = survey(6, &measured(&HALL), 3).unwrap();
+        assert!(worst(&found, &HALL) < 0.15, "{found:?}");
+        assert!(found.left_out.is_empty() && found.ambiguous.is_empty(), "{found:?}");
+        let [first, second, third] = [0, 1, 2].map(|i| found.places[i]);
+        assert!(first == [0.0; 3] && second[1] == 0.0 && second[2] == 0.0 && third[2] == 0.0);
+        assert!(second[0] > 0.0 && third[1] > 0.0);
+        assert!(found.sigmas.iter().flatten().all(|sigma| (0.005..1.0).contains(sigma)));
+    }
+
+    #[test]
+    fn a_pair_behind_a_wall_is_left_out_and_told() {
+        let eight: Vec<_> =
+            HALL.iter().copied().chain([[5.0, 6.0, 0.2], [15.0, 5.0, 4.0]]).collect();
+        for wrong in 0..28 {
+            let mut pairs = measured(&eight);
+            pairs[wrong].metres += 3.0;
+            let found = survey(8, &pairs, 3).unwrap();
+            assert!(worst(&found, &eight) < 0.3, "{wrong}: {}", worst(&found, &eight));
+            let told: Vec<_> = found.left_out.iter().map(|(pair, _)| pair.anchors).collect();
+            assert_eq!(told, [pairs[wrong].anchors]);
+            assert!((found.left_out[0].1 - 3.0).abs() < 0.5);
+        }
+    }
+
+    #[test]
+    fn anchors_at_one_height_are_found_in_the_plane_alone() {
+        let flat: Vec<_> = HALL.iter().map(|[x, y, _]| [*x, *y, 0.0]).collect();
+        let found = survey(6, &measured(&flat), 2).unwrap();
+        assert!(worst(&found, &flat) < 0.15, "{found:?}");
+        assert!(
+            found
+                .places
+                .iter()
+                .zip(&found.sigmas)
+                .all(|(at, sigma)| at[2] == 0.0 && sigma[2] == 0.0)
+        );
+        match survey(6, &measured(&flat), 3) {
+            Err(Unplaced::Flat | Unplaced::Loose(_)) => {}
+            // Or heights are said to be what they are: unknown.
+            Ok(found) => assert!(
+                found
+                    .sigmas
+                    .iter()
+                    .zip(&found.places)
+                    .all(|(sigma, at)| sigma[2] > 0.3 * at[2].abs()),
+                "{found:?}"
+            ),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    #[test]
+    fn what_is_not_determined_is_refused_or_told() {
+        assert_eq!(
+            survey(3, &measured(&HALL[..3]), 3),
+            Err(Unplaced::TooFew { dimensions: 3, found: 3 })
+        );
+        let of = |keep: fn(&Pair) -> bool| {
+            let mut pairs = measured(&HALL);
+            pairs.retain(keep);
+            survey(6, &pairs, 3)
+        };
+        // Two ranges to the last anchor: it may be anywhere on a circle.
+        let loose = of(|pair| pair.anchors[1] != 5 || pair.anchors[0] < 2);
+        assert_eq!(loose, Err(Unplaced::Loose(vec![5])));
+        // Three: at one of two places.
+        let mirrored = of(|pair| pair.anchors[1] != 5 || pair.anchors[0] < 3).unwrap();
+        assert_eq!(mirrored.ambiguous, [5], "{mirrored:?}");
+    }
+}

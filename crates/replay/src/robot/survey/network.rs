@@ -1,0 +1,260 @@
+//! Shapes of a network, and how well they fit.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::{DIFFERENT, Pair};
+
+/// Starts that are tried: as many local minima are usual as there are anchors beside the plane of others.
+const STARTS: usize = 60;
+const MOST_STEPS: usize = 200;
+/// A step that changes the cost by less ends the search, in parts of it.
+const SETTLED: f64 = 1e-9;
+/// Of the largest eigenvalue of the normal equations; below it, a direction in which nothing is known.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Ranges between anchors, and what they err by.
+#[derive(Debug)]
+pub(super) struct Network<'a> {
+    pub(super) anchors: usize,
+    pub(super) dimensions: usize,
+    pub(super) pairs: &'a [Pair],
+    /// Standard deviation of a range, m.
+    pub(super) sigma: f64,
+}
+
+/// Places of anchors, m, and what is left of the ranges: the sum of ln (1 + (r/σ)²)/2.
+#[derive(Debug, Clone)]
+pub(super) struct Shape {
+    pub(super) places: Vec<[f64; 3]>,
+    pub(super) cost: f64,
+}
+
+impl Shape {
+    pub(super) fn distance(&self, [i, j]: [usize; 2]) -> f64 {
+        (self.place(i) - self.place(j)).norm()
+    }
+
+    fn place(&self, anchor: usize) -> Vector3<f64> {
+        Vector3::from(self.places[anchor])
+    }
+
+    /// The same with the first anchor at the origin, the second on the x axis, and so on, each at a positive coordinate.
+    pub(super) fn turned(&self, dimensions: usize) -> Self {
+        const BESIDE: f64 = 1e-6;
+        let origin = self.place(0);
+        let mut axes: Vec<Vector3<f64>> = Vec::new();
+        for anchor in 1..self.places.len() {
+            let offset = self.place(anchor) - origin;
+            let beside = axes.iter().fold(offset, |rest, axis| rest - axis * axis.dot(&offset));
+            if axes.len() < dimensions && beside.norm() > BESIDE {
+                axes.push(beside.normalize());
+            }
+        }
+        let turned = (0..self.places.len()).map(|anchor| {
+            let offset = self.place(anchor) - origin;
+            std::array::from_fn(|axis| {
+                let along = axes.get(axis).map_or(0.0, |axis| axis.dot(&offset));
+                // What is zero by the choice of axes is zero.
+                if anchor <= axis { 0.0 } else { along }
+            })
+        });
+        Self { places: turned.collect(), cost: self.cost }
+    }
+}
+
+impl Network<'_> {
+    /// Coordinates but for the frame's.
+    pub(super) fn unknowns(&self) -> usize {
+        let d = self.dimensions;
+        (self.anchors * d).saturating_sub(d * (d + 1) / 2)
+    }
+
+    /// Anchors with fewer ranges than dimensions.
+    pub(super) fn loose(&self) -> Vec<usize> {
+        let count = |anchor| self.pairs.iter().filter(|it| it.anchors.contains(&anchor)).count();
+        (0..self.anchors).filter(|&anchor| count(anchor) < self.dimensions).collect()
+    }
+
+    /// Shapes that fit locally, the best first.
+    pub(super) fn shapes(&self) -> Vec<Shape> {
+        let mut shapes: Vec<_> =
+            (0..STARTS).map(|start| self.settled(&self.start(start))).collect();
+        shapes.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+        // Each anchor on the other side of the others, which the starts may have missed.
+        if let Some(best) = shapes.first().cloned() {
+            let mirrored = (0..self.anchors).filter_map(|anchor| self.mirrored(&best, anchor));
+            shapes.extend(mirrored.map(|shape| self.settled(&shape)).collect::<Vec<_>>());
+            shapes.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+        }
+        shapes
+    }
+
+    /// Places anywhere within the longest range, the same in every run.
+    fn start(&self, number: usize) -> Shape {
+        let longest = self.pairs.iter().map(|pair| pair.metres).fold(1.0, f64::max);
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(number as u64 + 1);
+        let mut coordinate = || {
+            // SplitMix64's output function.
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 * longest
+        };
+        let mut place = || {
+            let mut place = [0.0; 3];
+            place.iter_mut().take(self.dimensions).for_each(|axis| *axis = coordinate());
+            place
+        };
+        Shape { places: (0..self.anchors).map(|_| place()).collect(), cost: f64::INFINITY }
+    }
+
+    /// The same with one anchor on the other side of the plane, or line, that those lie along to which it has ranges.
+    fn mirrored(&self, shape: &Shape, anchor: usize) -> Option<Shape> {
+        let near: Vec<_> = self
+            .pairs
+            .iter()
+            .filter(|pair| pair.anchors.contains(&anchor))
+            .map(|pair| shape.place(pair.anchors[0] + pair.anchors[1] - anchor))
+            .collect();
+        let centre = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
+        let d = self.dimensions;
+        let scatter = near.iter().fold(DMatrix::zeros(d, d), |sum, place| {
+            let offset = DVector::from_fn(d, |axis, _| place[axis] - centre[axis]);
+            sum + &offset * offset.transpose()
+        });
+        let eigen = scatter.symmetric_eigen();
+        let normal = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+        let mut mirrored = shape.clone();
+        let own = mirrored.places.get_mut(anchor)?;
+        let along: f64 = (0..d).map(|axis| normal[axis] * (own[axis] - centre[axis])).sum();
+        (0..d).for_each(|axis| own[axis] -= 2.0 * along * normal[axis]);
+        Some(mirrored)
+    }
+
+    /// Moved to where the ranges fit best nearby: Levenberg's and Marquardt's steps, weights renewed in each.
+    pub(super) fn settled(&self, shape: &Shape) -> Shape {
+        let mut best = Shape { cost: self.cost(&shape.places), ..shape.clone() };
+        let mut damping = 1e-2;
+        for _ in 0..MOST_STEPS {
+            let (normal, gradient) = self.equations(&best);
+            let size = normal.nrows();
+            let scale = normal.diagonal().max().max(f64::MIN_POSITIVE);
+            let damped = normal + DMatrix::identity(size, size) * (damping * scale);
+            let Some(factors) = damped.cholesky() else { break };
+            let step = factors.solve(&gradient);
+            let mut places = best.places.clone();
+            for (anchor, place) in places.iter_mut().enumerate() {
+                for axis in 0..self.dimensions {
+                    place[axis] += step[anchor * self.dimensions + axis];
+                }
+            }
+            let cost = self.cost(&places);
+            if cost < best.cost {
+                let settled = best.cost - cost < SETTLED * best.cost;
+                best = Shape { places, cost };
+                damping = (damping * 0.3).max(1e-9);
+                if settled {
+                    break;
+                }
+            } else {
+                damping *= 4.0;
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    fn cost(&self, places: &[[f64; 3]]) -> f64 {
+        let shape = Shape { places: places.to_vec(), cost: 0.0 };
+        let square = |pair: &Pair| {
+            let residual = (pair.metres - shape.distance(pair.anchors)) / self.sigma;
+            0.5 * (residual * residual).ln_1p()
+        };
+        self.pairs.iter().map(square).sum()
+    }
+
+    /// Normal equations of all coordinates, weighted, and the right-hand side.
+    fn equations(&self, shape: &Shape) -> (DMatrix<f64>, DVector<f64>) {
+        let (d, size) = (self.dimensions, self.anchors * self.dimensions);
+        let (mut normal, mut gradient) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        for pair in self.pairs {
+            let [i, j] = pair.anchors;
+            let offset = shape.place(i) - shape.place(j);
+            let distance = offset.norm().max(1e-9);
+            let residual = pair.metres - distance;
+            let weight = 1.0 / (self.sigma * self.sigma + residual * residual);
+            for a in 0..d {
+                let along = offset[a] / distance;
+                gradient[i * d + a] += weight * residual * along;
+                gradient[j * d + a] -= weight * residual * along;
+                for b in 0..d {
+                    let product = weight * along * offset[b] / distance;
+                    normal[(i * d + a, i * d + b)] += product;
+                    normal[(j * d + a, j * d + b)] += product;
+                    normal[(i * d + a, j * d + b)] -= product;
+                    normal[(j * d + a, i * d + b)] -= product;
+                }
+            }
+        }
+        (normal, gradient)
+    }
+
+    /// Standard deviation of the ranges by what is left of those that fit, of which so many are to spare.
+    pub(super) fn spread(&self, shape: &Shape, spare: usize) -> f64 {
+        let mut left: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|pair| (pair.metres - shape.distance(pair.anchors)).abs())
+            .collect();
+        left.sort_by(f64::total_cmp);
+        // One in ten may be anything.
+        let kept = left.len() - (left.len() / 10).min(spare.saturating_sub(1));
+        let squares: f64 = left.iter().take(kept).map(|residual| residual * residual).sum();
+        (squares / (kept + spare - left.len()).max(1) as f64).sqrt()
+    }
+
+    /// Standard deviations of all coordinates about the centre, m; none if more than the frame is open.
+    pub(super) fn sigmas(&self, shape: &Shape) -> Option<Vec<[f64; 3]>> {
+        let d = self.dimensions;
+        let eigen = self.equations(shape).0.symmetric_eigen();
+        let largest = eigen.eigenvalues.max();
+        let is_known = |value: f64| value > NEGLIGIBLE * largest;
+        let known = eigen.eigenvalues.iter().filter(|value| is_known(**value)).count();
+        if known < self.unknowns() {
+            return None;
+        }
+        let variance = |row: usize| -> f64 {
+            let columns = eigen.eigenvalues.iter().enumerate().filter(|it| is_known(*it.1));
+            columns.map(|(k, value)| eigen.eigenvectors[(row, k)].powi(2) / value).sum()
+        };
+        let of = |anchor: usize| {
+            std::array::from_fn(
+                |axis| {
+                    if axis < d { variance(anchor * d + axis).sqrt() } else { 0.0 }
+                },
+            )
+        };
+        Some((0..self.anchors).map(of).collect())
+    }
+
+    /// The anchors that stand elsewhere in another shape: fewest that explain how its distances differ.
+    pub(super) fn moved(&self, best: &Shape, other: &Shape) -> Vec<usize> {
+        let n = self.anchors;
+        let differs =
+            |i: usize, j: usize| (best.distance([i, j]) - other.distance([i, j])).abs() > DIFFERENT;
+        let mut open: Vec<usize> = (0..n).collect();
+        let mut moved = Vec::new();
+        loop {
+            let count = |i: usize| open.iter().filter(|&&j| j != i && differs(i, j)).count();
+            let Some(&worst) = open.iter().max_by_key(|&&i| count(i)) else { break };
+            if count(worst) == 0 {
+                break;
+            }
+            moved.push(worst);
+            open.retain(|&i| i != worst);
+        }
+        moved
+    }
+}

@@ -1,0 +1,80 @@
+//! `kestirim_uwb_tracker::DifferenceTracker` behind the trackers' face.
+
+use kestirim_scalar::Scalar;
+use kestirim_uwb_tracker::{Config, DifferenceSample, DifferenceTracker};
+
+use super::{Follow, Reception, bias_variance, place, with_bias};
+use crate::robot::{Difference, Error, Event, MOST, Setup};
+
+/// Takes in every difference by itself, N states with the clock; what it begins with is another tracker, for ranges, which
+/// is never asked once there is a difference.
+#[derive(Debug)]
+pub(super) struct Listening<T: Scalar, const D: usize, const N: usize> {
+    ranges: Box<dyn Follow>,
+    tracker: DifferenceTracker<T, D, N, MOST>,
+    /// Whether a difference came.
+    listens: bool,
+    /// Time of the last event, µs.
+    now_us: u64,
+    height_m: f64,
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Listening<T, D, N> {
+    /// A tracker of differences among the anchors of a setup, beside one of ranges.
+    ///
+    /// # Errors
+    /// [`Error::Anchors`] if they will not do.
+    pub(super) fn beside(
+        ranges: Box<dyn Follow>,
+        setup: &Setup,
+        config: Config<T>,
+    ) -> Result<Self, Error> {
+        let config = Config { room: setup.room(), ..config };
+        let tracker = DifferenceTracker::new(config, &setup.anchors())?;
+        Ok(Self { ranges, tracker, listens: false, now_us: 0, height_m: setup.height_m })
+    }
+
+    fn bias_variance(&self) -> f64 {
+        bias_variance(&self.tracker.health(self.now_us), D)
+    }
+}
+
+impl<T: Scalar, const D: usize, const N: usize> Follow for Listening<T, D, N> {
+    fn take(&mut self, time_us: u64, event: &Event) -> Reception {
+        self.now_us = time_us;
+        if let Event::Difference(Difference { anchors, metres, .. }) = *event {
+            self.listens = true;
+            let difference = T::from_f64(metres);
+            let sample = DifferenceSample { time_us, anchors, difference };
+            return Reception::of_range(&self.tracker.difference(&sample));
+        }
+        if let Event::Height { metres, .. } = *event
+            && self.tracker.set_height(T::from_f64(metres)).is_ok()
+        {
+            self.height_m = metres;
+        }
+        self.ranges.take(time_us, event)
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        if self.listens {
+            return place(&self.tracker.position()?, self.height_m);
+        }
+        self.ranges.position()
+    }
+
+    fn spread(&self) -> Option<[f64; 3]> {
+        if self.listens {
+            return with_bias(&self.tracker.estimate()?.covariance, self.bias_variance());
+        }
+        self.ranges.spread()
+    }
+
+    fn height_variance(&self) -> Option<f64> {
+        if self.listens {
+            let covariance = &self.tracker.estimate().filter(|_| D == 3)?.covariance;
+            return Some(covariance.get(2, 2)?.to_f64() + self.bias_variance());
+        }
+        self.ranges.height_variance()
+    }
+}
