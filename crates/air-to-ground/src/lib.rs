@@ -8,6 +8,7 @@ mod error;
 mod free_space;
 mod likelihood;
 mod measurement;
+mod open_ground;
 mod rotor;
 #[cfg(feature = "serde")]
 mod snapshot;
@@ -19,4 +20,5 @@ pub use error::Error;
 pub use free_space::{Antennas, FreeSpace, LevelPrior};
 pub use likelihood::Likelihood;
 pub use measurement::Measurement;
+pub use open_ground::{GroundFit, OpenGround, Pattern, SUPPOSITIONS, Supposition};
 pub use rotor::Rotor;

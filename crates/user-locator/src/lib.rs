@@ -3,7 +3,9 @@
 
 mod area;
 mod beacon;
+mod by_place;
 mod error;
+mod ground;
 mod level_step;
 mod locator;
 mod orbit;
@@ -16,7 +18,9 @@ mod tracker;
 
 pub use area::{Area, Within};
 pub use beacon::{Beacon, BeaconEstimate};
+pub use by_place::ByPlace;
 pub use error::Error;
+pub use ground::{GroundEstimate, GroundSearch};
 pub use kestirim_health::{Health, Reason};
 pub use level_step::LevelStep;
 pub use locator::Locator;

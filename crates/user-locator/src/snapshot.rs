@@ -1,6 +1,9 @@
 //! What stored estimators are. Raise the version of one that is stored otherwise than before.
 
-use crate::{Beacon, BeaconEstimate, BeaconSearch, Locator, PublishedLocator, Tracker};
+use crate::{
+    Beacon, BeaconEstimate, BeaconSearch, GroundEstimate, GroundSearch, Locator, PublishedLocator,
+    Tracker,
+};
 use kestirim_scalar::Scalar;
 use kestirim_snapshot::{Layout, Name, layout};
 
@@ -13,4 +16,6 @@ layout! {
     [T: Scalar, const M: usize] for Beacon<T, M> as "beacon", 1, T, [M];
     [T: Scalar, const L: usize] for BeaconEstimate<T, L> as "beacon/estimate", 1, T, [L], infinite;
     [T: Scalar, const M: usize, const N: usize] for BeaconSearch<T, M, N> as "beacon/search", 1, T, [M, N];
+    [T: Scalar, const L: usize] for GroundEstimate<T, L> as "ground/estimate", 1, T, [L], infinite;
+    [T: Scalar, const M: usize, const N: usize] for GroundSearch<T, M, N> as "ground/search", 1, T, [M, N];
 }

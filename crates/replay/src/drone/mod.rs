@@ -8,6 +8,7 @@ mod cloud;
 mod error;
 mod estimate;
 mod flight;
+mod open_ground;
 mod search;
 mod trace;
 
@@ -18,5 +19,6 @@ pub use self::estimate::Estimate;
 pub use self::flight::{
     Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step,
 };
-pub use self::search::{BEYOND_M, MOST, MOST_OPEN, POINTS, Search, level_prior, thinned};
+pub use self::open_ground::{MOST_PLACES, POINTS_OPEN};
+pub use self::search::{BEYOND_M, MOST, POINTS, Search, level_prior, thinned};
 pub use self::trace::{Flown, Track};

@@ -1,8 +1,8 @@
 //! Where a user is looked for: over open ground, or through the thesis' channel.
 
-use kestirim_air_to_ground::{Channel, FreeSpace, LevelPrior, Measurement};
+use kestirim_air_to_ground::{Channel, LevelPrior, Measurement};
 use kestirim_particle_filter::Region;
-use kestirim_user_locator::{BeaconSearch, Locator, Within};
+use kestirim_user_locator::{Locator, Within};
 
 use super::{
     Area, Cloud, EnvironmentKind, Error, Estimate, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M,
@@ -12,8 +12,6 @@ use super::{
 pub const POINTS: usize = 2000;
 /// Most measurements of a flight among buildings; of more as many are taken, evenly.
 pub const MOST: usize = 400;
-/// And over open ground, where what is measured close together says the same.
-pub const MOST_OPEN: usize = 100;
 /// How far beyond the flight the user may be if no area is given, m.
 pub const BEYOND_M: f64 = 500.0;
 /// Levels of the transmitter that are thought possible about the nominal one, dB.
@@ -28,11 +26,14 @@ type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
 /// A user in the plane, or with D = 3 one whose transmitter's level is unknown.
 type UserLocator<'a, const D: usize> = Locator<f64, POINTS, MOST, D, ChannelWithin<'a>>;
 
-/// As many measurements as can be remembered, evenly chosen.
+/// As many measurements as can be remembered, evenly chosen; over open ground, where they are thinned by place, all.
 pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop> {
-    let most = if environment.is_some() { MOST } else { MOST_OPEN };
     let count = stops.len();
-    if count > most { (0..most).map(|k| stops[k * count / most]).collect() } else { stops.to_vec() }
+    if environment.is_some() && count > MOST {
+        (0..MOST).map(|k| stops[k * count / MOST]).collect()
+    } else {
+        stops.to_vec()
+    }
 }
 
 /// What is known of the level received at one metre over open ground; none if nothing is.
@@ -50,15 +51,15 @@ pub fn level_prior(quantity: Quantity) -> Option<LevelPrior<f64>> {
 /// Where a user is looked for.
 #[derive(Debug)]
 pub struct Search<'a> {
-    stops: &'a [Stop],
+    pub(super) stops: &'a [Stop],
     /// Coordinates are counted from here, so that they stay small.
-    origin: [f64; 2],
-    area: Box<Area>,
-    truth: Option<[f64; 2]>,
+    pub(super) origin: [f64; 2],
+    pub(super) area: Box<Area>,
+    pub(super) truth: Option<[f64; 2]>,
     /// Whether only the last estimate is wanted.
-    only_last: bool,
+    pub(super) only_last: bool,
     /// Whether all that is believed is wanted.
-    with_clouds: bool,
+    pub(super) with_clouds: bool,
 }
 
 impl<'a> Search<'a> {
@@ -88,51 +89,21 @@ impl<'a> Search<'a> {
     /// over open ground if there is none.
     pub fn find(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Vec<Estimate> {
         match environment {
-            None => self.in_free_space(quantity),
+            None => self.over_open_ground(quantity),
             Some(environment) => self.among_buildings(environment, quantity),
         }
     }
 
-    fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x - self.origin[0], y - self.origin[1]]
     }
 
-    fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x + self.origin[0], y + self.origin[1]]
     }
 
-    fn measurement(&self, stop: &Stop) -> Option<Measurement<f64>> {
+    pub(super) fn measurement(&self, stop: &Stop) -> Option<Measurement<f64>> {
         Measurement::new(self.inward(stop.place), stop.height, stop.loss).ok()
-    }
-
-    /// Over open ground.
-    fn in_free_space(&self, quantity: Quantity) -> Vec<Estimate> {
-        // One place is that of the last measurement: all of them are kept.
-        let mut search = Box::new(BeaconSearch::<f64, { MOST_OPEN + 1 }, MOST_CORNERS>::new(
-            FreeSpace::new(level_prior(quantity)),
-            (*self.area).clone(),
-        ));
-        let mut estimates = Vec::new();
-        for (number, stop) in self.stops.iter().enumerate() {
-            let Some(measurement) = self.measurement(stop) else { continue };
-            search.measure(&measurement);
-            if self.only_last && number + 1 < self.stops.len() {
-                continue;
-            }
-            let Ok(found) = search.estimate::<POINTS>() else { continue };
-            let covered = self.truth.map(|truth| search.credible(&found, self.inward(truth), 0.9));
-            estimates.push(Estimate {
-                stop: number,
-                place: self.outward(found.place),
-                sd_m: found.moments().spread(),
-                level_db: (quantity == Quantity::Level).then_some(found.level),
-                covered,
-                cloud: self
-                    .with_clouds
-                    .then(|| Cloud::of_lattice(&found.posterior).moved(self.origin)),
-            });
-        }
-        estimates
     }
 
     /// Through the thesis' channel.

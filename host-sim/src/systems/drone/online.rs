@@ -1,6 +1,6 @@
 //! A user on the ground, heard by a drone that still flies.
 
-use kestirim_replay::drone::{Area, EnvironmentKind, Estimate, MOST_OPEN, Quantity, Search, Stop};
+use kestirim_replay::drone::{Area, EnvironmentKind, Estimate, MOST, Quantity, Search, Stop};
 use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
@@ -48,7 +48,7 @@ impl Plan for Listening {
 /// Looks for the place as a replay does, from all that was heard, evenly thinned where it is much.
 #[derive(Debug)]
 struct Listener {
-    stops: Box<Thinned<Stop, MOST_OPEN>>,
+    stops: Box<Thinned<Stop, MOST>>,
     plan: Listening,
     /// Whether something was heard that is not yet in what was found.
     is_new: bool,

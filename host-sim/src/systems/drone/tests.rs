@@ -221,7 +221,7 @@ fn firmware_says_which_filter_and_what_differs() {
     let level = flight(Quantity::Level);
     let loss = flight(Quantity::PathLoss);
     for (recording, given, expected) in [
-        (Some(&level), &[][..], "FreeSpace::new(None)"),
+        (Some(&level), &[][..], "OpenGround::new(None)"),
         (Some(&loss), &[], "LevelPrior { mean: -38.46"),
         (Some(&level), &[("environment", "high-rise")], "Locator::<f32, 2000, 400, 3>"),
         (Some(&Recording::Staying), &[("particles", "250")], "Locator::<f32, 250, 12, 2>"),
@@ -233,7 +233,7 @@ fn firmware_says_which_filter_and_what_differs() {
         (Some(&Recording::Moving), &[("flight", "low")], "Height::Between(100.0, 1000.0)"),
         (Some(&Recording::Moving), &[("flight", "hover")], "jitter: 16.0,"),
         (Some(&Recording::Moving), &[], "Height::Fixed(500.0)"),
-        (None, &[], "BeaconSearch::<f32, 101, 8>"),
+        (None, &[], "GroundSearch::<f32, 120, 8>"),
     ] {
         let mut settings = Settings::new(settings::table(recording));
         for (name, text) in given {

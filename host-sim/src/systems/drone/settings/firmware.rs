@@ -1,6 +1,6 @@
 //! The same in firmware.
 
-use kestirim_replay::drone::{EnvironmentKind, MOST, MOST_OPEN, POINTS, Quantity, level_prior};
+use kestirim_replay::drone::{EnvironmentKind, MOST, MOST_PLACES, POINTS, Quantity, level_prior};
 
 use super::choices::{FlightKind, ResamplerKind};
 use super::{Recording, Settings, built, filter_of, geometry, walk};
@@ -33,20 +33,19 @@ fn recorded_flight(settings: &Settings, quantity: Quantity) -> Literal {
     }
     let level = level_prior(quantity);
     let base = level.map_or_else(
-        || "FreeSpace::new(None)".to_owned(),
+        || "OpenGround::new(None)".to_owned(),
         |level| {
             let (mean, sigma) = (level.mean, level.sigma);
-            format!("FreeSpace::new(Some(LevelPrior {{ mean: {mean:?}, sigma: {sigma:?} }}))")
+            format!("OpenGround::new(Some(LevelPrior {{ mean: {mean:?}, sigma: {sigma:?} }}))")
         },
     );
-    let literal = literal(&format!("{CHANNELS}::FreeSpace"), "FreeSpace::<f32>", &base);
+    let literal = literal(&format!("{CHANNELS}::OpenGround"), "OpenGround::<f32>", &base);
     let literal = match level {
         Some(_) => literal.import(&format!("{CHANNELS}::LevelPrior")),
         None => literal,
     };
-    let most = MOST_OPEN + 1;
-    literal.import(&format!("{LOCATORS}::{{Area, BeaconSearch}}")).then(format!(
-        "let search = |area: Area<f32, 8>| BeaconSearch::<f32, {most}, 8>::new(config, area);"
+    literal.import(&format!("{LOCATORS}::{{Area, GroundSearch}}")).then(format!(
+        "let search = |area: Area<f32, 8>| GroundSearch::<f32, {MOST_PLACES}, 8>::new(config, area);"
     ))
 }
 

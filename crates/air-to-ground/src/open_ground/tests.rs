@@ -1,0 +1,104 @@
+extern crate std;
+
+use std::vec::Vec;
+
+use kestirim_scalar::{Q16_16, Scalar};
+
+use super::{OpenGround, SUPPOSITIONS, ceiling, quantile};
+use crate::{LevelPrior, Measurement};
+
+const TRUTH: [f64; 2] = [30.0, -20.0];
+
+/// Ten lines of ten measurements each, with a little noise that has no chance in it.
+fn flight<T: Scalar>(exponent: f64, change: impl Fn(f64) -> f64) -> Vec<Measurement<T>> {
+    let stop = |k: u32| {
+        let at = [f64::from(k % 10) * 25.0 - 110.0, f64::from(k / 10) * 25.0 - 110.0];
+        let horizontal = (at[0] - TRUTH[0]).hypot(at[1] - TRUTH[1]);
+        let distance = horizontal.hypot(40.0);
+        let noise = f64::from(k * 7919 % 13) / 6.0 - 1.0;
+        let level = change(-20.0 - 10.0 * exponent * distance.log10()) + noise;
+        let numbers = (at.map(T::from_f64), T::from_f64(40.0), T::from_f64(-level));
+        Measurement::new(numbers.0, numbers.1, numbers.2).expect("plausible")
+    };
+    (0..100).map(stop).collect()
+}
+
+/// How much likelier the true place is than another.
+fn advantage<T: Scalar>(flight: &[Measurement<T>], place: [f64; 2]) -> f64 {
+    let channel = OpenGround::new(None);
+    let suppositions = channel.suppositions(flight);
+    let log = |place: [f64; 2]| {
+        let place = place.map(T::from_f64);
+        channel.log_likelihood(flight, place, T::ONE, &suppositions, |_, _| ()).to_f64()
+    };
+    log(TRUTH) - log(place)
+}
+
+fn check<T: Scalar>() {
+    for exponent in [1.0, 2.0, 3.0] {
+        let clean = flight::<T>(exponent, |level| level);
+        let drowned = flight::<T>(exponent, |level| level.max(-20.0 - exponent * 20.0));
+        for flight in [&clean, &drowned] {
+            for place in [[70.0, -20.0], [30.0, 20.0], [-90.0, 80.0]] {
+                let advantage = advantage(flight, place);
+                assert!(advantage > 1.0, "{exponent}, {place:?}: {advantage}");
+            }
+        }
+        let channel = OpenGround::new(None);
+        let suppositions = channel.suppositions(&clean);
+        let fit = channel.fit(&clean, TRUTH.map(T::from_f64), &suppositions[0], T::ONE);
+        assert!((fit.exponent.to_f64() - exponent).abs() < 0.3, "{fit:?}");
+        assert!((fit.level.to_f64() + 20.0).abs() < 6.0, "{fit:?}");
+    }
+}
+
+#[test]
+fn the_true_place_is_likelier_whatever_the_exponent_and_the_floor() {
+    check::<f32>();
+    check::<f64>();
+    check::<Q16_16>();
+}
+
+#[test]
+fn a_known_level_tells_the_exponent_and_evidence_falls_where_it_is_wrong() {
+    let flight = flight::<f64>(2.0, |level| level);
+    let fit = |mean| {
+        let channel = OpenGround::new(Some(LevelPrior { mean, sigma: 1.0 }));
+        let suppositions = channel.suppositions(&flight);
+        channel.fit(&flight, TRUTH, &suppositions[0], 1.0)
+    };
+    let (right, wrong) = (fit(-20.0), fit(-50.0));
+    assert!((right.exponent - 2.0).abs() < 0.05 && (right.level + 20.0).abs() < 1.0, "{right:?}");
+    assert!(right.log_evidence > wrong.log_evidence + 5.0, "{right:?} {wrong:?}");
+}
+
+#[test]
+fn a_floor_is_supposed_where_levels_are_and_a_ceiling_where_they_are_alike() {
+    let flight = flight::<f64>(2.0, |level| level);
+    assert_eq!(ceiling(&flight), None);
+    let mut levels: Vec<f64> = flight.iter().map(|measurement| -measurement.loss()).collect();
+    levels.sort_by(f64::total_cmp);
+    assert_eq!(quantile(&flight, 0.1), Some(levels[9]));
+    assert_eq!(quantile(&flight, 0.65), Some(levels[64]));
+    assert_eq!(quantile::<f64>(&[], 0.5), None);
+    let strongest = Measurement::new([0.0; 2], 40.0, 10.0).expect("plausible");
+    assert_eq!(ceiling(&[strongest; 3]), None);
+    let saturated: Vec<_> = flight.iter().copied().chain([strongest; 4]).collect();
+    assert_eq!(ceiling(&saturated), Some(-10.0));
+    let suppositions = OpenGround::new(None).suppositions(&saturated);
+    assert_eq!(suppositions.len(), SUPPOSITIONS);
+    assert!(suppositions.iter().all(|it| it.ceiling == Some(-10.0)));
+    let all: f64 = suppositions.iter().map(|it| it.log_prior.exp()).sum();
+    assert!((all - 3.0).abs() < 1e-9, "as many as scales: {all}");
+}
+
+#[test]
+fn nothing_and_too_much_are_borne() {
+    let channel = OpenGround::new(None);
+    let suppositions = channel.suppositions(&[]);
+    let log = channel.log_likelihood(&[], [0.0; 2], 1.0, &suppositions, |_, _| ());
+    assert!(log.is_finite());
+    let all: Vec<_> = (0..2).flat_map(|_| flight::<f64>(2.0, |level| level)).collect();
+    let first = channel.fit(&all, TRUTH, &suppositions[1], 1.0);
+    assert_eq!(first, channel.fit(&all[..128], TRUTH, &suppositions[1], 1.0));
+}

@@ -1,0 +1,51 @@
+//! Over open ground, through a channel of which nothing is known.
+
+use kestirim_air_to_ground::OpenGround;
+use kestirim_user_locator::GroundSearch;
+
+use super::{Cloud, Estimate, MOST_CORNERS, Quantity, Search, level_prior};
+
+/// Places of a flight that are told apart.
+pub const MOST_PLACES: usize = 120;
+/// Points of a lattice: with them a posterior's mean is right to a metre in a hundred of its width.
+pub const POINTS_OPEN: usize = 800;
+/// Most estimates on the way, as each takes as long as the last one.
+const MOST_TOLD: usize = 60;
+
+/// Of a recorded flight.
+type Ground = GroundSearch<f64, MOST_PLACES, MOST_CORNERS>;
+
+impl Search<'_> {
+    /// After each measurement of a short flight, after one in several of a long one, and after the last.
+    pub(super) fn over_open_ground(&self, quantity: Quantity) -> Vec<Estimate> {
+        let channel = OpenGround::new(level_prior(quantity));
+        let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
+        let count = self.stops.len();
+        let stride = if self.only_last { count } else { count.div_ceil(MOST_TOLD) };
+        let mut estimates = Vec::new();
+        for (number, stop) in self.stops.iter().enumerate() {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            search.measure(&measurement);
+            // Counted from the end, so that the last is one of them.
+            if (count - 1 - number) % stride == 0 {
+                estimates.extend(self.found(&search, number, quantity));
+            }
+        }
+        estimates
+    }
+
+    fn found(&self, search: &Ground, stop: usize, quantity: Quantity) -> Option<Estimate> {
+        let found = search.estimate::<POINTS_OPEN>().ok()?;
+        let covered = self.truth.map(|truth| search.credible(&found, self.inward(truth), 0.9));
+        let cloud =
+            self.with_clouds.then(|| Cloud::of_lattice(&found.posterior).moved(self.origin));
+        Some(Estimate {
+            stop,
+            place: self.outward(found.place),
+            sd_m: found.sigma,
+            level_db: (quantity == Quantity::Level).then_some(found.fit.level),
+            covered,
+            cloud,
+        })
+    }
+}

@@ -1,0 +1,148 @@
+use heapless::Vec;
+use kestirim_air_to_ground::Measurement;
+use kestirim_scalar::Scalar;
+
+/// Measurements this near to each other, m, say the same of a transmitter tens of metres away.
+const NEAR_M: f64 = 8.0;
+
+/// A flight's measurements, thinned by place: those that were made close together are one, their mean. None is dropped.
+///
+/// A drone that hovers, or comes by again, measures the same shadows and the same direction of its antenna once more: that
+/// is no further witness. Places count as one within 8 m; when M are taken, within twice as much, and so on. 24·M bytes
+/// in single precision.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct ByPlace<T, const M: usize> {
+    means: Vec<Measurement<T>, M>,
+    /// How many are in each.
+    counts: Vec<u32, M>,
+    /// Places count as one within this, m.
+    near: T,
+}
+
+impl<T: Scalar, const M: usize> ByPlace<T, M> {
+    /// An empty collection.
+    pub fn new() -> Self {
+        const { assert!(M >= 2, "places that differ") };
+        Self { means: Vec::new(), counts: Vec::new(), near: T::from_f64(NEAR_M) }
+    }
+
+    /// Adds a measurement. O(M); O(M²) when places are joined.
+    pub fn push(&mut self, measurement: &Measurement<T>) {
+        // As often as the whole range of numbers can be doubled.
+        for _ in 0..32 {
+            if self.add(measurement, 1) {
+                return;
+            }
+            self.near += self.near;
+            self.join();
+        }
+    }
+
+    /// The means in the order in which their places were first seen.
+    #[inline]
+    pub fn as_slice(&self) -> &[Measurement<T>] {
+        &self.means
+    }
+
+    /// Within what distance places count as one, m.
+    #[inline]
+    pub fn near(&self) -> T {
+        self.near
+    }
+
+    /// Adds the mean of `count` measurements where it is near, or as another place; false if there is no room.
+    fn add(&mut self, measurement: &Measurement<T>, count: u32) -> bool {
+        let mut nearest: Option<(usize, T)> = None;
+        for (index, mean) in self.means.iter().enumerate() {
+            let [x, y] = mean.place();
+            let [east, north] = measurement.place();
+            let apart = [east - x, north - y, measurement.height() - mean.height()];
+            let distance = T::norm(&apart);
+            if distance < nearest.map_or(self.near, |(_, least)| least) {
+                nearest = Some((index, distance));
+            }
+        }
+        let Some((index, _)) = nearest else {
+            return self.means.push(*measurement).is_ok() && self.counts.push(count).is_ok();
+        };
+        if let (Some(mean), Some(all)) = (self.means.get_mut(index), self.counts.get_mut(index)) {
+            *all = all.saturating_add(count);
+            let number = |count: u32| T::from_binary(count.min(1 << 24) as i32, -12);
+            let share = number(count) / number(*all);
+            *mean = between(mean, measurement, share);
+        }
+        true
+    }
+
+    /// Joins places that are near by now.
+    fn join(&mut self) {
+        let (means, counts) = (core::mem::take(&mut self.means), core::mem::take(&mut self.counts));
+        for (mean, count) in means.iter().zip(&counts) {
+            // There was room for as many.
+            self.add(mean, *count);
+        }
+    }
+}
+
+impl<T: Scalar, const M: usize> Default for ByPlace<T, M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The mean of two measurements, of which the second has this share.
+fn between<T: Scalar>(first: &Measurement<T>, second: &Measurement<T>, share: T) -> Measurement<T> {
+    let mean = |first: T, second: T| first + share * (second - first);
+    let ([x, y], [east, north]) = (first.place(), second.place());
+    let height = mean(first.height(), second.height());
+    let loss = mean(first.loss(), second.loss());
+    // Between two that are plausible there is only what is plausible.
+    Measurement::new([mean(x, east), mean(y, north)], height, loss).unwrap_or(*first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kestirim_scalar::Q16_16;
+
+    fn measurement<T: Scalar>(place: [f64; 2], loss: f64) -> Measurement<T> {
+        Measurement::new(place.map(T::from_f64), T::from_f64(40.0), T::from_f64(loss))
+            .expect("plausible")
+    }
+
+    fn check<T: Scalar>() {
+        let mut flight = ByPlace::<T, 4>::new();
+        for k in 0..100 {
+            flight.push(&measurement([3.0, 4.0], 60.0 + f64::from(k % 2)));
+        }
+        let [hover] = flight.as_slice() else { panic!("{flight:?}") };
+        assert!((hover.loss().to_f64() - 60.5).abs() < 0.02, "{hover:?}");
+        flight.push(&measurement([10.0, 4.0], 60.5));
+        assert_eq!(flight.as_slice().len(), 1);
+        // A hundredth part of the way.
+        assert!((flight.as_slice()[0].place()[0].to_f64() - 3.07).abs() < 0.02);
+        for k in 1..200 {
+            flight.push(&measurement([3.0 + 20.0 * f64::from(k), 4.0], 60.0));
+            assert!(flight.as_slice().len() <= 4);
+        }
+        // As many places as there is room for cover the whole flight, however long.
+        assert!(flight.near() > T::from_f64(512.0) && flight.as_slice().len() >= 2, "{flight:?}");
+        let mean = flight.counts.iter().sum::<u32>();
+        assert_eq!(mean, 300, "none is dropped");
+    }
+
+    #[test]
+    fn what_is_measured_at_a_place_is_one_and_a_long_flight_has_room() {
+        check::<f32>();
+        check::<f64>();
+        check::<Q16_16>();
+    }
+}
