@@ -1,8 +1,8 @@
 //! Everything of `kestirim-air-to-ground`.
 
 use kestirim_air_to_ground::{
-    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement, PathLoss,
-    Propagation, Rotor,
+    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement, OpenGround,
+    PathLoss, Propagation, Rotor,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 
@@ -56,6 +56,21 @@ fn free_space<T: Scalar>() {
     keep(FreeSpace::level(&channel, measurements, numbers()));
 }
 
+fn open_ground<T: Scalar>() {
+    let Some(measurement) = measurement::<T>() else { return };
+    let measurements = any([measurement; 4]);
+    let measurements = slice(&measurements);
+    let prior = maybe(LevelPrior { mean: number(), sigma: number() });
+    let channel = any(OpenGround::<T>::new(prior));
+    let suppositions = any(OpenGround::suppositions(&channel, measurements));
+    if let Some(supposition) = slice(&suppositions).first() {
+        keep(OpenGround::fit(&channel, measurements, numbers(), supposition, number()));
+    }
+    let (place, power, all) = (numbers(), number(), slice(&suppositions));
+    let told = |index: usize, log: T| keep((index, log));
+    keep(OpenGround::log_likelihood(&channel, measurements, place, power, all, told));
+}
+
 fn rotors<T: Scalar>() {
     let rotor = any(Rotor::<T>::base_station());
     let rotor = any(Rotor { weight: number(), ..rotor });
@@ -65,7 +80,7 @@ fn rotors<T: Scalar>() {
 }
 
 fn all_of<T: Scalar>() {
-    call_each([environments::<T>, channels::<T>, free_space::<T>, rotors::<T>]);
+    call_each([environments::<T>, channels::<T>, free_space::<T>, open_ground::<T>, rotors::<T>]);
 }
 
 /// Calls it all.

@@ -3,13 +3,14 @@
 use core::fmt::Debug;
 
 use kestirim_air_to_ground::{
-    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement,
+    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement, OpenGround,
 };
 use kestirim_particle_filter::{Region, Resampler};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{
-    Area, Beacon, BeaconEstimate, BeaconSearch, Error, Height, LevelStep, Locator, Motion, Orbit,
-    PublishedLocator, PublishedSettings, Thinned, TrackEstimate, Tracker, Within,
+    Area, Beacon, BeaconEstimate, BeaconSearch, ByPlace, Error, GroundSearch, Height, LevelStep,
+    Locator, Motion, Orbit, PublishedLocator, PublishedSettings, Thinned, TrackEstimate, Tracker,
+    Within,
 };
 
 use super::values::{
@@ -117,6 +118,7 @@ fn areas<T: Scalar, const N: usize>() -> Option<()> {
     let area = any(Area::relative_to(&area, numbers())).ok()?;
     let within = any(Within::new(channel()?, &area));
     keep(Likelihood::log_likelihood(&within, &measurement()?, numbers()));
+    keep(grounds::<T, N, 9>(area.clone()));
     searches::<T, N, 9>(area)
 }
 
@@ -134,6 +136,27 @@ fn searches<T: Scalar, const N: usize, const L: usize>(area: Area<T, N>) -> Opti
     keep(BeaconSearch::credible(&search, &estimate, numbers(), number()));
     keep(BeaconSearch::health(&search, &estimate));
     keep(LevelStep::find(BeaconSearch::measurements(&search), numbers()));
+    Some(())
+}
+
+fn grounds<T: Scalar, const N: usize, const L: usize>(area: Area<T, N>) -> Option<()> {
+    let level = maybe(LevelPrior { mean: number(), sigma: number() });
+    let mut search = any(GroundSearch::<T, 5, N>::new(OpenGround::new(level), area));
+    keep(ByPlace::<T, 3>::new());
+    let mut places = any(<ByPlace<T, 3> as Default>::default());
+    for _ in 0..rounds() {
+        if let Some(measurement) = measurement() {
+            GroundSearch::measure(any(&mut search), &measurement);
+            ByPlace::push(any(&mut places), &measurement);
+        }
+    }
+    keep(ByPlace::as_slice(&places));
+    keep(ByPlace::near(&places));
+    keep(GroundSearch::measurements(&search));
+    keep(GroundSearch::area(&search));
+    let estimate = any(GroundSearch::estimate::<L>(&search)).ok()?;
+    keep(GroundSearch::credible(&search, &estimate, numbers(), number()));
+    keep(GroundSearch::health(&search, &estimate));
     Some(())
 }
 
