@@ -71,7 +71,7 @@ impl Pattern {
 /// * The noise has Student's distribution with ν = 4 and a scale of 1.2, 2.2 or 4 dB; that of the floor 1.7 dB.
 ///
 /// For each [`Supposition`] (pattern, floor, scale) level, exponent and coefficients are fitted, and integrated over by Laplace's
-/// approximation (MacKay, *Information Theory, Inference, and Learning Algorithms*, ch. 27):
+/// approximation (`MacKay`, *Information Theory, Inference, and Learning Algorithms*, ch. 27):
 /// [`OpenGround::fit`]. At most 128 measurements are read, whose loss is the negative received level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

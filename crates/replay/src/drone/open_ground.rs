@@ -27,7 +27,7 @@ impl Search<'_> {
             let Some(measurement) = self.measurement(stop) else { continue };
             search.measure(&measurement);
             // Counted from the end, so that the last is one of them.
-            if (count - 1 - number) % stride == 0 {
+            if (count - 1 - number).is_multiple_of(stride) {
                 estimates.extend(self.found(&search, number, quantity));
             }
         }
