@@ -249,6 +249,18 @@ impl Header<'_> {
     }
 }
 
+impl Header<'_> {
+    /// A sentence that names the columns which were not looked for until now, if there are any.
+    pub fn left_out(&self) -> Option<String> {
+        let found = self.found.borrow();
+        let is_found = |at: usize| found.iter().any(|(_, column, _)| column.at == at);
+        let names = self.heading.names().iter().enumerate();
+        let names = names.filter(|(at, name)| !is_found(*at) && !name.trim().is_empty());
+        let names: Vec<_> = names.map(|(_, name)| printable(name)).collect();
+        (!names.is_empty()).then(|| format!("columns that are not used: {}", names.join(", ")))
+    }
+}
+
 /// A line of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Line<'a> {

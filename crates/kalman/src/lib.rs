@@ -3,6 +3,7 @@
 
 mod block;
 mod covariance;
+mod driven;
 mod error;
 mod gate;
 mod gaussian;
@@ -17,6 +18,7 @@ mod steady_state;
 
 pub use block::BlockInnovation;
 pub use covariance::Covariance;
+pub use driven::Driven;
 pub use error::Error;
 pub use gate::{Gate, Verdict};
 pub use gaussian::Gaussian;

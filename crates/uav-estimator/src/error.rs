@@ -20,6 +20,8 @@ pub enum Error {
         /// The interval asked for, s.
         found: f64,
     },
+    /// All states that a filter has room for are taken, or the output or state that something is to act on is not there.
+    NoRoom,
     /// The model's transition has no inverse, which the current form of the observer needs.
     Singular,
     /// The design was refused.
@@ -57,6 +59,7 @@ impl fmt::Display for Error {
             Self::WrongInterval { own, found } => {
                 write!(formatter, "the model is for intervals of {own} s, found one of {found} s")
             }
+            Self::NoRoom => formatter.write_str("there is no room for another state"),
             Self::Singular => formatter.write_str("the model's transition has no inverse"),
             Self::Design(error) => error.fmt(formatter),
             Self::Observer(error) => error.fmt(formatter),

@@ -1,16 +1,14 @@
-use kestirim_health::{Health, Reason};
+use kestirim_health::Health;
 use kestirim_kalman::Innovation;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-use crate::gate::Gate;
-use crate::lateness::Lateness;
-use crate::monitor::Monitor;
 use crate::transitions::{Transitions, interval_us, is_set_back};
+use crate::watch::Watch;
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
 /// Standard deviations of a state of which nothing is known: rad, rad/s, m/s, rad.
-const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
+pub(crate) const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
 
 /// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
 ///
@@ -28,14 +26,8 @@ const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     filter: KalmanFilter<T, P>,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
-    gates: [Gate; P],
-    /// How many times each output was left out.
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
-    rejected: [u32; P],
-    monitor: Monitor,
-    lateness: Lateness<P>,
-    transitions: Transitions<Transition<T>, L>,
+    watch: Watch<P>,
+    transitions: Transitions<Dynamics, Transition<T>, L>,
     /// Time (µs) and input of the sample before.
     before: Option<(i64, SVector<f64, 2>)>,
 }
@@ -55,15 +47,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         let filter =
             KalmanFilter::new(c, &noise.outputs, &SVector::zeros(), &SVector::from(UNKNOWN))?;
         let transitions = Transitions::new(*dynamics, usual, noise.inputs);
-        Ok(Self {
-            filter,
-            gates: [Gate::default(); P],
-            rejected: [0; P],
-            monitor: Monitor::default(),
-            lateness: Lateness::NONE,
-            transitions,
-            before: None,
-        })
+        Ok(Self { filter, watch: Watch::NEW, transitions, before: None })
     }
 
     /// Says how long an interval usually is, s.
@@ -78,7 +62,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
 
     /// How many times each output was left out, because it contradicted the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
-        &self.rejected
+        &self.watch.rejected
     }
 
     /// Whether the estimate can be relied upon: `innovations` if over about 200 samples the normalised innovations
@@ -86,7 +70,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
     /// than a tenth of the measurements were left out; `time` if over about 1000 the innovations follow the movement of
     /// the outputs, as they do if outputs come late or inputs do, by four samples or so.
     pub fn health(&self) -> Health {
-        self.monitor.health().with(Reason::Time, self.lateness.is_told())
+        self.watch.health()
     }
 
     /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
@@ -109,17 +93,11 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
             next.predict(&transition, input)?;
             moved = Some((interval_us, transition));
         }
-        let mut gates = self.gates;
-        let judged = next.correct_gated(&sample.measured, &mut gates)?;
+        let mut watch = self.watch;
+        let judged = next.correct_gated(&sample.measured, &mut watch.gates)?;
+        watch.count(&sample.measured, &judged);
         self.filter = next;
-        self.gates = gates;
-        for (rejected, is_left_out) in self.rejected.iter_mut().zip(judged.is_left_out) {
-            *rejected = rejected.saturating_add(u32::from(is_left_out));
-        }
-        let of = || judged.innovations.iter().flatten().map(|innovation| innovation.nis);
-        let left_out = judged.is_left_out.iter().filter(|is_left_out| **is_left_out).count();
-        self.monitor.count(of().count(), left_out, of());
-        self.lateness.count(&sample.measured, &judged.innovations);
+        self.watch = watch;
         self.before = Some((sample.time_us, sample.input));
         if let Some((interval_us, transition)) = &moved {
             self.transitions.keep(*interval_us, transition);

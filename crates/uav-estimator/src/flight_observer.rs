@@ -42,7 +42,7 @@ pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
     rejected: [u32; P],
     monitor: Monitor,
     usual_us: i64,
-    transitions: Transitions<Discrete<4, 2>, L>,
+    transitions: Transitions<Dynamics, Discrete<4, 2>, L>,
     /// Time (µs) and input of the sample before.
     before: Option<(i64, SVector<f64, 2>)>,
 }

@@ -14,6 +14,9 @@ pub(crate) struct Gate {
 }
 
 impl Gate {
+    /// One that nothing has contradicted.
+    pub(crate) const NEW: Self = Self { rejected: 0 };
+
     /// Whether a measurement is to be taken in.
     pub(crate) fn admits(&mut self, contradicts: bool) -> bool {
         let is_left_out = contradicts && self.rejected < PATIENCE;

@@ -9,10 +9,10 @@ use crate::{Error, Step};
 
 /// Units of the states (rad, rad/s, m/s, rad) inside the filter: in these, fixed point holds the smallest and the
 /// largest variance of a flight. Powers of two, so that floats do not notice.
-const UNITS: [f64; 4] = [1.0 / 256.0, 1.0 / 256.0, 0.25, 1.0 / 256.0];
+pub(crate) const UNITS: [f64; 4] = [1.0 / 256.0, 1.0 / 256.0, 0.25, 1.0 / 256.0];
 
 /// NIS beyond which an output contradicts the estimate: 5 σ.
-const GATE: f64 = 25.0;
+pub(crate) const GATE: f64 = 25.0;
 
 /// A [`Step`] in the scalar and the units of a [`KalmanFilter`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,7 +244,7 @@ fn units() -> (SMatrix<f64, 4, 4>, SMatrix<f64, 4, 4>) {
 }
 
 /// The power of two below a size; 1 where there is none.
-fn power_of_two(size: f64) -> f64 {
+pub(crate) fn power_of_two(size: f64) -> f64 {
     const EXPONENT: u64 = 0x7FF << 52;
     if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }
 }

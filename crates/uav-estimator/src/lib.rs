@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod augmented;
 mod dynamics;
 mod error;
 mod estimator;
@@ -16,7 +17,12 @@ mod sample;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod transitions;
+mod watch;
 
+pub use augmented::{
+    AugmentedFilter, AugmentedFlight, AugmentedModel, AugmentedStep, AugmentedTransition, Drift,
+    Gust, Output, Reference,
+};
 pub use dynamics::{Dynamics, Step};
 pub use error::Error;
 pub use estimator::Estimator;

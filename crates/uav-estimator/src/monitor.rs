@@ -25,6 +25,9 @@ pub(crate) struct Monitor {
 }
 
 impl Monitor {
+    /// One that has seen nothing.
+    pub(crate) const NEW: Self = Self { nis: Share::NONE, left_out: Share::NONE, seen: 0 };
+
     /// Counts a sample: its measurements, how many of them were left out, and what their innovations squared were in
     /// units of their variances, where a variance is known.
     pub(crate) fn count(
@@ -58,6 +61,8 @@ struct Share {
 }
 
 impl Share {
+    const NONE: Self = Self { sum: 0.0, of: 0.0 };
+
     fn count(&mut self, sum: f32, of: f32, memory: f32) {
         let keep = 1.0 - 1.0 / memory;
         self.sum = keep * self.sum + sum;

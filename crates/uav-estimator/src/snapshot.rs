@@ -1,10 +1,15 @@
 //! What stored estimators are. Raise the version of one that is stored otherwise than before.
 
-use crate::{Estimator, FlightFilter, FlightObserver, KalmanFilter};
+use crate::{
+    AugmentedFilter, AugmentedFlight, Estimator, FlightFilter, FlightObserver, KalmanFilter,
+};
 use kestirim_scalar::Scalar;
 use kestirim_snapshot::layout;
 
 layout! {
+    [T: Scalar, const N: usize, const K: usize, const P: usize] for AugmentedFilter<T, N, K, P> as "uav/augmented", 1, T, [N, K, P];
+    [T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize]
+        for AugmentedFlight<T, N, K, P, L> as "uav/augmented-flight", 1, T, [N, K, P, L];
     [T: Scalar, const P: usize] for Estimator<T, P> as "uav/estimator", 1, T, [P];
     [T: Scalar, const P: usize] for KalmanFilter<T, P> as "uav/kalman", 1, T, [P];
     [T: Scalar, const P: usize, const L: usize] for FlightFilter<T, P, L> as "uav/filter", 1, T, [P, L];

@@ -2,6 +2,28 @@ use nalgebra::SVector;
 
 use crate::{Dynamics, Error, Step};
 
+/// A model that can be moved on by any interval.
+pub(crate) trait Moves {
+    /// What it does in an interval.
+    type Step;
+
+    /// Its step over `interval` (s), where white noise of these standard deviations a `sample` (s) reaches the inputs.
+    fn over(
+        &self,
+        interval: f64,
+        sample: f64,
+        noise: &SVector<f64, 2>,
+    ) -> Result<Self::Step, Error>;
+}
+
+impl Moves for Dynamics {
+    type Step = Step;
+
+    fn over(&self, interval: f64, sample: f64, noise: &SVector<f64, 2>) -> Result<Step, Error> {
+        Self::over(self, interval, sample, noise)
+    }
+}
+
 /// Longest gap, in usual intervals.
 const LONGEST_GAP: f64 = 1e6;
 
@@ -15,12 +37,12 @@ const LONGEST_GAP: f64 = 1e6;
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "S: serde::Serialize",
-        deserialize = "S: Copy + serde::Deserialize<'de>"
+        serialize = "D: serde::Serialize, S: serde::Serialize",
+        deserialize = "D: serde::Deserialize<'de>, S: Copy + serde::Deserialize<'de>"
     ))
 )]
-pub(crate) struct Transitions<S, const L: usize> {
-    dynamics: Dynamics,
+pub(crate) struct Transitions<D, S, const L: usize> {
+    dynamics: D,
     /// s.
     usual: f64,
     /// Standard deviations of the inputs' noise a usual interval.
@@ -29,8 +51,8 @@ pub(crate) struct Transitions<S, const L: usize> {
     known: [Option<(i64, S)>; L],
 }
 
-impl<S: Copy, const L: usize> Transitions<S, L> {
-    pub(crate) const fn new(dynamics: Dynamics, usual: f64, noise: SVector<f64, 2>) -> Self {
+impl<D: Moves, S: Copy, const L: usize> Transitions<D, S, L> {
+    pub(crate) fn new(dynamics: D, usual: f64, noise: SVector<f64, 2>) -> Self {
         Self { dynamics, usual, noise, known: [None; L] }
     }
 
@@ -41,7 +63,11 @@ impl<S: Copy, const L: usize> Transitions<S, L> {
     }
 
     /// Step over so many microseconds, in the form that `form` gives it.
-    pub(crate) fn over(&self, interval_us: i64, form: impl FnOnce(&Step) -> S) -> Result<S, Error> {
+    pub(crate) fn over(
+        &self,
+        interval_us: i64,
+        form: impl FnOnce(&D::Step) -> S,
+    ) -> Result<S, Error> {
         if let Some(Some((known_us, step))) = self.known.get(Self::place(interval_us))
             && *known_us == interval_us
         {

@@ -37,3 +37,4 @@ mod uav_misprints;
 mod uav_observers;
 mod uav_observers_scalars;
 mod uav_on_target;
+mod uav_recordings;

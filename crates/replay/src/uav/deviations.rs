@@ -4,6 +4,7 @@ use kestirim_health::Reason;
 use nalgebra::SVector;
 
 use super::estimators::{self, Assumed, Estimate, Followed};
+use super::extended;
 use super::{Error, EstimatorKind, Log, Model, Options, Truth};
 use crate::ScalarKind;
 
@@ -18,6 +19,8 @@ pub struct Deviations {
     pub truth: Option<Truth>,
     /// State and input that were taken from the log.
     origin: ([f64; 4], [f64; 2]),
+    /// Whether it was.
+    absolute: bool,
     /// The usual airspeed of the log, m/s, and that of the model's steady flight, if the log looks absolute and is not said
     /// to be.
     pub looks_absolute: Option<[f64; 2]>,
@@ -39,14 +42,14 @@ impl Deviations {
             Some((state, _)) if !absolute => looks_absolute(&log, &model, state[2]),
             _ => None,
         };
-        subtract(&mut log, &model, origin);
-        Ok(Self { model, log, truth, origin, looks_absolute })
+        subtract(&mut log, &model, absolute, origin);
+        Ok(Self { model, log, truth, origin, absolute, looks_absolute })
     }
 
     /// From a simulated flight, which is in deviations.
     pub fn simulated(model: Model, log: Log, truth: Truth) -> Self {
         let (truth, origin) = (Some(truth), ([0.0; 4], [0.0; 2]));
-        Self { model, log, truth, origin, looks_absolute: None }
+        Self { model, log, truth, origin, absolute: false, looks_absolute: None }
     }
 
     /// Of the outputs that the log has.
@@ -60,7 +63,10 @@ impl Deviations {
     /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample.
     pub fn follow(&self, options: &Options) -> Result<Followed, Error> {
         let assumed = Assumed::of(&self.model, &self.log.outputs, options);
-        let kalman = |scalar| estimators::kalman(&self.model, &self.log, &assumed, scalar);
+        let kalman = |scalar| match &self.model.extended {
+            Some(extended) => extended::follow(&self.model, extended, &self.log, options, scalar),
+            None => estimators::kalman(&self.model, &self.log, &assumed, scalar),
+        };
         match options.estimator {
             EstimatorKind::Kalman => kalman(options.scalar),
             EstimatorKind::Luenberger => {
@@ -69,6 +75,7 @@ impl Deviations {
                 // An observer does not know how large innovations may be. Whether model and measurements agree does
                 // not depend on it: the filter beside it tells.
                 if let Ok(judge) = kalman(ScalarKind::F64) {
+                    followed.normalised.clone_from(&judge.normalised);
                     for (health, judged) in followed.healths.iter_mut().zip(&judge.healths) {
                         for reason in [Reason::Innovations, Reason::Time] {
                             *health = health.with(reason, judged.has(reason));
@@ -102,7 +109,7 @@ impl Deviations {
     }
 
     fn steady(&self, output: usize) -> f64 {
-        self.model.output(output, &self.origin.0)
+        self.model.shown(output, self.absolute, &self.origin.0)
     }
 
     /// Errors at times that log and truth share: estimated less true, of the states that are known.
@@ -128,8 +135,9 @@ fn looks_absolute(log: &Log, model: &Model, airspeed: f64) -> Option<[f64; 2]> {
     (middle > 0.5 * airspeed).then_some([middle, airspeed])
 }
 
-fn subtract(log: &mut Log, model: &Model, (state, input): ([f64; 4], [f64; 2])) {
-    let shown: Vec<f64> = log.outputs.iter().map(|&output| model.output(output, &state)).collect();
+fn subtract(log: &mut Log, model: &Model, absolute: bool, (state, input): ([f64; 4], [f64; 2])) {
+    let shown = |&output: &usize| model.shown(output, absolute, &state);
+    let shown: Vec<f64> = log.outputs.iter().map(shown).collect();
     for sample in &mut log.samples {
         sample.input = std::array::from_fn(|i| sample.input[i] - input[i]);
         for (measured, steady) in sample.measured.iter_mut().zip(&shown) {

@@ -1,11 +1,14 @@
 //! Estimates along a recorded flight.
 
 use kestirim_health::Health;
+use kestirim_kalman::Innovation;
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{self as uav, FlightFilter, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
-use super::{Error, Log, MOST_OUTPUTS, Model, Noise, Options, Poles, Sample, discrete};
+use super::{
+    Beside, Error, Extended, Log, MOST_OUTPUTS, Model, Noise, Options, Poles, Sample, discrete,
+};
 use crate::ScalarKind;
 
 /// Intervals of a log of which the steps are kept.
@@ -36,15 +39,29 @@ pub struct Followed {
     pub rejected: Vec<u32>,
     /// Of each line: how far its estimate can be relied upon.
     pub healths: Vec<Health>,
+    /// Of each of the log's outputs: innovations in standard deviations, of a filter that knows them.
+    pub normalised: Vec<Vec<f64>>,
+    /// What was estimated beside the four states.
+    pub beside: Vec<Beside>,
+    /// Standard deviations (m/s) of the gusts along and across that the innovations support most.
+    pub gust: Option<[f64; 2]>,
 }
 
 impl Followed {
-    fn new(log: &Log) -> Self {
-        let innovations = vec![Vec::new(); log.outputs.len()];
-        Self { innovations, rejected: vec![0; log.outputs.len()], ..Self::default() }
+    pub(super) fn new(log: &Log) -> Self {
+        let count = log.outputs.len();
+        let (innovations, normalised) = (vec![Vec::new(); count], vec![Vec::new(); count]);
+        Self { innovations, normalised, rejected: vec![0; count], ..Self::default() }
     }
 
-    fn add(
+    /// Keeps innovations in standard deviations.
+    pub(super) fn judge(&mut self, innovations: &[Option<Innovation<f64>>]) {
+        for (all, innovation) in self.normalised.iter_mut().zip(innovations) {
+            all.extend(innovation.map(|it| it.nis.sqrt().copysign(it.innovation)));
+        }
+    }
+
+    pub(super) fn add(
         &mut self,
         estimate: Estimate,
         innovations: impl IntoIterator<Item = Option<f64>>,
@@ -72,14 +89,23 @@ pub struct Assumed {
 }
 
 impl Assumed {
-    /// As set, and otherwise of usual sensors. What a file's C mixes of the states is as noisy as the mixture of their
+    /// As set, and otherwise as the model says, and otherwise of usual sensors. What a file's C mixes of the states is as noisy as the mixture of their
     /// sensors.
     pub fn of(model: &Model, outputs: &[usize], options: &Options) -> Self {
-        let usual = |&output: &usize| Noise::SENSORS.of_output(&model.outputs[output].1);
-        let of_output =
-            |output: &usize| options.outputs.map_or_else(|| usual(output), |given| given[*output]);
+        let extended = model.extended.as_deref();
+        let said = |output: usize| Some(extended?.sigmas.as_ref()?[output]);
+        let usual = |output: usize| Noise::SENSORS.of_output(&model.outputs[output].1);
+        let given = |output: usize| options.outputs?.get(output).copied();
+        let of_output = |&output: &usize| {
+            given(output).or_else(|| said(output)).unwrap_or_else(|| usual(output))
+        };
+        let usual_inputs = || match extended {
+            Some(Extended { inputs: Some(inputs), .. }) => *inputs,
+            Some(Extended { process: Some(_), .. }) => [0.0; 2],
+            _ => Noise::SENSORS.inputs,
+        };
         Self {
-            inputs: options.weighted(options.inputs.unwrap_or(Noise::SENSORS.inputs)),
+            inputs: options.weighted(options.inputs.unwrap_or_else(usual_inputs)),
             outputs: outputs.iter().map(of_output).collect(),
         }
     }
@@ -127,6 +153,7 @@ fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<F
     for (index, sample) in log.samples.iter().enumerate() {
         let innovations = filter.take(&sized(sample));
         let innovations = innovations.map_err(|source| Error::Sample { index, source })?;
+        followed.judge(&innovations);
         let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
         let now = filter.filter();
         let sigma = Some(now.sigma());
@@ -158,7 +185,11 @@ fn observer_in<T: Scalar>(model: &Model, log: &Log, poles: Poles) -> Result<Foll
         1 => observer_of::<T, 1>(model, log, poles),
         2 => observer_of::<T, 2>(model, log, poles),
         3 => observer_of::<T, 3>(model, log, poles),
-        _ => observer_of::<T, 4>(model, log, poles),
+        4 => observer_of::<T, 4>(model, log, poles),
+        5 => observer_of::<T, 5>(model, log, poles),
+        6 => observer_of::<T, 6>(model, log, poles),
+        7 => observer_of::<T, 7>(model, log, poles),
+        _ => observer_of::<T, 8>(model, log, poles),
     }
 }
 
@@ -173,7 +204,7 @@ fn observer_of<T: Scalar, const P: usize>(
         Box::new(FlightObserver::<T, P, KEPT>::new(&model.dynamics, &c, &poles, usual)?);
     let mut followed = Followed::new(log);
     for (index, sample) in log.samples.iter().enumerate() {
-        let innovations = observer.take(&sized(sample));
+        let innovations = observer.take(&sized(&model.without_direct(sample, &log.outputs)));
         let innovations = innovations.map_err(|source| Error::Sample { index, source })?;
         let (state, sigma) = (observer.estimate(), None);
         let estimate = Estimate { t_us: sample.t_us, state, sigma };

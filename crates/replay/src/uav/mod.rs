@@ -4,21 +4,31 @@
 //! as the [`Options`] say. Angles are radians, the airspeed m/s, times µs of the log's clock.
 
 mod check;
+mod contradiction;
 mod deviations;
 mod error;
 mod estimators;
+mod extended;
 mod log;
 mod model;
+#[cfg(feature = "serde")]
+mod model_file;
 mod noise;
 mod options;
 mod poles;
 
 pub use self::check::check;
+pub use self::contradiction::Contradiction;
 pub use self::deviations::Deviations;
 pub use self::error::Error;
 pub use self::estimators::{Assumed, Estimate, Filter, Followed, KEPT, filter, rows, sized};
+pub use self::extended::{
+    Augmented, Beside, Extended, MOST_EXTENDED_OUTPUTS, Parts, Unknown, augmented,
+};
 pub use self::log::{Log, Sample, Truth};
 pub use self::model::{MOST_OUTPUTS, Model, Plant, STATE_COLUMNS, state_outputs};
+#[cfg(feature = "serde")]
+pub use self::model_file::{ModelFile, ModelFileError};
 pub use self::noise::Noise;
 pub use self::options::{EstimatorKind, Options};
 pub use self::poles::{FAST, MIDDLE, Poles, SLOW, discrete, faster};

@@ -4,7 +4,7 @@ use kestirim_observer_design::{Discrete, zero_order_hold};
 use kestirim_uav_estimator::Dynamics;
 use kestirim_uav_longitudinal::{self as aircraft, Airframe, StateSpace, SteadyFlight};
 
-use super::Error;
+use super::{Error, Extended, Sample};
 
 /// Names of the states, which are the columns of a log where a model has no C.
 pub const STATE_COLUMNS: [&str; 4] = ["alpha", "q", "V", "theta"];
@@ -72,6 +72,8 @@ pub struct Model {
     pub outputs: Vec<(String, [f64; 4])>,
     /// State and input of the flight that deviations are counted from.
     pub trim: Option<([f64; 4], [f64; 2])>,
+    /// What it says beyond that.
+    pub extended: Option<Box<Extended>>,
 }
 
 impl Model {
@@ -79,7 +81,7 @@ impl Model {
     pub fn of(plant: Plant) -> Self {
         let dynamics = Dynamics::Continuous(plant.model());
         let trim = (plant == Plant::P1).then(climb);
-        Self { dynamics, outputs: state_outputs(), trim }
+        Self { dynamics, outputs: state_outputs(), trim, extended: None }
     }
 
     /// What is taken from values: nothing, or of `absolute` ones the model's trim.
@@ -94,9 +96,25 @@ impl Model {
         }
     }
 
-    /// What an output measures of a state.
-    pub fn output(&self, output: usize, state: &[f64; 4]) -> f64 {
-        self.outputs[output].1.iter().zip(state).map(|(part, state)| part * state).sum()
+    /// What an output shows at this origin: nothing of deviations, and of absolute values what the model says it does in its
+    /// steady flight.
+    pub fn shown(&self, output: usize, absolute: bool, origin: &[f64; 4]) -> f64 {
+        match &self.extended {
+            Some(extended) if absolute => extended.steady[output],
+            _ => self.outputs[output].1.iter().zip(origin).map(|(part, state)| part * state).sum(),
+        }
+    }
+
+    /// A sample without what its inputs add to these outputs at once.
+    pub(super) fn without_direct(&self, sample: &Sample, outputs: &[usize]) -> Sample {
+        let mut sample = sample.clone();
+        let Some(extended) = &self.extended else { return sample };
+        for (measured, output) in sample.measured.iter_mut().zip(outputs) {
+            let [elevator, throttle] = extended.direct[*output];
+            let added = elevator * sample.input[0] + throttle * sample.input[1];
+            *measured = measured.map(|measured| measured - added);
+        }
+        sample
     }
 }
 

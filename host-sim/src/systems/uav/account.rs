@@ -3,7 +3,9 @@
 pub mod accuracy;
 pub mod states;
 
-use kestirim_replay::uav::{Estimate, EstimatorKind, Followed, STATE_COLUMNS};
+use std::collections::BTreeMap;
+
+use kestirim_replay::uav::{Contradiction, Estimate, EstimatorKind, Followed, STATE_COLUMNS};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -34,6 +36,12 @@ struct Report {
     innovations: Vec<Residual>,
     /// α, q, V, θ after the last line.
     estimate: [f64; 4],
+    /// What was estimated beside the four states, at the end: value and standard deviation, in units of the SI.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    beside: BTreeMap<String, [f64; 2]>,
+    /// Standard deviations of the gusts along and across that the innovations support most, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gust: Option<[f64; 2]>,
     /// How the log was understood.
     import: Vec<String>,
     /// What a reader should know.
@@ -92,7 +100,7 @@ pub(super) fn account(
     let last = followed.estimates.last();
     let last = last.map(|estimate| flight.absolute(estimate)).unwrap_or_default();
     let missing = flight.log.samples.iter().flat_map(|sample| &sample.measured);
-    let residuals = followed.innovations.iter().zip(followed.rejected.iter().chain(&[0; 4]));
+    let residuals = followed.innovations.iter().zip(followed.rejected.iter());
     let innovations = flight.names().zip(residuals).map(|(output, (innovations, &rejected))| {
         let innovations: Vec<f64> = innovations.iter().copied().flatten().collect();
         let (output, measured) = (output.to_owned(), innovations.len());
@@ -109,6 +117,8 @@ pub(super) fn account(
         missing: missing.filter(|measured| measured.is_none()).count(),
         innovations,
         estimate: last.into(),
+        beside: followed.beside.iter().map(|it| (it.name.clone(), [it.value, it.sigma])).collect(),
+        gust: followed.gust,
         import: found.import,
         warnings,
         accuracy,
@@ -120,10 +130,35 @@ pub(super) fn account(
         account.doubt(reason);
     }
     if let Recording::Logged(logged) = recording {
+        for contradiction in followed.contradictions() {
+            account.warn(contradicted(track, &contradiction));
+            account.doubt(Reason::Innovations);
+        }
         account.about = Some(logged.path.clone());
     }
     report.tell(&mut account);
     Ok(account)
+}
+
+/// What speaks against the model, in a sentence.
+fn contradicted(track: &Track, contradiction: &Contradiction) -> String {
+    let name = |output: usize| track.flight.names().nth(output).unwrap_or_default().to_owned();
+    match *contradiction {
+        Contradiction::Large { output, size } => format!(
+            "{} contradicts the model: what it shows beyond what is expected is {size:.1} times what noise explains",
+            name(output)
+        ),
+        Contradiction::Coloured { output, shared } => format!(
+            "{} contradicts the model: {:.0} % of what it shows beyond what is expected lasts from line to line, where noise \
+             alone would leave nothing (wind, gusts, a bias, another trim or aircraft)",
+            name(output),
+            100.0 * shared
+        ),
+        Contradiction::Beside { size } => format!(
+            "biases, wind and trim are {size:.1} times as far from the model's as it says they would be: a sensor that \
+             measures something else, or another aircraft"
+        ),
+    }
 }
 
 /// When the estimate is to be doubted, and why: a sentence each.
@@ -164,6 +199,15 @@ impl Report {
             let left_out =
                 if *rejected > 0 { format!(", {rejected} left out") } else { String::new() };
             account.fact(format!("innovations of {output}"), format!("{rms:.2e}{left_out}"));
+        }
+        for (name, [value, sigma]) in &self.beside {
+            account.fact(name, format!("{value:.4} ± {sigma:.4}"));
+        }
+        if let Some([along, across]) = self.gust {
+            account.fact(
+                "gusts, as the innovations say",
+                format!("{along:.2} m/s along, {across:.2} across"),
+            );
         }
         let Some(accuracy) = &self.accuracy else { return };
         let errors = accuracy.rmse.iter().zip(accuracy.late_rmse);

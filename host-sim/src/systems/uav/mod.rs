@@ -55,8 +55,8 @@ impl System for Uav {
         .imported(),
         FileField::optional(
             "model",
-            "JSON: A (4 × 4), B (4 × 2), perhaps C with the names of its outputs, trim {x, u}, and h (s) if A and B \
-             are of discrete time",
+            "JSON: A (4 × 4), B (4 × 2), perhaps C with the names of its outputs, trim {x, u}, h (s) if A and B are of \
+             discrete time, and whatever is known of noise, biases, gusts, wind, trim (the book's chapter on the UAV)",
         )
         .live(),
         FileField::optional(

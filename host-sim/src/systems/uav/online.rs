@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 
 use kestirim_replay::uav::{
-    Assumed, EstimatorKind, Filter, KEPT, Model, Options, Sample, discrete, filter, rows, sized,
+    Assumed, Augmented, EstimatorKind, Filter, KEPT, Model, Options, Sample, augmented, discrete,
+    filter, rows, sized,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_telemetry::{Flight, Message};
@@ -31,6 +32,7 @@ pub(super) struct Flying {
     /// Where each stands in a [`Flight`].
     places: Vec<usize>,
     origin: ([f64; 4], [f64; 2]),
+    absolute: bool,
     options: Options,
 }
 
@@ -58,8 +60,10 @@ impl Flying {
             let path = file.unwrap_or_else(|| "model".as_ref()).to_path_buf();
             return Err(Error::File { path, problem });
         }
-        let origin = model.origin(settings.is_on("absolute")).map_err(refused)?;
-        let flying = Self { model, outputs, places, origin, options: settings::options(settings) };
+        let absolute = settings.is_on("absolute");
+        let origin = model.origin(absolute).map_err(refused)?;
+        let options = settings::options(settings);
+        let flying = Self { model, outputs, places, origin, absolute, options };
         flying.build()?;
         Ok(flying)
     }
@@ -68,7 +72,7 @@ impl Flying {
     fn sample(&self, flight: &Flight) -> Option<Sample> {
         let (state, input) = &self.origin;
         let measured = self.outputs.iter().zip(&self.places).map(|(&output, &place)| {
-            Some(f64::from(flight.outputs[place]) - self.model.output(output, state))
+            Some(f64::from(flight.outputs[place]) - self.model.shown(output, self.absolute, state))
         });
         let sample = Sample {
             t_us: i64::try_from(flight.time_us).ok()?,
@@ -81,6 +85,9 @@ impl Flying {
 
     fn estimator<T: Scalar + 'static>(&self) -> Result<Box<dyn Estimator>, uav::Error> {
         Ok(match (self.options.estimator, self.outputs.len()) {
+            (EstimatorKind::Kalman, _) if self.model.extended.is_some() => {
+                augmented::<T>(&self.model, &self.outputs, &self.options, 1.0, 0.0)?
+            }
             (EstimatorKind::Kalman, _) => {
                 let assumed = Assumed::of(&self.model, &self.outputs, &self.options);
                 // What the interval is, the second sample tells.
@@ -133,6 +140,20 @@ impl<T: Scalar> Estimator for Filter<T> {
 
     fn estimate(&self) -> SVector<f64, 4> {
         self.filter().estimate()
+    }
+}
+
+impl<T: Scalar> Estimator for Augmented<T> {
+    fn set_usual(&mut self, usual: f64) {
+        Self::set_usual(self, usual);
+    }
+
+    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
+        Self::take(self, &sized(sample)).map(drop)
+    }
+
+    fn estimate(&self) -> SVector<f64, 4> {
+        self.filter().estimate().fixed_rows::<4>(0).into()
     }
 }
 

@@ -113,6 +113,7 @@ fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
         innovations: innovations.collect(),
         rejected: vec![0; outputs.len()],
         healths: vec![Health::GOOD; moments.len()],
+        ..Followed::default()
     };
     let truth = timed().map(|(t_us, it)| (t_us, <[f64; 4]>::from(it.sample.x).map(Some)));
     let samples = timed().map(sample).collect();

@@ -1,7 +1,7 @@
 //! Everything of `kestirim-kalman`.
 
 use kestirim_kalman::{
-    BlockInnovation, ConstantVelocity, Covariance, Gate, Gaussian, Innovation, Linear,
+    BlockInnovation, ConstantVelocity, Covariance, Driven, Gate, Gaussian, Innovation, Linear,
     LinearObservation, Observation, Process, SparseRow, SteadyState, Weighed, steady_state,
 };
 use kestirim_scalar::{Q12_20, Scalar};
@@ -44,6 +44,10 @@ fn predictions<T: Scalar, const N: usize>() {
     let linear = Linear { f: &f, q: &q };
     try_on(&mut state, |state| Gaussian::advance(state, &linear));
     <Linear<'_, T, N> as Process<T, N>>::advance(&linear, any(&mut state));
+    let (rows, fading) = (matrix::<T, 2, 2>(), numbers());
+    let driven = any(Driven { rows: &rows, fading: &fading, noise: &q });
+    try_on(&mut state, |state| Gaussian::advance(state, &driven));
+    <Driven<'_, T, N, 2, 2> as Process<T, N>>::advance(&driven, any(&mut state));
     try_on(&mut state, |state| Gaussian::add_variance_at(state, whole(), number()));
     try_on(&mut state, |state| Gaussian::reset_at(state, whole(), number(), number()));
 }

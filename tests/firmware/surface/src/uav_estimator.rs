@@ -3,7 +3,8 @@
 use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
-    Dynamics, Error, Estimator, FlightFilter, FlightObserver, KalmanFilter, Noise, Sample, Step,
+    AugmentedFilter, AugmentedFlight, AugmentedModel, Drift, Dynamics, Error, Estimator,
+    FlightFilter, FlightObserver, Gust, KalmanFilter, Noise, Output, Reference, Sample, Step,
     Transition, current_gain, observer_gain,
 };
 use kestirim_uav_longitudinal::StateSpace;
@@ -108,8 +109,86 @@ fn flight_observers<T: Scalar, const P: usize>() {
     keep(FlightObserver::health(&observer));
 }
 
+fn output() -> Output {
+    let reference = if yes_or_no() {
+        Reference::Pressure { steady: number(), airspeed: number() }
+    } else if yes_or_no() {
+        Reference::Ground
+    } else {
+        Reference::Air
+    };
+    let (row, direct) = ([(); 4].map(|()| number()), [(); 2].map(|()| number()));
+    let given = any(Output { row, direct, sigma: number(), reference });
+    if yes_or_no() { given } else { Output::state(whole::<usize>(), number()) }
+}
+
+fn drift() -> Drift {
+    any(Drift { sigma: number(), rate: number() })
+}
+
+type Model = AugmentedModel<9, 6, 3>;
+
+fn augmented_model() -> Option<Model> {
+    let plant = any(StateSpace { a: matrix(), b: matrix() });
+    let mut model = Model::new(&plant, &matrix(), &[(); 3].map(|()| output())).ok()?;
+    for _ in 0..rounds() {
+        let gust = any(Gust {
+            sigmas: [(); 2].map(|()| number()),
+            lengths: [(); 2].map(|()| number()),
+            airspeed: number(),
+        });
+        for next in [
+            Model::with_gust(model, &gust),
+            Model::with_bias(model, whole::<usize>(), &drift()),
+            Model::with_wind(model, &drift()),
+            Model::with_density(model, &drift()),
+            Model::with_force(model, whole::<usize>(), &drift()),
+        ] {
+            model = any(next).unwrap_or(model);
+        }
+    }
+    keep(Model::start(&model));
+    Some(model)
+}
+
+fn augmented_filters<T: Scalar>() {
+    let Some(model) = augmented_model() else { return };
+    let Ok(mut filter) = any(AugmentedFilter::<T, 9, 6, 3>::new(&model)) else { return };
+    let scalars = || any([(); 3].map(|()| option::<T>()));
+    for _ in 0..rounds() {
+        let Ok(step) = any(Model::over(&model, number(), number(), &matrix())) else { continue };
+        let transition = any(AugmentedFilter::transition(&filter, &step));
+        let input = matrix();
+        try_on(&mut filter, |filter| AugmentedFilter::predict(filter, &transition, &input));
+        try_on(&mut filter, |filter| AugmentedFilter::correct(filter, &scalars(), &input));
+    }
+    keep(AugmentedFilter::estimate(&filter));
+    keep(AugmentedFilter::sigma(&filter));
+    keep(AugmentedFilter::state(&filter));
+    keep(AugmentedFilter::state_units(&filter));
+    keep(AugmentedFilter::output_units(&filter));
+    keep(AugmentedFilter::begun_anew(&filter));
+}
+
+fn augmented_flights<T: Scalar>() {
+    let Some(model) = augmented_model() else { return };
+    let filter = AugmentedFlight::<T, 9, 6, 3, 2>::new(&model, &matrix(), number());
+    let Ok(mut filter) = any(filter) else { return };
+    let mut time_us = 0;
+    for _ in 0..rounds() {
+        try_on(&mut filter, |filter| AugmentedFlight::take(filter, &sample(&mut time_us)));
+    }
+    AugmentedFlight::set_usual(any(&mut filter), number());
+    try_on(&mut filter, |filter| AugmentedFlight::take(filter, &sample(&mut time_us)));
+    keep(AugmentedFlight::filter(&filter));
+    keep(AugmentedFlight::rejected(&filter));
+    keep(AugmentedFlight::health(&filter));
+}
+
 fn all_of<T: Scalar>() {
     call_each([
+        augmented_filters::<T>,
+        augmented_flights::<T>,
         filters::<T, 3>,
         estimators::<T, 3>,
         flight_filters::<T, 3>,

@@ -1,7 +1,9 @@
 //! The same settings in firmware: the estimator of `kestirim-uav-estimator`, with its model as numbers.
 
-use kestirim_observer_design::Complex;
-use kestirim_replay::uav::{Assumed, EstimatorKind, Model, Noise, Options, discrete, rows};
+use kestirim_observer_design::{Complex, Discrete};
+use kestirim_replay::uav::{
+    Assumed, EstimatorKind, Model, Noise, Options, Parts, Unknown, discrete, rows,
+};
 use kestirim_simulate::with_outputs;
 use kestirim_uav_estimator::Dynamics;
 use kestirim_uav_longitudinal::StateSpace;
@@ -62,14 +64,22 @@ fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) ->
         1 => columns(&rows::<1>(model, outputs)),
         2 => columns(&rows::<2>(model, outputs)),
         3 => columns(&rows::<3>(model, outputs)),
-        _ => columns(&rows::<4>(model, outputs)),
+        4 => columns(&rows::<4>(model, outputs)),
+        5 => columns(&rows::<5>(model, outputs)),
+        6 => columns(&rows::<6>(model, outputs)),
+        7 => columns(&rows::<7>(model, outputs)),
+        _ => columns(&rows::<8>(model, outputs)),
     };
     // The matrices are designed in f64, whatever the estimator computes in.
     let literal =
         Literal::new("kestirim_uav_estimator::Dynamics", ScalarKind::F64, "Dynamics", &dynamics)
             .import(import);
     let scalar = scalar(options.scalar);
+    let parts = Parts::of(model, outputs, options, 1.0);
     match options.estimator {
+        EstimatorKind::Kalman if parts.is_some() => {
+            parts.map_or(literal, |parts| augmented(model, &parts, interval, scalar))
+        }
         EstimatorKind::Kalman => {
             let Assumed { inputs, outputs } = Assumed::of(model, outputs, options);
             literal.import("kestirim_uav_estimator::{FlightFilter, Noise}").then(format!(
@@ -91,6 +101,42 @@ fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) ->
         }
     }
     .to_string()
+}
+
+/// A filter of more than the four states.
+fn augmented(model: &Model, parts: &Parts, interval: f64, scalar: &str) -> Literal {
+    let (Dynamics::Continuous(StateSpace { a, b })
+    | Dynamics::Discrete { step: Discrete { a, b }, .. }) = &model.dynamics;
+    let states = |moving| {
+        let sizes = parts.unknown.iter().map(Unknown::moves);
+        sizes.filter(|(moves, _)| *moves == moving).map(|(_, count)| count).sum::<usize>()
+    };
+    let (k, p) = (4 + states(true), parts.outputs.len());
+    let n = k + states(false);
+    let outputs: Vec<_> = parts.outputs.iter().map(|output| format!("    {output:?},\n")).collect();
+    let calls = parts.unknown.iter().map(|unknown| match unknown {
+        Unknown::Gust(gust) => format!("    .with_gust(&{gust:?})?\n"),
+        Unknown::Force(state, drift) => format!("    .with_force({state}, &{drift:?})?\n"),
+        Unknown::Bias(output, drift) => format!("    .with_bias({output}, &{drift:?})?\n"),
+        Unknown::Wind(drift) => format!("    .with_wind(&{drift:?})?\n"),
+        Unknown::Density(drift) => format!("    .with_density(&{drift:?})?\n"),
+    });
+    Literal::new(
+        "kestirim_uav_longitudinal::StateSpace",
+        ScalarKind::F64,
+        "StateSpace",
+        &format!("StateSpace {}", plant(a, b)),
+    )
+    .import("kestirim_uav_estimator::{AugmentedFlight, AugmentedModel, Drift, Gust, Output, Reference::*}")
+    .then(format!(
+        "let density = {};\nlet outputs = [\n{}];\n\
+         let model = AugmentedModel::<{n}, {k}, {p}>::new(&config, &density, &outputs)?\n{};\n\
+         let filter = AugmentedFlight::<{scalar}, {n}, {k}, {p}>::new(&model, &{:?}.into(), {interval:?});",
+        columns(&parts.process),
+        outputs.concat(),
+        calls.collect::<String>().trim_end(),
+        parts.inputs,
+    ))
 }
 
 /// An estimator of samples at one rate.

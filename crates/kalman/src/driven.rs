@@ -1,0 +1,101 @@
+use crate::{Covariance, Gaussian, Process};
+use kestirim_scalar::{Columns, Components, Scalar};
+use nalgebra::SMatrix;
+
+/// M states that move by the first K, M of which they are themselves; the others only fade: biases, gusts, trims.
+///
+/// `x[..M]` ← F x\[..K\], `x[i]` ← dᵢ xᵢ beyond, with noise Q. Of the N² M + N M² products of a dense F with so many
+/// rows, M N K + M² K / 2 are left.
+#[derive(Clone, Copy, Debug)]
+pub struct Driven<'a, T: Scalar, const N: usize, const M: usize, const K: usize> {
+    /// The rows of F that move something, by the K states that move them.
+    pub rows: &'a SMatrix<T, M, K>,
+    /// d, what is left of each other state after a step; the first M are not looked at.
+    pub fading: &'a [T; N],
+    /// Q, of one step.
+    pub noise: &'a Covariance<T, N>,
+}
+
+impl<T: Scalar, const N: usize, const M: usize, const K: usize> Process<T, N>
+    for Driven<'_, T, N, M, K>
+{
+    #[inline]
+    fn advance(&self, estimate: &mut Gaussian<T, N>) {
+        const { assert!(M <= K && K <= N, "states that move are among those that move them") };
+        let f = self.rows.as_columns();
+        let p = estimate.covariance.to_matrix();
+        let p = p.as_columns();
+        let mut moved = [[T::ZERO; M]; N];
+        for (moved, column) in moved.iter_mut().zip(p) {
+            for (row, moved) in moved.iter_mut().enumerate() {
+                let mut sum = T::accumulator();
+                for k in 0..K {
+                    sum = T::mac(sum, f[k][row], column[k]);
+                }
+                *moved = T::finish(sum);
+            }
+        }
+        let mut next = SMatrix::<T, N, N>::zeros();
+        let lower = next.as_columns_mut();
+        for column in 0..M {
+            for row in column..M {
+                let mut sum = T::accumulator();
+                for k in 0..K {
+                    sum = T::mac(sum, f[k][column], moved[k][row]);
+                }
+                lower[column][row] = T::finish(sum);
+            }
+            for row in M..N {
+                lower[column][row] = moved[row][column] * self.fading[row];
+            }
+        }
+        for column in M..N {
+            for row in column..N {
+                lower[column][row] = p[column][row] * (self.fading[column] * self.fading[row]);
+            }
+        }
+        estimate.covariance = Covariance::from_lower_triangle(&next);
+        estimate.covariance.add(self.noise);
+        let before = *estimate.mean.as_array();
+        let mean = estimate.mean.as_array_mut();
+        for row in 0..M {
+            let mut sum = T::accumulator();
+            for k in 0..K {
+                sum = T::mac(sum, f[k][row], before[k]);
+            }
+            mean[row] = T::finish(sum);
+        }
+        for row in M..N {
+            mean[row] = before[row] * self.fading[row];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::SVector;
+
+    #[test]
+    fn is_the_dense_prediction_without_what_is_zero() {
+        let rows = SMatrix::<f64, 2, 3>::new(0.9, 0.1, 0.3, -0.2, 0.8, -0.4);
+        let fading = [7.0, 8.0, 0.95, 1.0, 0.5];
+        let mut dense = SMatrix::<f64, 5, 5>::zeros();
+        dense.fixed_view_mut::<2, 3>(0, 0).copy_from(&rows);
+        for state in 2..5 {
+            dense[(state, state)] = fading[state];
+        }
+        let root = SMatrix::<f64, 5, 5>::from_fn(|i, j| ((3 * i + 7 * j) % 5) as f64 - 1.5);
+        let covariance = Covariance::from_lower_triangle(&(root * root.transpose()));
+        let noise =
+            Covariance::from_lower_triangle(&(SMatrix::identity() + root.transpose() * root));
+        let mean = SVector::from([1.0, -2.0, 3.0, 4.0, -5.0]);
+        let mut structured = Gaussian::new(mean, covariance);
+        let mut plain = structured;
+        structured.advance(&Driven { rows: &rows, fading: &fading, noise: &noise }).unwrap();
+        plain.predict(&dense, &noise).unwrap();
+        assert!((structured.mean - plain.mean).norm() < 1e-12);
+        let difference = structured.covariance.to_matrix() - plain.covariance.to_matrix();
+        assert!(difference.norm() < 1e-12 * plain.covariance.to_matrix().norm());
+    }
+}

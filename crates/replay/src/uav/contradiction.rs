@@ -1,0 +1,98 @@
+//! Whether the data contradict the model: what innovations would be if it were right, they are not.
+
+use super::Followed;
+
+/// Innovations of an output from which on it is judged.
+const FEWEST: usize = 200;
+/// An outlier counts for no more than this, in standard deviations.
+const LARGEST: f64 = 3.2;
+/// Mean square, in variances, beyond which innovations are larger than noise explains: 1 of a right model, and noise of one
+/// and a half times what was said is no reason to doubt.
+const SQUARE: f64 = 2.25;
+/// Mean product with the one before, in variances, beyond which they follow each other: 0 of a right model, and less than
+/// this of one whose process noise is too large or too small by a factor of ten.
+const PRODUCT: f64 = 0.4;
+/// Mean square of what is estimated beside the states, in what the model says of it, …
+const BESIDE: f64 = 2.25;
+/// … from so many on.
+const FEWEST_BESIDE: usize = 3;
+
+/// Why model and measurements do not belong together.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Contradiction {
+    /// The innovations of one of the log's outputs are so many times as large as model and noise explain.
+    Large {
+        /// Which of the log's outputs.
+        output: usize,
+        /// Root mean square, in standard deviations.
+        size: f64,
+    },
+    /// They follow each other: what the output shows is, for seconds, other than what the model says.
+    Coloured {
+        /// Which of the log's outputs.
+        output: usize,
+        /// How much of their variance each shares with the next one.
+        shared: f64,
+    },
+    /// What was estimated beside the states is so many times what the model says of it.
+    Beside {
+        /// Root mean square, in the model's standard deviations.
+        size: f64,
+    },
+}
+
+impl Followed {
+    /// What speaks against the model, the worst of each output.
+    pub fn contradictions(&self) -> Vec<Contradiction> {
+        let outputs = self.normalised.iter().enumerate();
+        let mut all: Vec<_> = outputs.filter_map(|(output, it)| of_output(output, it)).collect();
+        let known = self.beside.iter().filter(|it| it.said > 0.0 && !it.name.starts_with("gust"));
+        let squares: Vec<f64> = known.map(|it| (it.value / it.said).powi(2)).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+        if squares.len() >= FEWEST_BESIDE && mean > BESIDE {
+            all.push(Contradiction::Beside { size: mean.sqrt() });
+        }
+        all
+    }
+}
+
+fn of_output(output: usize, innovations: &[f64]) -> Option<Contradiction> {
+    if innovations.len() < FEWEST {
+        return None;
+    }
+    let clipped: Vec<f64> = innovations.iter().map(|it| it.clamp(-LARGEST, LARGEST)).collect();
+    let count = clipped.len() as f64;
+    let square = clipped.iter().map(|it| it * it).sum::<f64>() / count;
+    let product = clipped.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / (count - 1.0);
+    if square > SQUARE {
+        Some(Contradiction::Large { output, size: square.sqrt() })
+    } else if product > PRODUCT {
+        Some(Contradiction::Coloured { output, shared: product / square })
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Innovations of noise that looks random, with something added.
+    fn told(added: impl Fn(usize) -> f64) -> Vec<Contradiction> {
+        let noise = |at: usize| 1.7 * ((at * at) as f64).sin();
+        let normalised = vec![(0..2000).map(|at| noise(at) + added(at)).collect()];
+        Followed { normalised, ..Followed::default() }.contradictions()
+    }
+
+    #[test]
+    fn noise_is_none_and_what_lasts_is_one() {
+        assert_eq!(told(|_| 0.0), []);
+        assert_eq!(told(|at| if at % 50 == 0 { 30.0 } else { 0.0 }), [], "outliers");
+        assert!(matches!(told(|_| 0.8)[..], [Contradiction::Coloured { output: 0, .. }]));
+        assert!(matches!(
+            told(|at| (at as f64 * 0.02).sin() * 1.2)[..],
+            [Contradiction::Coloured { .. }]
+        ));
+        assert!(matches!(told(|_| 2.0)[..], [Contradiction::Large { .. }]));
+    }
+}

@@ -1,0 +1,298 @@
+//! What a model may say beyond A, B and C, and the filter that takes it in.
+
+use kestirim_kalman::Innovation;
+use kestirim_scalar::{Q16_16, Scalar};
+use kestirim_uav_estimator::{
+    self as uav, AugmentedFlight, AugmentedModel, Drift, Dynamics, Gust, Output, Reference,
+};
+use kestirim_uav_longitudinal::StateSpace;
+use nalgebra::{SMatrix, SVector};
+
+use super::estimators::{Assumed, Estimate, Followed, sized};
+use super::{Error, Log, Model, Options};
+use crate::ScalarKind;
+
+/// States of the filter, those of them that move the four, and outputs.
+const STATES: usize = 16;
+const MOVING: usize = 10;
+/// Outputs that a model may have, if it says more than A, B and C.
+pub const MOST_EXTENDED_OUTPUTS: usize = 8;
+/// Intervals of a log of which the steps are kept.
+const KEPT: usize = 32;
+
+/// Outputs of these names refer to the ground.
+const GROUND: [&str; 2] = ["V_ground", "climb"];
+/// Gusts are tried at these times what the model says; the innovations decide.
+const GUSTS: [f64; 6] = [0.0, 0.125, 0.25, 0.5, 1.0, 2.0];
+/// An outlier's part in what the innovations support.
+const MOST_NIS: f64 = 50.0;
+
+type Built = AugmentedModel<STATES, MOVING, MOST_EXTENDED_OUTPUTS>;
+
+/// A filter with room for all that a model may say.
+pub type Augmented<T> = AugmentedFlight<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS, KEPT>;
+
+/// What a model says beyond A, B and C.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Extended {
+    /// Rows of D, one an output.
+    pub direct: Vec<[f64; 2]>,
+    /// What each output shows in the steady flight.
+    pub steady: Vec<f64>,
+    /// Whether each is in proportion to the dynamic pressure.
+    pub scaled: Vec<bool>,
+    /// Spectral density of white noise on ẋ, units²·s; none is that of the inputs alone.
+    pub process: Option<SMatrix<f64, 4, 4>>,
+    /// Standard deviations of the inputs' noise, a sample; none is that of usual ones, or none beside a process noise.
+    pub inputs: Option<[f64; 2]>,
+    /// Standard deviations of the outputs' noise; none is that of usual sensors.
+    pub sigmas: Option<Vec<f64>>,
+    /// Biases of outputs.
+    pub biases: Vec<(usize, Drift)>,
+    /// Gusts along and across: standard deviations (m/s) and lengths (m).
+    pub gust: Option<([f64; 2], [f64; 2])>,
+    /// A head wind, m/s.
+    pub wind: Option<Drift>,
+    /// Density of the air, in parts of that of the steady flight; used if an output measures it.
+    pub density: Option<Drift>,
+    /// Unknown parts of the states' derivatives.
+    pub forces: Vec<(usize, Drift)>,
+}
+
+/// Something that a filter estimates beside the four states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beside {
+    /// What it is.
+    pub name: String,
+    /// What it was at the end, in units of the SI, …
+    pub value: f64,
+    /// … with this standard deviation, …
+    pub sigma: f64,
+    /// … and what the model said of it.
+    pub said: f64,
+}
+
+/// By the filter, with gusts as strong as the innovations support.
+///
+/// # Errors
+/// [`Error::Estimator`] or [`Error::Sample`].
+pub(super) fn follow(
+    model: &Model,
+    extended: &Extended,
+    log: &Log,
+    options: &Options,
+    scalar: ScalarKind,
+) -> Result<Followed, Error> {
+    let tried = if extended.gust.is_some() { &GUSTS[..] } else { &[1.0] };
+    let mut best: Option<(f64, Followed)> = None;
+    for &gust in tried {
+        let flight = Flight { model, extended, log, options, gust };
+        let (support, followed) = match scalar {
+            ScalarKind::F32 => flight.follow::<f32>(),
+            ScalarKind::F64 => flight.follow::<f64>(),
+            ScalarKind::Fixed => flight.follow::<Q16_16>(),
+        }?;
+        if best.as_ref().is_none_or(|(most, _)| support > *most) {
+            best = Some((support, followed));
+        }
+    }
+    best.map(|(_, followed)| followed).ok_or(Error::TooShort)
+}
+
+/// A flight to be followed, with gusts of so many times what the model says.
+struct Flight<'a> {
+    model: &'a Model,
+    extended: &'a Extended,
+    log: &'a Log,
+    options: &'a Options,
+    gust: f64,
+}
+
+impl Flight<'_> {
+    /// Log-likelihood of the innovations, and what came of them.
+    fn follow<T: Scalar>(&self) -> Result<(f64, Followed), Error> {
+        let Self { model, extended, log, options, gust } = *self;
+        let parts = Parts::of(model, &log.outputs, options, gust).ok_or(uav::Error::NoRoom)?;
+        let mut filter = filter::<T>(model, &parts, log.interval_s)?;
+        let mut followed = Followed::new(log);
+        let mut support = 0.0;
+        for (index, sample) in log.samples.iter().enumerate() {
+            let innovations = filter.take(&sized(sample));
+            let innovations = innovations.map_err(|source| Error::Sample { index, source })?;
+            for Innovation { variance, nis, .. } in innovations.iter().flatten() {
+                support -= 0.5 * (nis.min(MOST_NIS) + variance.ln());
+            }
+            let (state, sigma) = (filter.filter().estimate(), filter.filter().sigma());
+            let estimate = Estimate {
+                t_us: sample.t_us,
+                state: state.fixed_rows::<4>(0).into(),
+                sigma: Some(sigma.fixed_rows::<4>(0).into()),
+            };
+            followed.judge(&innovations);
+            let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
+            followed.add(estimate, innovations, filter.rejected(), filter.health());
+        }
+        let (state, sigma) = (filter.filter().estimate(), filter.filter().sigma());
+        let told = parts.told(|output| model.outputs[log.outputs[output]].0.clone());
+        let told = told.into_iter().map(|(place, name, said)| {
+            let (value, sigma) = (state[place], sigma[place]);
+            Beside { name, value, sigma, said }
+        });
+        followed.beside = told.collect();
+        followed.gust = extended.gust.map(|(sigmas, _)| sigmas.map(|sigma| gust * sigma));
+        Ok((support, followed))
+    }
+}
+
+/// What a filter is built of: for these outputs of a model, and with gusts of so many times what it says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// The log's outputs.
+    pub outputs: Vec<Output>,
+    /// Spectral density of white noise on ẋ.
+    pub process: SMatrix<f64, 4, 4>,
+    /// What is estimated beside the four states, in their order.
+    pub unknown: Vec<Unknown>,
+    /// Standard deviations of the inputs' noise.
+    pub inputs: [f64; 2],
+}
+
+/// Something that is estimated beside the four states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unknown {
+    /// Gusts along and across.
+    Gust(Gust),
+    /// A part of this state's derivative.
+    Force(usize, Drift),
+    /// A bias of this output of the log.
+    Bias(usize, Drift),
+    /// A head wind.
+    Wind(Drift),
+    /// The density of the air.
+    Density(Drift),
+}
+
+impl Unknown {
+    /// Whether it moves the four states, and how many states it is.
+    pub const fn moves(&self) -> (bool, usize) {
+        match self {
+            Self::Gust(_) => (true, 2),
+            Self::Force(..) => (true, 1),
+            Self::Bias(..) | Self::Wind(_) | Self::Density(_) => (false, 1),
+        }
+    }
+}
+
+impl Parts {
+    /// As the model says it and the options change it; none of a model that says no more than A, B and C.
+    pub fn of(model: &Model, outputs: &[usize], options: &Options, gust: f64) -> Option<Self> {
+        let extended = model.extended.as_deref()?;
+        let Assumed { inputs, outputs: sigmas } = Assumed::of(model, outputs, options);
+        let airspeed = model.trim.map_or(f64::INFINITY, |(state, _)| state[2]);
+        let is_ground = |output: usize| GROUND.contains(&model.outputs[output].0.as_str());
+        let known = outputs.iter().zip(sigmas).map(|(&output, sigma)| {
+            let reference = if extended.scaled[output] {
+                Reference::Pressure { steady: extended.steady[output], airspeed }
+            } else if is_ground(output) {
+                Reference::Ground
+            } else {
+                Reference::Air
+            };
+            let (row, direct) = (model.outputs[output].1, extended.direct[output]);
+            Output { row, direct, sigma, reference }
+        });
+        let gust = extended.gust.map(|(sigmas, lengths)| {
+            let sigmas = sigmas.map(|sigma| gust * sigma);
+            Unknown::Gust(Gust { sigmas, lengths, airspeed })
+        });
+        let forces = extended.forces.iter().map(|&(state, drift)| Unknown::Force(state, drift));
+        // A sensor that the log has not has no bias.
+        let biases = extended.biases.iter().filter_map(|&(output, drift)| {
+            Some(Unknown::Bias(outputs.iter().position(|it| *it == output)?, drift))
+        });
+        let wind = extended.wind.filter(|_| outputs.iter().any(|&output| is_ground(output)));
+        // Nothing but the airspeed moves it: a dynamic pressure.
+        let sees_density = |&output: &usize| {
+            let [alpha, rate, _, pitch] = model.outputs[output].1;
+            extended.scaled[output] && [alpha, rate, pitch] == [0.0; 3]
+        };
+        let density = extended.density.filter(|_| outputs.iter().any(sees_density));
+        let beside = biases.chain(wind.map(Unknown::Wind)).chain(density.map(Unknown::Density));
+        Some(Self {
+            outputs: known.collect(),
+            process: extended.process.unwrap_or_default(),
+            unknown: gust.into_iter().chain(forces).chain(beside).collect(),
+            inputs,
+        })
+    }
+
+    /// The model of the filter.
+    fn model(&self, plant: &StateSpace) -> Result<Built, uav::Error> {
+        // Outputs that are never measured fill the rest.
+        let mut outputs = [Output::state(0, 1.0); MOST_EXTENDED_OUTPUTS];
+        for (place, output) in outputs.iter_mut().zip(&self.outputs) {
+            *place = *output;
+        }
+        let mut built = Built::new(plant, &self.process, &outputs)?;
+        for unknown in &self.unknown {
+            built = match unknown {
+                Unknown::Gust(gust) => built.with_gust(gust),
+                Unknown::Force(state, drift) => built.with_force(*state, drift),
+                Unknown::Bias(output, drift) => built.with_bias(*output, drift),
+                Unknown::Wind(drift) => built.with_wind(drift),
+                Unknown::Density(drift) => built.with_density(drift),
+            }?;
+        }
+        Ok(built)
+    }
+
+    /// What stands where beside the four states.
+    fn told(&self, name: impl Fn(usize) -> String) -> Vec<(usize, String, f64)> {
+        let (mut next, mut all) = ([4, MOVING], Vec::new());
+        for unknown in &self.unknown {
+            let place = &mut next[usize::from(!unknown.moves().0)];
+            let told = match unknown {
+                Unknown::Gust(Gust { sigmas: [along, across], .. }) => {
+                    all.push((*place, "gust along".to_owned(), *along));
+                    *place += 1;
+                    ("gust across".to_owned(), *across)
+                }
+                Unknown::Force(state, drift) => {
+                    (format!("force on {}", super::STATE_COLUMNS[*state]), drift.sigma)
+                }
+                Unknown::Bias(output, drift) => (format!("bias of {}", name(*output)), drift.sigma),
+                Unknown::Wind(drift) => ("head wind".to_owned(), drift.sigma),
+                Unknown::Density(drift) => ("density".to_owned(), drift.sigma),
+            };
+            all.push((*place, told.0, told.1));
+            *place += 1;
+        }
+        all
+    }
+}
+
+/// A filter of these outputs of a model, measured every `usual` seconds, with gusts of so many times what the model says.
+///
+/// # Errors
+/// [`uav::Error::NoRoom`] for a model of discrete time, or one that says no more than A, B and C; and whatever else keeps
+/// the filter from being built.
+pub fn augmented<T: Scalar>(
+    model: &Model,
+    outputs: &[usize],
+    options: &Options,
+    gust: f64,
+    usual: f64,
+) -> Result<Box<Augmented<T>>, uav::Error> {
+    let parts = Parts::of(model, outputs, options, gust).ok_or(uav::Error::NoRoom)?;
+    filter(model, &parts, usual)
+}
+
+fn filter<T: Scalar>(
+    model: &Model,
+    parts: &Parts,
+    usual: f64,
+) -> Result<Box<Augmented<T>>, uav::Error> {
+    let Dynamics::Continuous(plant) = &model.dynamics else { return Err(uav::Error::NoRoom) };
+    let inputs = SVector::from(parts.inputs);
+    Ok(Box::new(AugmentedFlight::new(&parts.model(plant)?, &inputs, usual)?))
+}

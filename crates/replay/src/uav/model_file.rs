@@ -1,0 +1,300 @@
+//! A model as it stands in a file.
+
+use kestirim_observer_design::Discrete;
+use kestirim_uav_estimator::{Drift, Dynamics};
+use kestirim_uav_longitudinal::StateSpace;
+use nalgebra::SMatrix;
+use serde::Deserialize;
+
+use super::{Extended, MOST_EXTENDED_OUTPUTS, MOST_OUTPUTS, Model, STATE_COLUMNS, state_outputs};
+
+/// Columns of a log that no output can have.
+const TAKEN: [&str; 3] = ["t", "delta_e", "delta_t"];
+/// Biases, beside head wind and density, that the filter has room for.
+const MOST_BIASES: usize = 4;
+
+/// Why a file holds no model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelFileError {
+    /// Names and rows do not belong together.
+    #[error(
+        "expected outputs, the names of as many columns as C has rows (none are needed without C, or if C has four rows)"
+    )]
+    Outputs,
+    /// No output, or too many.
+    #[error("expected one to {most} outputs, found {found}")]
+    Count {
+        /// How many there can be.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A name stands twice, or belongs to another column.
+    #[error("expected names of outputs that are free, found {}", printable(.0))]
+    Taken(String),
+    /// An interval of discrete time is not above zero.
+    #[error("expected an h above 0 s, found {}", printable(&.0.to_string()))]
+    Interval(f64),
+    /// A list has not as many entries as there are outputs.
+    #[error("expected {expected} numbers in {field}, one an output, found {found}")]
+    Length {
+        /// Which list.
+        field: &'static str,
+        /// How many outputs there are.
+        expected: usize,
+        /// How many entries it has.
+        found: usize,
+    },
+    /// A name is that of no output.
+    #[error("expected the names of outputs in {field}, found {}", printable(.name))]
+    Unknown {
+        /// Where.
+        field: &'static str,
+        /// Which name.
+        name: String,
+    },
+    /// A number cannot be what it is said to be.
+    #[error("expected {0}")]
+    Number(&'static str),
+}
+
+/// A piece of a file, on one line and short.
+fn printable(text: &str) -> String {
+    const LONGEST: usize = 24;
+    let start: String = text.chars().take(LONGEST).collect();
+    let dots = if text.chars().nth(LONGEST).is_some() { "…" } else { "" };
+    if text.is_empty() {
+        "nothing".to_owned()
+    } else {
+        format!("\"{}{dots}\"", start.escape_debug())
+    }
+}
+
+/// A model as it stands in a JSON file: A, B and perhaps C, outputs, trim {x, u} and h, and whatever else is known.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct ModelFile {
+    #[serde(rename = "A")]
+    a: [[f64; 4]; 4],
+    #[serde(rename = "B")]
+    b: [[f64; 2]; 4],
+    #[serde(rename = "C")]
+    c: Option<Vec<[f64; 4]>>,
+    #[serde(rename = "D")]
+    d: Option<Vec<[f64; 2]>>,
+    outputs: Option<Vec<String>>,
+    trim: Option<Trim>,
+    h: Option<f64>,
+    noise: Option<Noise>,
+    bias: Option<Vec<Bias>>,
+    gust: Option<Gusts>,
+    wind: Option<Drifting>,
+    density: Option<Drifting>,
+    affine: Option<Affine>,
+    scaled: Option<Vec<String>>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Trim {
+    x: [f64; 4],
+    u: [f64; 2],
+    y: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Noise {
+    process: Option<Process>,
+    inputs: Option<[f64; 2]>,
+    outputs: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged)]
+enum Process {
+    Diagonal([f64; 4]),
+    Full([[f64; 4]; 4]),
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Bias {
+    of: String,
+    sigma: f64,
+    #[serde(default)]
+    rate: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+struct Drifting {
+    sigma: f64,
+    #[serde(default)]
+    rate: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+struct Gusts {
+    sigma_u: f64,
+    sigma_w: f64,
+    length_u: f64,
+    length_w: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+struct Affine {
+    sigma: [f64; 4],
+    #[serde(default)]
+    rate: [f64; 4],
+}
+
+impl ModelFile {
+    /// The model.
+    ///
+    /// # Errors
+    /// What was expected, and what was found.
+    pub fn model(self) -> Result<Model, ModelFileError> {
+        let outputs = self.outputs()?;
+        let extended = self.extended(&outputs)?;
+        let most = if extended.is_some() { MOST_EXTENDED_OUTPUTS } else { MOST_OUTPUTS };
+        if outputs.is_empty() || outputs.len() > most {
+            return Err(ModelFileError::Count { most, found: outputs.len() });
+        }
+        for (place, (name, _)) in outputs.iter().enumerate() {
+            let twice = outputs.iter().take(place).any(|(other, _)| other == name);
+            if twice || TAKEN.contains(&name.as_str()) {
+                return Err(ModelFileError::Taken(name.clone()));
+            }
+        }
+        let a = SMatrix::<f64, 4, 4>::from(self.a).transpose();
+        let b = SMatrix::<f64, 2, 4>::from(self.b).transpose();
+        let dynamics = match self.h {
+            None => Dynamics::Continuous(StateSpace { a, b }),
+            Some(_) if extended.is_some() => {
+                return Err(ModelFileError::Number(
+                    "A and B of continuous time, without h, beside what is more than A, B, C and outputs",
+                ));
+            }
+            Some(interval) if interval > 0.0 => {
+                Dynamics::Discrete { step: Discrete { a, b }, interval }
+            }
+            Some(interval) => return Err(ModelFileError::Interval(interval)),
+        };
+        let trim = self.trim.map(|trim| (trim.x, trim.u));
+        Ok(Model { dynamics, outputs, trim, extended: extended.map(Box::new) })
+    }
+
+    /// Names and rows of C.
+    fn outputs(&self) -> Result<Vec<(String, [f64; 4])>, ModelFileError> {
+        match (&self.c, &self.outputs) {
+            (None, None) => Ok(state_outputs()),
+            (Some(rows), Some(names)) if rows.len() == names.len() => {
+                Ok(names.iter().cloned().zip(rows.iter().copied()).collect())
+            }
+            (Some(rows), None) if rows.len() == STATE_COLUMNS.len() => {
+                Ok(STATE_COLUMNS.map(str::to_owned).into_iter().zip(rows.iter().copied()).collect())
+            }
+            _ => Err(ModelFileError::Outputs),
+        }
+    }
+
+    /// What there is beyond what every model says; none if there is nothing of it.
+    fn extended(&self, outputs: &[(String, [f64; 4])]) -> Result<Option<Extended>, ModelFileError> {
+        let steady = self.trim.as_ref().and_then(|trim| trim.y.as_ref());
+        let is_there = [
+            self.d.is_some(),
+            steady.is_some(),
+            self.noise.is_some(),
+            self.bias.is_some(),
+            self.gust.is_some(),
+            self.wind.is_some(),
+            self.density.is_some(),
+            self.affine.is_some(),
+            self.scaled.is_some(),
+        ];
+        if !is_there.contains(&true) {
+            return Ok(None);
+        }
+        let count = outputs.len();
+        let as_many = |field, found: usize| {
+            let wrong = ModelFileError::Length { field, expected: count, found };
+            if found == count { Ok(()) } else { Err(wrong) }
+        };
+        let trim = self.trim.as_ref().map_or([0.0; 4], |trim| trim.x);
+        let shown = |(_, row): &(String, [f64; 4])| -> f64 {
+            row.iter().zip(trim).map(|(part, state)| part * state).sum()
+        };
+        let steady = steady.cloned().unwrap_or_else(|| outputs.iter().map(shown).collect());
+        as_many("trim.y", steady.len())?;
+        let direct = self.d.clone().unwrap_or_else(|| vec![[0.0; 2]; count]);
+        as_many("D", direct.len())?;
+        let noise = self.noise.as_ref();
+        let sigmas = noise.and_then(|noise| noise.outputs.clone());
+        if let Some(sigmas) = &sigmas {
+            as_many("noise.outputs", sigmas.len())?;
+            if !sigmas.iter().all(|sigma| *sigma > 0.0) {
+                return Err(ModelFileError::Number("noise.outputs above 0"));
+            }
+        }
+        let place = |field, name: &String| {
+            let unknown = || ModelFileError::Unknown { field, name: name.clone() };
+            outputs.iter().position(|(known, _)| known == name).ok_or_else(unknown)
+        };
+        let mut scaled = vec![false; count];
+        for name in self.scaled.iter().flatten() {
+            scaled[place("scaled", name)?] = true;
+        }
+        let biases = self.bias.iter().flatten().map(|Bias { of, sigma, rate }| {
+            Ok((place("bias", of)?, Drift { sigma: *sigma, rate: *rate }))
+        });
+        let biases = biases.collect::<Result<Vec<_>, _>>()?;
+        if biases.len() > MOST_BIASES {
+            return Err(ModelFileError::Number("no more than four biases"));
+        }
+        if let Some(process) = noise.and_then(|noise| noise.process.as_ref()).map(Process::matrix) {
+            let is_covariance = process == process.transpose()
+                && process.symmetric_eigenvalues().min() >= -1e-9 * process.norm();
+            if !is_covariance {
+                return Err(ModelFileError::Number(
+                    "a noise.process that is symmetric and nowhere negative",
+                ));
+            }
+        }
+        let is_trimmed = self.trim.as_ref().is_some_and(|trim| trim.x[2] > 0.0);
+        if !is_trimmed && (self.gust.is_some() || scaled.contains(&true)) {
+            return Err(ModelFileError::Number("a trim with an airspeed beside gust or scaled"));
+        }
+        if self.gust.is_some_and(|gust| !(gust.length_u > 0.0 && gust.length_w > 0.0)) {
+            return Err(ModelFileError::Number("lengths of gusts above 0 m"));
+        }
+        let forces = self.affine.map_or_else(Vec::new, |Affine { sigma, rate }| {
+            let drifts = (0..4).map(|state| Drift { sigma: sigma[state], rate: rate[state] });
+            drifts.enumerate().filter(|(_, drift)| drift.sigma > 0.0 || drift.rate > 0.0).collect()
+        });
+        Ok(Some(Extended {
+            direct,
+            steady,
+            scaled,
+            process: noise.and_then(|noise| noise.process.as_ref()).map(Process::matrix),
+            inputs: noise.and_then(|noise| noise.inputs),
+            sigmas,
+            biases,
+            gust: self.gust.map(|it| ([it.sigma_u, it.sigma_w], [it.length_u, it.length_w])),
+            wind: self.wind.map(Drifting::drift),
+            density: self.density.map(Drifting::drift),
+            forces,
+        }))
+    }
+}
+
+impl Drifting {
+    const fn drift(self) -> Drift {
+        Drift { sigma: self.sigma, rate: self.rate }
+    }
+}
+
+impl Process {
+    fn matrix(&self) -> SMatrix<f64, 4, 4> {
+        match *self {
+            Self::Diagonal(diagonal) => SMatrix::from_diagonal(&diagonal.into()),
+            Self::Full(rows) => SMatrix::<f64, 4, 4>::from(rows).transpose(),
+        }
+    }
+}

@@ -1,0 +1,336 @@
+use core::array::from_fn;
+
+use kestirim_kalman::{Covariance, Driven, Gaussian, Innovation, Weighed};
+use kestirim_scalar::{Columns, Components, Scalar};
+use nalgebra::{SMatrix, SVector};
+
+use super::{AugmentedModel, AugmentedStep, Output, Reference};
+use crate::Error;
+use crate::kalman_filter::{UNITS, power_of_two};
+
+/// V among the states.
+const AIRSPEED: usize = 2;
+/// Fixed point holds a variance of so many units squared as well as what is left of it.
+const UNITS_A_SIGMA: f64 = 8.0;
+
+/// A step of an [`AugmentedModel`] in the scalar and the units of an [`AugmentedFilter`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct AugmentedTransition<T: Scalar, const N: usize, const K: usize> {
+    rows: SMatrix<T, 4, K>,
+    b: SMatrix<T, 4, 2>,
+    fading: SVector<T, N>,
+    noise: Covariance<T, N>,
+}
+
+/// What is measured of the states, in the filter's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+struct Row<T: Scalar, const N: usize> {
+    parts: SVector<T, N>,
+    direct: SVector<T, 2>,
+    variance: T,
+    /// y₀ and 1/V₀ of what is in proportion to the dynamic pressure.
+    pressure: Option<(T, T)>,
+}
+
+/// A Kalman filter of the N states of an [`AugmentedModel`], with P outputs of which each may be missing.
+///
+/// What goes in and comes out is in the scalar T and in the filter's units, powers of two of those of the SI
+/// ([`AugmentedFilter::state_units`], [`AugmentedFilter::output_units`]), so that firmware needs no double precision.
+/// Outputs are taken in one after the other, so their noise must be independent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub struct AugmentedFilter<T: Scalar, const N: usize, const K: usize, const P: usize> {
+    state: Gaussian<T, N>,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
+    rows: [Row<T, N>; P],
+    state_units: SVector<f64, N>,
+    output_units: SVector<f64, P>,
+    /// Variances of the states at the start.
+    start: SVector<T, N>,
+}
+
+impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<T, N, K, P> {
+    /// A filter that starts at zero, with the standard deviations of the model.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] if a number is beyond what the scalar holds.
+    pub fn new(model: &AugmentedModel<N, K, P>) -> Result<Self, Error> {
+        let known = model.start.as_array();
+        let state_units: [f64; N] = from_fn(|state| match UNITS.get(state) {
+            Some(unit) => *unit,
+            None => power_of_two(known[state] / UNITS_A_SIGMA),
+        });
+        let start = from_fn(|state| {
+            let sigma = known[state] / state_units[state];
+            T::from_f64(sigma * sigma)
+        });
+        let mut output_units = [1.0; P];
+        let columns = model.c.as_columns();
+        let outputs = output_units.iter_mut().zip(&model.outputs).enumerate();
+        let mut rows = [Row::new(); P];
+        for (row, (place, (unit, output))) in rows.iter_mut().zip(outputs) {
+            let parts = from_fn(|state| columns[state][place] * state_units[state]);
+            *row = Row::of(output, parts, unit);
+        }
+        let finite = |row: &Row<T, N>| row.is_finite();
+        if !(T::all_finite(&start) && rows.iter().all(finite)) {
+            return Err(Error::NotFinite);
+        }
+        let state = Gaussian::new(SVector::zeros(), Covariance::from_variances(&start));
+        let (state_units, output_units) = (SVector::from(state_units), SVector::from(output_units));
+        Ok(Self { state, rows, state_units, output_units, start: SVector::from(start) })
+    }
+
+    /// The filter as it was at its start.
+    pub fn begun_anew(&self) -> Self {
+        let covariance = Covariance::from_variances(self.start.as_array());
+        Self { state: Gaussian::new(SVector::zeros(), covariance), ..*self }
+    }
+
+    /// The same step, converted once.
+    pub fn transition(&self, step: &AugmentedStep<N>) -> AugmentedTransition<T, N, K> {
+        let units = self.state_units.as_array();
+        let a = step.transition.a.as_columns();
+        let b = step.transition.b.as_columns();
+        let noise = step.noise.as_columns();
+        let mut rows = SMatrix::<T, 4, K>::zeros();
+        for (k, column) in rows.as_columns_mut().iter_mut().enumerate() {
+            for (row, part) in column.iter_mut().enumerate() {
+                if let (Some(a), Some(unit)) = (a.get(k), units.get(k)) {
+                    *part = T::from_f64(a[row] * *unit / UNITS[row]);
+                }
+            }
+        }
+        let mut inputs = SMatrix::<T, 4, 2>::zeros();
+        for (input, column) in inputs.as_columns_mut().iter_mut().enumerate() {
+            for (row, part) in column.iter_mut().enumerate() {
+                *part = T::from_f64(b[input][row] / UNITS[row]);
+            }
+        }
+        let mut lower = SMatrix::<T, N, N>::zeros();
+        for (j, column) in lower.as_columns_mut().iter_mut().enumerate() {
+            for (i, part) in column.iter_mut().enumerate() {
+                *part = T::from_f64(noise[j][i] / (units[i] * units[j]));
+            }
+        }
+        AugmentedTransition {
+            rows,
+            b: inputs,
+            fading: SVector::from(from_fn(|state| T::from_f64(a[state][state]))),
+            noise: Covariance::from_lower_triangle(&lower),
+        }
+    }
+
+    /// Units of the states: what is 1 in the filter is so many rad, rad/s, m/s, rad, …
+    pub const fn state_units(&self) -> &SVector<f64, N> {
+        &self.state_units
+    }
+
+    /// Units of the outputs, the same.
+    pub const fn output_units(&self) -> &SVector<f64, P> {
+        &self.output_units
+    }
+
+    /// The estimate and its covariance, in the filter's units.
+    pub const fn state(&self) -> &Gaussian<T, N> {
+        &self.state
+    }
+
+    /// Whether inputs, or a square of the airspeed, show in an output at once.
+    pub(super) fn is_direct(&self, output: usize) -> bool {
+        self.rows.get(output).is_some_and(|row| {
+            row.pressure.is_some() || row.direct.iter().any(|part| *part != T::ZERO)
+        })
+    }
+
+    /// x̂: deviations α (rad), q (rad/s), V (m/s), θ (rad), and what the model adds, in units of the SI.
+    pub fn estimate(&self) -> SVector<f64, N> {
+        self.state.mean.map(T::to_f64).component_mul(&self.state_units)
+    }
+
+    /// Standard deviations of the estimate's errors, in the same units.
+    pub fn sigma(&self) -> SVector<f64, N> {
+        let variances = self.state.covariance.variances();
+        let sigmas = variances.map(|variance| libm::sqrt(variance.to_f64().max(0.0)));
+        sigmas.component_mul(&self.state_units)
+    }
+
+    /// Moves on by a step with these inputs δe (rad) and δt.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    pub fn predict(
+        &mut self,
+        transition: &AugmentedTransition<T, N, K>,
+        input: &SVector<T, 2>,
+    ) -> Result<(), Error> {
+        let AugmentedTransition { rows, b, fading, noise } = transition;
+        let mut next = self.state;
+        next.advance(&Driven { rows, fading: fading.as_array(), noise })?;
+        let [elevator, throttle] = b.as_columns();
+        let moved = next.mean.as_array_mut().iter_mut();
+        for (mean, (&elevator, &throttle)) in moved.zip(elevator.iter().zip(throttle)) {
+            *mean += T::dot(&[elevator, throttle], input.as_array());
+        }
+        if !T::all_finite(next.mean.as_array()) {
+            return Err(Error::NotFinite);
+        }
+        self.state = next;
+        Ok(())
+    }
+
+    /// Takes in the outputs that were measured while these inputs were applied, and answers with what each said beyond
+    /// what was expected of it, in the outputs' units.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    pub fn correct(
+        &mut self,
+        measured: &[Option<T>; P],
+        input: &SVector<T, 2>,
+    ) -> Result<[Option<Innovation<T>>; P], Error> {
+        self.correct_with(measured, input, |next, weighed, _| Ok(next.correct(weighed)?))
+    }
+
+    /// The same, where `correct` decides whether a weighed output is taken in.
+    pub(super) fn correct_with(
+        &mut self,
+        measured: &[Option<T>; P],
+        input: &SVector<T, 2>,
+        mut correct: impl FnMut(
+            &mut Gaussian<T, N>,
+            &Weighed<T, N>,
+            usize,
+        ) -> Result<Innovation<T>, Error>,
+    ) -> Result<[Option<Innovation<T>>; P], Error> {
+        let mut next = self.state;
+        let mut innovations = [None; P];
+        for output in 0..P {
+            let Some(measured) = measured[output] else { continue };
+            let row = &self.rows[output];
+            let (expected, entries, count) = row.linearised::<K>(next.mean.as_array(), input);
+            let entries = entries.get(..count).unwrap_or_default();
+            let weighed = next.weigh_entries(entries, measured - expected, row.variance)?;
+            innovations[output] = Some(correct(&mut next, &weighed, output)?);
+        }
+        self.state = next;
+        Ok(innovations)
+    }
+}
+
+impl<T: Scalar, const N: usize> Row<T, N> {
+    const fn new() -> Self {
+        let zero = [T::ZERO; N];
+        Self {
+            parts: SVector::from_array_storage(nalgebra::ArrayStorage([zero])),
+            direct: SVector::from_array_storage(nalgebra::ArrayStorage([[T::ZERO; 2]])),
+            variance: T::ZERO,
+            pressure: None,
+        }
+    }
+
+    /// Of an output with these parts, by states in their units; its unit is chosen and told.
+    fn of(output: &Output, mut parts: [f64; N], unit: &mut f64) -> Self {
+        *unit =
+            power_of_two(output.row.iter().zip(UNITS).map(|(part, it)| (part * it).abs()).sum());
+        let sigma = output.sigma / *unit;
+        let mut pressure = None;
+        if let Reference::Pressure { steady, airspeed } = output.reference {
+            let [_, _, unit_of_airspeed, _] = UNITS;
+            let relative = unit_of_airspeed / airspeed;
+            if let Some(part) = parts.get_mut(AIRSPEED) {
+                *part -= 2.0 * steady * relative;
+            }
+            pressure = Some((T::from_f64(steady / *unit), T::from_f64(relative)));
+        }
+        Self {
+            parts: SVector::from(parts.map(|part| T::from_f64(part / *unit))),
+            direct: SVector::from(output.direct.map(|part| T::from_f64(part / *unit))),
+            variance: T::from_f64(sigma * sigma),
+            pressure,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        let (steady, relative) = self.pressure.unwrap_or((T::ZERO, T::ZERO));
+        T::all_finite(self.parts.as_array())
+            && T::all_finite(self.direct.as_array())
+            && T::all_finite(&[self.variance, steady, relative])
+    }
+
+    /// What is expected of these states, and the derivatives that are not zero, with their number.
+    #[inline(always)]
+    fn linearised<const K: usize>(
+        &self,
+        mean: &[T; N],
+        input: &SVector<T, 2>,
+    ) -> (T, [(usize, T); N], usize) {
+        let parts = self.parts.as_array();
+        let mut entries = [(0, T::ZERO); N];
+        let mut count = 0;
+        let mut of_the_air = T::accumulator();
+        let mut beside = T::accumulator();
+        for (state, (&part, &mean)) in parts.iter().zip(mean).enumerate() {
+            // The airspeed's part of what goes with its square may be zero, and its derivative is not.
+            let is_scaled = self.pressure.is_some() && state == AIRSPEED;
+            if part == T::ZERO && !is_scaled {
+                continue;
+            }
+            if state < K {
+                of_the_air = T::mac(of_the_air, part, mean);
+            } else {
+                beside = T::mac(beside, part, mean);
+            }
+            if let Some(entry) = entries.get_mut(count) {
+                *entry = (state, part);
+            }
+            count += 1;
+        }
+        let [direct, throttle] = *self.direct.as_array();
+        let [elevator_now, throttle_now] = *input.as_array();
+        of_the_air = T::mac(of_the_air, direct, elevator_now);
+        let of_the_air = T::finish(T::mac(of_the_air, throttle, throttle_now));
+        let beside = T::finish(beside);
+        let Some((steady, relative)) = self.pressure else {
+            return (of_the_air + beside, entries, count);
+        };
+        let ratio = T::ONE + mean.get(AIRSPEED).copied().unwrap_or(T::ZERO) * relative;
+        let square = ratio * ratio;
+        let whole = steady + of_the_air;
+        for (state, part) in &mut entries {
+            if *state < K {
+                *part *= square;
+            }
+            if *state == AIRSPEED {
+                *part += T::TWO * ratio * relative * whole;
+            }
+        }
+        (square * whole - steady + beside, entries, count)
+    }
+}

@@ -1,0 +1,142 @@
+use kestirim_health::Health;
+use kestirim_kalman::Innovation;
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+
+use super::{AugmentedFilter, AugmentedModel, AugmentedTransition};
+use crate::kalman_filter::{GATE, Gated};
+use crate::transitions::{Transitions, interval_us, is_set_back};
+use crate::watch::Watch;
+use crate::{Error, Sample};
+
+/// An [`AugmentedFilter`] along a flight: samples of any times, with gaps between them and outputs that are missing.
+///
+/// Gaps, gates, the clock and L are those of a [`FlightFilter`](crate::FlightFilter).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct AugmentedFlight<
+    T: Scalar,
+    const N: usize,
+    const K: usize,
+    const P: usize,
+    const L: usize = 1,
+> {
+    filter: AugmentedFilter<T, N, K, P>,
+    watch: Watch<P>,
+    transitions: Transitions<AugmentedModel<N, K, P>, AugmentedTransition<T, N, K>, L>,
+    /// Time (µs) and input of the sample before.
+    before: Option<(i64, SVector<f64, 2>)>,
+}
+
+impl<T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize>
+    AugmentedFlight<T, N, K, P, L>
+{
+    /// A filter of this model, measured every `usual` seconds; white noise of these standard deviations a usual interval
+    /// reaches the inputs δe (rad) and δt.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn new(
+        model: &AugmentedModel<N, K, P>,
+        inputs: &SVector<f64, 2>,
+        usual: f64,
+    ) -> Result<Self, Error> {
+        let filter = AugmentedFilter::new(model)?;
+        let transitions = Transitions::new(*model, usual, *inputs);
+        Ok(Self { filter, watch: Watch::NEW, transitions, before: None })
+    }
+
+    /// Says how long an interval usually is, s.
+    pub fn set_usual(&mut self, usual: f64) {
+        self.transitions.set_usual(usual);
+    }
+
+    /// The filter, with the estimate and its uncertainty at the time of the last sample.
+    pub const fn filter(&self) -> &AugmentedFilter<T, N, K, P> {
+        &self.filter
+    }
+
+    /// How many times each output was left out, because it contradicted the estimate.
+    pub const fn rejected(&self) -> &[u32; P] {
+        &self.watch.rejected
+    }
+
+    /// Whether the estimate can be relied upon: see [`FlightFilter::health`](crate::FlightFilter::health).
+    pub fn health(&self) -> Health {
+        self.watch.health()
+    }
+
+    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
+    /// more than a second older than the one before is not late: the clock was set back, and the filter begins anew.
+    ///
+    /// # Errors
+    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the filter
+    /// is as it was.
+    pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
+        let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
+        if !numbers.copied().all(f64::is_finite) {
+            return Err(Error::NotFinite);
+        }
+        let mut next = self.filter;
+        let mut moved = None;
+        if self.before.is_some_and(|(before_us, _)| is_set_back(before_us, sample.time_us)) {
+            next = next.begun_anew();
+        } else if let Some((before_us, input)) = &self.before {
+            let interval_us = interval_us(*before_us, sample.time_us)?;
+            let transition = self.transitions.over(interval_us, |step| next.transition(step))?;
+            next.predict(&transition, &input.map(T::from_f64))?;
+            moved = Some((interval_us, transition));
+        }
+        let mut watch = self.watch;
+        let judged = judged(&mut next, sample, &mut watch)?;
+        // Of what inputs show at once, a gain that is a little wrong looks as if it were late.
+        let mut timed = sample.measured;
+        for (output, measured) in timed.iter_mut().enumerate() {
+            *measured = measured.filter(|_| !next.is_direct(output));
+        }
+        watch.count(&timed, &judged);
+        self.filter = next;
+        self.watch = watch;
+        self.before = Some((sample.time_us, sample.input));
+        if let Some((interval_us, transition)) = &moved {
+            self.transitions.keep(*interval_us, transition);
+        }
+        Ok(judged.innovations)
+    }
+}
+
+/// Takes in what the gates admit.
+fn judged<T: Scalar, const N: usize, const K: usize, const P: usize>(
+    filter: &mut AugmentedFilter<T, N, K, P>,
+    sample: &Sample<P>,
+    watch: &mut Watch<P>,
+) -> Result<Gated<P>, Error> {
+    let units = *filter.output_units().as_array();
+    let mut measured = [None; P];
+    for (scaled, (value, unit)) in measured.iter_mut().zip(sample.measured.iter().zip(units)) {
+        *scaled = value.map(|value| T::from_f64(value / unit));
+    }
+    let mut is_left_out = [false; P];
+    let input = sample.input.map(T::from_f64);
+    let gates = &mut watch.gates;
+    let reported = filter.correct_with(&measured, &input, |next, weighed, output| {
+        // Without an index, which would keep a check of its bounds.
+        if let Some((gate, is_left_out)) = gates.get_mut(output).zip(is_left_out.get_mut(output)) {
+            *is_left_out = !gate.admits(weighed.exceeds(T::from_f64(GATE)));
+            if *is_left_out {
+                return Ok(weighed.report());
+            }
+        }
+        Ok(next.correct(weighed)?)
+    })?;
+    let mut innovations = [None; P];
+    for (innovation, (reported, unit)) in innovations.iter_mut().zip(reported.iter().zip(units)) {
+        *innovation = reported.as_ref().map(|reported| Innovation {
+            innovation: reported.innovation.to_f64() * unit,
+            variance: reported.variance.to_f64() * (unit * unit),
+            nis: reported.nis.to_f64(),
+        });
+    }
+    Ok(Gated { innovations, is_left_out })
+}

@@ -1,0 +1,296 @@
+use kestirim_observer_design::{Discrete, Error as DesignError};
+use kestirim_scalar::{Columns, Components};
+use kestirim_uav_longitudinal::StateSpace;
+use nalgebra::{SMatrix, SVector};
+
+use super::discretise::Flow;
+use super::{Output, Reference};
+use crate::Error;
+use crate::flight_filter::UNKNOWN;
+use crate::transitions::Moves;
+
+/// α, q and V among the states.
+const ALPHA: usize = 0;
+const RATE: usize = 1;
+const AIRSPEED: usize = 2;
+
+/// Something constant that is not known, or slowly walks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Drift {
+    /// Standard deviation at the start, in its unit.
+    pub sigma: f64,
+    /// Standard deviation by which it walks within a second, in its unit per √s.
+    pub rate: f64,
+}
+
+/// Gusts, as first-order processes carried past by the airspeed: Dryden's along the wing's path (MIL-F-8785C), and the
+/// same across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Gust {
+    /// Standard deviations along (u) and across (w), m/s.
+    pub sigmas: [f64; 2],
+    /// Lengths of the same, m.
+    pub lengths: [f64; 2],
+    /// V₀, the airspeed of the steady flight, m/s.
+    pub airspeed: f64,
+}
+
+/// A linear model of an aircraft with what acts on it and on its sensors: N states, the first four of them α, q, V and
+/// θ as deviations, the first K of them those that move the four, and P outputs.
+///
+/// α and V are those of the air about the aircraft, gusts included. Gusts take two of the K − 4 states, an unknown force one;
+/// a bias takes one of the N − K others, the wind and the density one each. What is not taken stays at zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct AugmentedModel<const N: usize, const K: usize, const P: usize> {
+    a: SMatrix<f64, N, N>,
+    b: SMatrix<f64, N, 2>,
+    /// Spectral density of the white noise on ẋ, in units²·s.
+    density: SMatrix<f64, N, N>,
+    /// Standard deviations of the states at the start.
+    pub(super) start: SVector<f64, N>,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
+    pub(super) outputs: [Output; P],
+    /// Rows of C.
+    pub(super) c: SMatrix<f64, P, N>,
+    /// How many of the first K states are taken, and of the others.
+    taken: [u8; 2],
+}
+
+/// x⁺ = A x + B u + w of all states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct AugmentedStep<const N: usize> {
+    /// A and B.
+    pub transition: Discrete<N, 2>,
+    /// Q, the covariance of w.
+    pub noise: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
+    /// ẋ = A x + B u + w with these outputs; `density` is that of the white noise w (units²·s of ẋ). Nothing is known of
+    /// the four states at the start: 0.2 rad, 0.5 rad/s, 20 m/s, 0.5 rad.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn new(
+        plant: &StateSpace,
+        density: &SMatrix<f64, 4, 4>,
+        outputs: &[Output; P],
+    ) -> Result<Self, Error> {
+        const { assert!(4 <= K && K <= N && N < 256, "four states move, by the first K of N") };
+        let given = |row: usize| {
+            outputs.get(row).is_some_and(|output| {
+                let numbers = output.row.iter().chain(&output.direct).chain([&output.sigma]);
+                let steady = match &output.reference {
+                    Reference::Pressure { steady, airspeed } => {
+                        steady.is_finite() && airspeed.is_normal()
+                    }
+                    _ => true,
+                };
+                steady && numbers.copied().all(f64::is_finite)
+            })
+        };
+        let matrices = plant.a.iter().chain(&plant.b).chain(density);
+        if !(matrices.copied().all(f64::is_finite) && (0..P).all(given)) {
+            return Err(Error::NotFinite);
+        }
+        let mut start = SVector::<f64, N>::zeros();
+        let (mut a, mut b) = (SMatrix::<f64, N, N>::zeros(), SMatrix::<f64, N, 2>::zeros());
+        let (mut c, mut q) = (SMatrix::<f64, P, N>::zeros(), SMatrix::<f64, N, N>::zeros());
+        for state in 0..4 {
+            start.as_array_mut()[state] = UNKNOWN[state];
+            for row in 0..4 {
+                a.as_columns_mut()[state][row] = plant.a.as_columns()[state][row];
+                q.as_columns_mut()[state][row] = density.as_columns()[state][row];
+            }
+            for input in 0..2 {
+                b.as_columns_mut()[input][state] = plant.b.as_columns()[input][state];
+            }
+            for (part, output) in c.as_columns_mut()[state].iter_mut().zip(outputs) {
+                *part = output.row[state];
+            }
+        }
+        Ok(Self { a, b, density: q, start, outputs: *outputs, c, taken: [4, K as u8] })
+    }
+
+    /// With a bias of one of the outputs, in its unit.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if all of the last N − K states are taken, or there is no such output; [`Error::NotFinite`].
+    pub fn with_bias(mut self, output: usize, drift: &Drift) -> Result<Self, Error> {
+        let state = self.place(1, output < P)?;
+        self.drifting(state, drift)?;
+        if let Some(part) = self.c.get_mut((output, state)) {
+            *part = 1.0;
+        }
+        Ok(self)
+    }
+
+    /// With a head wind, which what refers to the ground does not feel: m/s.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if all of the last N − K states are taken; [`Error::NotFinite`].
+    pub fn with_wind(mut self, drift: &Drift) -> Result<Self, Error> {
+        let state = self.place(1, true)?;
+        self.drifting(state, drift)?;
+        self.grounded(state, AIRSPEED, 1.0);
+        Ok(self)
+    }
+
+    /// With an unknown density of the air, in parts of that of the steady flight: what is in proportion to the dynamic pressure
+    /// is in proportion to it, too.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if all of the last N − K states are taken; [`Error::NotFinite`].
+    pub fn with_density(mut self, drift: &Drift) -> Result<Self, Error> {
+        let state = self.place(1, true)?;
+        self.drifting(state, drift)?;
+        for (output, known) in self.outputs.iter().enumerate() {
+            if let Reference::Pressure { steady, .. } = known.reference
+                && let Some(part) = self.c.get_mut((output, state))
+            {
+                *part = steady;
+            }
+        }
+        Ok(self)
+    }
+
+    /// With an unknown constant, or slowly walking, part of a state's derivative: a trim that is another than was thought.
+    /// Units: the state's per second.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if all of the first K states are taken, or the state is none of the four; [`Error::NotFinite`].
+    pub fn with_force(mut self, moved: usize, drift: &Drift) -> Result<Self, Error> {
+        let state = self.place(0, moved < 4)?;
+        self.drifting(state, drift)?;
+        if let Some(part) = self.a.get_mut((moved, state)) {
+            *part = 1.0;
+        }
+        Ok(self)
+    }
+
+    /// With gusts along and across the path. They act as V and α do, and change what is measured of these. That the tail
+    /// feels a gust across later than the wing, which turns the aircraft, is taken for white noise: the growth of the gust's
+    /// angle, times half the pitch damping.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`] if fewer than two of the first K states are free; [`Error::NotFinite`], also of a length or an
+    /// airspeed of zero.
+    pub fn with_gust(mut self, gust: &Gust) -> Result<Self, Error> {
+        let felt = [(AIRSPEED, 1.0), (ALPHA, 1.0 / gust.airspeed)];
+        for ((sigma, length), (moved, share)) in gust.sigmas.iter().zip(gust.lengths).zip(felt) {
+            let state = self.place(0, true)?;
+            let fading = gust.airspeed / length;
+            self.drifting(state, &Drift { sigma: *sigma, rate: 0.0 })?;
+            let density = 2.0 * sigma * sigma * fading;
+            if !(fading >= 0.0 && share.is_finite() && density.is_finite()) {
+                return Err(Error::NotFinite);
+            }
+            // What the gust does to the air's α or V, it does with its own derivative: −g/τ and white noise.
+            for (place, value) in [((state, state), -fading), ((moved, state), -fading * share)] {
+                if let Some(part) = self.a.get_mut(place) {
+                    *part += value;
+                }
+            }
+            for (place, value) in [
+                ((state, state), 1.0),
+                ((moved, state), share),
+                ((state, moved), share),
+                ((moved, moved), share * share),
+            ] {
+                if let Some(part) = self.density.get_mut(place) {
+                    *part += value * density;
+                }
+            }
+            self.grounded(state, moved, share);
+            if moved == ALPHA {
+                let lag = 0.5 * self.a.as_columns()[RATE][RATE] * share;
+                self.density.as_columns_mut()[RATE][RATE] += lag * lag * density;
+            }
+        }
+        Ok(self)
+    }
+
+    /// The next free state of the first K (0) or the others (1).
+    fn place(&mut self, of: usize, is_there: bool) -> Result<usize, Error> {
+        let end = if of == 0 { K } else { N };
+        let taken = self.taken.get_mut(of).filter(|taken| is_there && usize::from(**taken) < end);
+        let taken = taken.ok_or(Error::NoRoom)?;
+        *taken += 1;
+        Ok(usize::from(*taken) - 1)
+    }
+
+    fn drifting(&mut self, state: usize, drift: &Drift) -> Result<(), Error> {
+        let variance = drift.rate * drift.rate;
+        if !((drift.sigma * drift.sigma).is_finite() && variance.is_finite()) {
+            return Err(Error::NotFinite);
+        }
+        if let Some(start) = self.start.get_mut(state) {
+            *start = drift.sigma.abs();
+        }
+        if let Some(density) = self.density.get_mut((state, state)) {
+            *density = variance;
+        }
+        Ok(())
+    }
+
+    /// Takes a state's share in one of the four from what refers to the ground.
+    fn grounded(&mut self, state: usize, moved: usize, share: f64) {
+        for (output, known) in self.outputs.iter().enumerate() {
+            if known.reference == Reference::Ground
+                && let Some(part) = self.c.get_mut((output, state))
+            {
+                *part -= known.row.get(moved).copied().unwrap_or(0.0) * share;
+            }
+        }
+    }
+
+    /// Standard deviations of all states at the start.
+    pub const fn start(&self) -> &SVector<f64, N> {
+        &self.start
+    }
+
+    /// Step of the model over `interval` (s), where white noise of these standard deviations (rad; 1) a `sample` (s)
+    /// reaches the inputs δe and δt beside what is on ẋ.
+    ///
+    /// # Errors
+    /// [`Error::Design`] if an argument or the answer is not finite, or the interval is not positive.
+    pub fn over(
+        &self,
+        interval: f64,
+        sample: f64,
+        noise: &SVector<f64, 2>,
+    ) -> Result<AugmentedStep<N>, Error> {
+        let variances = SMatrix::from_diagonal(&noise.map(|sigma| sigma * sigma));
+        let density = self.density + self.b * variances * self.b.transpose() * sample;
+        if !(interval.is_finite() && density.iter().copied().all(f64::is_finite)) {
+            return Err(DesignError::NotFinite.into());
+        }
+        if interval <= 0.0 {
+            return Err(DesignError::Interval.into());
+        }
+        let flow = Flow::<N, K>::new(&self.a, &density, interval).ok_or(DesignError::NotFinite)?;
+        let transition = Discrete { a: flow.transition, b: flow.integral * self.b };
+        Ok(AugmentedStep { transition, noise: flow.noise })
+    }
+}
+
+impl<const N: usize, const K: usize, const P: usize> Moves for AugmentedModel<N, K, P> {
+    type Step = AugmentedStep<N>;
+
+    fn over(
+        &self,
+        interval: f64,
+        sample: f64,
+        noise: &SVector<f64, 2>,
+    ) -> Result<AugmentedStep<N>, Error> {
+        Self::over(self, interval, sample, noise)
+    }
+}

@@ -1,0 +1,46 @@
+use kestirim_health::{Health, Reason};
+
+use crate::gate::Gate;
+use crate::kalman_filter::Gated;
+use crate::lateness::Lateness;
+use crate::monitor::Monitor;
+
+/// What is watched of a filter's outputs, so that it can be told how far its estimate can be relied upon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Watch<const P: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
+    pub(crate) gates: [Gate; P],
+    /// How many times each output was left out.
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
+    pub(crate) rejected: [u32; P],
+    monitor: Monitor,
+    lateness: Lateness<P>,
+}
+
+impl<const P: usize> Watch<P> {
+    /// One that has seen nothing.
+    pub(crate) const NEW: Self = Self {
+        gates: [Gate::NEW; P],
+        rejected: [0; P],
+        monitor: Monitor::NEW,
+        lateness: Lateness::NONE,
+    };
+
+    /// Counts a sample: what came of its outputs, and those of which it can be told whether they are late.
+    pub(crate) fn count(&mut self, timed: &[Option<f64>; P], judged: &Gated<P>) {
+        for (rejected, is_left_out) in self.rejected.iter_mut().zip(judged.is_left_out) {
+            *rejected = rejected.saturating_add(u32::from(is_left_out));
+        }
+        let of = || judged.innovations.iter().flatten().map(|innovation| innovation.nis);
+        let left_out = judged.is_left_out.iter().filter(|is_left_out| **is_left_out).count();
+        self.monitor.count(of().count(), left_out, of());
+        self.lateness.count(timed, &judged.innovations);
+    }
+
+    /// What it comes to.
+    pub(crate) fn health(&self) -> Health {
+        self.monitor.health().with(Reason::Time, self.lateness.is_told())
+    }
+}

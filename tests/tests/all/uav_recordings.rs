@@ -1,0 +1,257 @@
+//! Flights that a simulator and an airliner flew, by a filter of a model that another flight gave: a regression of the
+//! derivatives and outputs on states and inputs, with the noise of usual sensors.
+//!
+//! They stand beside the repository in `../shared/data/uav/flights`. Where they are absent these tests say SKIPPED and
+//! pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each flight is printed.
+
+use std::collections::BTreeMap;
+
+use kestirim_replay::uav::{
+    Deviations, EstimatorKind, Extended, Followed, Log, Model, Options, STATE_COLUMNS, Sample,
+};
+use kestirim_tests::recordings::folder_of;
+use kestirim_uav_estimator::{Drift, Dynamics};
+use kestirim_uav_longitudinal::StateSpace;
+use nalgebra::{SMatrix, SVector};
+
+/// Columns of a flight.
+type Flight = BTreeMap<String, Vec<f64>>;
+
+fn read(name: &str) -> Option<Flight> {
+    let path = folder_of("uav")?.join("flights").join(name).with_extension("csv");
+    let text = std::fs::read_to_string(path).expect("a flight");
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let mut flight = Flight::new();
+    for line in lines {
+        for (name, field) in names.iter().zip(line.split(',')) {
+            flight.entry((*name).to_owned()).or_default().push(field.parse().expect("a number"));
+        }
+    }
+    Some(flight)
+}
+
+/// α, q, V, θ, δe, δt less those of the trim, and one.
+type Regressors = SVector<f64, 7>;
+
+/// What multiplies the regressors so that their sum is nearest to the values.
+fn regression(rows: impl Iterator<Item = (Regressors, f64)>) -> Regressors {
+    // So little that only what is zero in every row notices: it has no part in the sum then.
+    let mut squares = SMatrix::<f64, 7, 7>::identity() * 1e-12;
+    let mut products = Regressors::zeros();
+    for (row, value) in rows {
+        squares += row * row.transpose();
+        products += row * value;
+    }
+    squares.cholesky().expect("inputs that move everything").solve(&products)
+}
+
+/// What an aircraft's sensors are.
+struct Sensors {
+    /// Standard deviations of α, q, V, θ, az, qbar.
+    sigmas: [f64; 6],
+    /// Spectral density on the states' derivatives.
+    process: [f64; 4],
+}
+
+const OUTPUTS: [&str; 6] = ["alpha", "q", "V", "theta", "az", "qbar"];
+/// As the data's README says them, and a vane of 5 mrad.
+const USUAL: Sensors =
+    Sensors { sigmas: [0.005, 0.003, 0.3, 0.003, 0.3, 8.0], process: [1e-8, 1e-5, 4e-4, 1e-9] };
+/// Those of the ATTAS, which are recorded with their noise.
+const ATTAS: Sensors =
+    Sensors { sigmas: [0.005, 0.002, 0.2, 0.002, 0.15, 20.0], process: [1e-5, 1e-4, 1e-2, 1e-7] };
+
+const fn drift(sigma: f64, rate: f64) -> Drift {
+    Drift { sigma, rate }
+}
+
+/// A model of what was flown, about the mean of the flight.
+fn identified(flight: &Flight, sensors: &Sensors) -> Model {
+    let column = |name: &str| &flight[name];
+    let mean = |name: &str| column(name).iter().sum::<f64>() / column(name).len() as f64;
+    let state = STATE_COLUMNS.map(mean);
+    let input = ["delta_e", "delta_t"].map(mean);
+    let (t, count) = (column("t"), column("t").len());
+    let at = |name: &str, origin: f64, k: usize| column(name)[k] - origin;
+    let states = |k: usize| std::array::from_fn::<f64, 4, _>(|i| at(STATE_COLUMNS[i], state[i], k));
+    let row = |x: [f64; 4], k: usize| {
+        let inputs = [at("delta_e", input[0], k), at("delta_t", input[1], k)];
+        Regressors::from_iterator(x.into_iter().chain(inputs).chain([1.0]))
+    };
+    let (mut a, mut b) = (SMatrix::zeros(), SMatrix::zeros());
+    for i in 0..4 {
+        let derivative = regression((1..count).map(|k| {
+            let (before, now) = (states(k - 1), states(k));
+            let middle = std::array::from_fn(|j| 0.5 * (before[j] + now[j]));
+            (row(middle, k - 1), (now[i] - before[i]) / (t[k] - t[k - 1]))
+        }));
+        for j in 0..4 {
+            a[(i, j)] = derivative[j];
+        }
+        (b[(i, 0)], b[(i, 1)]) = (derivative[4], derivative[5]);
+    }
+    // The specific force, of which the airspeed changes nothing but the dynamic pressure.
+    let force = regression((0..count).map(|k| {
+        let (mut row, ratio) = (row(states(k), k), column("V")[k] / state[2]);
+        row[2] = 0.0;
+        (row * ratio * ratio, column("az")[k])
+    }));
+    let steady = force[6];
+    let unit = |i: usize| std::array::from_fn(|j| f64::from(u8::from(i == j)));
+    let mut rows: Vec<[f64; 4]> = (0..4).map(unit).collect();
+    rows.push([force[0], force[1], 2.0 * steady / state[2], force[3]]);
+    rows.push([0.0, 0.0, 2.0 * mean("qbar") / state[2], 0.0]);
+    let mut direct = vec![[0.0; 2]; 6];
+    direct[4] = [force[4], force[5]];
+    let shown = state.into_iter().chain([steady, mean("qbar")]);
+    let extended = Extended {
+        direct,
+        steady: shown.collect(),
+        scaled: vec![false, false, false, false, true, true],
+        process: Some(SMatrix::from_diagonal(&sensors.process.into())),
+        sigmas: Some(sensors.sigmas.to_vec()),
+        biases: vec![(1, drift(0.02, 1e-5)), (3, drift(0.03, 1e-5)), (4, drift(0.05, 0.01))],
+        gust: Some(([2.0; 2], [300.0; 2])),
+        wind: Some(drift(8.0, 0.0)),
+        density: Some(drift(0.03, 5e-4)),
+        forces: vec![(0, drift(0.005, 1e-3)), (1, drift(0.01, 1e-4)), (2, drift(0.3, 0.02))],
+        ..Extended::default()
+    };
+    Model {
+        dynamics: Dynamics::Continuous(StateSpace { a, b }),
+        outputs: OUTPUTS.iter().map(|name| (*name).to_owned()).zip(rows).collect(),
+        trim: Some((state, input)),
+        extended: Some(Box::new(extended)),
+    }
+}
+
+/// Gaussian numbers that look random.
+struct Dice(u64);
+
+impl Dice {
+    fn gaussian(&mut self) -> f64 {
+        let mut uniform = || {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        };
+        (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos()
+    }
+}
+
+/// Samples of some outputs, with noise of these standard deviations and what is added to each.
+fn log(
+    model: &Model,
+    flight: &Flight,
+    names: &[&str],
+    noise: Option<&Sensors>,
+    added: &[f64],
+    seed: u64,
+) -> Log {
+    let place = |name: &&str| OUTPUTS.iter().position(|output| output == name).expect("an output");
+    let outputs: Vec<usize> = names.iter().map(place).collect();
+    let mut dice = Dice(seed);
+    let sample = |k: usize| {
+        let measured = outputs.iter().zip(added).map(|(&output, added)| {
+            let sigma = noise.map_or(0.0, |sensors| sensors.sigmas[output]);
+            Some(flight[OUTPUTS[output]][k] + added + sigma * dice.gaussian())
+        });
+        Sample {
+            t_us: (flight["t"][k] * 1e6).round() as i64,
+            input: [flight["delta_e"][k], flight["delta_t"][k]],
+            measured: measured.collect(),
+        }
+    };
+    assert_eq!(model.outputs.len(), OUTPUTS.len());
+    let samples = (0..flight["t"].len()).map(sample).collect();
+    Log::new(outputs, samples).expect("a log")
+}
+
+struct Told {
+    /// Root mean square errors: mrad, mrad/s, m/s, mrad.
+    errors: [f64; 4],
+    contradictions: usize,
+}
+
+/// Follows a flight, and prints how well.
+fn followed(label: &str, model: &Model, log: Log, flight: &Flight, options: &Options) -> Told {
+    let deviations = Deviations::new(model.clone(), log, None, true).expect("a trim");
+    let followed: Followed = deviations.follow(options).expect("an estimate");
+    let errors = std::array::from_fn(|i| {
+        let truth = &flight[STATE_COLUMNS[i]];
+        let squares = followed.estimates.iter().zip(truth);
+        let sum: f64 =
+            squares.map(|(it, truth)| (deviations.absolute(it)[i] - truth).powi(2)).sum();
+        (sum / truth.len() as f64).sqrt() * if i == 2 { 1.0 } else { 1e3 }
+    });
+    let contradictions = followed.contradictions();
+    println!("{label}: {errors:.2?} gusts {:?} {contradictions:?}", followed.gust);
+    Told { errors, contradictions: contradictions.len() }
+}
+
+#[test]
+fn a_light_aircraft_calm_in_turbulence_with_biases_and_with_less_throttle() {
+    let Some(ident) = read("jsbsim_c172p_ident") else { return };
+    let model = identified(&ident, &USUAL);
+    let all = ["q", "V", "theta", "az"];
+    let vane = ["alpha", "q", "V", "theta"];
+    let nothing = [0.0; 4];
+    let biased = [0.01, 0.0, 0.02, 0.0];
+    for (name, outputs, added, alpha, airspeed) in [
+        ("valid", &all, &nothing, 0.45, 0.1),
+        ("valid", &all, &biased, 1.0, 0.1),
+        ("slow", &all, &nothing, 1.5, 0.19),
+        ("turb3", &all, &nothing, 4.5, 0.2),
+        ("turb3", &vane, &nothing, 3.3, 0.19),
+    ] {
+        let flight = read(&format!("jsbsim_c172p_{name}")).expect("a flight");
+        for seed in [1, 2] {
+            let log = log(&model, &flight, outputs, Some(&USUAL), added, seed);
+            let told = followed(name, &model, log, &flight, &Options::default());
+            assert!(told.errors[0] < alpha, "{name} {outputs:?} {added:?}: α {:?}", told.errors);
+            assert!(told.errors[2] < airspeed, "{name} {outputs:?} {added:?}: V {:?}", told.errors);
+            assert_eq!(told.contradictions, 0, "{name} {outputs:?} {added:?}");
+        }
+    }
+}
+
+#[test]
+fn an_airliner_by_the_model_of_its_other_flight() {
+    let Some([one, two]) = read("attas_elv1").zip(read("attas_elv2")).map(|(a, b)| [a, b]) else {
+        return;
+    };
+    for (known, flown, name) in [(&one, &two, "from 1 to 2"), (&two, &one, "from 2 to 1")] {
+        let model = identified(known, &ATTAS);
+        let log = log(&model, flown, &["q", "V", "theta", "az", "qbar"], None, &[0.0; 5], 0);
+        let told = followed(name, &model, log, flown, &Options::default());
+        assert!(told.errors[0] < 0.9, "{name}: {:?}", told.errors);
+        assert_eq!(told.contradictions, 0, "{name}");
+    }
+}
+
+#[test]
+fn a_model_without_gusts_biases_and_trim_is_contradicted_where_there_are_some() {
+    let Some(ident) = read("jsbsim_c172p_ident") else { return };
+    let plain = Model { extended: None, ..identified(&ident, &USUAL) };
+    let plain = Model { outputs: plain.outputs[..4].to_vec(), ..plain };
+    let model = identified(&ident, &USUAL);
+    let states = ["q", "V", "theta"];
+    let vane = ["q", "V", "theta", "alpha"];
+    for estimator in [EstimatorKind::Kalman, EstimatorKind::Luenberger] {
+        let options = Options::default().with(estimator);
+        let mut contradicted = |name: &str, outputs: &[&str], added: &[f64]| {
+            let flight = read(&format!("jsbsim_c172p_{name}")).expect("a flight");
+            let log = log(&model, &flight, outputs, Some(&USUAL), added, 1);
+            followed(name, &plain, log, &flight, &options).contradictions > 0
+        };
+        assert!(!contradicted("valid", &states, &[0.0; 3]));
+        assert!(contradicted("valid", &states, &[0.01, 0.0, 0.02]), "biases");
+        assert!(contradicted("valid", &states, &[0.0, -6.0, 0.0]), "a head wind");
+        assert!(contradicted("slow", &states, &[0.0; 3]));
+        assert!(contradicted("turb3", &states, &[0.0; 3]));
+        assert!(contradicted("turb3", &vane, &[0.0; 4]));
+    }
+}
