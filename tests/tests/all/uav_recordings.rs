@@ -242,7 +242,7 @@ fn a_model_without_gusts_biases_and_trim_is_contradicted_where_there_are_some() 
     let vane = ["q", "V", "theta", "alpha"];
     for estimator in [EstimatorKind::Kalman, EstimatorKind::Luenberger] {
         let options = Options::default().with(estimator);
-        let mut contradicted = |name: &str, outputs: &[&str], added: &[f64]| {
+        let contradicted = |name: &str, outputs: &[&str], added: &[f64]| {
             let flight = read(&format!("jsbsim_c172p_{name}")).expect("a flight");
             let log = log(&model, &flight, outputs, Some(&USUAL), added, 1);
             followed(name, &plain, log, &flight, &options).contradictions > 0

@@ -110,12 +110,10 @@ fn flight_observers<T: Scalar, const P: usize>() {
 }
 
 fn output() -> Output {
-    let reference = if yes_or_no() {
-        Reference::Pressure { steady: number(), airspeed: number() }
-    } else if yes_or_no() {
-        Reference::Ground
-    } else {
-        Reference::Air
+    let reference = match (yes_or_no(), yes_or_no()) {
+        (true, _) => Reference::Pressure { steady: number(), airspeed: number() },
+        (false, true) => Reference::Ground,
+        (false, false) => Reference::Air,
     };
     let (row, direct) = ([(); 4].map(|()| number()), [(); 2].map(|()| number()));
     let given = any(Output { row, direct, sigma: number(), reference });
