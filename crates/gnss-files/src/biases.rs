@@ -1,4 +1,4 @@
-//! Biases of satellites' codes: Bias-SINEX 1.00, absolute (OSB) and differential (DSB).
+//! Biases of satellites' codes and phases: Bias-SINEX 1.00, absolute (OSB) and, of codes, differential (DSB).
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::time::GpsTime;
 /// Speed of light, m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
-/// The bias of one code of a satellite, or of one less another.
+/// The bias of one code or phase of a satellite, or of one code less another.
 #[derive(Debug, Clone, PartialEq)]
 struct Bias {
-    code: Signal,
+    signal: Signal,
     /// The code that is taken off, of a differential bias.
     less: Option<Signal>,
     /// The first instant and the last.
@@ -23,7 +23,7 @@ struct Bias {
     metres: f64,
 }
 
-/// Biases of satellites' codes, by number. Phases' are not of use without whole ambiguities.
+/// Biases of satellites' codes and phases, by number.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Biases(BTreeMap<u8, Vec<Bias>>);
 
@@ -76,7 +76,7 @@ impl Biases {
 
     /// What the two codes of a satellite are too long at a time, m, beside those to which the clocks of satellites refer;
     /// none of a pair of which one is not known.
-    pub(crate) fn of(
+    pub fn of_codes(
         &self,
         satellite: u8,
         carriers: Carriers,
@@ -85,26 +85,48 @@ impl Biases {
     ) -> Option<[f64; 2]> {
         let [first, second] = codes;
         let (first, second) = (first?, second?);
-        let biases: Vec<&Bias> =
-            self.0.get(&satellite)?.iter().filter(|it| it.is_valid(time)).collect();
+        let biases = self.valid(satellite, time)?;
         let both = |of: &dyn Fn(Signal) -> Option<f64>| Some([of(first)?, of(second)?]);
-        let absolute = |code: Signal| {
-            let mut all = biases.iter().rev();
-            Some(all.find(|it| it.less.is_none() && it.code == code)?.metres)
-        };
         let differential = |code: Signal| {
             let reference = code.reference(carriers)?;
             if reference == code {
                 return Some(0.0);
             }
-            biases.iter().rev().find_map(|it| match (it.code, it.less?) {
+            biases.iter().rev().find_map(|it| match (it.signal, it.less?) {
                 pair if pair == (code, reference) => Some(it.metres),
                 pair if pair == (reference, code) => Some(-it.metres),
                 _ => None,
             })
         };
-        both(&absolute).or_else(|| both(&differential))
+        both(&|code| absolute(&biases, code)).or_else(|| both(&differential))
     }
+
+    /// What the two phases of a satellite are too long at a time, m, so that the rest of each is a whole number of cycles
+    /// beside the receiver's own bias; none of a pair of which one is not known.
+    pub fn of_phases(
+        &self,
+        satellite: u8,
+        phases: [Option<Signal>; 2],
+        time: GpsTime,
+    ) -> Option<[f64; 2]> {
+        let biases = self.valid(satellite, time)?;
+        let [first, second] = phases;
+        Some([absolute(&biases, first?)?, absolute(&biases, second?)?])
+    }
+
+    /// Whether there is the bias of any phase.
+    pub fn have_phases(&self) -> bool {
+        self.0.values().flatten().any(|bias| bias.signal.phase)
+    }
+
+    fn valid(&self, satellite: u8, time: GpsTime) -> Option<Vec<&Bias>> {
+        Some(self.0.get(&satellite)?.iter().filter(|it| it.is_valid(time)).collect())
+    }
+}
+
+fn absolute(biases: &[&Bias], signal: Signal) -> Option<f64> {
+    let mut all = biases.iter().rev();
+    Some(all.find(|it| it.less.is_none() && it.signal == signal)?.metres)
 }
 
 impl Bias {
@@ -114,7 +136,7 @@ impl Bias {
     }
 }
 
-/// The bias of a line and its satellite; none of a receiver's or of a phase.
+/// The bias of a line and its satellite; none of a receiver's, and none of one phase less another or in other units than ns.
 fn bias(line: &Line<'_>) -> Result<Option<(u8, Bias)>, Error> {
     let kind = line.columns(1, 5);
     if !matches!(kind, b"OSB" | b"DSB") || !line.columns(15, 24).is_empty() {
@@ -122,10 +144,13 @@ fn bias(line: &Line<'_>) -> Result<Option<(u8, Bias)>, Error> {
     }
     let name = line.columns(11, 14);
     let system = line.column(11);
-    let signal = |from, to| Signal::new(system, line.columns(from, to)).filter(|it| !it.phase);
-    let (Some(satellite), Some(code)) = (satellite(name), signal(25, 29)) else { return Ok(None) };
+    let other = |from, to| Signal::new(system, line.columns(from, to));
+    let (Some(satellite), Some(signal)) = (satellite(name), other(25, 29)) else { return Ok(None) };
+    if signal.phase && (kind == b"DSB" || line.columns(65, 69) != b"ns") {
+        return Ok(None);
+    }
     let less = match kind {
-        b"DSB" => match signal(30, 34) {
+        b"DSB" => match other(30, 34).filter(|it| !it.phase) {
             Some(less) => Some(less),
             None => return Ok(None),
         },
@@ -136,7 +161,7 @@ fn bias(line: &Line<'_>) -> Result<Option<(u8, Bias)>, Error> {
     }
     let value = decimal(line.columns(70, 91)).ok_or_else(|| line.expected("a bias"))?;
     let span = [instant(line, 35)?, instant(line, 50)?];
-    Ok(Some((satellite, Bias { code, less, span, metres: value * 1e-9 * SPEED_OF_LIGHT })))
+    Ok(Some((satellite, Bias { signal, less, span, metres: value * 1e-9 * SPEED_OF_LIGHT })))
 }
 
 /// The instant `year:day of year:second` from a column on; none if it is open, as zeros say.
@@ -168,7 +193,7 @@ mod tests {
         let biases = Biases::parse(&[text(biases())])?;
         let at = |day, second| GpsTime::new(59_424 + day, second);
         let of = |satellite, codes: [&[u8]; 2], time| {
-            biases.of(satellite, Carriers::L1L2, codes.map(|code| signal(b'G', code)), time)
+            biases.of_codes(satellite, Carriers::L1L2, codes.map(|code| signal(b'G', code)), time)
         };
         let metres = |ns: f64| ns * 1e-9 * SPEED_OF_LIGHT;
         let both = |found: Option<[f64; 2]>, [first, second]: [f64; 2]| {
@@ -182,7 +207,24 @@ mod tests {
         both(of(2, [b"C1C", b"C2L"], at(900, 0.0)), [-1.5, 0.5]);
         both(of(2, [b"C1C", b"C2W"], at(0, 0.0)), [-1.5, 0.0]);
         let codes = [signal(b'E', b"C1C"), signal(b'E', b"C7Q")];
-        assert_eq!(biases.of(111, Carriers::E1E5b, codes, at(0, 0.0)), None);
+        assert_eq!(biases.of_codes(111, Carriers::E1E5b, codes, at(0, 0.0)), None);
+        Ok(())
+    }
+
+    #[test]
+    fn absolute_biases_of_phases() -> Result<(), Error> {
+        let phase = " OSB  G063 G01           L2W       2021:210:00000 2021:210:86400 ns                 -1.9410 .146400E+00\n";
+        let file = biases().replace(" cyc ", " ns  ").replace("-BIAS", &format!("{phase}-BIAS"));
+        let read = Biases::parse(&[text(&file)])?;
+        let phases = [signal(b'G', b"L1C"), signal(b'G', b"L2W")];
+        let of = |phases, day| read.of_phases(1, phases, GpsTime::new(59_424 + day, 0.0));
+        let [first, second] = of(phases, 0).expect("both are known");
+        let metres = |ns: f64| ns * 1e-9 * SPEED_OF_LIGHT;
+        assert!((first - metres(16.3019)).abs() < 1e-9 && (second - metres(-1.941)).abs() < 1e-9);
+        assert_eq!(of(phases, 2), None, "another day");
+        assert_eq!(of([phases[0], signal(b'G', b"L2L")], 0), None);
+        // In cycles they are left out, as nobody says of which length.
+        assert!(read.have_phases() && !Biases::parse(&[text(biases())])?.have_phases());
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! Satellite clocks: RINEX clock files 2.00, 3.00 and 3.04.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::{Error, Warning};
@@ -24,6 +25,8 @@ pub struct ClockSample {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clocks {
     samples: PerSatellite<ClockSample>,
+    /// Wide-lane biases of satellites, of the days of their files.
+    wide_lanes: BTreeMap<(i32, u8), f64>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
@@ -46,7 +49,7 @@ impl Clocks {
     pub fn parse(texts: &[Text]) -> Result<Self, Error> {
         let mut clocks = Self::default();
         let files: Result<Vec<_>, _> =
-            texts.iter().map(|text| parse_file(text, &mut clocks.warnings)).collect();
+            texts.iter().map(|text| parse_file(text, &mut clocks)).collect();
         clocks.samples = PerSatellite::merge(files?, |sample| sample.time, |_, _| ());
         Ok(clocks)
     }
@@ -65,22 +68,26 @@ impl Clocks {
         Some([&samples[earlier], later])
     }
 
+    /// Wide-lane biases by day (modified Julian date) and satellite, cycles of the wide lane, as integer clocks of CNES/CLS have
+    /// them in the comments of their header (`WL`): added to a satellite's Melbourne–Wübbena combination, they make it a whole
+    /// number beside the receiver's own bias (Loyer et al. 2012).
+    pub fn wide_lanes(&self) -> impl Iterator<Item = ((i32, u8), f64)> {
+        self.wide_lanes.iter().map(|(key, bias)| (*key, *bias))
+    }
+
     /// The numbers of the satellites in the files.
     pub fn satellites(&self) -> impl Iterator<Item = u8> {
         self.samples.numbers()
     }
 }
 
-fn parse_file(
-    text: &Text,
-    warnings: &mut Vec<Warning>,
-) -> Result<PerSatellite<ClockSample>, Error> {
+fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSample>, Error> {
     let mut lines = text.lines();
-    header(text, &mut lines)?;
+    header(text, &mut lines, &mut clocks.wide_lanes)?;
     let mut samples = PerSatellite::default();
     while let Some(line) = lines.next() {
         if lines.is_at_end() && !text.ends_with_line_break() {
-            warnings.push(line.warning("the file ends within this line, which is left out"));
+            clocks.warnings.push(line.warning("the file ends within this line, which is left out"));
             break;
         }
         match line.bytes {
@@ -105,7 +112,11 @@ fn parse_file(
     Ok(samples)
 }
 
-fn header(text: &Text, lines: &mut Lines<'_>) -> Result<(), Error> {
+fn header(
+    text: &Text,
+    lines: &mut Lines<'_>,
+    wide_lanes: &mut BTreeMap<(i32, u8), f64>,
+) -> Result<(), Error> {
     let first = lines.next().filter(|line| {
         // Version 3.04 has wider lines.
         let label = line.bytes.get(60..).unwrap_or_default();
@@ -118,10 +129,28 @@ fn header(text: &Text, lines: &mut Lines<'_>) -> Result<(), Error> {
         match label {
             b"END OF HEADER" => return Ok(()),
             b"TIME SYSTEM ID" => time_system(&line)?,
+            b"COMMENT" if line.bytes.starts_with(b"WL ") => {
+                // Of other systems, and other things that a comment may say.
+                if let Some((day, prn, bias)) = wide_lane(line.bytes) {
+                    wide_lanes.insert((day, prn), bias);
+                }
+            }
             _ => {}
         }
     }
     Err(text.error("expected the end of the header, found the end of the file"))
+}
+
+/// The day, the satellite and its wide-lane bias, cycles.
+fn wide_lane(bytes: &[u8]) -> Option<(i32, u8, f64)> {
+    let mut fields = blank_separated(bytes.get(..60)?).skip(1);
+    let prn = satellite(fields.next()?)?;
+    let mut calendar = [0; 5];
+    for field in &mut calendar {
+        *field = integer(fields.next()?)?;
+    }
+    let time = GpsTime::from_calendar(calendar, decimal(fields.next()?)?)?;
+    Some((time.day(), prn, decimal(fields.nth(1)?)?))
 }
 
 /// Times of Galileo and of QZSS are those of GPS to some nanoseconds.
@@ -198,6 +227,26 @@ mod tests {
             + "AS G05       2020  1  1  0  0  0.000000  2   -0.159438015248E-04  0.640687583086E-11\n";
         let clocks = Clocks::parse(&[text(file)])?;
         assert_eq!(clocks.satellite(5)[0].bias, -0.159_438_015_248e-4);
+        Ok(())
+    }
+
+    #[test]
+    fn wide_lanes_stand_in_comments() -> Result<(), Error> {
+        let comments = [
+            "WL G05  2020  1  1 12  0  0.000000  1   -0.110300E+01  0102",
+            "WL E01 2020   1  1 12  0  0.000000  1   -4.400000E-01  0105",
+            "WL R07 2020   1  1 12  0  0.000000  1   -4.400000E-01  0105",
+            "WL are the wide lanes",
+        ];
+        let comments = comments.map(|comment| header(comment, "COMMENT")).concat();
+        let end = header("", "END OF HEADER");
+        let file = clocks().replace(&end, &(comments + &end));
+        let clocks = Clocks::parse(&[text(file)])?;
+        let day = GpsTime::new(58_849, 0.0).day();
+        assert_eq!(
+            clocks.wide_lanes().collect::<Vec<_>>(),
+            [((day, 5), -1.103), ((day, 101), -0.44)]
+        );
         Ok(())
     }
 

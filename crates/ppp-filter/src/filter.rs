@@ -11,7 +11,7 @@ use kestirim_gnss_ppp::{GpsTime, Receiver};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PppFilter<const N: usize> {
     config: Config,
-    running: Option<Running<N>>,
+    pub(crate) running: Option<Running<N>>,
 }
 
 impl<const N: usize> PppFilter<N> {

@@ -69,7 +69,7 @@ impl<const N: usize> Running<N> {
     ///
     /// Within the correlation time τ they are the same: n epochs Δt apart tell as much as n·Δt/2τ. A
     /// position that moves does not average them; what it owes to the ambiguities does.
-    fn repetition(&self, config: &Config) -> f64 {
+    pub(crate) fn repetition(&self, config: &Config) -> f64 {
         let repeated = match self.interval {
             Some(interval) => 1.0 + 2.0 * config.correlation_time / interval,
             None => 1.0,

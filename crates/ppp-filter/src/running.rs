@@ -361,14 +361,14 @@ impl<const N: usize> Running<N> {
     }
 
     /// Phases without the milliseconds by which they are ahead of the codes, cycles.
-    fn repaired(&self, observation: &SatelliteObservation<'_>) -> [f64; 2] {
+    pub(crate) fn repaired(&self, observation: &SatelliteObservation<'_>) -> [f64; 2] {
         let [first, second] = observation.phase;
         let seconds = 1e-3 * f64::from(self.ahead);
         let [of_first, of_second] = observation.carriers.frequency();
         [first - seconds * of_first, second - seconds * of_second]
     }
 
-    fn find(&self, satellite: u8) -> Option<usize> {
+    pub(crate) fn find(&self, satellite: u8) -> Option<usize> {
         let is = |channel: &Option<Channel>| channel.is_some_and(|c| c.satellite == satellite);
         self.channels.iter().position(is)
     }

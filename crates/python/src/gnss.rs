@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use kestirim_gnss_ppp::Corrections;
 use kestirim_health::Health;
 use kestirim_ppp_filter::{Config, Health as Quality, Motion};
-use kestirim_replay::gnss::{FilterKind, Followed, Order, Pass, Paths, Recording, Systems, follow};
+use kestirim_replay::gnss::{
+    Ambiguities, FilterKind, Fixing, Followed, Order, Pass, Paths, Recording, Systems, follow,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -17,7 +19,7 @@ const STACK_BYTES: usize = 16 << 20;
 
 /// A receiver's positions.
 #[pyfunction]
-#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, mask, until, smooth))]
+#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, ambiguities, mask, until, smooth))]
 pub(crate) fn gnss<'py>(
     py: Python<'py>,
     obs: PathBuf,
@@ -29,6 +31,7 @@ pub(crate) fn gnss<'py>(
     process_noise: Option<f64>,
     filter: &str,
     systems: &str,
+    ambiguities: &str,
     mask: Option<f64>,
     until: Option<f64>,
     smooth: bool,
@@ -44,6 +47,7 @@ pub(crate) fn gnss<'py>(
         ..config
     };
     let systems = self::systems(systems)?;
+    let ambiguities = self::ambiguities(ambiguities)?;
     let found = py.detach(|| {
         let run = move || -> PyResult<Found> {
             let paths = Paths {
@@ -58,7 +62,7 @@ pub(crate) fn gnss<'py>(
             let epochs = recording.epochs(until);
             let receiver = recording.receiver(Corrections::ALL);
             let run = |order| {
-                let pass = Pass { systems, order, with_residuals: false };
+                let pass = Pass { systems, order, ambiguities, with_residuals: false };
                 follow(&recording, epochs, &receiver, config, pass, || ())
             };
             let mut followed = run(Order::Forwards);
@@ -94,6 +98,14 @@ fn systems(name: &str) -> PyResult<Systems> {
     }
 }
 
+fn ambiguities(name: &str) -> PyResult<Ambiguities> {
+    match name {
+        "float" => Ok(Ambiguities::Float),
+        "fixed" => Ok(Ambiguities::Fixed),
+        _ => Err(unknown("ambiguities", name, "'float' or 'fixed'")),
+    }
+}
+
 struct Found {
     followed: Followed,
     warnings: Vec<String>,
@@ -104,7 +116,7 @@ struct Found {
 impl Found {
     fn results(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let Self { followed, warnings, doubts } = self;
-        let Followed { fixes, deviations, delays, healths, heard, epochs, .. } = followed;
+        let Followed { fixes, deviations, delays, healths, heard, epochs, fixing, .. } = followed;
         let least = code(doubts.state());
         let in_short = || healths.iter().map(|health| health.in_short());
         let all = in_short().fold(doubts, Health::and);
@@ -121,6 +133,7 @@ impl Found {
             .line("converged", healths.iter().map(|it| *it == Quality::Converged).collect())?
             .line("health", in_short().map(|health| least.max(code(health.state()))).collect())?
             .with("epochs", epochs)?
+            .with("fixed_epochs", fixing.map_or(0, |Fixing { epochs, .. }| epochs))?
             .words("warnings", warnings)?
             .words("reasons", reasons(all))?
             .done())

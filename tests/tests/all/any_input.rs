@@ -43,7 +43,7 @@ macro_rules! test_each {
 }
 
 test_each!(
-    adaptive_kalman air_to_ground arithmetic attitude gnss_ppp health imu_calibration luenberger luenberger_f64
+    adaptive_kalman air_to_ground arithmetic attitude gnss_ppp health imu_calibration integer_ambiguity luenberger luenberger_f64
     observer_design particle_filter pedestrian ppp_filter robust_kalman scalar scalar_f64 snapshot telemetry uav_estimator
     uav_longitudinal user_locator uwb_ranging uwb_tracker
 );

@@ -13,6 +13,7 @@ mod firmware;
 mod functions_on_target;
 mod gnss_figures;
 mod gnss_files;
+mod gnss_fixed;
 mod gnss_recordings;
 mod panic_free;
 mod pedestrian_on_target;

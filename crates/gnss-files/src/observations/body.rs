@@ -195,7 +195,8 @@ impl Body {
             for &(prn, end) in &self.records[record..epoch.end] {
                 let chosen = signals.get(&prn).copied().unwrap_or_default();
                 let mut observed = Observed::of(prn, &chosen, &self.raw[start..end]);
-                if let Some(biases) = biases.of(prn, chosen.carriers, chosen.code, epoch.time) {
+                if let Some(biases) = biases.of_codes(prn, chosen.carriers, chosen.code, epoch.time)
+                {
                     observed.shorten(biases);
                     corrected.insert(prn);
                 }

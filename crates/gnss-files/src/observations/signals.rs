@@ -171,6 +171,13 @@ impl Signals {
         chosen
     }
 
+    /// Whether the clocks of satellites refer to both codes.
+    pub fn are_reference(&self) -> bool {
+        self.code
+            .iter()
+            .all(|code| code.is_some_and(|code| code.reference(self.carriers) == Some(code)))
+    }
+
     /// Sentences about the codes of satellites without known biases to which the clocks of satellites do not refer.
     pub(super) fn warnings<'a>(signals: impl Iterator<Item = (&'a u8, &'a Self)>) -> Vec<String> {
         let mut others = BTreeMap::<Signal, Vec<String>>::new();

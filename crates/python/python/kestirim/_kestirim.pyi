@@ -120,6 +120,7 @@ class _ReceiverTrack(TypedDict):
     converged: _Bools
     health: _Codes
     epochs: int
+    fixed_epochs: int
     warnings: tuple[str, ...]
     reasons: tuple[str, ...]
 
@@ -284,6 +285,7 @@ def gnss(
     process_noise: Optional[float],
     filter: str,
     systems: str,
+    ambiguities: str,
     mask: Optional[float],
     until: Optional[float],
     smooth: bool,

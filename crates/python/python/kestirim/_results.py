@@ -227,6 +227,8 @@ class ReceiverTrack(Frame):
     """(m,) values of `Health`."""
     epochs: int
     """How many epochs there were."""
+    fixed_epochs: int
+    """In how many of them some ambiguities were whole."""
     warnings: tuple[str, ...]
     """What the readers found suspicious in the files."""
     reasons: tuple[str, ...]

@@ -321,6 +321,7 @@ def gnss(
     process_noise: Optional[float] = None,
     filter: Literal["default", "gkf", "rkf", "skf", "ikf", "adaptive"] = "default",
     systems: Literal["all", "gps", "galileo"] = "all",
+    ambiguities: Literal["float", "fixed"] = "float",
     mask: Optional[float] = None,
     until: Optional[float] = None,
     smooth: bool = False,
@@ -328,12 +329,13 @@ def gnss(
     """Where a GPS and Galileo receiver is, to a centimetre, from files; any may be packed with gzip.
 
     obs: what the receiver observed, RINEX 2, 3 or 4 or Compact RINEX. sp3: precise orbits. antex: phase centres of
-    antennas. clk: precise clocks, RINEX; else those of the orbit files. bias: biases of codes, Bias-SINEX.
+    antennas. clk: precise clocks, RINEX; else those of the orbit files. bias: biases of codes and phases, Bias-SINEX.
     blq: ocean loading of the station.
 
     process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
     for one at rest. filter: what is done about observations that do not fit.
-    systems: satellites that serve. mask: rad, lowest elevation, 8° unless it is said. until: s, the last epoch.
+    systems: satellites that serve. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo
+    with integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. until: s, the last epoch.
     smooth: put together what is found forwards and backwards, from the first epoch on.
 
     The same as `host-sim replay gnss`, to the bit.
@@ -348,6 +350,7 @@ def gnss(
         process_noise,
         filter,
         systems,
+        ambiguities,
         mask,
         until,
         smooth,

@@ -32,6 +32,18 @@ impl Systems {
     }
 }
 
+/// Whether ambiguities become whole numbers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+pub enum Ambiguities {
+    /// They stay as the filter has them
+    #[default]
+    Float,
+    /// Whole where that passes the tests: GPS and Galileo, integer clocks or biases of phases
+    Fixed,
+}
+
 /// Which filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]

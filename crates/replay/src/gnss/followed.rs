@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::choices::{STATES, STATES_WITH_GALILEO, Systems};
+use super::choices::{Ambiguities, STATES, STATES_WITH_GALILEO, Systems};
+use super::fixing::{Fixer, Fixing};
 use super::model::Epoch;
 use super::outage::{Outage, Outages, Unused};
 use super::products::Unusable;
@@ -144,6 +145,8 @@ pub struct Followed {
     pub unused: Unused,
     /// By satellite.
     pub satellites: BTreeMap<u8, Tally>,
+    /// What came of whole ambiguities, if they were asked for.
+    pub fixing: Option<Fixing>,
     /// The epochs without a solution.
     pub outages: Outages,
     /// Of each satellite in each epoch, if that was asked for.
@@ -167,6 +170,8 @@ pub struct Pass {
     pub systems: Systems,
     /// In which order.
     pub order: Order,
+    /// Whether ambiguities become whole numbers.
+    pub ambiguities: Ambiguities,
     /// Whether to keep what became of each observation.
     pub with_residuals: bool,
 }
@@ -198,7 +203,8 @@ fn feed<const N: usize>(
     pass: Pass,
     mut next: impl FnMut(),
 ) -> Followed {
-    let Pass { systems, order, with_residuals } = pass;
+    let Pass { systems, order, with_residuals, .. } = pass;
+    let mut fixer = (pass.ambiguities == Ambiguities::Fixed).then(|| Fixer::new(recording));
     let mask = filter.config().elevation_mask;
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
     let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();
@@ -239,7 +245,10 @@ fn feed<const N: usize>(
             Order::Backwards => filter.process_backwards(epoch.time, receiver, &observations),
         };
         match solution {
-            Ok(solution) => {
+            Ok(mut solution) => {
+                if let Some(fixer) = &mut fixer {
+                    fixer.fix(epoch.time, &filter, &observations, &mut solution);
+                }
                 for report in &solution.satellites {
                     lost[usize::from(report.satellite)] = false;
                 }
@@ -258,6 +267,7 @@ fn feed<const N: usize>(
         followed.unused.add(&unused);
         next();
     }
+    followed.fixing = fixer.map(Fixer::finish);
     if is_backwards {
         followed.turn();
     }

@@ -6,6 +6,7 @@ use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Satelli
 use kestirim_ppp_filter::SatelliteObservation;
 
 use super::model::{carriers, clock_sample, orbit_sample, patterns};
+use super::whole_biases::WholeBiases;
 
 /// Clocks are bridged over the interval of the coarsest products, s.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
@@ -39,6 +40,7 @@ pub struct Satellite {
 pub struct Products {
     reference: GpsTime,
     satellites: Vec<Satellite>,
+    whole: WholeBiases,
 }
 
 impl Products {
@@ -71,7 +73,7 @@ impl Products {
             let antenna = antennas.satellite(prn, start).cloned();
             Satellite { orbit: orbit.collect(), clock, antenna }
         });
-        Self { reference, satellites: satellites.collect() }
+        Self { reference, satellites: satellites.collect(), whole: WholeBiases::default() }
     }
 
     /// Products of which all samples count from `reference`: the satellites in the order of their numbers, from 1.
@@ -80,7 +82,18 @@ impl Products {
         satellites: impl IntoIterator<Item = Satellite>,
     ) -> Self {
         let satellites = std::iter::once(Satellite::default()).chain(satellites).collect();
-        Self { reference, satellites }
+        Self { reference, satellites, whole: WholeBiases::default() }
+    }
+
+    /// The same with biases that make ambiguities whole.
+    #[must_use]
+    pub(super) fn with_whole(self, whole: WholeBiases) -> Self {
+        Self { whole, ..self }
+    }
+
+    /// The biases of satellites that make ambiguities whole.
+    pub const fn whole(&self) -> &WholeBiases {
+        &self.whole
     }
 
     /// An observed satellite with its state when it sent what was received at `time`.

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use super::coverage::{self, FIRST_GALILEO};
 use super::model::{self, Epoch, patterns, receiver_patterns};
 use super::products::Products;
+use super::whole_biases::WholeBiases;
 
 /// Fewer satellites give no position, …
 pub const FEWEST_SATELLITES: usize = 4;
@@ -99,7 +100,8 @@ impl Recording {
         Ok(Self {
             path: paths.obs.to_path_buf(),
             truth: None,
-            products: Products::new(start, &orbits, clocks.as_ref(), &antennas),
+            products: Products::new(start, &orbits, clocks.as_ref(), &antennas)
+                .with_whole(WholeBiases::new(clocks.as_ref(), biases, &observations.signals)),
             epochs: observations
                 .epochs
                 .into_iter()
@@ -204,6 +206,17 @@ impl Recording {
     /// Orbits, clocks and antennas of satellites.
     pub const fn products(&self) -> &Products {
         &self.products
+    }
+
+    /// Why no ambiguity can become a whole number, if that is so.
+    pub fn never_whole(&self) -> Option<&'static str> {
+        if self.receiver_antenna().is_none() {
+            Some("the receiver's antenna is not known")
+        } else if self.products.whole().is_empty() {
+            Some("neither the clocks nor a file of biases has what makes ambiguities whole")
+        } else {
+            None
+        }
     }
 
     /// The receiver's antenna, if its phase centres are known.

@@ -37,6 +37,7 @@ impl Followed {
             theirs += usize::from(is_theirs);
         }
         both.last = self.last;
+        both.fixing = self.fixing;
         both
     }
 

@@ -93,6 +93,11 @@ impl System for Gnss {
             Some(recording) if name == "systems" && !recording.has_galileo() => {
                 Some(Idle::foreign("is for recordings with satellites of Galileo"))
             }
+            Some(recording) if name == "ambiguities" && recording.never_whole().is_some() => {
+                Some(Idle::foreign(
+                    "is for clocks or biases that make ambiguities whole, and a known antenna",
+                ))
+            }
             _ => settings::idle(settings, name),
         }
     }

@@ -6,7 +6,7 @@ mod part;
 
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::{Config, Motion};
-use kestirim_replay::gnss::{FilterKind, Recording, Systems};
+use kestirim_replay::gnss::{Ambiguities, FilterKind, Recording, Systems};
 use kestirim_robust_kalman::{Igg3, Weight};
 use nalgebra::Vector3;
 
@@ -32,6 +32,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     vec![
         Setting::one_of("mode", "Whether the receiver moves", &Mode::default()),
         Setting::one_of("systems", "Satellites of which systems serve", &Systems::default()),
+        Setting::one_of("ambiguities", "Whether ambiguities become whole", &Ambiguities::default()),
         Setting::decades(
             "process-noise",
             "Variance added to each coordinate of a receiver that may move; 1e-4 holds a slow one together \
@@ -131,6 +132,8 @@ pub struct Setup {
     pub motion: Motion,
     /// Satellites of which systems serve.
     pub systems: Systems,
+    /// Whether ambiguities become whole numbers.
+    pub ambiguities: Ambiguities,
     /// Lowest elevation of a satellite, rad; none: the filter's own choice.
     pub mask: Option<f64>,
     /// Whether the paper's filters are taken as published.
@@ -154,6 +157,7 @@ impl Setup {
             filter: Choice::One(filter),
             motion,
             systems: Systems::default(),
+            ambiguities: Ambiguities::default(),
             mask: None,
             published: false,
             thresholds: [None; 2],
@@ -178,6 +182,7 @@ impl Setup {
             filter: settings.chosen("filter"),
             motion,
             systems: settings.chosen("systems"),
+            ambiguities: settings.chosen("ambiguities"),
             mask: settings.number("mask").map(f64::to_radians),
             published: settings.is_on("published"),
             thresholds: ["k0", "k1"].map(|name| settings.number(name)),

@@ -95,10 +95,13 @@ fn all_filters_are_shown_beside_each_other() {
     assert_eq!((figure(&answer, "error").series.len(), answer.facts.len()), (6, 7));
     assert!(answer.command.ends_with("--synthetic clean --filter all --until 3600"));
     let disabled: Vec<_> = answer.disabled.iter().map(|(name, _)| *name).collect();
-    assert_eq!(disabled, ["systems", "process-noise", "scalar"]);
+    assert_eq!(disabled, ["systems", "ambiguities", "process-noise", "scalar"]);
     let plain = answered(&*opened, &json!({ "filter": "gkf" }));
     let disabled: Vec<_> = plain.disabled.iter().map(|(name, _)| *name).collect();
-    assert_eq!(disabled, ["systems", "process-noise", "published", "k0", "k1", "scalar"]);
+    assert_eq!(
+        disabled,
+        ["systems", "ambiguities", "process-noise", "published", "k0", "k1", "scalar"]
+    );
 }
 
 #[test]

@@ -7,6 +7,7 @@ pub mod attitude;
 pub mod gnss_ppp;
 pub mod health;
 pub mod imu_calibration;
+pub mod integer_ambiguity;
 pub mod kalman;
 pub mod luenberger;
 pub mod luenberger_f64;

@@ -4,8 +4,8 @@ use kestirim_gnss_ppp::{
     Carriers, Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
 };
 use kestirim_ppp_filter::{
-    Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation, Solution,
-    states,
+    AmbiguityFixer, Config, Deviation, Error, Estimator, Health, Motion, PhaseBias, PppFilter,
+    SatelliteObservation, Solution, states,
 };
 
 use super::values::{
@@ -75,11 +75,18 @@ fn filters<const N: usize>() {
     let observations = any([observation; 4]);
     let mut filter = any(PppFilter::<N>::new(config()));
     keep(PppFilter::config(&filter));
+    keep(<AmbiguityFixer<N> as Default>::default());
+    let mut fixer = any(AmbiguityFixer::<N>::new());
+    let bias = maybe(any(PhaseBias { wide_lane: number(), ionosphere_free: number() }));
+    keep(PhaseBias::absolute(carriers, numbers()));
     for _ in 0..rounds() {
         let time = any(GpsTime::new(whole(), number()));
         try_on(&mut filter, |filter| {
             let solution = any(PppFilter::process(filter, time, &receiver, slice(&observations))?);
             keep(Solution::deviations_enu(&solution));
+            keep(AmbiguityFixer::fix(&mut fixer, filter, &solution, slice(&observations), |_| {
+                bias
+            }));
             let back = PppFilter::process_backwards(filter, time, &receiver, slice(&observations));
             keep(any(back)?.position);
             keep(Health::in_short(solution.health));

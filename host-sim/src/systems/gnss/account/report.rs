@@ -3,7 +3,9 @@
 use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
 use kestirim_ppp_filter::Health;
-use kestirim_replay::gnss::{Accuracy, Both, FilterKind, Followed, Recording, Slips, Unused};
+use kestirim_replay::gnss::{
+    Accuracy, Both, FilterKind, Fixing, Followed, Recording, Slips, Unused,
+};
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -61,6 +63,9 @@ pub struct Report {
     pub most_rejected: Vec<Rejections>,
     /// Observed satellites that did not serve, one an epoch.
     pub unused: Unused,
+    /// What came of whole ambiguities, if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambiguities: Option<Fixing>,
     /// What a reader should know.
     pub warnings: Vec<String>,
     /// How far from the truth, if it is known.
@@ -177,6 +182,7 @@ impl Report {
             slips_by_kind: followed.slips,
             most_rejected: most_rejected(followed),
             unused: followed.unused,
+            ambiguities: followed.fixing,
             warnings,
             smoothed: smoothed.and_then(|it| SmoothedReport::of(it, truth.as_ref())),
             accuracy: truth.and_then(|truth| {
@@ -274,6 +280,12 @@ impl Report {
         fact("down-weighted", both(self.deweighted_by_kind));
         fact("slips", slips(self.slips_by_kind));
         fact("not used", unused(&self.unused));
+        if let Some(Fixing { epochs, first_s, fixed, ratio, success_rate }) = self.ambiguities {
+            let since = first_s.map_or_else(String::new, |first| {
+                format!(", the first at {first} s, {fixed} in the last (ratio {ratio:.1}, success rate {success_rate:.4})")
+            });
+            fact("whole ambiguities", format!("in {epochs} epochs{since}"));
+        }
         if let Some(accuracy) = &self.accuracy {
             let Accuracy { final_3d_m, final_enu_m, .. } = *accuracy;
             fact("final error", format!("{} ({})", millimetres(final_3d_m), enu(final_enu_m)));

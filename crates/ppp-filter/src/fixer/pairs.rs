@@ -1,0 +1,139 @@
+//! Narrow lanes: what is left of ambiguities between two satellites of a system, whose wide lanes are whole.
+
+use heapless::Vec;
+use kestirim_gnss_ppp::Constellation;
+use kestirim_integer_ambiguity::Decorrelated;
+use kestirim_kalman::{Gaussian, SparseRow};
+use kestirim_scalar::Components;
+
+use super::wide_lane::Candidate;
+
+/// What models leave of each satellite's ambiguity (orbit, clock, antennas, weather), m.
+const MODEL: f64 = 0.005;
+/// How many pairs must be found at once. With seven, the integers of one in a hundred hours were wrong together.
+const FEWEST: usize = 9;
+/// The tests: the least success rate and ratio, the largest mean square of what the integers are off, in variances.
+const LEAST_SUCCESS: f64 = 0.99;
+const LEAST_RATIO: f64 = 2.0;
+const LARGEST_MISFIT: f64 = 3.0;
+
+/// A satellite less the highest of its system.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) one: Candidate,
+    pub(super) reference: Candidate,
+}
+
+impl Pair {
+    /// Each satellite with the highest of its system.
+    pub(super) fn all<const N: usize>(candidates: &[Candidate]) -> Vec<Self, N> {
+        let mut pairs = Vec::new();
+        for system in [Constellation::Gps, Constellation::Galileo] {
+            let of_system = || candidates.iter().filter(|it| it.carriers.constellation() == system);
+            let highest = of_system().max_by(|a, b| a.elevation.total_cmp(&b.elevation));
+            let Some(&reference) = highest else { continue };
+            for &one in of_system().filter(|it| it.satellite != reference.satellite) {
+                let _ = pairs.push(Self { one, reference });
+            }
+        }
+        pairs
+    }
+
+    /// The row of both ambiguities.
+    pub(super) const fn row(&self) -> SparseRow<f64, 2> {
+        SparseRow::new([(self.one.state, 1.0), (self.reference.state, -1.0)])
+    }
+
+    /// What the difference of both ambiguities is with a whole number on the first carrier, m.
+    pub(super) fn length(&self, integer: f64) -> f64 {
+        let [first, second] = self.one.carriers.frequency();
+        let wide = self.one.wide - self.reference.wide;
+        let cycles = integer + second / (first - second) * wide;
+        self.one.carriers.narrow_lane() * cycles + self.one.bias - self.reference.bias
+    }
+
+    /// What the difference of both ambiguities is, m.
+    pub(super) fn found<const N: usize>(&self, estimate: &Gaussian<f64, N>) -> f64 {
+        let of = |state: usize| estimate.mean.as_array().get(state).copied().unwrap_or(0.0);
+        of(self.one.state) - of(self.reference.state)
+    }
+
+    /// The number of cycles on the first carrier as the filter has it, not whole.
+    fn float<const N: usize>(&self, estimate: &Gaussian<f64, N>) -> f64 {
+        (self.found(estimate) - self.length(0.0)) / self.one.carriers.narrow_lane()
+    }
+
+    /// Covariance of two pairs' cycles.
+    fn covariance<const N: usize>(&self, other: &Self, estimate: &Gaussian<f64, N>) -> f64 {
+        let of = |a: &Candidate, b: &Candidate| {
+            let model = if a.state == b.state { MODEL * MODEL } else { 0.0 };
+            estimate.covariance.get(a.state, b.state).unwrap_or(0.0) + model
+        };
+        let square = of(&self.one, &other.one)
+            - of(&self.one, &other.reference)
+            - of(&self.reference, &other.one)
+            + of(&self.reference, &other.reference);
+        square / (self.one.carriers.narrow_lane() * other.one.carriers.narrow_lane())
+    }
+
+    /// Variance of a pair's length, m², if both ambiguities are whole: what models leave.
+    pub(super) const fn model_variance() -> f64 {
+        2.0 * MODEL * MODEL
+    }
+}
+
+/// How integers were found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Validation {
+    pub(super) ratio: f64,
+    pub(super) success_rate: f64,
+}
+
+/// Integers of some pairs that pass the tests.
+pub(super) struct Found<const N: usize> {
+    pub(super) pairs: Vec<Pair, N>,
+    pub(super) integers: Vec<i64, N>,
+    pub(super) validation: Validation,
+}
+
+/// Looks for the integers of all pairs, then of fewer, the lowest satellite left out each time (partial fixing). Where some are held
+/// already, with which these must agree, that takes the place of the last test.
+pub(super) fn search<const N: usize>(
+    estimate: &Gaussian<f64, N>,
+    candidates: &Vec<Candidate, N>,
+    are_held: bool,
+) -> Option<Found<N>> {
+    let mut some = candidates.clone();
+    loop {
+        let pairs: Vec<Pair, N> = Pair::all(&some);
+        if pairs.len() < FEWEST {
+            return None;
+        }
+        let mut floats: Vec<f64, N> = Vec::new();
+        for pair in &pairs {
+            floats.push(pair.float(estimate)).ok()?;
+        }
+        let covariance = |i: usize, j: usize| match (pairs.get(i), pairs.get(j)) {
+            (Some(one), Some(other)) => one.covariance(other, estimate),
+            _ => 0.0,
+        };
+        let decorrelated = Decorrelated::<N>::new(&floats, covariance).ok()?;
+        let success_rate = decorrelated.success_rate();
+        if success_rate >= LEAST_SUCCESS
+            && let Ok(nearest) = decorrelated.nearest()
+        {
+            let [distance, _] = nearest.distances;
+            let fits = distance <= LARGEST_MISFIT * pairs.len() as f64;
+            let ratio = nearest.ratio();
+            if ratio >= LEAST_RATIO && (fits || are_held) {
+                let validation = Validation { ratio, success_rate };
+                return Some(Found { pairs, integers: nearest.integers, validation });
+            }
+        }
+        let each = some.iter().enumerate();
+        let (lowest, _) = each.min_by(|(_, a), (_, b)| a.elevation.total_cmp(&b.elevation))?;
+        if lowest < some.len() {
+            some.swap_remove(lowest);
+        }
+    }
+}

@@ -1,0 +1,45 @@
+use kestirim_gnss_ppp::Carriers;
+
+/// What a satellite adds to its two phases beside whole cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PhaseBias {
+    /// To be added to the Melbourne–Wübbena combination, cycles of the wide lane.
+    pub wide_lane: f64,
+    /// To be taken off the ionosphere-free phase, m; zero where the satellite's clock holds it (integer clocks).
+    pub ionosphere_free: f64,
+}
+
+impl PhaseBias {
+    /// From absolute biases of both phases, m; the codes are free of theirs.
+    pub fn absolute(carriers: Carriers, phases: [f64; 2]) -> Self {
+        let [of_first, of_second] = carriers.wavelength();
+        let [first, second] = phases;
+        Self {
+            wide_lane: second / of_second - first / of_first,
+            ionosphere_free: carriers.ionosphere_free(phases),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without its biases a phase is whole: the wide lane, and what is left for the first carrier.
+    #[test]
+    fn absolute_biases_leave_whole_cycles() {
+        for carriers in [Carriers::L1L2, Carriers::E1E5a] {
+            let (range, biases, cycles) = (22e6, [0.037, -0.052], [17.0, 12.0]);
+            let wavelength = carriers.wavelength();
+            let phase = [0, 1].map(|i| (range + biases[i]) / wavelength[i] + cycles[i]);
+            let PhaseBias { wide_lane, ionosphere_free } = PhaseBias::absolute(carriers, biases);
+            let wide = carriers.melbourne_wuebbena(phase, [range; 2]) + wide_lane;
+            assert!((wide - 5.0).abs() < 1e-6, "{wide}");
+            let [first, second] = carriers.frequency();
+            let left = carriers.ionosphere_free_phase(phase) - range - ionosphere_free;
+            let narrow = left / carriers.narrow_lane() - second / (first - second) * wide;
+            assert!((narrow - 17.0).abs() < 1e-4, "{narrow}");
+        }
+    }
+}
