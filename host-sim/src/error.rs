@@ -49,6 +49,10 @@ pub enum Error {
         source: io::Error,
     },
 
+    /// Shards, plans and tables.
+    #[error(transparent)]
+    Sweep(#[from] kestirim_sweep::Error),
+
     /// Standard output cannot be written, for a reason other than a reader that went away.
     #[error("standard output cannot be written: {0}")]
     Stdout(#[source] io::Error),

@@ -1,15 +1,18 @@
 //! The commands, each written once for any system.
 
+mod archive;
 mod arguments;
 mod calibrate;
 mod check;
 pub mod design;
 mod list;
 pub mod live;
+mod merge;
 mod replay;
 mod run;
 pub mod serve;
 mod survey;
+mod sweep;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -19,7 +22,9 @@ use clap_complete::Shell;
 
 use self::arguments::{read, sentence};
 use self::design::Design;
+use self::merge::Together;
 use self::serve::Serve;
+use self::sweep::Sweep;
 use crate::system::{Account, AnySystem};
 use crate::systems::ALL;
 use crate::{Error, output};
@@ -39,6 +44,13 @@ pub fn command(arguments: &[OsString]) -> Command {
         .after_help(examples(ALL[0]))
         .subcommand(run::command())
         .subcommand(replay::command())
+        .subcommand(Sweep::augment_args(
+            Command::new("sweep").about("Try many settings, seeds or recordings, in shards"),
+        ))
+        .subcommand(Together::augment_args(
+            Command::new("merge")
+                .about("Put the shards of a sweep together and print what a single run prints"),
+        ))
         .subcommand(check::command())
         .subcommand(calibrate::command())
         .subcommand(survey::command())
@@ -91,6 +103,8 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
     match name {
         "run" => run::run(matches),
         "replay" => replay::run(matches),
+        "sweep" => read::<Sweep>(matches)?.run(),
+        "merge" => read::<Together>(matches)?.run(),
         "check" => check::run(matches),
         "calibrate" => calibrate::run(matches),
         "survey" => survey::run(matches),

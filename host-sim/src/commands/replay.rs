@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
+use super::archive;
 use super::arguments::chosen;
 use crate::system::{
     Account, AnySystem, Files, Opened, Reading, Setting, Settings, Source, Wanted,
@@ -22,11 +23,22 @@ pub(super) fn command() -> Command {
 
 fn of(system: &dyn AnySystem) -> Command {
     let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
-    recorded(system).args(outputs).arg(file(
-        "mcap",
-        "OUT.mcap",
-        "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun",
-    ))
+    let mcap = "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun";
+    let out = "The table of --logs, of the format that its ending says";
+    let logs = "Many recordings instead of one: a pattern such as 'dir/**/*.txt' of the first file above that is required and not \
+                named; in other files' names {dir} and {stem} stand for its folder and its name without ending";
+    let logs = Arg::new("logs").long("logs").value_name("PATTERN").help(logs).requires("out");
+    let names = system.outputs().iter().map(|it| it.name).chain(["mcap", "json", "synthetic"]);
+    let required = system.files().iter().filter(|field| field.required).map(|field| field.name);
+    let command = required.fold(recorded(system), |command, name| {
+        command.mut_arg(name, |arg| arg.required_unless_present("logs"))
+    });
+    command
+        .args(outputs)
+        .arg(file("mcap", "OUT.mcap", mcap))
+        .next_help_heading("Archives")
+        .arg(logs.conflicts_with_all(names))
+        .arg(file("out", "TABLE.csv", out).requires("logs"))
 }
 
 /// A command for a recording of a system, with the options that say where it is and how it is tracked.
@@ -72,6 +84,9 @@ fn file(name: &'static str, value_name: &'static str, help: &'static str) -> Arg
 /// Reads, tracks, compares, writes and prints; nothing is printed if anything is wrong.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
+    if let Some(pattern) = matches.get_one::<String>("logs") {
+        return archive::run(system, matches, named(system, matches)?, pattern);
+    }
     show(&account(system, matches)?, matches.get_flag("json"))
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::{ArgMatches, Args, Command};
 
 use super::arguments::{chosen, read};
-use crate::system::{AnySystem, Outputs, RunOptions, Setting, Settings, say_where};
+use crate::system::{AnySystem, Outputs, RunOptions, Setting, Settings, say_where, tried};
 use crate::systems::ALL;
 use crate::{Error, output, report};
 
@@ -28,7 +28,8 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (options, outputs) = (read::<RunOptions>(matches)?, read::<Outputs>(matches)?);
     outputs.check()?;
     let cell = Settings::matched(system.cell(), matches);
-    let experiment = system.experiment(&options, &cell, outputs.any_file())?;
+    let samples = tried(&system.trials(&options, &cell)?)?;
+    let experiment = system.experiment(&options, &cell, &samples, outputs.any_file())?;
     if let Some(chapter) = experiment.chapter {
         outputs.write(chapter)?;
     }
@@ -43,8 +44,9 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 pub(super) fn everything(folder: &Path) -> Result<(), Error> {
     let mut chapters = Vec::new();
     for system in ALL {
-        let cell = Settings::new(system.cell());
-        let experiment = system.experiment(&RunOptions::default(), &cell, true)?;
+        let (options, cell) = (RunOptions::default(), Settings::new(system.cell()));
+        let samples = tried(&system.trials(&options, &cell)?)?;
+        let experiment = system.experiment(&options, &cell, &samples, true)?;
         if let Some(chapter) = experiment.chapter {
             output::print(&format!("{}\n", chapter.summary))?;
             chapters.push(chapter);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use kestirim_sweep::{Block, Samples};
 use serde_json::Value;
 
 use super::face::{Calibration, OutputField, System};
@@ -12,8 +13,8 @@ use super::opened::{self, Opened};
 use super::run::RunOptions;
 use super::setting::Setting;
 use super::settings::Settings;
-use crate::Error;
 use crate::report::Chapter;
+use crate::{Error, output};
 
 /// What came of an experiment.
 #[derive(Debug, Clone)]
@@ -61,6 +62,12 @@ pub trait AnySystem: Sync {
     /// [`Error::Usage`] with the reason.
     fn refuse_idle(&self, settings: &Settings) -> Result<(), Error>;
 
+    /// [`System::trials`].
+    ///
+    /// # Errors
+    /// As there.
+    fn trials(&self, run: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error>;
+
     /// [`System::experiment`], and the chapter if it is asked for.
     ///
     /// # Errors
@@ -69,6 +76,7 @@ pub trait AnySystem: Sync {
         &self,
         run: &RunOptions,
         cell: &Settings,
+        samples: &[Samples],
         with_chapter: bool,
     ) -> Result<Experiment, Error>;
 
@@ -131,14 +139,19 @@ impl<S: System> AnySystem for S {
         refuse(settings, |name| S::idle(None, settings, name))
     }
 
+    fn trials(&self, run: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error> {
+        refuse(cell, |name| S::cell_idle(cell, name))?;
+        S::trials(run, cell)
+    }
+
     fn experiment(
         &self,
         run: &RunOptions,
         cell: &Settings,
+        samples: &[Samples],
         with_chapter: bool,
     ) -> Result<Experiment, Error> {
-        refuse(cell, |name| S::cell_idle(cell, name))?;
-        let experiment = S::experiment(run, cell)?;
+        let experiment = S::experiment(run, cell, samples)?;
         let report =
             serde_json::to_value(&experiment).map_err(|error| Error::Stdout(error.into()))?;
         let chapter = with_chapter.then(|| S::chapter(&experiment)).transpose()?;
@@ -148,4 +161,23 @@ impl<S: System> AnySystem for S {
     fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
         S::online(settings, files)
     }
+}
+
+/// All trials that count, on all threads.
+///
+/// # Errors
+/// The sentence of a trial that gives nothing.
+pub fn tried(blocks: &[Block]) -> Result<Vec<Samples>, Error> {
+    let bar = output::progress(blocks.iter().map(|block| block.trials).sum(), "trials");
+    let samples = blocks.iter().map(|block| block.run(&|| bar.inc(1))).collect::<Result<_, _>>();
+    bar.finish_and_clear();
+    Ok(samples?)
+}
+
+/// A system's experiment, from its first trial to what came of it.
+///
+/// # Errors
+/// As [`System::trials`].
+pub fn experiment<S: System>(run: &RunOptions, cell: &Settings) -> Result<S::Experiment, Error> {
+    S::experiment(run, cell, &tried(&S::trials(run, cell)?)?)
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use kestirim_replay::Finding;
+use kestirim_sweep::{Block, Samples};
 use serde::Serialize;
 
 use super::account::{Account, Answer, Table};
@@ -170,11 +171,21 @@ pub trait System: Sync + 'static {
         None
     }
 
-    /// Runs the paper's experiment on synthetic streams, or what of it the `cell` asks for.
+    /// What the paper's experiment tries on synthetic streams, or what of it the `cell` asks for.
     ///
     /// # Errors
     /// [`Error::Usage`] for options that it does not have.
-    fn experiment(run: &RunOptions, cell: &Settings) -> Result<Self::Experiment, Error>;
+    fn trials(run: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error>;
+
+    /// What comes of the numbers of these trials.
+    ///
+    /// # Errors
+    /// As [`trials`](Self::trials).
+    fn experiment(
+        run: &RunOptions,
+        cell: &Settings,
+        samples: &[Samples],
+    ) -> Result<Self::Experiment, Error>;
 
     /// The system's part of the report.
     ///

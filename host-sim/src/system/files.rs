@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use kestirim_sweep::Shared;
 
 use super::reading::Reading;
 use super::setting::Setting;
@@ -87,6 +88,8 @@ pub struct Files {
     paths: BTreeMap<String, Vec<PathBuf>>,
     /// What the user says about an imported log.
     pub reading: Reading,
+    /// What recordings beside this one have read already.
+    pub shared: Shared,
 }
 
 impl Files {
@@ -171,7 +174,7 @@ impl Source {
     pub fn arguments(&self) -> Vec<String> {
         match self {
             Self::Synthetic(name) => vec!["--synthetic".to_owned(), name.clone()],
-            Self::Files(Files { paths, reading }) => {
+            Self::Files(Files { paths, reading, .. }) => {
                 let each = paths.iter().flat_map(|(field, paths)| {
                     paths.iter().map(move |path| [format!("--{field}"), printable_path(path)])
                 });

@@ -20,7 +20,7 @@ mod settings;
 mod shown;
 
 pub use account::{Account, Answer, Table};
-pub use any::{AnySystem, Experiment};
+pub use any::{AnySystem, Experiment, experiment, tried};
 pub use face::{Calibration, Detail, OutputField, System};
 pub use files::{FileField, Files, Source};
 pub use idle::Idle;

@@ -37,6 +37,20 @@ impl Outputs {
         output::refuse_twice(&[("--csv", self.csv.as_deref()), ("--mcap", self.mcap.as_deref())])
     }
 
+    /// Of one study of several, files and folders of its own: `a.csv` is `a-0.csv`.
+    #[must_use]
+    pub fn of_study(&self, number: usize, of: usize) -> Self {
+        let own = |path: &PathBuf| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let ending = path.extension().map(|it| format!(".{}", it.to_string_lossy()));
+            let name = format!("{stem}-{number}{}", ending.unwrap_or_default());
+            if of == 1 { path.clone() } else { path.with_file_name(name) }
+        };
+        let Self { json, csv, mcap, report } = self;
+        let [csv, mcap, report] = [csv, mcap, report].map(|path| path.as_ref().map(own));
+        Self { json: *json, csv, mcap, report }
+    }
+
     /// Writes the files that were asked for.
     ///
     /// # Errors

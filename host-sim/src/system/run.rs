@@ -9,8 +9,8 @@ use crate::Error;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Args)]
 pub struct RunOptions {
     /// Repetitions of the experiment [default: as many as take a few seconds]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub trials: Option<u32>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub trials: Option<u64>,
     /// Seed of all randomness; the same seed gives the same answer
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,

@@ -4,15 +4,16 @@
 
 use std::error::Error;
 
-use host_sim::system::{RunOptions, Settings};
-use host_sim::systems::drone::paper::{chapter, experiment};
+use host_sim::system::{RunOptions, Settings, experiment};
+use host_sim::systems::drone::Drone;
+use host_sim::systems::drone::paper::chapter;
 use host_sim::systems::drone::settings::cell;
 use kestirim_tests::book;
 
 #[test]
 #[ignore = "makes the book's figures"]
 fn figures() -> Result<(), Box<dyn Error>> {
-    let report = experiment::run(&RunOptions::default(), &Settings::new(cell::table()))?;
+    let report = experiment::<Drone>(&RunOptions::default(), &Settings::new(cell::table()))?;
     book::draw(
         &chapter::chapter(&report)?,
         &[

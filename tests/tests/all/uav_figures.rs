@@ -4,14 +4,15 @@
 
 use std::error::Error;
 
-use host_sim::system::RunOptions;
-use host_sim::systems::uav::paper::{chapter, experiment};
+use host_sim::system::{RunOptions, Settings, experiment};
+use host_sim::systems::uav::Uav;
+use host_sim::systems::uav::paper::chapter;
 use kestirim_tests::book;
 
 #[test]
 #[ignore = "makes the book's figures"]
 fn figures() -> Result<(), Box<dyn Error>> {
-    let report = experiment::run(RunOptions::default())?;
+    let report = experiment::<Uav>(&RunOptions::default(), &Settings::new([]))?;
     book::draw(
         &chapter::chapter(&report)?,
         &[

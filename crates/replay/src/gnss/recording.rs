@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use kestirim_gnss_files::{
-    Antenna, Antennas, Biases, Clocks, Error, Observations, Orbits, StationLoading,
-};
+use kestirim_gnss_files::{Antenna, Error, Observations, StationLoading};
 use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
 use nalgebra::Vector3;
@@ -12,6 +10,7 @@ use nalgebra::Vector3;
 use super::coverage::{self, FIRST_GALILEO};
 use super::model::{self, Epoch, patterns, receiver_patterns};
 use super::products::Products;
+use super::shelf::Shelf;
 use super::whole_biases::WholeBiases;
 
 /// Fewer satellites give no position, …
@@ -67,14 +66,22 @@ impl Recording {
     /// # Errors
     /// The file, the line, and what was expected there.
     pub fn read(paths: &Paths<'_>) -> Result<Self, Error> {
-        let biases = Biases::read(paths.bias)?;
-        let clocks = || (!paths.clk.is_empty()).then(|| Clocks::read(paths.clk)).transpose();
+        Self::read_beside(paths, &Shelf::default())
+    }
+
+    /// The same with products that other recordings have read, or that are read for them.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_beside(paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
+        let biases = shelf.biases(paths.bias)?;
+        let clocks = || (!paths.clk.is_empty()).then(|| shelf.clocks(paths.clk)).transpose();
         let (observations, (orbits, clocks)) = rayon::join(
             || Observations::read_unbiased(paths.obs, &biases),
-            || rayon::join(|| Orbits::read(paths.sp3), clocks),
+            || rayon::join(|| shelf.orbits(paths.sp3), clocks),
         );
         let (observations, orbits, clocks) = (observations?, orbits?, clocks?);
-        let antennas = Antennas::read(paths.antex, &observations.antenna)?;
+        let antennas = shelf.antennas(paths.antex, &observations.antenna)?;
         let near = observations.approximate_position;
         let read = |path| StationLoading::read(path, &observations.marker, near);
         let loading = paths.blq.map(read).transpose()?;
@@ -100,8 +107,8 @@ impl Recording {
         Ok(Self {
             path: paths.obs.to_path_buf(),
             truth: None,
-            products: Products::new(start, &orbits, clocks.as_ref(), &antennas)
-                .with_whole(WholeBiases::new(clocks.as_ref(), biases, &observations.signals)),
+            products: Products::new(start, &orbits, clocks.as_deref(), &antennas)
+                .with_whole(WholeBiases::new(clocks.as_deref(), biases, &observations.signals)),
             epochs: observations
                 .epochs
                 .into_iter()
@@ -112,7 +119,7 @@ impl Recording {
                 .collect(),
             approximate_position: observations.approximate_position,
             antenna_delta_hen: observations.antenna_delta_hen,
-            antenna: antennas.receiver,
+            antenna: antennas.receiver.clone(),
             galileo: galileo.map(|(_, signals)| model::carriers(signals.carriers)),
             loading: loading.as_ref().map(model::ocean_loading),
             utc_minus_gps: -start.leap_seconds(),

@@ -1,6 +1,7 @@
 //! What must be known of satellites for ambiguities to be whole numbers.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use kestirim_gnss_files::{self as files, Biases, Clocks, Signals};
 use kestirim_gnss_ppp::GpsTime;
@@ -13,14 +14,14 @@ use super::model::carriers;
 pub struct WholeBiases {
     /// By day and satellite, cycles.
     wide_lanes: BTreeMap<(i32, u8), f64>,
-    biases: Biases,
+    biases: Arc<Biases>,
     signals: BTreeMap<u8, Signals>,
 }
 
 impl WholeBiases {
     pub(super) fn new(
         clocks: Option<&Clocks>,
-        biases: Biases,
+        biases: Arc<Biases>,
         signals: &BTreeMap<u8, Signals>,
     ) -> Self {
         let wide_lanes = clocks.map(|clocks| clocks.wide_lanes().collect()).unwrap_or_default();

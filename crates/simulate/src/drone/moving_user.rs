@@ -91,6 +91,22 @@ pub struct Outcome {
     pub flown: Flown,
 }
 
+impl Outcome {
+    /// Names of its [`numbers`](Self::numbers).
+    pub const COLUMNS: [&'static str; 4] = ["error_m", "path_m", "climb_m", "hover_s"];
+
+    /// As a row of numbers.
+    pub fn numbers(&self) -> [f64; Self::COLUMNS.len()] {
+        let Flown { path_m, climb_m, hover_s } = self.flown;
+        [self.error_m, path_m, climb_m, hover_s]
+    }
+
+    /// From a row of numbers.
+    pub fn of_numbers([error_m, path_m, climb_m, hover_s]: [f64; Self::COLUMNS.len()]) -> Self {
+        Self { error_m, flown: Flown { path_m, climb_m, hover_s } }
+    }
+}
+
 /// A filter with the drone's rule of where to go.
 trait Follower {
     /// Takes in a loss measured at a waypoint, and says where the user is and where to go.

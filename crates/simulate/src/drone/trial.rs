@@ -39,6 +39,36 @@ pub struct Outcome {
     pub credible: bool,
 }
 
+impl Job {
+    /// Names of the numbers of an outcome.
+    pub fn columns(&self) -> Vec<String> {
+        let published = self.published.iter().map(|PublishedFilter { particles, resampler }| {
+            format!("published {particles} {resampler:?}_m")
+        });
+        let bests = self.bests.iter().map(|points| format!("best {points}_m"));
+        let first = ["limit_m", "refused", "credible"].map(str::to_owned);
+        first.into_iter().chain(published).chain(bests).collect()
+    }
+}
+
+impl Outcome {
+    /// As a row of numbers, in the order of [`Job::columns`].
+    pub fn numbers(&self) -> Vec<f64> {
+        let first = [self.limit, f64::from(self.refused), f64::from(self.credible)];
+        [&first[..], &self.published, &self.bests].concat()
+    }
+
+    /// From a row of numbers of a job; what is not there is 0.
+    pub fn of_numbers(job: &Job, row: &[f64]) -> Self {
+        let mut row = row.iter().copied();
+        let mut next = || row.next().unwrap_or_default();
+        let (limit, refused, credible) = (next(), next() as u32, next() != 0.0);
+        let published = job.published.iter().map(|_| next()).collect();
+        let bests = job.bests.iter().map(|_| next()).collect();
+        Self { published, bests, limit, refused, credible }
+    }
+}
+
 /// One user, one flight.
 pub fn trial(job: &Job, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
     match scalar {

@@ -19,6 +19,7 @@ mod noise;
 mod products;
 mod receiver;
 mod times;
+pub mod trial;
 
 use kestirim_replay::gnss::{Epoch, Products};
 use nalgebra::Vector3;

@@ -1,4 +1,5 @@
 //! What the simulation draws.
 
+pub mod day;
 pub mod radio;
 pub mod scenario;

@@ -4,11 +4,6 @@
 //!
 //! Frame: a plane in metres (such as east and north), heights above the user.
 
-#![expect(
-    clippy::missing_panics_doc,
-    reason = "what is expected holds for all that the command line lets through"
-)]
-
 pub mod account;
 pub mod figures;
 mod online;
@@ -30,6 +25,7 @@ use crate::system::{
     Setting, Settings, System, Table,
 };
 use kestirim_replay::drone::{self, Track};
+use kestirim_sweep::{Block, Samples};
 
 /// The system.
 #[derive(Debug, Clone, Copy)]
@@ -137,8 +133,12 @@ impl System for Drone {
         settings::cell::idle(cell, name)
     }
 
-    fn experiment(run: &RunOptions, cell: &Settings) -> Result<Report, Error> {
-        experiment::run(run, cell)
+    fn trials(run: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error> {
+        experiment::trials(run, cell)
+    }
+
+    fn experiment(run: &RunOptions, cell: &Settings, samples: &[Samples]) -> Result<Report, Error> {
+        experiment::report(run, cell, samples)
     }
 
     fn chapter(report: &Report) -> Result<Chapter, Error> {

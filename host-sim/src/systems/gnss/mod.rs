@@ -13,6 +13,7 @@ pub mod track;
 
 use kestirim_replay::gnss::{self, Recording};
 pub use kestirim_simulate::gnss as simulate;
+use kestirim_sweep::{Block, Samples};
 
 use self::figures::streams;
 use self::paper::experiment;
@@ -162,8 +163,16 @@ impl System for Gnss {
         Setup::of(settings).firmware()
     }
 
-    fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
-        experiment::run(*run)
+    fn trials(run: &RunOptions, _: &Settings) -> Result<Vec<Block>, Error> {
+        experiment::trials(*run)
+    }
+
+    fn experiment(
+        run: &RunOptions,
+        _: &Settings,
+        samples: &[Samples],
+    ) -> Result<experiment::Report, Error> {
+        experiment::report(*run, samples)
     }
 
     fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {

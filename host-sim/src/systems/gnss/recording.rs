@@ -4,7 +4,7 @@ pub mod truth;
 
 use kestirim_gnss_files as files;
 use kestirim_gnss_ppp::Correction;
-use kestirim_replay::gnss::{Paths, Recording};
+use kestirim_replay::gnss::{Paths, Recording, Shelf};
 
 use super::simulate::{Day, INTERVAL_S, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::Error;
@@ -30,7 +30,8 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
         bias: files.all("bias"),
         blq: files.one("blq"),
     };
-    let mut recording = Recording::read(&paths).map_err(error)?;
+    let mut recording =
+        Recording::read_beside(&paths, &files.shared.of::<Shelf>()).map_err(error)?;
     recording.truth = truth;
     if paths.blq.is_none() {
         recording.warn(

@@ -20,6 +20,7 @@ use std::sync::Arc;
 
 use kestirim_replay::pedestrian;
 pub use kestirim_replay::pedestrian::Sample;
+use kestirim_sweep::{Block, Samples};
 
 use self::calibrate::Calibrate;
 use self::figures::streams;
@@ -145,8 +146,16 @@ impl System for Pedestrian {
         }
     }
 
-    fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
-        experiment::run(*run)
+    fn trials(run: &RunOptions, _: &Settings) -> Result<Vec<Block>, Error> {
+        experiment::trials(*run)
+    }
+
+    fn experiment(
+        run: &RunOptions,
+        _: &Settings,
+        samples: &[Samples],
+    ) -> Result<experiment::Report, Error> {
+        experiment::report(*run, samples)
     }
 
     fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {

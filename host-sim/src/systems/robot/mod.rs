@@ -20,6 +20,7 @@ pub use kestirim_simulate::robot as simulate;
 use std::sync::Arc;
 
 use kestirim_replay::robot;
+use kestirim_sweep::{Block, Samples};
 
 use self::calibrate::Calibrate;
 use self::figures::streams;
@@ -162,8 +163,16 @@ impl System for Robot {
         setup.map_or_else(|error| format!("// {error}"), said)
     }
 
-    fn experiment(run: &RunOptions, _: &Settings) -> Result<experiment::Report, Error> {
-        experiment::run(*run)
+    fn trials(run: &RunOptions, _: &Settings) -> Result<Vec<Block>, Error> {
+        experiment::trials(*run)
+    }
+
+    fn experiment(
+        run: &RunOptions,
+        _: &Settings,
+        samples: &[Samples],
+    ) -> Result<experiment::Report, Error> {
+        experiment::report(*run, samples)
     }
 
     fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {

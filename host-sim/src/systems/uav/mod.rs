@@ -19,6 +19,7 @@ pub mod settings;
 pub mod track;
 
 pub use kestirim_simulate::uav as simulate;
+use kestirim_sweep::{Block, Samples};
 use std::sync::Arc;
 
 use kestirim_replay::uav;
@@ -134,8 +135,16 @@ impl System for Uav {
         firmware::firmware(recording, settings)
     }
 
-    fn experiment(run: &RunOptions, _: &Settings) -> Result<report::Report, Error> {
-        experiment::run(*run)
+    fn trials(run: &RunOptions, _: &Settings) -> Result<Vec<Block>, Error> {
+        experiment::trials(*run)
+    }
+
+    fn experiment(
+        run: &RunOptions,
+        _: &Settings,
+        samples: &[Samples],
+    ) -> Result<report::Report, Error> {
+        experiment::report(*run, samples)
     }
 
     fn chapter(experiment: &report::Report) -> Result<Chapter, Error> {

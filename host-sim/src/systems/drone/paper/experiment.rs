@@ -2,199 +2,203 @@
 
 use std::f64::consts::TAU;
 
-use indicatif::{ParallelProgressIterator, ProgressBar};
 use kestirim_air_to_ground::Rotor;
-use rayon::prelude::*;
+use kestirim_sweep::{Block, Samples};
 
-use super::beyond::{self, Stay};
 use super::published::ENERGY;
 use super::report::{Report, Row};
 use super::sweeps::{MovingSweeps, STOPS, StaticCell, StaticSweeps, place_of};
+use crate::Error;
 use crate::metrics::mean;
 use crate::system::{RunOptions, ScalarKind, Settings, System, choose_scalar};
 use crate::systems::drone::Drone;
 use crate::systems::drone::settings::cell;
+use crate::systems::drone::simulate::beyond::{self, Stay};
 use crate::systems::drone::simulate::moving_user::{self, LOST_M, Policy, Walk};
 use crate::systems::drone::simulate::static_user::{FilterSetting, Geometry};
 use crate::systems::drone::simulate::trajectory::SIDE_M;
 use crate::systems::drone::simulate::trial::{self, Job};
-use crate::{Error, output};
 
 /// Trials of a cell of a user who stays unless told otherwise: portions of so many, until …
-const PORTION: u32 = 110;
+const PORTION: u64 = 110;
 /// … the standard error is this share of the mean, …
 const PRECISION: f64 = 0.03;
 /// … or there are so many portions.
-const MOST_PORTIONS: u32 = 16;
+const MOST_PORTIONS: u64 = 16;
 /// Trials of a cell of a user who moves, of whom each has hundreds of measurements.
-const MOVING_TRIALS: u32 = 12;
+const MOVING_TRIALS: u64 = 12;
 /// What no table of the thesis has.
 const BEYOND: &str = "beyond the thesis";
 /// Speed of the drone unless told otherwise, km/h.
 const SPEED_KMH: f64 = 40.0;
 
-/// Runs one cell, or all.
+/// The flights of one cell, or of all.
 ///
 /// # Errors
 /// If the scalar is not supported.
-pub fn run(options: &RunOptions, cell: &Settings) -> Result<Report, Error> {
-    let all = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
-    let scalar = choose_scalar(Drone::NAME, options.scalar, &all, ScalarKind::F32)?;
-    let experiment = Experiment {
-        seed: options.seed,
-        trials: options.trials,
-        moving_trials: options.trials.unwrap_or(MOVING_TRIALS),
-        scalar,
-    };
+pub fn trials(options: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error> {
+    let experiment = Experiment::of(options)?;
     Ok(match (cell.given().next().is_some(), cell.is_on("moving")) {
         (false, _) => experiment.everything(),
-        (true, false) => experiment.static_cell(cell),
-        (true, true) => experiment.moving_cell(cell),
+        (true, false) => vec![experiment.staying(0, job_of(cell))],
+        (true, true) => vec![experiment.walking(0, cell::walk(cell))],
     })
+}
+
+/// What came of them.
+///
+/// # Errors
+/// As [`trials`].
+pub fn report(options: &RunOptions, cell: &Settings, samples: &[Samples]) -> Result<Report, Error> {
+    let Experiment { seed, scalar, .. } = Experiment::of(options)?;
+    let (rows, refused) = match (cell.given().next().is_some(), cell.is_on("moving")) {
+        (false, _) => everything(samples),
+        (true, false) => static_cell(cell, &samples[0]),
+        (true, true) => (vec![moving_cell(cell, &samples[0])], 0),
+    };
+    Ok(Report { system: Drone::NAME, seed, scalar, refused, rows })
 }
 
 struct Experiment {
     seed: u64,
     /// As asked for; else as many as it takes.
-    trials: Option<u32>,
-    moving_trials: u32,
+    trials: Option<u64>,
+    moving_trials: u64,
     scalar: ScalarKind,
 }
 
 impl Experiment {
-    fn report(&self, rows: Vec<Row>, refused: u32) -> Report {
-        Report { system: Drone::NAME, seed: self.seed, scalar: self.scalar, refused, rows }
+    fn of(options: &RunOptions) -> Result<Self, Error> {
+        let &RunOptions { seed, trials, scalar } = options;
+        let scalar = choose_scalar(Drone::NAME, scalar, &ScalarKind::ALL, ScalarKind::F32)?;
+        Ok(Self { seed, trials, moving_trials: trials.unwrap_or(MOVING_TRIALS), scalar })
     }
 
-    fn everything(&self) -> Report {
-        let (staying, mut moving) = (StaticSweeps::thesis(), MovingSweeps::thesis());
-        // Beside the sweeps' own cells, which some of these are.
-        let beyond: Vec<_> = beyond::walks()
-            .into_iter()
-            .map(|(description, walk)| (description, place_of(&mut moving.walks, walk)))
-            .collect();
-        let still = staying.jobs.len() + Stay::ALL.len();
-        let in_motion = moving.walks.len() + 1;
-        let flights = u64::from(self.trials.unwrap_or(4 * PORTION)) * still as u64
-            + u64::from(self.moving_trials) * in_motion as u64;
-        let bar = output::progress(flights, "flights");
-        let outcomes: Vec<_> = staying.jobs.iter().map(|job| self.staying(job, &bar)).collect();
-        let refused = outcomes.iter().flatten().map(|outcome| outcome.refused).sum();
-        let mut rows = Vec::new();
-        for cell in &staying.cells {
-            let job = &staying.jobs[cell.job];
-            let energy = job.geometry.energy_j(SPEED_KMH);
-            for row in both(&outcomes[cell.job], cell) {
-                let (table, cell) = (cell.table, cell.cell.clone());
-                rows.push(Row { table, cell, energy_j: Some(energy), ..row });
-            }
-        }
-        rows.extend(energies());
-        let walks: Vec<_> = moving.walks.iter().map(|walk| self.walking(walk, &bar)).collect();
-        for cell in &moving.cells {
-            let walk = &moving.walks[cell.walk];
-            let row = moving_row(walk, &walks[cell.walk], cell.speed_kmh);
-            rows.push(Row { table: cell.table, cell: cell.cell.clone(), ..row });
-        }
-        rows.extend(self.beyond_staying(&bar));
-        for (description, walk) in beyond {
-            let row = moving_row(&moving.walks[walk], &walks[walk], SPEED_KMH);
-            rows.push(Row { table: BEYOND, cell: format!("walks: {description}"), ..row });
-        }
-        rows.push(self.several_users(&bar));
-        bar.finish_and_clear();
-        self.report(rows, refused)
-    }
-
-    fn static_cell(&self, cell: &Settings) -> Report {
-        let (geometry, filter) = (cell::geometry(cell), cell::filter(cell));
-        let (particles, published, bests) = match filter {
-            FilterSetting::Published(filter) => (filter.particles, vec![filter], vec![]),
-            FilterSetting::Best(points) => (points, vec![], vec![points]),
+    /// In the order in which [`everything`] takes them.
+    fn everything(&self) -> Vec<Block> {
+        let (staying, (moving, _)) = (StaticSweeps::thesis(), moving());
+        let jobs = staying.jobs.into_iter().enumerate();
+        let walks = moving.walks.into_iter().enumerate();
+        let mut blocks: Vec<_> = jobs.map(|(place, job)| self.staying(place, job)).collect();
+        blocks.extend(walks.map(|(place, walk)| self.walking(place, walk)));
+        let seed = self.seed;
+        let errors = |name: String, trials, trial: Box<dyn Fn(u64) -> f64 + Send + Sync>| {
+            Block::new(name, ["error_m".to_owned()], trials, move |index| Ok(vec![trial(index)]))
         };
-        let is_published = !published.is_empty();
-        let job = Job { geometry, published, bests, limit: true };
-        let bar = output::progress(self.trials.unwrap_or(4 * PORTION).into(), "flights");
-        let outcomes = self.staying(&job, &bar);
-        bar.finish_and_clear();
-        let refused = outcomes.iter().map(|outcome| outcome.refused).sum();
-        let row = if is_published {
-            published_row(&outcomes, 0, None, false)
-        } else {
-            best_row(&outcomes, 0)
-        };
-        let Geometry { stops, height_m, .. } = geometry;
-        let radius_m = cell.number("radius").unwrap_or(SIDE_M / 3.0);
-        let words = cell::described(cell);
-        let name = format!("L={particles} T={stops} h={height_m} r={radius_m:.1}, {words}");
-        let energy_j = Some(geometry.energy_j(cell.decided("speed")));
-        let row = Row { table: "static user", cell: name, energy_j, ..row };
-        self.report(vec![row], refused)
+        let trials = self.trials.unwrap_or(2 * PORTION);
+        blocks.extend(Stay::ALL.map(|stay| {
+            let name = format!("stays: {}", stay.description());
+            errors(name, trials, Box::new(move |index| stay.trial(seed, index)))
+        }));
+        let users = Box::new(move |index| beyond::several_users(seed, index));
+        blocks.push(errors("three users".to_owned(), self.moving_trials, users));
+        blocks
     }
 
-    fn moving_cell(&self, cell: &Settings) -> Report {
-        let walk = cell::walk(cell);
-        let bar = output::progress(self.moving_trials.into(), "flights");
-        let outcomes = self.walking(&walk, &bar);
-        bar.finish_and_clear();
-        let Walk { particles, height_m, user_radius_m, end_time, .. } = walk;
-        let words = cell::described(cell);
-        let name =
-            format!("L={particles} h={height_m} r={user_radius_m} T_end={end_time}, {words}");
-        let row = moving_row(&walk, &outcomes, cell.decided("speed"));
-        self.report(vec![Row { table: "moving user", cell: name, ..row }], 0)
-    }
-
-    fn staying(&self, job: &Job, bar: &ProgressBar) -> Vec<trial::Outcome> {
-        let mut outcomes = Vec::new();
-        let portions = self.trials.map_or(MOST_PORTIONS, |_| 1);
-        for portion in 0..u64::from(portions) {
-            let size = u64::from(self.trials.unwrap_or(PORTION));
-            let more = (portion * size..(portion + 1) * size)
-                .into_par_iter()
-                .progress_with(bar.clone())
-                .map(|index| trial::trial(job, self.scalar, self.seed, index));
-            outcomes.extend(more.collect::<Vec<_>>());
-            let limits: Vec<f64> = outcomes.iter().map(|outcome| outcome.limit).collect();
-            let row = Row::of(&limits);
-            if row.se_m.zip(row.mean_m).is_some_and(|(error, mean)| error < PRECISION * mean) {
-                break;
-            }
+    fn staying(&self, place: usize, job: Job) -> Block {
+        let (scalar, seed) = (self.scalar, self.seed);
+        let trials = self.trials.unwrap_or(PORTION * MOST_PORTIONS);
+        let block = Block::new(format!("staying {place}"), job.columns(), trials, move |index| {
+            Ok(trial::trial(&job, scalar, seed, index).numbers())
+        });
+        if self.trials.is_some() {
+            return block;
         }
-        outcomes
+        block.until(PORTION, |samples| {
+            let row = Row::of(&samples.column(0));
+            row.se_m.zip(row.mean_m).is_some_and(|(error, mean)| error < PRECISION * mean)
+        })
     }
 
-    fn walking(&self, walk: &Walk, bar: &ProgressBar) -> Vec<moving_user::Outcome> {
-        (0..u64::from(self.moving_trials))
-            .into_par_iter()
-            .progress_with(bar.clone())
-            .map(|index| moving_user::trial(walk, self.scalar, self.seed, index))
-            .collect()
+    fn walking(&self, place: usize, walk: Walk) -> Block {
+        let (scalar, seed) = (self.scalar, self.seed);
+        let columns = moving_user::Outcome::COLUMNS.map(str::to_owned);
+        Block::new(format!("walking {place}"), columns, self.moving_trials, move |index| {
+            Ok(moving_user::trial(&walk, scalar, seed, index).numbers().into())
+        })
     }
+}
 
-    fn beyond_staying(&self, bar: &ProgressBar) -> Vec<Row> {
-        let row = |stay: Stay| {
-            let errors: Vec<f64> = (0..u64::from(self.trials.unwrap_or(2 * PORTION)))
-                .into_par_iter()
-                .progress_with(bar.clone())
-                .map(|index| stay.trial(self.seed, index))
-                .collect();
-            let cell = format!("stays: {}", stay.description());
-            Row { table: BEYOND, cell, filter: "best", ..Row::of(&errors) }
-        };
-        Stay::ALL.into_iter().map(row).collect()
-    }
+/// All walks, and those beyond the thesis, of which some are among the sweeps' own.
+fn moving() -> (MovingSweeps, Vec<(&'static str, usize)>) {
+    let mut moving = MovingSweeps::thesis();
+    let walks = beyond::walks().into_iter();
+    let beyond = walks.map(|(words, walk)| (words, place_of(&mut moving.walks, walk))).collect();
+    (moving, beyond)
+}
 
-    fn several_users(&self, bar: &ProgressBar) -> Row {
-        let errors: Vec<f64> = (0..u64::from(self.moving_trials))
-            .into_par_iter()
-            .progress_with(bar.clone())
-            .map(|index| beyond::several_users(self.seed, index))
-            .collect();
-        let cell = "walk: three users, one filter each".to_owned();
-        let lost_percent = Some(lost_percent(&errors));
-        Row { table: BEYOND, cell, filter: "best", lost_percent, ..Row::of(&errors) }
+fn everything(samples: &[Samples]) -> (Vec<Row>, u32) {
+    let (staying, (moving, beyond)) = (StaticSweeps::thesis(), moving());
+    let (stayed, samples) = samples.split_at(staying.jobs.len());
+    let (walked, samples) = samples.split_at(moving.walks.len());
+    let (stays, users) = samples.split_at(Stay::ALL.len());
+    let stayed = staying.jobs.iter().zip(stayed);
+    let outcomes: Vec<_> = stayed.map(|(job, samples)| outcomes(job, samples)).collect();
+    let refused = outcomes.iter().flatten().map(|outcome| outcome.refused).sum();
+    let mut rows = Vec::new();
+    for cell in &staying.cells {
+        let job = &staying.jobs[cell.job];
+        let energy = job.geometry.energy_j(SPEED_KMH);
+        for row in both(&outcomes[cell.job], cell) {
+            let (table, cell) = (cell.table, cell.cell.clone());
+            rows.push(Row { table, cell, energy_j: Some(energy), ..row });
+        }
     }
+    rows.extend(energies());
+    for cell in &moving.cells {
+        let row = moving_row(&moving.walks[cell.walk], &walked[cell.walk], cell.speed_kmh);
+        rows.push(Row { table: cell.table, cell: cell.cell.clone(), ..row });
+    }
+    let of = |errors: &Samples| Row { table: BEYOND, filter: "best", ..Row::of(&errors.column(0)) };
+    rows.extend(Stay::ALL.iter().zip(stays).map(|(stay, errors)| Row {
+        cell: format!("stays: {}", stay.description()),
+        ..of(errors)
+    }));
+    for (description, walk) in beyond {
+        let row = moving_row(&moving.walks[walk], &walked[walk], SPEED_KMH);
+        rows.push(Row { table: BEYOND, cell: format!("walks: {description}"), ..row });
+    }
+    let cell = "walk: three users, one filter each".to_owned();
+    let lost_percent = Some(lost_percent(&users[0].column(0)));
+    rows.push(Row { cell, lost_percent, ..of(&users[0]) });
+    (rows, refused)
+}
+
+fn job_of(cell: &Settings) -> Job {
+    let (published, bests) = match cell::filter(cell) {
+        FilterSetting::Published(filter) => (vec![filter], vec![]),
+        FilterSetting::Best(points) => (vec![], vec![points]),
+    };
+    Job { geometry: cell::geometry(cell), published, bests, limit: true }
+}
+
+fn static_cell(cell: &Settings, samples: &Samples) -> (Vec<Row>, u32) {
+    let job = job_of(cell);
+    let outcomes = outcomes(&job, samples);
+    let refused = outcomes.iter().map(|outcome| outcome.refused).sum();
+    let (particles, row) = match job.published.first() {
+        Some(filter) => (filter.particles, published_row(&outcomes, 0, None, false)),
+        None => (job.bests[0], best_row(&outcomes, 0)),
+    };
+    let Geometry { stops, height_m, .. } = job.geometry;
+    let radius_m = cell.number("radius").unwrap_or(SIDE_M / 3.0);
+    let words = cell::described(cell);
+    let name = format!("L={particles} T={stops} h={height_m} r={radius_m:.1}, {words}");
+    let energy_j = Some(job.geometry.energy_j(cell.decided("speed")));
+    (vec![Row { table: "static user", cell: name, energy_j, ..row }], refused)
+}
+
+fn moving_cell(cell: &Settings, samples: &Samples) -> Row {
+    let walk = cell::walk(cell);
+    let Walk { particles, height_m, user_radius_m, end_time, .. } = walk;
+    let words = cell::described(cell);
+    let name = format!("L={particles} h={height_m} r={user_radius_m} T_end={end_time}, {words}");
+    let row = moving_row(&walk, samples, cell.decided("speed"));
+    Row { table: "moving user", cell: name, ..row }
+}
+
+fn outcomes(job: &Job, samples: &Samples) -> Vec<trial::Outcome> {
+    samples.rows().map(|row| trial::Outcome::of_numbers(job, row)).collect()
 }
 
 /// The thesis' filter and ours in one cell.
@@ -229,7 +233,9 @@ fn best_row(outcomes: &[trial::Outcome], best: usize) -> Row {
     Row { filter: "best", limit_m: Some(limit(outcomes)), credible_percent, ..Row::of(&errors) }
 }
 
-fn moving_row(walk: &Walk, outcomes: &[moving_user::Outcome], speed_kmh: f64) -> Row {
+fn moving_row(walk: &Walk, samples: &Samples, speed_kmh: f64) -> Row {
+    let rows = samples.rows().filter_map(|row| row.try_into().ok());
+    let outcomes: Vec<_> = rows.map(moving_user::Outcome::of_numbers).collect();
     let errors: Vec<f64> = outcomes.iter().map(|outcome| outcome.error_m).collect();
     let energies: Vec<f64> =
         outcomes.iter().map(|outcome| outcome.flown.energy_j(speed_kmh)).collect();

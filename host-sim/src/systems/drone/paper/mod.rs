@@ -1,6 +1,5 @@
 //! The thesis: what it prints, its experiment, and its part of the report.
 
-pub mod beyond;
 pub mod chapter;
 pub mod experiment;
 pub mod published;

@@ -6,23 +6,22 @@
 
 use std::fmt;
 
-use indicatif::ParallelProgressIterator;
 use kestirim_replay::ScalarKind;
 use kestirim_replay::pedestrian::{self, Options, walk};
-use rayon::prelude::*;
+use kestirim_sweep::{Block, Samples};
 use serde::Serialize;
 
 use super::published::{FIFTY_HZ, HUNDRED_HZ, PathLengths, ROUTE_M};
 use crate::metrics::{mean, median, standard_deviation};
 use crate::system::{RunOptions, choose_scalar};
-use crate::systems::pedestrian::account::accuracy::{Accuracy, against_footprints};
+use crate::systems::pedestrian::account::accuracy::against_footprints;
 use crate::systems::pedestrian::recording::{Recording, Walked};
 use crate::{Error, output};
 
 /// Walks at each rate in the paper.
 pub(super) const WALKS: u64 = 7;
 /// Repetitions of all walks that take a few seconds.
-const DEFAULT_TRIALS: u32 = 20;
+const DEFAULT_TRIALS: u64 = 20;
 const RATES: [(u32, PathLengths); 2] = [(50, FIFTY_HZ), (100, HUNDRED_HZ)];
 
 /// Result of the experiment.
@@ -30,7 +29,7 @@ const RATES: [(u32, PathLengths); 2] = [(50, FIFTY_HZ), (100, HUNDRED_HZ)];
 pub struct Report {
     system: &'static str,
     pub(super) seed: u64,
-    pub(super) trials: u32,
+    pub(super) trials: u64,
     pub(super) scalar: ScalarKind,
     route_m: f64,
     pub(super) rows: Vec<Row>,
@@ -61,58 +60,60 @@ pub(super) struct Summary {
     pub(super) lengths_m: Vec<f64>,
 }
 
-/// One walk as tracked.
-struct Outcome {
-    path_length_m: f64,
-    accuracy: Accuracy,
-}
-
-/// Runs the experiment; the same options give the same report at any number of threads.
+/// The walks, at each rate.
 ///
 /// # Errors
 /// [`Error::Usage`] for a number type that the tracker is not built for.
-pub fn run(options: RunOptions) -> Result<Report, Error> {
+pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     let default = Options::default();
     let scalar = choose_scalar("pedestrian", options.scalar, &ScalarKind::ALL, default.scalar)?;
-    let trials = options.trials.unwrap_or(DEFAULT_TRIALS);
     let methods = [Options { scalar, ..Options::published() }, Options { scalar, ..default }];
-    let walks = u64::from(trials) * WALKS;
-    let progress = output::progress(walks * RATES.len() as u64, "walks");
-    let row = |(rate_hz, published): (u32, PathLengths)| {
-        let outcomes = (0..walks)
-            .into_par_iter()
-            .progress_with(progress.clone())
-            .map(|index| track(options.seed, index, f64::from(rate_hz), &methods))
-            .collect::<Result<Vec<_>, Error>>()?;
-        let summary = |method: usize| {
-            Summary::of(&outcomes.iter().map(|pair| &pair[method]).collect::<Vec<_>>())
+    let walks = options.trials.unwrap_or(DEFAULT_TRIALS).saturating_mul(WALKS);
+    let block = |(rate_hz, _): (u32, PathLengths)| {
+        let columns = ["published", "ours"]
+            .map(|method| ["path", "rmse", "end off"].map(|it| format!("{method} {it}_m")));
+        let walk = move |index| {
+            let tracked = track(options.seed, index, f64::from(rate_hz), &methods);
+            tracked.map(|rows| rows.concat()).map_err(|error| error.to_string())
         };
-        Ok(Row { rate_hz, published, paper_method: summary(0), ours: summary(1), limit: None })
+        Block::new(format!("{rate_hz} Hz"), columns.into_iter().flatten(), walks, walk)
     };
-    let rows = RATES.into_iter().map(row).collect::<Result<_, Error>>();
-    progress.finish_and_clear();
+    Ok(RATES.map(block).into())
+}
+
+/// What came of them; the same options give the same report at any number of threads.
+///
+/// # Errors
+/// As [`trials`].
+pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
+    let default = Options::default().scalar;
+    let scalar = choose_scalar("pedestrian", options.scalar, &ScalarKind::ALL, default)?;
+    let row = |((rate_hz, published), walks): ((u32, PathLengths), &Samples)| {
+        let [paper_method, ours] = [0, 3].map(|first| Summary::of(walks, first));
+        Row { rate_hz, published, paper_method, ours, limit: None }
+    };
     Ok(Report {
         system: "pedestrian",
         seed: options.seed,
-        trials,
+        trials: samples[0].len() as u64 / WALKS,
         scalar,
         route_m: ROUTE_M,
-        rows: rows?,
+        rows: RATES.into_iter().zip(samples).map(row).collect(),
     })
 }
 
-/// Walks once, logs it, and tracks the log by each method.
+/// Walks once, logs it, and tracks the log by each method: the length of the path, its RMSE, and by how much its end is off, m.
 fn track(
     seed: u64,
     index: u64,
     rate_hz: f64,
     methods: &[Options; 2],
-) -> Result<[Outcome; 2], Error> {
+) -> Result<[[f64; 3]; 2], Error> {
     let recording = Recording::synthetic(Walked::Route, rate_hz, seed, index)?;
-    let outcome = |options| {
+    let outcome = |options| -> Result<_, Error> {
         let walk = walk(&recording.log.samples, options).map_err(|error| refused(index, &error))?;
         let accuracy = against_footprints(&walk, &recording.footprints);
-        Ok(Outcome { path_length_m: walk.path_length_m, accuracy })
+        Ok([walk.path_length_m, accuracy.rmse_m, accuracy.final_error_m])
     };
     let [paper, ours] = methods;
     Ok([outcome(paper)?, outcome(ours)?])
@@ -124,19 +125,17 @@ pub(super) fn refused(index: u64, error: &pedestrian::Error) -> Error {
 }
 
 impl Summary {
-    fn of(outcomes: &[&Outcome]) -> Self {
-        let all = |value: fn(&Outcome) -> f64| {
-            outcomes.iter().map(|outcome| value(outcome)).collect::<Vec<_>>()
-        };
-        let lengths_m = all(|outcome| outcome.path_length_m);
+    /// Of the three columns of a method.
+    fn of(walks: &Samples, first: usize) -> Self {
+        let lengths_m = walks.column(first);
         let errors: Vec<_> = lengths_m.iter().copied().map(error_percent).collect();
         Self {
             walks: lengths_m.len(),
             mean_relative_error_percent: mean(&errors),
             worst_relative_error_percent: errors.iter().copied().fold(0.0, f64::max),
             sigma_m: standard_deviation(&lengths_m),
-            median_rmse_m: median(&all(|outcome| outcome.accuracy.rmse_m)),
-            median_final_error_m: median(&all(|outcome| outcome.accuracy.final_error_m)),
+            median_rmse_m: median(&walks.column(first + 1)),
+            median_final_error_m: median(&walks.column(first + 2)),
             lengths_m,
         }
     }
@@ -179,13 +178,16 @@ impl fmt::Display for Report {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::{Settings, experiment};
+    use crate::systems::pedestrian::Pedestrian;
 
     #[test]
     fn the_same_seed_gives_the_same_report_at_any_number_of_threads() {
         let options = RunOptions { trials: Some(1), seed: 3, scalar: None };
         let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        let report = run(options).unwrap();
-        assert_eq!(report, alone.install(|| run(options)).unwrap());
-        assert_ne!(report, run(RunOptions { seed: 4, ..options }).unwrap());
+        let run = |options| experiment::<Pedestrian>(&options, &Settings::new([])).unwrap();
+        let report = run(options);
+        assert_eq!(report, alone.install(|| run(options)));
+        assert_ne!(report, run(RunOptions { seed: 4, ..options }));
     }
 }

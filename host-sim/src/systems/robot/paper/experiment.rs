@@ -5,31 +5,21 @@
 
 use std::fmt;
 
-use indicatif::ParallelProgressIterator;
 use kestirim_replay::ScalarKind;
-use kestirim_replay::robot::{
-    self, Beginning, Epoch, Follow, Noise, RangeRow, Sensors, Setup, TrackerKind, build,
-    build_published,
-};
-use rayon::prelude::*;
+use kestirim_sweep::{Block, Samples};
 use serde::Serialize;
 
 use super::limit::{Knowledge, mean_error_limit};
 use super::published::{PositionErrors, TABLE_1, TABLE_1_MEAN};
-use crate::metrics::{distance, mean};
-use crate::random::stream;
+use crate::metrics::mean;
 use crate::system::{RunOptions, System, choose_scalar};
 use crate::systems::robot::Robot;
-use crate::systems::robot::account::accuracy::Accuracy;
-use crate::systems::robot::settings::of_the_office;
-use crate::systems::robot::simulate::scenario::{self, EPOCHS, Office};
-use crate::systems::robot::track::refused;
+use crate::systems::robot::simulate::day::{COLUMNS, Day, LINES, WAYS};
+use crate::systems::robot::simulate::scenario;
 use crate::{Error, output};
 
 /// Repetitions unless told otherwise: the mean of the table is then good to a fiftieth.
-const TRIALS: u32 = 200;
-/// In how many ways a point is measured.
-const COLUMNS: usize = 8;
+const TRIALS: u64 = 200;
 
 /// Errors in cm, of the mean of 50 positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -72,29 +62,37 @@ pub struct Line {
 pub struct Report {
     system: &'static str,
     pub(super) seed: u64,
-    pub(super) trials: u32,
+    pub(super) trials: usize,
     pub(super) scalar: ScalarKind,
     pub(super) points: Vec<Row>,
     pub(super) mean: Row,
     pub(super) line: Line,
 }
 
-/// Runs the experiment.
+/// The days.
 ///
 /// # Errors
 /// If the scalar is not supported.
-pub fn run(options: RunOptions) -> Result<Report, Error> {
+pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     let scalar = choose_scalar(Robot::NAME, options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
-    let trials = options.trials.unwrap_or(TRIALS);
-    let days: Result<Vec<Day>, _> = (0..u64::from(trials))
-        .into_par_iter()
-        .progress_with(output::progress(u64::from(trials), "days"))
-        .map(|trial| Day::run(options.seed, trial, scalar))
-        .collect();
-    let days = days.map_err(refused)?;
-    let points: Vec<Row> = (0..15).map(|point| row(&days, point)).collect();
-    let lines: Vec<[f64; 5]> = days.iter().map(|day| day.line).collect();
-    let column = |index: usize| mean(&lines.iter().map(|line| line[index]).collect::<Vec<_>>());
+    let points = (1..=15).flat_map(|point| WAYS.map(|way| format!("P{point} {way}_cm")));
+    let columns: Vec<_> = points.chain(LINES.map(|way| format!("line {way}_cm"))).collect();
+    let day = move |trial| {
+        let day = Day::run(options.seed, trial, scalar).map_err(|error| error.to_string())?;
+        Ok([day.points.as_flattened(), &day.line].concat())
+    };
+    Ok(vec![Block::new("days", columns, options.trials.unwrap_or(TRIALS), day)])
+}
+
+/// What came of them.
+///
+/// # Errors
+/// As [`trials`].
+pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
+    let scalar = choose_scalar(Robot::NAME, options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
+    let days = &samples[0];
+    let points: Vec<Row> = (0..15).map(|point| row(days, point)).collect();
+    let column = |index: usize| mean(&days.column(15 * COLUMNS + index));
     let line = Line {
         unfiltered_cm: column(0),
         ekf_cm: column(1),
@@ -102,92 +100,12 @@ pub fn run(options: RunOptions) -> Result<Report, Error> {
         ours_cm: column(3),
         ours_calibrated_cm: column(4),
     };
-    let mean = mean_row(&points);
+    let (mean, trials) = (mean_row(&points), days.len());
     Ok(Report { system: Robot::NAME, seed: options.seed, trials, scalar, points, mean, line })
 }
 
-/// One office on one day.
-struct Day {
-    /// Errors of the columns at each point, cm.
-    points: [[f64; COLUMNS]; 15],
-    /// Errors of the five ways to follow the line, cm.
-    line: [f64; 5],
-}
-
-impl Day {
-    fn run(seed: u64, trial: u64, scalar: ScalarKind) -> Result<Self, robot::Error> {
-        let mut rng = stream(seed, trial);
-        let office = Office::draw(&mut rng);
-        let places = scenario::points();
-        let measured = places.map(|place| office.measure(&mut rng, &[place; EPOCHS]));
-        let plain = of_the_office(scalar);
-        let calibrated = Setup { biases: Some(office.calibrate(&mut rng)), ..plain.clone() };
-        let mut points = [[0.0; COLUMNS]; 15];
-        for ((errors, rows), &place) in points.iter_mut().zip(&measured).zip(&places) {
-            let trackers = trackers(&plain, &calibrated, place, trial)?;
-            *errors = trackers.map(|mut tracker| static_error_cm(tracker.as_mut(), rows, place));
-        }
-        let path = scenario::line();
-        let rows = office.measure(&mut rng, &path);
-        let honest = |noise| Beginning { start: None, noise };
-        let followers = [
-            build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
-            build_published(&plain, honest(Noise::Fixed))?,
-            build_published(&plain, honest(Noise::Adapted))?,
-            build(&plain)?,
-            build(&calibrated)?,
-        ];
-        let line = followers.map(|mut tracker| line_error_cm(tracker.as_mut(), &rows, &path));
-        Ok(Self { points, line })
-    }
-}
-
-/// The ways to measure a point, in the order of the columns.
-fn trackers(
-    plain: &Setup,
-    calibrated: &Setup,
-    place: [f64; 2],
-    trial: u64,
-) -> Result<[Box<dyn Follow>; COLUMNS], robot::Error> {
-    // Beside the point, every day in another direction: turned by the golden angle.
-    let angle = 2.399_963_229_728_653 * trial as f64;
-    let beside = [place[0] + 0.1 * angle.cos(), place[1] + 0.1 * angle.sin()];
-    let published = |start, noise| build_published(plain, Beginning { start, noise });
-    Ok([
-        build(&Setup { tracker: TrackerKind::Lsq, ..plain.clone() })?,
-        published(Some(place), Noise::Fixed)?,
-        published(Some(place), Noise::Adapted)?,
-        published(None, Noise::Fixed)?,
-        published(None, Noise::Adapted)?,
-        published(Some(beside), Noise::Adapted)?,
-        build(plain)?,
-        build(calibrated)?,
-    ])
-}
-
-fn positions(tracker: &mut dyn Follow, rows: &[RangeRow]) -> Vec<Epoch> {
-    robot::follow(tracker, &Sensors::ranges(rows.to_vec()).events()).epochs
-}
-
-/// The paper's measure: the error of the mean of all positions, cm.
-fn static_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], place: [f64; 2]) -> f64 {
-    let epochs = positions(tracker, rows);
-    let found: Vec<[f64; 3]> = epochs.iter().filter_map(|epoch| epoch.position).collect();
-    let coordinate =
-        |axis: usize| mean(&found.iter().map(|position| position[axis]).collect::<Vec<_>>());
-    100.0 * distance([coordinate(0), coordinate(1)], place)
-}
-
-fn line_error_cm(tracker: &mut dyn Follow, rows: &[RangeRow], path: &[[f64; 2]]) -> f64 {
-    let epochs = positions(tracker, rows);
-    let pairs: Vec<_> =
-        epochs.iter().zip(path).map(|(epoch, &truth)| (epoch.position, truth)).collect();
-    Accuracy::of(&pairs).map_or(0.0, |accuracy| 100.0 * accuracy.rmse_m)
-}
-
-fn row(days: &[Day], point: usize) -> Row {
-    let column =
-        |index: usize| mean(&days.iter().map(|day| day.points[point][index]).collect::<Vec<_>>());
+fn row(days: &Samples, point: usize) -> Row {
+    let column = |index: usize| mean(&days.column(point * COLUMNS + index));
     let [unfiltered, from_truth, adaptive_from_truth, ekf, aekf, beside, ours, calibrated] =
         std::array::from_fn(column);
     let place = scenario::points()[point];

@@ -4,8 +4,8 @@ use kestirim_observer_design::Discrete;
 use kestirim_replay::uav::{FAST, MIDDLE, Noise, Plant, SLOW};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_simulate::with_outputs;
+use kestirim_sweep::{Block, Samples};
 use nalgebra::{SMatrix, SVector};
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::random::stream;
@@ -110,22 +110,33 @@ pub fn cells() -> Vec<Cell> {
 }
 
 impl Cell {
-    /// Flies `trials` times.
-    pub fn rows(&self, scalar: ScalarKind, seed: u64, trials: u32) -> Vec<Row> {
-        let flights = match scalar {
-            ScalarKind::F32 => with_outputs!(self.outputs, flights::<f32, _>, self, seed, trials),
-            ScalarKind::F64 => with_outputs!(self.outputs, flights::<f64, _>, self, seed, trials),
-            ScalarKind::Fixed => {
-                with_outputs!(self.outputs, flights::<Q16_16, _>, self, seed, trials)
-            }
+    /// So many flights.
+    pub fn block(&self, place: usize, scalar: ScalarKind, seed: u64, trials: u64) -> Block {
+        let numbers = ["α", "q", "V", "θ"].map(|state| format!("sum of {state} error squared"));
+        let numbers = [&numbers[..], &["refused".to_owned()]].concat();
+        let columns = self.kinds.iter().flat_map(|kind| {
+            let name = kind.name();
+            numbers.iter().map(move |number| format!("{name}: {number}")).collect::<Vec<_>>()
+        });
+        let columns: Vec<_> = columns.collect();
+        let fly = match scalar {
+            ScalarKind::F32 => with_outputs!(self.outputs, flight::<f32, _>, self, seed),
+            ScalarKind::F64 => with_outputs!(self.outputs, flight::<f64, _>, self, seed),
+            ScalarKind::Fixed => with_outputs!(self.outputs, flight::<Q16_16, _>, self, seed),
         };
-        let count = f64::from(trials) * SAMPLES as f64;
+        Block::new(format!("cell {place}"), columns, trials, move |index| Ok(fly(index)))
+    }
+
+    /// What came of the flights.
+    pub fn rows(&self, flights: &Samples) -> Vec<Row> {
+        let count = flights.len() as f64 * SAMPLES as f64;
         let row = |(place, kind): (usize, &Kind)| {
             let mut squares = SVector::<f64, 4>::zeros();
             let mut refused = 0;
-            for flight in &flights {
-                squares += flight[place].squares;
-                refused += flight[place].refused;
+            for flight in flights.rows() {
+                let flight = &flight[place * NUMBERS..];
+                squares += SVector::<f64, 4>::from_column_slice(&flight[..4]);
+                refused += flight[4] as u32;
             }
             Row {
                 plant: self.plant,
@@ -158,43 +169,42 @@ impl Cell {
     }
 }
 
-/// What a flight of one estimator adds.
-#[derive(Debug, Clone, Copy, Default)]
-struct Outcome {
-    squares: SVector<f64, 4>,
-    refused: u32,
-}
+/// Numbers of a flight of one estimator: sums of squares of its errors, and steps that it could not take.
+const NUMBERS: usize = 5;
 
-/// Collected in order before they are added: the same sums at any number of threads.
-fn flights<T: Scalar<Accumulator: Sync> + Sync, const P: usize>(
+/// One flight by its number: the numbers of each estimator.
+type Flight = Box<dyn Fn(u64) -> Vec<f64> + Send + Sync>;
+
+fn flight<T: Scalar<Accumulator: Send + Sync> + Send + Sync, const P: usize>(
     c: &SMatrix<f64, P, 4>,
     cell: &Cell,
     seed: u64,
-    trials: u32,
-) -> Vec<Vec<Outcome>> {
-    let plant = cell.plant.discrete(INTERVAL_S);
+) -> Flight {
+    let (c, plant) = (*c, cell.plant.discrete(INTERVAL_S));
     let (truth, start) = (SVector::from(START), cell.start());
     let new = |kind: &Kind| {
-        kind.estimator::<T, P>(&plant, c, &start, &(truth - start))
+        kind.estimator::<T, P>(&plant, &c, &start, &(truth - start))
             .expect("an estimator of the table")
     };
     let estimators: Vec<_> = cell.kinds.iter().map(new).collect();
-    let fly = |index| {
-        let mut flying: Vec<_> = estimators.iter().map(|it| (*it, Outcome::default())).collect();
-        let samples = fly(plant, truth, cell.inputs, cell.noise, stream(seed, index));
-        for (number, sample) in samples.take(cell.settling() + SAMPLES).enumerate() {
-            let measured = sample.measured(c);
-            for (estimator, outcome) in &mut flying {
-                if number >= cell.settling() {
+    let (inputs, noise, settling) = (cell.inputs, cell.noise, cell.settling());
+    Box::new(move |index| {
+        let begin = |it: &_| (Clone::clone(it), SVector::<f64, 4>::zeros(), 0.0);
+        let mut flying: Vec<_> = estimators.iter().map(begin).collect();
+        let samples = fly(plant, truth, inputs, noise, stream(seed, index));
+        for (number, sample) in samples.take(settling + SAMPLES).enumerate() {
+            let measured = sample.measured(&c);
+            for (estimator, squares, refused) in &mut flying {
+                if number >= settling {
                     let error = sample.x - estimator.estimate();
-                    outcome.squares += error.component_mul(&error);
+                    *squares += error.component_mul(&error);
                 }
-                outcome.refused += u32::from(estimator.step(&sample.u, &measured).is_err());
+                *refused += f64::from(estimator.step(&sample.u, &measured).is_err());
             }
         }
-        flying.into_iter().map(|(_, outcome)| outcome).collect()
-    };
-    (0..u64::from(trials)).into_par_iter().map(fly).collect()
+        let numbers = flying.iter().map(|(_, it, refused)| [it.x, it.y, it.z, it.w, *refused]);
+        numbers.flatten().collect()
+    })
 }
 
 fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -> [f64; 4] {

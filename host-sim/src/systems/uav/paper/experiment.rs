@@ -1,42 +1,42 @@
 //! `host-sim run uav`: the thesis' experiments.
 
 use kestirim_replay::uav::Plant;
+use kestirim_sweep::{Block, Samples};
 use rayon::prelude::*;
 
 use super::report::Report;
 use super::{accuracy, catching, claims, responses};
-use crate::system::choose_scalar;
-use crate::system::{RunOptions, ScalarKind};
-use crate::{Error, output};
+use crate::Error;
+use crate::system::{RunOptions, ScalarKind, choose_scalar};
 
 /// Flights a cell unless told otherwise: a RMSE is then known to one or two percent.
-const TRIALS: u32 = 500;
+const TRIALS: u64 = 500;
 
-/// Runs all.
+/// The flights of each cell.
 ///
 /// # Errors
 /// If the scalar is not supported.
-pub fn run(options: RunOptions) -> Result<Report, Error> {
-    let all = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
-    let scalar = choose_scalar("uav", options.scalar, &all, ScalarKind::F32)?;
+pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
+    let scalar = choose_scalar("uav", options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
     let trials = options.trials.unwrap_or(TRIALS);
-    let cells = accuracy::cells();
-    let bar = output::progress(cells.len() as u64, "cells");
-    let accuracy: Vec<_> = cells
-        .iter()
-        .flat_map(|cell| {
-            let rows = cell.rows(scalar, options.seed, trials);
-            bar.inc(1);
-            rows
-        })
-        .collect();
-    bar.finish_and_clear();
+    let cells = accuracy::cells().into_iter().enumerate();
+    Ok(cells.map(|(place, cell)| cell.block(place, scalar, options.seed, trials)).collect())
+}
+
+/// What came of them, and what needs no trials.
+///
+/// # Errors
+/// As [`trials`].
+pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
+    let scalar = choose_scalar("uav", options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
+    let cells = accuracy::cells().into_iter().zip(samples);
+    let accuracy: Vec<_> = cells.flat_map(|(cell, flights)| cell.rows(flights)).collect();
     let catching = catching::rows(scalar);
     Ok(Report {
         system: "uav",
         seed: options.seed,
         scalar,
-        trials,
+        trials: samples.first().map_or(0, Samples::len),
         plants: Plant::ALL.into_par_iter().map(responses::responses).collect(),
         claims: claims::claims(&catching, &accuracy),
         slowest_poles: claims::slowest_poles(),

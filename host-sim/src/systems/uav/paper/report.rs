@@ -27,7 +27,7 @@ pub struct Report {
     /// Number type of the estimators.
     pub scalar: ScalarKind,
     /// Flights a cell of the accuracies.
-    pub trials: u32,
+    pub trials: usize,
     /// The plants by themselves.
     pub plants: Vec<Responses>,
     /// Times to catch the plant.

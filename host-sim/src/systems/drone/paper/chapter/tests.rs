@@ -1,8 +1,8 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::system::{RunOptions, Settings};
-use crate::systems::drone::paper::experiment;
+use crate::system::{RunOptions, Settings, experiment};
+use crate::systems::drone::Drone;
 use crate::systems::drone::settings::cell;
 
 fn run(given: &[(&str, &str)]) -> Chapter {
@@ -11,7 +11,7 @@ fn run(given: &[(&str, &str)]) -> Chapter {
         cell.set(name, text).unwrap();
     }
     let options = RunOptions { trials: Some(2), ..RunOptions::default() };
-    chapter(&experiment::run(&options, &cell).unwrap()).unwrap()
+    chapter(&experiment::<Drone>(&options, &cell).unwrap()).unwrap()
 }
 
 #[test]

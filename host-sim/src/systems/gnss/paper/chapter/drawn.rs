@@ -18,7 +18,7 @@ use crate::systems::gnss::simulate::{Day, Rates};
 use crate::systems::gnss::track::Track;
 
 /// Station-days that are drawn; the paper draws three.
-const DRAWN: u32 = 3;
+const DRAWN: usize = 3;
 /// Filters of which the paper has kinematic solutions, and ours.
 const MOVING: [FilterKind; 3] = [FilterKind::Ikf, FilterKind::Adaptive, FilterKind::Default];
 
@@ -39,7 +39,7 @@ impl Days {
     /// [`Error::File`] if one finds no position.
     pub(super) fn follow(report: &Report) -> Result<Self, Error> {
         let count = report.trials.min(DRAWN);
-        let days: Vec<_> = (0..u64::from(count))
+        let days: Vec<_> = (0..count as u64)
             .into_par_iter()
             .map(|index| {
                 let day = Day::new(report.seed, index, &Rates::RECORDING);

@@ -49,13 +49,13 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::RunOptions;
-    use crate::systems::gnss::paper::experiment;
+    use crate::system::{RunOptions, Settings, experiment};
+    use crate::systems::gnss::Gnss;
 
     #[test]
     fn the_chapter_has_every_table_and_figure_of_the_paper() {
         let options = RunOptions { trials: Some(1), seed: 2, scalar: None };
-        let chapter = chapter(&experiment::run(options).unwrap()).unwrap();
+        let chapter = chapter(&experiment::<Gnss>(&options, &Settings::new([])).unwrap()).unwrap();
         let tables: Vec<_> = chapter.comparisons().map(|table| table.id.as_str()).collect();
         assert_eq!(tables, ["gnss-table-2", "gnss-table-3", "gnss-without-faults"]);
         let figures: Vec<_> = chapter.figures().map(|figure| figure.id.as_str()).collect();
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn outliers_are_left_to_the_plain_filter_alone() {
         let options = RunOptions { trials: Some(1), seed: 2, scalar: None };
-        let chapter = chapter(&experiment::run(options).unwrap()).unwrap();
+        let chapter = chapter(&experiment::<Gnss>(&options, &Settings::new([])).unwrap()).unwrap();
         let far = |filter: &str| {
             let id = format!("gnss-figure-3-{filter}");
             let figure = chapter.figures().find(|figure| figure.id == id).unwrap();

@@ -5,11 +5,11 @@ use std::fmt;
 use comfy_table::Table;
 use serde::Serialize;
 
-use super::Score;
 use crate::metrics::mean;
 use crate::output;
 use crate::system::ScalarKind;
 use crate::systems::gnss::paper::published::PppErrors;
+use crate::systems::gnss::simulate::trial::Score;
 
 /// A filter's errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -94,7 +94,7 @@ pub struct Report {
     /// Number type of the filters.
     pub scalar: ScalarKind,
     /// Station-days.
-    pub trials: u32,
+    pub trials: usize,
     /// Variance that kinematic filters give each coordinate, m²/s.
     pub process_noise: f64,
     /// The filters.

@@ -113,14 +113,15 @@ impl Typical {
 
 #[cfg(test)]
 mod tests {
-    use super::super::experiment::run;
     use super::*;
-    use crate::system::RunOptions;
+    use crate::system::{RunOptions, Settings, experiment};
+    use crate::systems::pedestrian::Pedestrian;
 
     #[test]
     fn every_table_and_figure_is_there_once_and_says_something() {
         let options = RunOptions { trials: Some(1), seed: 2, scalar: None };
-        let chapter = chapter(&run(options).unwrap()).unwrap();
+        let chapter =
+            chapter(&experiment::<Pedestrian>(&options, &Settings::new([])).unwrap()).unwrap();
         let mut ids: Vec<_> =
             chapter.comparisons().map(|comparison| comparison.id.clone()).collect();
         ids.extend(chapter.figures().map(|figure| figure.id.clone()));
@@ -144,7 +145,8 @@ mod tests {
     #[test]
     fn the_tables_print_what_the_paper_prints() {
         let options = RunOptions { trials: Some(1), seed: 2, scalar: None };
-        let chapter = chapter(&run(options).unwrap()).unwrap();
+        let chapter =
+            chapter(&experiment::<Pedestrian>(&options, &Settings::new([])).unwrap()).unwrap();
         let table = chapter.comparisons().find(|table| table.id == "pedestrian-table-4").unwrap();
         let published: Vec<_> = table.rows.iter().map(|row| row.published.as_str()).collect();
         assert_eq!(published[..2], ["1274 cm, 1.11 %", "1435 cm, 13.89 %"]);

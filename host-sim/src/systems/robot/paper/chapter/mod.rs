@@ -74,13 +74,13 @@ fn summary(report: &Report) -> Comparison {
 
 #[cfg(test)]
 mod tests {
-    use super::super::experiment::run;
     use super::*;
-    use crate::system::RunOptions;
+    use crate::system::{RunOptions, Settings, experiment};
+    use crate::systems::robot::Robot;
 
     fn made() -> Chapter {
         let options = RunOptions { trials: Some(2), seed: 2, scalar: None };
-        chapter(&run(options).unwrap()).unwrap()
+        chapter(&experiment::<Robot>(&options, &Settings::new([])).unwrap()).unwrap()
     }
 
     #[test]

@@ -1,13 +1,13 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::system::{RunOptions, ScalarKind};
-use crate::systems::uav::paper::experiment;
+use crate::system::{RunOptions, ScalarKind, Settings, experiment};
+use crate::systems::uav::Uav;
 
 #[test]
 fn every_figure_of_the_thesis_is_there_once_and_has_lines() {
     let options = RunOptions { trials: Some(2), ..RunOptions::default() };
-    let report = experiment::run(options).unwrap();
+    let report = experiment::<Uav>(&options, &Settings::new([])).unwrap();
     let chapter = chapter(&report).unwrap();
     let figures: Vec<_> = chapter.figures().collect();
     for id in ["5-1", "5-2", "5-5", "6-1", "6-5", "6-22", "6-23", "6-27"] {
@@ -34,7 +34,7 @@ fn every_figure_of_the_thesis_is_there_once_and_has_lines() {
 #[test]
 fn the_command_names_what_was_chosen() {
     let options = RunOptions { seed: 7, trials: Some(1), scalar: Some(ScalarKind::F64) };
-    let report = experiment::run(options).unwrap();
+    let report = experiment::<Uav>(&options, &Settings::new([])).unwrap();
     let command = made(&report, "").command;
     assert!(command.ends_with("run uav --seed 7 --trials 1 --scalar f64"), "{command}");
 }

@@ -3,14 +3,14 @@
 use kestirim_air_to_ground::{Contaminated, Likelihood, Measurement};
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
 use kestirim_replay::drone::EnvironmentKind;
+use kestirim_replay::metrics::{distance, mean};
 use kestirim_user_locator::{Height, Locator, Motion, Orbit, Tracker, Waypoint};
 use rand_core::{Rng, SeedableRng};
 
-use crate::metrics::{distance, mean};
+use super::moving_user::{self, Policy, Walk};
+use super::scenario::measure;
+use super::trajectory::{SIDE_M, Trajectory};
 use crate::random::{stream, uniform};
-use crate::systems::drone::simulate::moving_user::{self, Policy, Walk};
-use crate::systems::drone::simulate::scenario::measure;
-use crate::systems::drone::simulate::trajectory::{SIDE_M, Trajectory};
 
 /// Points of a lattice of places and levels.
 const POINTS: usize = 1500;
@@ -52,6 +52,9 @@ impl Stay {
     }
 
     /// Error of one trial, m.
+    ///
+    /// # Panics
+    /// Never: shares are below one, and regions are boxes.
     pub fn trial(self, seed: u64, index: u64) -> f64 {
         let mut rng = stream(seed, index);
         let user = [SIDE_M * uniform(&mut rng), SIDE_M * uniform(&mut rng)];
@@ -121,6 +124,9 @@ pub fn walks() -> Vec<(&'static str, Walk)> {
 
 /// Three users on circles of their own, one filter each, one drone: it goes round the user of whom least is known.
 /// Mean error of all users, m.
+///
+/// # Panics
+/// Never: its intervals are above zero.
 pub fn several_users(seed: u64, index: u64) -> f64 {
     let mut world = stream(seed, index);
     let channel = EnvironmentKind::Urban.channel::<f64>();

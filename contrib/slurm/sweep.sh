@@ -1,0 +1,8 @@
+#!/bin/sh
+# Slurm: sbatch sweep.sh PLAN.toml ROWS. --array counts the plan's shards; --requeue does again what a node took with it.
+# A shard that is there is not done again, so the whole array may be submitted twice; at last: host-sim merge ROWS.
+#SBATCH --array=0-13
+#SBATCH --cpus-per-task=1
+#SBATCH --requeue
+#SBATCH --time=01:00:00
+exec host-sim sweep "$1" --out "$2"

@@ -1,0 +1,75 @@
+//! Products that were read, for the recordings of other stations that need the same.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use kestirim_gnss_files::{Antennas, Biases, Clocks, Error, Orbits};
+
+/// Products that were read, for the recordings of other stations that need the same.
+#[derive(Debug, Default)]
+pub struct Shelf {
+    orbits: Kept<Orbits>,
+    clocks: Kept<Clocks>,
+    biases: Kept<Biases>,
+    antennas: Kept<Antennas>,
+}
+
+/// The paths, and the receiver's antenna where that matters.
+type Key = (Vec<PathBuf>, String);
+
+/// What could not be read is not kept.
+type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
+
+#[derive(Debug)]
+struct Kept<T>(Mutex<HashMap<Key, Place<T>>>);
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T> Kept<T> {
+    /// Who comes while another one reads waits: `read` must not wait for other threads' work.
+    fn get(
+        &self,
+        paths: &[PathBuf],
+        antenna: &str,
+        read: impl FnOnce() -> Result<T, Error>,
+    ) -> Result<Arc<T>, Error> {
+        let place = {
+            let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(all.entry((paths.to_vec(), antenna.to_owned())).or_default())
+        };
+        let mut kept = place.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kept) = &*kept {
+            return Ok(Arc::clone(kept));
+        }
+        let new = Arc::new(read()?);
+        *kept = Some(Arc::clone(&new));
+        Ok(new)
+    }
+}
+
+impl Shelf {
+    pub(super) fn orbits(&self, paths: &[PathBuf]) -> Result<Arc<Orbits>, Error> {
+        self.orbits.get(paths, "", || Orbits::read(paths))
+    }
+
+    pub(super) fn clocks(&self, paths: &[PathBuf]) -> Result<Arc<Clocks>, Error> {
+        self.clocks.get(paths, "", || Clocks::read(paths))
+    }
+
+    pub(super) fn biases(&self, paths: &[PathBuf]) -> Result<Arc<Biases>, Error> {
+        self.biases.get(paths, "", || Biases::read(paths))
+    }
+
+    pub(super) fn antennas(
+        &self,
+        paths: &[PathBuf],
+        receiver: &str,
+    ) -> Result<Arc<Antennas>, Error> {
+        self.antennas.get(paths, receiver, || Antennas::read(paths, receiver))
+    }
+}
