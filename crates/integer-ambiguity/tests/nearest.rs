@@ -17,7 +17,7 @@ fn covariance([l10, l20, l21]: [f64; 3], variances: [f64; 3]) -> Matrix {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
 }
 
-/// (a − z)ᵀ Q⁻¹ (a − z), from the end on, as Q = LᵀDL.
+/// (a − z)ᵀ Q⁻¹ (a − z), from the end on, as Q = Lᵀ D L.
 fn distance(factors: ([f64; 3], [f64; 3]), ambiguities: [f64; 3], integers: [i64; 3]) -> f64 {
     let ([l10, l20, l21], variances) = factors;
     let [x, y, z] = [0, 1, 2].map(|i| ambiguities[i] - integers[i] as f64);

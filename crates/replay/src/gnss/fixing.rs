@@ -29,13 +29,13 @@ pub struct Fixing {
 /// Makes ambiguities whole where that passes the tests. The filter keeps its own.
 pub(super) struct Fixer<'a, const N: usize> {
     recording: &'a Recording,
-    fixer: AmbiguityFixer<N>,
+    ambiguities: AmbiguityFixer<N>,
     fixing: Fixing,
 }
 
 impl<'a, const N: usize> Fixer<'a, N> {
     pub(super) fn new(recording: &'a Recording) -> Self {
-        Self { recording, fixer: AmbiguityFixer::new(), fixing: Fixing::default() }
+        Self { recording, ambiguities: AmbiguityFixer::new(), fixing: Fixing::default() }
     }
 
     /// Puts the position with whole ambiguities in the place of the filter's, if they are known.
@@ -51,7 +51,9 @@ impl<'a, const N: usize> Fixer<'a, N> {
         }
         let whole = self.recording.products().whole();
         let bias = |satellite| whole.of(satellite, time);
-        let Some(fixed) = self.fixer.fix(filter, solution, observations, bias) else { return };
+        let Some(fixed) = self.ambiguities.fix(filter, solution, observations, bias) else {
+            return;
+        };
         let FixedSolution { position, covariance_enu, fixed, ratio, success_rate } = fixed;
         let rotation = Geodetic::from_ecef(&position).enu_from_ecef();
         solution.position = position;
