@@ -10,7 +10,7 @@ use super::wide_lane::Candidate;
 
 /// What models leave of each satellite's ambiguity (orbit, clock, antennas, weather), m.
 const MODEL: f64 = 0.005;
-/// How many pairs must be found at once. With seven, the integers of one in a hundred hours were wrong together.
+/// How many pairs must be found at once. With six to eight, those of one in a hundred hours were wrong together.
 const FEWEST: usize = 9;
 /// The tests: the least success rate and ratio, the largest mean square of what the integers are off, in variances.
 const LEAST_SUCCESS: f64 = 0.99;

@@ -2,6 +2,7 @@
 
 use kestirim_air_to_ground::OpenGround;
 use kestirim_user_locator::GroundSearch;
+use rayon::prelude::*;
 
 use super::{Cloud, Estimate, MOST_CORNERS, Quantity, Search, level_prior};
 
@@ -9,7 +10,9 @@ use super::{Cloud, Estimate, MOST_CORNERS, Quantity, Search, level_prior};
 pub const MOST_PLACES: usize = 120;
 /// Points of a lattice: with them a posterior's mean is right to a metre in a hundred of its width.
 pub const POINTS_OPEN: usize = 800;
-/// Most estimates on the way, as each takes as long as the last one.
+/// Points on the way, where estimates are many.
+const POINTS_ON_THE_WAY: usize = 200;
+/// Most estimates on the way.
 const MOST_TOLD: usize = 60;
 
 /// Of a recorded flight.
@@ -22,20 +25,29 @@ impl Search<'_> {
         let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
         let count = self.stops.len();
         let stride = if self.only_last { count } else { count.div_ceil(MOST_TOLD) };
-        let mut estimates = Vec::new();
+        let mut asked = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
             let Some(measurement) = self.measurement(stop) else { continue };
             search.measure(&measurement);
             // Counted from the end, so that the last is one of them.
             if (count - 1 - number).is_multiple_of(stride) {
-                estimates.extend(self.found(&search, number, quantity));
+                asked.push((number, search.clone()));
             }
         }
-        estimates
+        let found = |(number, search): &(usize, Box<Ground>)| match number + 1 == count {
+            true => self.found::<POINTS_OPEN>(search, *number, quantity),
+            false => self.found::<POINTS_ON_THE_WAY>(search, *number, quantity),
+        };
+        asked.par_iter().filter_map(found).collect()
     }
 
-    fn found(&self, search: &Ground, stop: usize, quantity: Quantity) -> Option<Estimate> {
-        let found = search.estimate::<POINTS_OPEN>().ok()?;
+    fn found<const POINTS: usize>(
+        &self,
+        search: &Ground,
+        stop: usize,
+        quantity: Quantity,
+    ) -> Option<Estimate> {
+        let found = search.estimate::<POINTS>().ok()?;
         let covered = self.truth.map(|truth| search.credible(&found, self.inward(truth), 0.9));
         let cloud =
             self.with_clouds.then(|| Cloud::of_lattice(&found.posterior).moved(self.origin));

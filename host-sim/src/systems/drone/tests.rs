@@ -166,7 +166,8 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
     let mut text = "t,x,y,h,rssi_db\n".to_owned();
     for k in 0..12 {
         let t = f64::from(k);
-        let (x, y) = (40.0 * t, 30.0 * (t * 0.9).sin());
+        // Wide enough to tell both sides apart, though nobody knows the channel.
+        let (x, y) = (40.0 * t, 120.0 * (t * 0.9).sin());
         let far = (x - 200.0).hypot(y - 100.0).hypot(40.0);
         writeln!(text, "{t},{x:.3},{y:.3},40,{:.3}", -40.0 - 20.0 * far.log10()).unwrap();
     }

@@ -175,7 +175,12 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
     assert_eq!(values(&first, "alpha", "Kalman").len(), 200);
     let other = answer(&*opened, &json!({ "model": "P3", "scalar": "f32" }));
     assert_ne!(values(&first, "alpha", "Luenberger"), values(&other, "alpha", "Luenberger"));
-    assert!(other.warnings.is_empty());
+    // What no aircraft flew.
+    assert!(
+        other.warnings.iter().all(|it| it.contains("contradicts the model")),
+        "{:?}",
+        other.warnings
+    );
     for (name, value) in [("absolute", json!(true)), ("seed", json!(3))] {
         let sent = json!({ "model": "P2", name: value });
         let settings = Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap();
