@@ -34,9 +34,12 @@ impl Search<'_> {
                 asked.push((number, search.clone()));
             }
         }
-        let found = |(number, search): &(usize, Box<Ground>)| match number + 1 == count {
-            true => self.found::<POINTS_OPEN>(search, *number, quantity),
-            false => self.found::<POINTS_ON_THE_WAY>(search, *number, quantity),
+        let found = |(number, search): &(usize, Box<Ground>)| {
+            if number + 1 == count {
+                self.found::<POINTS_OPEN>(search, *number, quantity)
+            } else {
+                self.found::<POINTS_ON_THE_WAY>(search, *number, quantity)
+            }
         };
         asked.par_iter().filter_map(found).collect()
     }
