@@ -225,7 +225,7 @@ mod tests {
         let pick = columns.picks[5].as_ref().unwrap();
         assert_eq!((pick.name.as_str(), pick.is_negative), ("Gyr Z", true));
         for (text, expected) in [
-            ("mx=y", "expected one of t, ax, ay, az, gx, gy, gz, anchor, range, x, "),
+            ("mx=y", "expected one of t, ax, ay, az, gx, gy, gz, anchor, range, anchor_a, "),
             ("t", "expected pairs such as t=timestamp,ax=AccX, found \"t\""),
             ("t=", "found \"t=\""),
             ("", "found nothing"),

@@ -74,7 +74,7 @@ pub(crate) fn uav<'py>(
     };
     let outputs = c.iter().enumerate().map(|(output, row)| (output.to_string(), *row));
     let dynamics = dynamics(rows(&a)?, rows(&b)?, interval)?;
-    let model = Model { dynamics, outputs: outputs.collect(), trim };
+    let model = Model { dynamics, outputs: outputs.collect(), trim, extended: None };
     let samples = samples(values(&t)?, rows(&inputs)?, values(&measured)?, c.len());
     let (flight, followed) = py
         .detach(|| {
@@ -125,7 +125,7 @@ fn results<'py>(
     flight: &Deviations,
     followed: &Followed,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Followed { estimates, innovations, rejected, healths } = followed;
+    let Followed { estimates, innovations, rejected, healths, .. } = followed;
     let seconds = estimates.iter().map(|estimate| estimate.t_us as f64 / 1e6);
     let states = estimates.iter().map(|estimate| flight.absolute(estimate).into());
     let sigmas = estimates.iter().map(|it| it.sigma.map_or([f64::NAN; 4], <[f64; 4]>::from));

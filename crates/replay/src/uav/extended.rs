@@ -84,19 +84,22 @@ pub(super) fn follow(
     scalar: ScalarKind,
 ) -> Result<Followed, Error> {
     let tried = if extended.gust.is_some() { &GUSTS[..] } else { &[1.0] };
-    let mut best: Option<(f64, Followed)> = None;
+    let mut best: Result<(f64, Followed), Error> = Err(Error::TooShort);
     for &gust in tried {
         let flight = Flight { model, extended, log, options, gust };
-        let (support, followed) = match scalar {
+        let next = match scalar {
             ScalarKind::F32 => flight.follow::<f32>(),
             ScalarKind::F64 => flight.follow::<f64>(),
             ScalarKind::Fixed => flight.follow::<Q16_16>(),
-        }?;
-        if best.as_ref().is_none_or(|(most, _)| support > *most) {
-            best = Some((support, followed));
+        };
+        // What one strength of gusts is too much for (in fixed point), another may be right for.
+        match (&best, &next) {
+            (Ok((most, _)), Ok((support, _))) if support > most => best = next,
+            (Err(_), _) => best = next,
+            _ => {}
         }
     }
-    best.map(|(_, followed)| followed).ok_or(Error::TooShort)
+    best.map(|(_, followed)| followed)
 }
 
 /// A flight to be followed, with gusts of so many times what the model says.
@@ -220,7 +223,7 @@ impl Parts {
         let beside = biases.chain(wind.map(Unknown::Wind)).chain(density.map(Unknown::Density));
         Some(Self {
             outputs: known.collect(),
-            process: extended.process.unwrap_or_default(),
+            process: extended.process.unwrap_or_default() * options.ratio,
             unknown: gust.into_iter().chain(forces).chain(beside).collect(),
             inputs,
         })

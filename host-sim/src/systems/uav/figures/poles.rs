@@ -42,7 +42,9 @@ pub(super) fn of_log(
     let (interval, assumed) = (flight.log.interval_s, Assumed::of(model, outputs, options));
     let step = model.dynamics.over(interval, interval, &assumed.inputs.into());
     let step = step.map_err(|error| Error::Usage(error.to_string()))?;
+    // That of more states has other poles.
     let filter = match outputs.len() {
+        _ if model.extended.is_some() => None,
         1 => settled::<1>(model, outputs, &step, &assumed),
         2 => settled::<2>(model, outputs, &step, &assumed),
         3 => settled::<3>(model, outputs, &step, &assumed),
