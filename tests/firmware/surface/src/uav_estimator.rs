@@ -128,7 +128,8 @@ type Model = AugmentedModel<9, 6, 3>;
 
 fn augmented_model() -> Option<Model> {
     let plant = any(StateSpace { a: matrix(), b: matrix() });
-    let mut model = Model::new(&plant, &matrix(), &[(); 3].map(|()| output())).ok()?;
+    let mut model =
+        AugmentedModel::<9, 6, 3>::new(&plant, &matrix(), &[(); 3].map(|()| output())).ok()?;
     for _ in 0..rounds() {
         let gust = any(Gust {
             sigmas: [(); 2].map(|()| number()),
@@ -136,16 +137,16 @@ fn augmented_model() -> Option<Model> {
             airspeed: number(),
         });
         for next in [
-            Model::with_gust(model, &gust),
-            Model::with_bias(model, whole::<usize>(), &drift()),
-            Model::with_wind(model, &drift()),
-            Model::with_density(model, &drift()),
-            Model::with_force(model, whole::<usize>(), &drift()),
+            AugmentedModel::with_gust(model, &gust),
+            AugmentedModel::with_bias(model, whole::<usize>(), &drift()),
+            AugmentedModel::with_wind(model, &drift()),
+            AugmentedModel::with_density(model, &drift()),
+            AugmentedModel::with_force(model, whole::<usize>(), &drift()),
         ] {
             model = any(next).unwrap_or(model);
         }
     }
-    keep(Model::start(&model));
+    keep(AugmentedModel::start(&model));
     Some(model)
 }
 
@@ -154,7 +155,9 @@ fn augmented_filters<T: Scalar>() {
     let Ok(mut filter) = any(AugmentedFilter::<T, 9, 6, 3>::new(&model)) else { return };
     let scalars = || any([(); 3].map(|()| option::<T>()));
     for _ in 0..rounds() {
-        let Ok(step) = any(Model::over(&model, number(), number(), &matrix())) else { continue };
+        let Ok(step) = any(AugmentedModel::over(&model, number(), number(), &matrix())) else {
+            continue;
+        };
         let transition = any(AugmentedFilter::transition(&filter, &step));
         let input = matrix();
         try_on(&mut filter, |filter| AugmentedFilter::predict(filter, &transition, &input));
