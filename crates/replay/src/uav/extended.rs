@@ -136,7 +136,9 @@ impl Flight<'_> {
             followed.add(estimate, innovations, filter.rejected(), filter.health());
         }
         let (state, sigma) = (filter.filter().estimate(), filter.filter().sigma());
-        let told = parts.told(|output| model.outputs[log.outputs[output]].0.clone());
+        let duration = log.samples.len() as f64 * log.interval_s;
+        let name = |output: usize| model.outputs[log.outputs[output]].0.clone();
+        let told = parts.told(name, duration);
         let told = told.into_iter().map(|(place, name, said)| {
             let (value, sigma) = (state[place], sigma[place]);
             Beside { name, value, sigma, said }
@@ -249,8 +251,9 @@ impl Parts {
         Ok(built)
     }
 
-    /// What stands where beside the four states.
-    fn told(&self, name: impl Fn(usize) -> String) -> Vec<(usize, String, f64)> {
+    /// What stands where beside the four states, and what the model says of it after so many seconds.
+    fn told(&self, name: impl Fn(usize) -> String, duration: f64) -> Vec<(usize, String, f64)> {
+        let said = |drift: &Drift| drift.sigma.hypot(drift.rate * duration.sqrt());
         let (mut next, mut all) = ([4, MOVING], Vec::new());
         for unknown in &self.unknown {
             let place = &mut next[usize::from(!unknown.moves().0)];
@@ -261,11 +264,11 @@ impl Parts {
                     ("gust across".to_owned(), *across)
                 }
                 Unknown::Force(state, drift) => {
-                    (format!("force on {}", super::STATE_COLUMNS[*state]), drift.sigma)
+                    (format!("force on {}", super::STATE_COLUMNS[*state]), said(drift))
                 }
-                Unknown::Bias(output, drift) => (format!("bias of {}", name(*output)), drift.sigma),
-                Unknown::Wind(drift) => ("head wind".to_owned(), drift.sigma),
-                Unknown::Density(drift) => ("density".to_owned(), drift.sigma),
+                Unknown::Bias(output, drift) => (format!("bias of {}", name(*output)), said(drift)),
+                Unknown::Wind(drift) => ("head wind".to_owned(), said(drift)),
+                Unknown::Density(drift) => ("density".to_owned(), said(drift)),
             };
             all.push((*place, told.0, told.1));
             *place += 1;
