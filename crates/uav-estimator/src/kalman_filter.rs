@@ -153,15 +153,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         let mut next = self.state;
         next.predict(&transition.a, &transition.noise)?;
         let input = input.map(T::from_f64);
-        let [elevator, throttle] = transition.b.as_columns();
-        for (mean, (&elevator, &throttle)) in
-            next.mean.as_array_mut().iter_mut().zip(elevator.iter().zip(throttle))
-        {
-            *mean += T::dot(&[elevator, throttle], input.as_array());
-        }
-        if !T::all_finite(next.mean.as_array()) {
-            return Err(Error::NotFinite);
-        }
+        add_inputs(next.mean.as_array_mut(), &transition.b, &input)?;
         self.state = next;
         Ok(())
     }
@@ -241,6 +233,20 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
 fn units() -> (SMatrix<f64, 4, 4>, SMatrix<f64, 4, 4>) {
     let units = SVector::from(UNITS);
     (SMatrix::from_diagonal(&units), SMatrix::from_diagonal(&units.map(f64::recip)))
+}
+
+/// Adds B u to the first four states.
+#[inline(always)]
+pub(crate) fn add_inputs<T: Scalar, const N: usize>(
+    means: &mut [T; N],
+    b: &SMatrix<T, 4, 2>,
+    input: &SVector<T, 2>,
+) -> Result<(), Error> {
+    let [elevator, throttle] = b.as_columns();
+    for (mean, (&elevator, &throttle)) in means.iter_mut().zip(elevator.iter().zip(throttle)) {
+        *mean += T::dot(&[elevator, throttle], input.as_array());
+    }
+    if T::all_finite(means) { Ok(()) } else { Err(Error::NotFinite) }
 }
 
 /// The power of two below a size; 1 where there is none.

@@ -2,16 +2,15 @@
 
 mod archive;
 mod arguments;
-mod calibrate;
 mod check;
 pub mod design;
 mod list;
 pub mod live;
+mod made_for_it;
 mod merge;
 mod replay;
 mod run;
 pub mod serve;
-mod survey;
 mod sweep;
 
 use std::ffi::OsString;
@@ -22,6 +21,7 @@ use clap_complete::Shell;
 
 use self::arguments::{read, sentence};
 use self::design::Design;
+use self::made_for_it::{CALIBRATE, SURVEY};
 use self::merge::Together;
 use self::serve::Serve;
 use self::sweep::Sweep;
@@ -52,8 +52,8 @@ pub fn command(arguments: &[OsString]) -> Command {
                 .about("Put the shards of a sweep together and print what a single run prints"),
         ))
         .subcommand(check::command())
-        .subcommand(calibrate::command())
-        .subcommand(survey::command())
+        .subcommand(made_for_it::command(CALIBRATE))
+        .subcommand(made_for_it::command(SURVEY))
         .subcommand(Design::augment_args(Command::new("design").about(
             "Design observers: gains, discretisations and covariances of a file of cases",
         )))
@@ -106,8 +106,8 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
         "sweep" => read::<Sweep>(matches)?.run(),
         "merge" => read::<Together>(matches)?.run(),
         "check" => check::run(matches),
-        "calibrate" => calibrate::run(matches),
-        "survey" => survey::run(matches),
+        "calibrate" => made_for_it::run(CALIBRATE, matches),
+        "survey" => made_for_it::run(SURVEY, matches),
         "design" => read::<Design>(matches)?.run(),
         "serve" => read::<Serve>(matches)?.run(),
         "live" => live::run(matches),

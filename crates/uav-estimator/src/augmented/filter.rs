@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{AugmentedModel, AugmentedStep, Output, Reference};
 use crate::Error;
-use crate::kalman_filter::{UNITS, power_of_two};
+use crate::kalman_filter::{UNITS, add_inputs, power_of_two};
 
 /// V among the states.
 const AIRSPEED: usize = 2;
@@ -193,14 +193,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         let AugmentedTransition { rows, b, fading, noise } = transition;
         let mut next = self.state;
         next.advance(&Driven { rows, fading: fading.as_array(), noise })?;
-        let [elevator, throttle] = b.as_columns();
-        let moved = next.mean.as_array_mut().iter_mut();
-        for (mean, (&elevator, &throttle)) in moved.zip(elevator.iter().zip(throttle)) {
-            *mean += T::dot(&[elevator, throttle], input.as_array());
-        }
-        if !T::all_finite(next.mean.as_array()) {
-            return Err(Error::NotFinite);
-        }
+        add_inputs(next.mean.as_array_mut(), b, input)?;
         self.state = next;
         Ok(())
     }
