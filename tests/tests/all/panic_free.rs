@@ -15,8 +15,14 @@ use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Target};
 const CONTROL: &str = "control";
 
 /// Crates whose only scalar is `f64`, or that design in it.
-const IN_DOUBLES: [&str; 5] =
-    ["gnss-ppp", "observer-design", "ppp-filter", "uav-estimator", "uav-longitudinal"];
+const IN_DOUBLES: [&str; 6] = [
+    "gnss-ppp",
+    "integer-ambiguity",
+    "observer-design",
+    "ppp-filter",
+    "uav-estimator",
+    "uav-longitudinal",
+];
 
 /// The programs, by the files they are made of.
 fn programs() -> Result<Vec<String>> {

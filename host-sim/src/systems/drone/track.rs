@@ -10,6 +10,8 @@ use crate::system::{Detail, Settings};
 
 /// From here on a drone hears nothing, m.
 const FAR_M: f64 = 20_000.0;
+/// A drone that searches an area is not beside it for a larger share of its measurements.
+const MOST_OUTSIDE: f64 = 0.25;
 
 /// Tracks a user.
 ///
@@ -76,9 +78,26 @@ fn used(recorded: &Recorded, environment: Option<EnvironmentKind>) -> (Vec<Stop>
         Some(area) if far(area, &stops) => {
             warnings.push("no measurement was made within 20 km of the area".to_owned());
         }
-        Some(_) => {}
+        Some(area) => {
+            let share = outside(area, &stops);
+            if share > MOST_OUTSIDE {
+                warnings.push(format!(
+                    "{:.0} % of the measurements were made outside of the area: places and area must be in metres and of one \
+                     origin",
+                    100.0 * share
+                ));
+            }
+        }
     }
     (stops, warnings)
+}
+
+/// Share of the stops that are beyond an area's corners.
+fn outside(area: &Area, stops: &[Stop]) -> f64 {
+    let (low, high) = (area.region().low(), area.region().high());
+    let is_beyond = |at: f64, axis: usize| at < low[axis] || at > high[axis];
+    let beyond = |stop: &&Stop| is_beyond(stop.place[0], 0) || is_beyond(stop.place[1], 1);
+    stops.iter().filter(beyond).count() as f64 / stops.len().max(1) as f64
 }
 
 /// Whether no stop is anywhere near an area.
