@@ -134,6 +134,7 @@ fn results<'py>(
     let told = [Reason::Innovations, Reason::Rejected, Reason::Time];
     let seen = |reason: &Reason| healths.iter().any(|health| health.has(*reason));
     let doubts: Health = told.into_iter().filter(seen).collect();
+    let doubts = doubts.with(Reason::Innovations, !followed.contradictions().is_empty());
     Ok(Results::new(py)
         .line("t", seconds.collect())?
         .table("state", states.collect::<Vec<[f64; 4]>>())?

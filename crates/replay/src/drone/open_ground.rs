@@ -13,7 +13,7 @@ pub const POINTS_OPEN: usize = 800;
 /// Points on the way, where estimates are many.
 const POINTS_ON_THE_WAY: usize = 200;
 /// Most estimates on the way.
-const MOST_TOLD: usize = 60;
+const MOST_TOLD: usize = 30;
 
 /// Of a recorded flight.
 type Ground = GroundSearch<f64, MOST_PLACES, MOST_CORNERS>;
