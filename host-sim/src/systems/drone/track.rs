@@ -49,7 +49,8 @@ fn find(
     if estimates.is_empty() {
         return Err(recorded.refused("no place explains the measurements"));
     }
-    if (environment.is_some() || !only_last) && estimates.len() < stops.len() {
+    // Over open ground every measurement counts, and there is an estimate after one in several.
+    if environment.is_some() && estimates.len() < stops.len() {
         warnings.push("some measurements are explained by no place: left out".to_owned());
     }
     let truth = truth.map_or_else(Vec::new, |truth| vec![truth; stops.len()]);
