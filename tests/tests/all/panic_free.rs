@@ -42,20 +42,26 @@ fn may_use_doubles(program: &str) -> bool {
 
 fn check(target: &'static Target, profile: Profile) -> Result<()> {
     let Some(images) = Images::of_surface(target, profile)? else { return Ok(()) };
+    let mut faults = Vec::new();
     for program in programs()? {
         let elf = images.elf(&program)?;
         let (panics, doubles) = (elf.panic_symbols(), elf.double_symbols());
-        let of = format!("{program} on {} at {}", target.triple, profile.opt());
         if program == CONTROL {
-            assert!(!panics.is_empty() && !doubles.is_empty(), "{of}: symbols are not seen");
+            assert!(!panics.is_empty() && !doubles.is_empty(), "symbols are not seen");
             continue;
         }
-        assert_eq!(panics, Vec::<&str>::new(), "{of} can panic");
-        assert_eq!(elf.heap_symbols(), Vec::<&str>::new(), "{of} has a heap");
+        let mut fault = |what: &str, symbols: Vec<&str>| {
+            if !symbols.is_empty() {
+                faults.push(format!("{program} {what}: {symbols:?}"));
+            }
+        };
+        fault("can panic", panics);
+        fault("has a heap", elf.heap_symbols());
         if !may_use_doubles(&program) {
-            assert_eq!(doubles, Vec::<&str>::new(), "{of} computes in double precision");
+            fault("computes in double precision", doubles);
         }
     }
+    assert!(faults.is_empty(), "on {} at {}:\n{}", target.triple, profile.opt(), faults.join("\n"));
     Ok(())
 }
 

@@ -90,7 +90,7 @@ impl<const N: usize> Held<N> {
             }
         }
         let mut pairs = Vec::new();
-        for pair in Pair::all::<N>(&known) {
+        for pair in Pair::all::<N>(known.iter()) {
             if let (Some(one), Some(reference)) = (self.of(&pair.one), self.of(&pair.reference)) {
                 let _ = pairs.push((pair, one.first.wrapping_sub(reference.first)));
             }
@@ -124,7 +124,7 @@ mod tests {
     fn found(candidates: &[Candidate], integers: [i64; 3]) -> Found<12> {
         let integers = integers.into_iter().collect();
         let validation = Validation { ratio: 3.0, success_rate: 0.999 };
-        Found { pairs: Pair::all(candidates), integers, validation }
+        Found { pairs: Pair::all(candidates.iter()), integers, validation }
     }
 
     fn integers(held: &Held<12>, candidates: &Vec<Candidate, 12>) -> Vec<i64, 12> {

@@ -26,10 +26,13 @@ pub(super) struct Pair {
 
 impl Pair {
     /// Each satellite with the highest of its system.
-    pub(super) fn all<const N: usize>(candidates: &[Candidate]) -> Vec<Self, N> {
+    pub(super) fn all<'a, const N: usize>(
+        candidates: impl Iterator<Item = &'a Candidate> + Clone,
+    ) -> Vec<Self, N> {
         let mut pairs = Vec::new();
         for system in [Constellation::Gps, Constellation::Galileo] {
-            let of_system = || candidates.iter().filter(|it| it.carriers.constellation() == system);
+            let of_system =
+                || candidates.clone().filter(|it| it.carriers.constellation() == system);
             let highest = of_system().max_by(|a, b| a.elevation.total_cmp(&b.elevation));
             let Some(&reference) = highest else { continue };
             for &one in of_system().filter(|it| it.satellite != reference.satellite) {
@@ -100,12 +103,13 @@ pub(super) struct Found<const N: usize> {
 /// already, with which these must agree, that takes the place of the last test.
 pub(super) fn search<const N: usize>(
     estimate: &Gaussian<f64, N>,
-    candidates: &Vec<Candidate, N>,
+    candidates: &[Candidate],
     are_held: bool,
 ) -> Option<Found<N>> {
-    let mut some = candidates.clone();
+    let mut left_out = f64::NEG_INFINITY;
     loop {
-        let pairs: Vec<Pair, N> = Pair::all(&some);
+        let some = candidates.iter().filter(|it| it.elevation > left_out);
+        let pairs: Vec<Pair, N> = Pair::all(some.clone());
         if pairs.len() < FEWEST {
             return None;
         }
@@ -130,10 +134,6 @@ pub(super) fn search<const N: usize>(
                 return Some(Found { pairs, integers: nearest.integers, validation });
             }
         }
-        let each = some.iter().enumerate();
-        let (lowest, _) = each.min_by(|(_, a), (_, b)| a.elevation.total_cmp(&b.elevation))?;
-        if lowest < some.len() {
-            some.swap_remove(lowest);
-        }
+        left_out = some.map(|it| it.elevation).min_by(f64::total_cmp)?;
     }
 }
