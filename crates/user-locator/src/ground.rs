@@ -198,8 +198,14 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
         });
         let best = best.get();
         let most = best.into_iter().fold(T::ZERO.ln(), T::max);
-        let likely = |(_, log): &(&Supposition<T>, T)| *log >= most - T::from_f64(UNLIKELY);
-        Ok(all.iter().zip(best).filter(likely).map(|(supposition, _)| *supposition).collect())
+        let mut likely = Vec::new();
+        for (supposition, log) in all.iter().zip(best) {
+            if log >= most - T::from_f64(UNLIKELY) {
+                // There is room for all.
+                let _ = likely.push(*supposition);
+            }
+        }
+        Ok(likely)
     }
 
     /// On a lattice that is laid anew where the weight is, until it is as fine as the posterior.

@@ -90,9 +90,10 @@ impl<const N: usize> Held<N> {
             }
         }
         let mut pairs = Vec::new();
-        for pair in Pair::all::<N>(known.iter()) {
+        // By reference: a vector that is taken apart may panic.
+        for pair in &Pair::all::<N>(known.iter()) {
             if let (Some(one), Some(reference)) = (self.of(&pair.one), self.of(&pair.reference)) {
-                let _ = pairs.push((pair, one.first.wrapping_sub(reference.first)));
+                let _ = pairs.push((*pair, one.first.wrapping_sub(reference.first)));
             }
         }
         pairs
