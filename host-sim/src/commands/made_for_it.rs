@@ -1,4 +1,4 @@
-//! `host-sim calibrate` and `survey`: what a system finds out from a log that was made for it.
+//! `host-sim calibrate`, `survey` and `identify`: what a system finds out from a log that was made for it.
 
 use clap::{ArgMatches, Command};
 
@@ -19,6 +19,10 @@ pub(super) const SURVEY: Made = (
     "Find where a system's stations are, from what they measure of each other",
     |system| system.survey(),
 );
+pub(super) const IDENTIFY: Made =
+    ("identify", "Find how a system moves, from logs of manoeuvres", |system| {
+        system.identification()
+    });
 
 pub(super) fn command((name, about, of): Made) -> Command {
     let systems = ALL.iter().filter_map(|system| Some(of(*system)?.command().name(system.name())));

@@ -21,7 +21,7 @@ use clap_complete::Shell;
 
 use self::arguments::{read, sentence};
 use self::design::Design;
-use self::made_for_it::{CALIBRATE, SURVEY};
+use self::made_for_it::{CALIBRATE, IDENTIFY, SURVEY};
 use self::merge::Together;
 use self::serve::Serve;
 use self::sweep::Sweep;
@@ -54,6 +54,7 @@ pub fn command(arguments: &[OsString]) -> Command {
         .subcommand(check::command())
         .subcommand(made_for_it::command(CALIBRATE))
         .subcommand(made_for_it::command(SURVEY))
+        .subcommand(made_for_it::command(IDENTIFY))
         .subcommand(Design::augment_args(Command::new("design").about(
             "Design observers: gains, discretisations and covariances of a file of cases",
         )))
@@ -108,6 +109,7 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
         "check" => check::run(matches),
         "calibrate" => made_for_it::run(CALIBRATE, matches),
         "survey" => made_for_it::run(SURVEY, matches),
+        "identify" => made_for_it::run(IDENTIFY, matches),
         "design" => read::<Design>(matches)?.run(),
         "serve" => read::<Serve>(matches)?.run(),
         "live" => live::run(matches),

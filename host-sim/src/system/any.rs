@@ -49,6 +49,8 @@ pub trait AnySystem: Sync {
     fn survey(&self) -> Option<Box<dyn Calibration>>;
     /// [`System::calibration`].
     fn calibration(&self) -> Option<Box<dyn Calibration>>;
+    /// [`System::identification`].
+    fn identification(&self) -> Option<Box<dyn Calibration>>;
 
     /// Reads a recording, or makes a synthetic one.
     ///
@@ -125,6 +127,10 @@ impl<S: System> AnySystem for S {
     }
     fn calibration(&self) -> Option<Box<dyn Calibration>> {
         S::calibration()
+    }
+
+    fn identification(&self) -> Option<Box<dyn Calibration>> {
+        S::identification()
     }
 
     fn open(&self, source: Source, settings: &Settings) -> Result<Box<dyn Opened>, Error> {

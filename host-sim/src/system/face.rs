@@ -210,9 +210,14 @@ pub trait System: Sync + 'static {
     fn calibration() -> Option<Box<dyn Calibration>> {
         None
     }
+
+    /// The command that finds the model of what moves; none if there is none.
+    fn identification() -> Option<Box<dyn Calibration>> {
+        None
+    }
 }
 
-/// A command that finds what a system's sensors measure wrong.
+/// A command that finds what a system's sensors measure wrong, or how what carries them moves.
 pub trait Calibration {
     /// Its options, and what it does.
     fn command(&self) -> clap::Command;

@@ -34,6 +34,7 @@ mod uav_design_cases;
 mod uav_design_on_target;
 mod uav_experiment;
 mod uav_figures;
+mod uav_identification;
 mod uav_misprints;
 mod uav_observers;
 mod uav_observers_scalars;

@@ -12,6 +12,7 @@
 
 pub mod account;
 pub mod figures;
+pub mod identify;
 mod online;
 pub mod paper;
 pub mod recording;
@@ -33,8 +34,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
-    Setting, Settings, System, Table,
+    Account, Answer, Calibration, Detail, FileField, Files, Finding, Idle, OutputField, Panel,
+    Plan, RunOptions, Setting, Settings, System, Table,
 };
 
 /// The system.
@@ -149,6 +150,10 @@ impl System for Uav {
 
     fn chapter(experiment: &report::Report) -> Result<Chapter, Error> {
         paper::chapter::chapter(experiment)
+    }
+
+    fn identification() -> Option<Box<dyn Calibration>> {
+        Some(Box::new(identify::Identify))
     }
 
     fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {

@@ -1,0 +1,5 @@
+//! Flights whose model is known.
+
+mod refusals;
+mod simulated;
+mod synthetic;
