@@ -12,3 +12,5 @@ pub mod uav;
 
 pub use self::finding::Finding;
 pub use self::scalar::ScalarKind;
+#[cfg(feature = "serde")]
+pub use self::uav::KnownAirframe;

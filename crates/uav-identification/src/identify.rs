@@ -139,7 +139,8 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
     let unknown = &filter_error.unknown;
     let structure = Structure::of(&unknown.derivative, &reference);
     let filter = problem.filter(unknown, &structure);
-    let model = Model::of(flights, &reference, &filter, &filter_error.explained.linear);
+    let white = whiteness(problem, filter_error);
+    let model = Model::of(flights, &reference, &filter, &filter_error.explained.linear, &white);
     let covariance = covariance(problem, filter_error)?;
     let bound = filter_error.information.clone().cholesky().ok_or(Error::NotConverged)?.inverse();
     let sigma = |place: usize| covariance[(place, place)].max(0.0).sqrt();

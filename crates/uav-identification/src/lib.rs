@@ -22,6 +22,6 @@ pub use self::error::Error;
 pub use self::fit::Fit;
 pub use self::flight::Flight;
 pub use self::identify::{Correlation, Identified, Known, Parameter, identify};
-pub use self::model::{Affine, Bias, Gust, Model, Noise, Trim};
+pub use self::model::{Affine, Bias, Drift, Gust, Model, Noise, Trim};
 pub use self::nondimensional::{Airplane, Coefficient};
 pub use self::parameter::STATES;

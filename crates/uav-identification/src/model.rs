@@ -2,18 +2,37 @@
 
 use nalgebra::{Matrix4, RowVector4, SMatrix, SVector, Vector2, Vector4};
 
-use crate::flight::{FITTED, Flight, Reference, spread};
+use crate::accuracy::Whiteness;
+use crate::flight::{FITTED, Flight, OUTPUTS, Reference, spread};
 use crate::innovations::{Filter, UNKNOWNS};
 use crate::structure::{Structure, inverse};
 
 /// Of what else the log may have, kinematics says what it is.
 const DERIVED: [&str; 3] = ["qbar", "climb", "V_ground"];
 /// What a steady flight may differ in from the one that was recorded, of ẋ: its deviation, and how it wanders per √s.
-const AFFINE: ([f64; 4], [f64; 4]) = ([0.002, 0.02, 0.3, 0.0], [5e-4, 5e-3, 0.02, 0.0]);
-/// Of a gyro and of a pitch angle from flight to flight, rad/s and rad, with their wandering.
-const BIASES: [(&str, f64, f64); 2] = [("q", 0.02, 1e-5), ("theta", 0.03, 1e-5)];
-/// Share of an airspeed that its density may be wrong by.
-const AIRSPEED: f64 = 0.01;
+const AFFINE: ([f64; 4], [f64; 4]) = ([0.005, 0.01, 0.3, 0.0], [1e-3, 1e-4, 0.02, 0.0]);
+/// Of a gyro, a pitch angle and an accelerometer from flight to flight, rad/s, rad and m/s², with their wandering.
+const BIASES: [(&str, Drift); 3] = [
+    ("q", Drift { sigma: 0.02, rate: 1e-5 }),
+    ("theta", Drift { sigma: 0.03, rate: 1e-5 }),
+    ("az", Drift { sigma: 0.05, rate: 0.01 }),
+];
+/// Of the air, in parts, where the dynamic pressure is measured.
+const DENSITY: Drift = Drift { sigma: 0.03, rate: 5e-4 };
+/// Of the head wind where only the speed over ground is measured beside, m/s.
+const WIND: Drift = Drift { sigma: 8.0, rate: 0.1 };
+/// Outputs that grow with the dynamic pressure.
+const SCALED: [&str; 2] = ["az", "qbar"];
+/// Columns that are looked at and not written: ax tells the drag, which is told worse than the lift.
+const UNWRITTEN: &str = "ax";
+/// Correlation of neighbouring residuals beyond which noise is not widened further.
+const MOST_COLOURED: f64 = 0.9;
+/// Part of what a linear model says that another flight contradicts, of deviations as in this one, …
+const WRONG: f64 = 0.07;
+/// … for so long, s.
+const LASTING: f64 = 0.5;
+/// No model is better, as spectral densities on ẋ: air is never quite calm.
+const LEAST_PROCESS: [f64; 4] = [1e-8, 1e-5, 4e-4, 1e-9];
 
 /// A linear model of deviations from a steady flight, ẋ = A·x + B·u, y = C·x + D·u, of states α (rad, as the vane shows it),
 /// q (rad/s), V (m/s), θ (rad) and inputs elevator (rad) and throttle (0 to 1). Serialised it is a `model.json`.
@@ -40,10 +59,12 @@ pub struct Model {
     pub noise: Noise,
     /// Outputs that grow with the dynamic pressure.
     pub scaled: Vec<&'static str>,
-    /// By how much inputs act later than the log says, s; half an interval is an input that is held.
-    pub delay: f64,
     /// What sensors may be off from flight to flight.
     pub bias: Vec<Bias>,
+    /// Head wind, m/s, if the speed over ground is an output.
+    pub wind: Option<Drift>,
+    /// Density of the air, in parts, if the dynamic pressure is an output.
+    pub density: Option<Drift>,
     /// A constant part of ẋ.
     pub affine: Affine,
     /// Turbulence.
@@ -72,16 +93,25 @@ pub struct Noise {
     pub outputs: Vec<f64>,
 }
 
+/// What may be off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Drift {
+    /// Deviation at the start.
+    pub sigma: f64,
+    /// How it wanders, per √s.
+    pub rate: f64,
+}
+
 /// What an output is off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Bias {
     /// Which output.
     pub of: &'static str,
-    /// Deviation at the start.
-    pub sigma: f64,
-    /// How it wanders, per √s.
-    pub rate: f64,
+    /// By how much.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub drift: Drift,
 }
 
 /// A constant part of ẋ.
@@ -149,6 +179,7 @@ impl Model {
         reference: &Reference,
         filter: &Filter<'_>,
         linear: &[[f64; UNKNOWNS]],
+        whiteness: &[Option<Whiteness>; OUTPUTS],
     ) -> Self {
         let structure = filter.structure;
         let count = linear.len().max(1) as f64;
@@ -169,36 +200,47 @@ impl Model {
                 u: std::array::from_fn(|input| reference.input[input] + u[input]),
                 y: Vec::new(),
             },
-            noise: Noise { process: filter.process, outputs: Vec::new() },
+            noise: Noise {
+                process: std::array::from_fn(|state| {
+                    filter.process[state]
+                        .max(LEAST_PROCESS[state])
+                        .max(wrong(structure, &moved, state))
+                }),
+                outputs: Vec::new(),
+            },
             scaled: Vec::new(),
-            delay: filter.delay,
             bias: Vec::new(),
+            wind: None,
+            density: None,
             affine: Affine {
                 sigma: std::array::from_fn(|state| AFFINE.0[state].max(scatter(4 + state))),
                 rate: AFFINE.1,
             },
             gust: Gust::default(),
         };
-        for output in (0..FITTED.len()).filter(|&output| reference.has[output]) {
+        let is_written = |&output: &usize| reference.has[output] && FITTED[output] != UNWRITTEN;
+        for output in (0..FITTED.len()).filter(is_written) {
             let (row, through) = (structure.c.row(output), structure.d.row(output));
             let off = if output >= 4 { mean(4 + output) } else { 0.0 };
             let shown = at[output] + off + (row * x)[0] + (through * u)[0];
             let (c, d) = ([row[0], row[1], row[2], row[3]], [through[0], through[1]]);
-            model.push((FITTED[output], c, d, shown), filter.measured[output].sqrt());
-            if output >= 4 {
-                model.scaled.push(FITTED[output]);
-            }
+            // A filter takes noise for white: that of coloured residuals counts as much more.
+            let next = whiteness[output].map_or(0.0, |it| it.next.clamp(0.0, MOST_COLOURED));
+            let coloured = (1.0 + next) / (1.0 - next);
+            let sigma = (coloured * filter.measured[output]).sqrt();
+            model.push((FITTED[output], c, d, shown), sigma);
         }
         for name in
             DERIVED.into_iter().filter(|name| flights.iter().all(|it| it.column(name).is_some()))
         {
             model.derive(name, flights, reference, (&structure.seen, &x));
         }
-        let biases = BIASES.into_iter().filter(|(of, ..)| model.outputs.contains(of));
-        model.bias = biases.map(|(of, sigma, rate)| Bias { of, sigma, rate }).collect();
-        if model.outputs.contains(&"qbar") {
-            model.bias.push(Bias { of: "V", sigma: AIRSPEED * reference.state[2], rate: 0.0 });
-        }
+        let is_there = |name: &&str| model.outputs.contains(name);
+        model.scaled = SCALED.into_iter().filter(is_there).collect();
+        let biases = BIASES.into_iter().filter(|(of, _)| is_there(of));
+        model.bias = biases.map(|(of, drift)| Bias { of, drift }).collect();
+        model.density = is_there(&"qbar").then_some(DENSITY);
+        model.wind = is_there(&"V_ground").then_some(WIND);
         model
     }
 
@@ -237,6 +279,18 @@ impl Model {
         let shown = mean + offset + (row * x)[0];
         self.push((name, [row[0], row[1], row[2], row[3]], [0.0; 2], shown), sigma);
     }
+}
+
+/// Spectral density on a state's derivative of what the model is wrong by in other flights.
+fn wrong(structure: &Structure, moved: &[f64; 6], state: usize) -> f64 {
+    // The pitch angle's row is kinematics.
+    if state == 3 {
+        return 0.0;
+    }
+    let (a, b) = (structure.a.row(state), structure.b.row(state));
+    let terms = a.iter().chain(b.iter()).zip(moved);
+    let squares = terms.map(|(part, moved)| (WRONG * part * moved).powi(2));
+    LASTING * squares.sum::<f64>()
 }
 
 fn rows4(matrix: &Matrix4<f64>) -> [[f64; 4]; 4] {

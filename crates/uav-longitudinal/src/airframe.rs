@@ -1,13 +1,15 @@
 use crate::Error;
+#[cfg(feature = "serde")]
+use crate::published::Published;
 
 /// Size, mass and published coefficients of an aircraft with a propeller in front of its centre of mass.
 ///
 /// Coefficients are those of Beard et al., *Small Unmanned Aircraft: Theory and Practice*, 2012, by their names
-/// there; what the book's tables set to zero throughout (drag by pitch rate and by elevator, the propeller's torque) is left
-/// out.
+/// there, and so they are named where it is serialised; what the book's tables set to zero throughout (drag by pitch rate, the propeller's torque) is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Published", into = "Published"))]
 pub struct Airframe {
     /// m, kg.
     pub mass: f64,
@@ -82,15 +84,29 @@ pub struct Stall {
     pub sharpness: f64,
 }
 
-/// `C_D` = `C_Dp` + (`C_L0` + `C_Lα`·α)²/(π·e·b²/S).
+/// Drag, in either of two forms in which it is published.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Drag {
-    /// `C_Dp`.
-    pub parasitic: f64,
-    /// Oswald's efficiency e.
-    pub efficiency: f64,
+pub enum Drag {
+    /// `C_D` = `C_Dp` + (`C_L0` + `C_Lα`·α)²/(π·e·b²/S).
+    Induced {
+        /// `C_Dp`.
+        parasitic: f64,
+        /// Oswald's efficiency e.
+        efficiency: f64,
+    },
+    /// `C_D` = `C_D0` + `C_Dα1`·α + `C_Dα2`·α² + `C_Dδe`·δe².
+    Polynomial {
+        /// `C_D0`.
+        zero: f64,
+        /// `C_Dα1`, per radian.
+        alpha: f64,
+        /// `C_Dα2`, per radian².
+        alpha_squared: f64,
+        /// `C_Dδe`, per radian²: of either way alike.
+        elevator_squared: f64,
+    },
 }
 
 /// `C_m` = `C_m0` + `C_mα`·α + `C_mq`·c/(2V)·q + `C_mδe`·δe.
@@ -148,13 +164,7 @@ impl Airframe {
             [-0.12, -0.26, 0.14, 0.08, 0.105],
             [0.25, 0.022, -0.35, 0.06, -0.032],
         ]
-        .map(|[sideslip, roll_rate, yaw_rate, aileron, rudder]| SideCoefficients {
-            sideslip,
-            roll_rate,
-            yaw_rate,
-            aileron,
-            rudder,
-        });
+        .map(SideCoefficients::of);
         Self {
             mass: 13.5,
             inertia: Inertia { x: 0.8244, y: 1.135, z: 1.759, xz: 0.1204 },
@@ -164,9 +174,68 @@ impl Airframe {
             air_density: 1.2682,
             gravity: 9.81,
             lift: Lift { zero: 0.28, alpha: 3.45, pitch_rate: 0.0, elevator: -0.36, stall: None },
-            drag: Drag { parasitic: 0.0437, efficiency: 0.9 },
+            drag: Drag::Induced { parasitic: 0.0437, efficiency: 0.9 },
             pitch: Pitch { zero: -0.02338, alpha: -0.38, pitch_rate: -3.6, elevator: -0.5 },
             propeller: Propeller { area: 0.2027, coefficient: 1.0, motor: 80.0 },
+            side_force,
+            rolling,
+            yawing,
+        }
+    }
+
+    /// The Skywalker X8, a flying wing of 3.364 kg that flies at about 18 m/s.
+    ///
+    /// Aerodynamics of K. Gryte, R. Hann, M. Alam, J. Roháč, T. A. Johansen, T. I. Fossen, *Aerodynamic modeling of the Skywalker X8
+    /// fixed-wing unmanned aerial vehicle*, ICUAS 2018, as its authors' parameter file has them: `C_mα`, `C_m0` and
+    /// `C_mδe` after flights, `C_nr` six times that of the paper. Moments of inertia and thrust (the form of Beard et al.,
+    /// 2012) are rough, as they say.
+    pub fn skywalker_x8() -> Self {
+        let [side_force, rolling, yawing] = [
+            [
+                -0.223_872_157_002_540_48,
+                -0.137_355_052_631_578_93,
+                0.083_868_768_421_052_63,
+                0.043_276_402_502_774_876,
+                0.0,
+            ],
+            [
+                -0.084_896_286_396_624_17,
+                -0.404_197_999_999_999_95,
+                0.055_520_6,
+                0.120_188_141_257_827_45,
+                0.0,
+            ],
+            [0.0283, 0.004_365_511_578_947_368, -0.072, -0.003_39, 0.0],
+        ]
+        .map(SideCoefficients::of);
+        Self {
+            mass: 3.364,
+            inertia: Inertia { x: 1.229, y: 0.1702, z: 0.8808, xz: 0.9343 },
+            wing_area: 0.75,
+            span: 2.1,
+            chord: 0.357_142_857_142_857_15,
+            air_density: 1.225,
+            gravity: 9.81,
+            lift: Lift {
+                zero: 0.086_735_566_716_107_34,
+                alpha: 4.020_328_244_000_679,
+                pitch_rate: 3.87,
+                elevator: 0.278_073_620_173_471_3,
+                stall: None,
+            },
+            drag: Drag::Polynomial {
+                zero: 0.019_700_011_819_150_82,
+                alpha: 0.079_091_463_157_662_97,
+                alpha_squared: 1.055_469_986_768_084_1,
+                elevator_squared: 0.063_347_396_781_802_32,
+            },
+            pitch: Pitch {
+                zero: 0.022_75,
+                alpha: -0.4629,
+                pitch_rate: -1.301_237_037_037_037_2,
+                elevator: -0.2292,
+            },
+            propeller: Propeller { area: 0.101_787_601_976_309_29, coefficient: 1.0, motor: 40.0 },
             side_force,
             rolling,
             yawing,
@@ -177,6 +246,12 @@ impl Airframe {
     pub(crate) fn check(&self) -> Result<(), Error> {
         let Inertia { x, y, z, xz } = self.inertia;
         let Self { mass, wing_area, span, chord, air_density, gravity, drag, propeller, .. } = self;
+        let (efficiency, polynomial) = match *drag {
+            Drag::Induced { parasitic, efficiency } => (efficiency, [parasitic, 0.0, 0.0, 0.0]),
+            Drag::Polynomial { zero, alpha, alpha_squared, elevator_squared } => {
+                (1.0, [zero, alpha, alpha_squared, elevator_squared])
+            }
+        };
         let positive = [
             *mass,
             x,
@@ -187,18 +262,26 @@ impl Airframe {
             *chord,
             *air_density,
             *gravity,
-            drag.efficiency,
+            efficiency,
             propeller.area,
             propeller.coefficient,
             propeller.motor,
         ];
-        if positive.iter().any(|number| !number.is_finite()) || !xz.is_finite() {
+        let others = polynomial.iter().chain([&xz]);
+        if positive.iter().chain(others).any(|number| !number.is_finite()) {
             return Err(Error::NotFinite);
         }
         if positive.iter().any(|number| *number <= 0.0) {
             return Err(Error::NotPositive);
         }
         Ok(())
+    }
+}
+
+impl SideCoefficients {
+    /// Of sideslip, roll rate, yaw rate, aileron and rudder.
+    pub(crate) const fn of([sideslip, roll_rate, yaw_rate, aileron, rudder]: [f64; 5]) -> Self {
+        Self { sideslip, roll_rate, yaw_rate, aileron, rudder }
     }
 }
 

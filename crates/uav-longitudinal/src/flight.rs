@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::dual::Dual;
 use crate::solve::solve;
-use crate::{Airframe, Error, LongitudinalDerivatives, StateSpace};
+use crate::{Airframe, Drag, Error, LongitudinalDerivatives, StateSpace};
 
 /// Newton's method doubles the digits each time; from nothing it takes seven or eight steps.
 const MOST_STEPS: u32 = 50;
@@ -34,6 +34,19 @@ pub struct Trim {
     pub state: SVector<f64, 4>,
     /// δe (rad), δt (0 to 1).
     pub input: SVector<f64, 2>,
+}
+
+/// Specific force along the body's axes forwards and down, `ax` and `az`, near a steady flight: `steady` + C·x + D·u.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpecificForce {
+    /// In the steady flight, m/s².
+    pub steady: SVector<f64, 2>,
+    /// C.
+    pub c: SMatrix<f64, 2, 4>,
+    /// D.
+    pub d: SMatrix<f64, 2, 2>,
 }
 
 impl Airframe {
@@ -102,6 +115,30 @@ impl Airframe {
         let a = SMatrix::from_fn(|row, column| rates[row].gradient[column]);
         let b = SMatrix::from_fn(|row, column| rates[row].gradient[4 + column]);
         StateSpace { a, b }.finite()
+    }
+
+    /// What an accelerometer at the centre of mass shows near a flight, with exact derivatives.
+    ///
+    /// Along the body's axes: (T − D·cos α + L·sin α)/m forwards, (−L·cos α − D·sin α)/m down.
+    ///
+    /// # Errors
+    /// As [`Airframe::rates`].
+    pub fn specific_force(&self, trim: &Trim) -> Result<SpecificForce, Error> {
+        // Checks all numbers.
+        self.differentiated(&trim.state, &trim.input)?;
+        let variables = variables(&trim.state, &trim.input);
+        let [alpha, ..] = variables;
+        let Forces { lift, drag, thrust, .. } = self.forces(&variables);
+        let per_mass = 1.0 / self.mass;
+        let force = [
+            (thrust - drag * alpha.cos() + lift * alpha.sin()) * per_mass,
+            -(lift * alpha.cos() + drag * alpha.sin()) * per_mass,
+        ];
+        Ok(SpecificForce {
+            steady: force.map(|axis| axis.value).into(),
+            c: SMatrix::from_fn(|row, column| force[row].gradient[column]),
+            d: SMatrix::from_fn(|row, column| force[row].gradient[4 + column]),
+        })
     }
 
     /// The same as stability derivatives: what the thesis' matrices are made of.
@@ -176,9 +213,19 @@ impl Airframe {
         let lift = self.lift.of_wing(alpha, attached)
             + turning * self.lift.pitch_rate
             + elevator * self.lift.elevator;
-        let slenderness = self.span * self.span / self.wing_area;
-        let induced = 1.0 / (core::f64::consts::PI * self.drag.efficiency * slenderness);
-        let drag = attached.square() * induced + self.drag.parasitic;
+        let drag = match self.drag {
+            Drag::Induced { parasitic, efficiency } => {
+                let slenderness = self.span * self.span / self.wing_area;
+                let induced = 1.0 / (core::f64::consts::PI * efficiency * slenderness);
+                attached.square() * induced + parasitic
+            }
+            Drag::Polynomial { zero, alpha: slope, alpha_squared, elevator_squared } => {
+                alpha * slope
+                    + alpha.square() * alpha_squared
+                    + elevator.square() * elevator_squared
+                    + zero
+            }
+        };
         let moment = alpha * self.pitch.alpha
             + self.pitch.zero
             + turning * self.pitch.pitch_rate

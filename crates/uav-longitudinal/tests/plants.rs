@@ -1,8 +1,8 @@
 //! The typed plants, what is measured of them, and that nothing panics.
 
 use kestirim_uav_longitudinal::{
-    Airframe, Descriptor, LongitudinalDerivatives, Stall, SteadyFlight, Trim, airspeed_and_pitch,
-    full_state, navion, rate_airspeed_and_pitch, thesis_like,
+    Airframe, Descriptor, Drag, LongitudinalDerivatives, Stall, SteadyFlight, Trim,
+    airspeed_and_pitch, full_state, navion, rate_airspeed_and_pitch, thesis_like,
 };
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
@@ -36,10 +36,12 @@ proptest! {
         numbers in proptest::array::uniform32(number()),
         stalls in any::<bool>(),
     ) {
-        let mut airframe = Airframe::aerosonde();
+        let mut airframe =
+            if stalls { Airframe::aerosonde() } else { Airframe::skywalker_x8() };
+        if let Drag::Polynomial { zero, .. } = &mut airframe.drag { *zero = numbers[22]; }
         let fields = [
             &mut airframe.mass, &mut airframe.span, &mut airframe.lift.zero,
-            &mut airframe.lift.alpha, &mut airframe.lift.elevator, &mut airframe.drag.parasitic,
+            &mut airframe.lift.alpha, &mut airframe.lift.elevator,
             &mut airframe.pitch.zero, &mut airframe.pitch.alpha, &mut airframe.pitch.elevator,
             &mut airframe.propeller.motor, &mut airframe.inertia.xz,
         ];

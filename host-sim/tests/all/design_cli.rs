@@ -39,6 +39,21 @@ fn cases() -> Value {
             {"id": "cart", "A": a, "measured": [0], "unmeasured": [1], "poles": [[0.5, 0.0]]},
             {"id": "wrong way", "A": a, "measured": [1], "unmeasured": [0], "poles": [[0.5, 0.0]]},
         ],
+        "airframe": [
+            {"id": "x8", "airframe": "skywalker_x8", "airspeed": [15, 18.5, 24], "climb_angle": 0.05},
+            {"id": "another", "coefficients": glider(), "airspeed": 20},
+            {"id": "too fast", "airframe": "skywalker_x8", "airspeed": 60},
+            {"id": "unknown", "airframe": "kite", "airspeed": 60},
+        ],
+    })
+}
+
+/// Of nobody.
+fn glider() -> Value {
+    value!({
+        "mass": 5.0, "Jx": 0.5, "Jy": 0.3, "Jz": 0.7, "S_wing": 0.8, "b": 3, "c": 0.27, "S_prop": 0.1, "k_motor": 50,
+        "C_L_0": 0.3, "C_L_alpha": 5.1, "C_D_p": 0.02, "e": 0.95,
+        "C_m_alpha": -0.9, "C_m_q": -12.5, "C_m_delta_e": -1.1,
     })
 }
 
@@ -64,6 +79,7 @@ fn every_case_has_its_answer() {
         "c2d",
         "lyapunov",
         "reduced_order",
+        "airframe",
     ];
     for section in expected {
         assert_eq!(
@@ -85,6 +101,12 @@ fn every_case_has_its_answer() {
     let filter = named(&answers, "dare", "cart");
     assert!(filter["P"][0][0].as_f64().is_some_and(|variance| variance > 0.0));
     assert!(filter["K_filter"][0][0].as_f64().is_some_and(|gain| (0.0..1.0).contains(&gain)));
+    let flights = first("airframe", "x8", "flights");
+    let throttle = flights[0]["trim"]["u"][1].as_f64().expect("a throttle");
+    assert!((throttle - 0.431_495_063).abs() < 1e-9, "{throttle}");
+    assert_eq!(flights.as_array().map(Vec::len), Some(3));
+    let another = first("airframe", "another", "flights");
+    assert_eq!(another[0]["A"][3], value!([0.0, 1.0, 0.0, 0.0]));
     assert!(filter["doublings"].as_u64().is_some_and(|doublings| doublings < 20));
 }
 
@@ -105,6 +127,12 @@ fn what_is_wrong_with_a_case_is_its_answer_alone() {
         ("c2d", "backwards", "the interval is not positive"),
         ("lyapunov", "unstable", "the mode 1.5 (mostly state 0) does not decay"),
         ("reduced_order", "wrong way", "no output sees the mode 1 (mostly state 0)"),
+        ("airframe", "too fast", "60 m/s: no throttle from 0 to 1 holds this flight"),
+        (
+            "airframe",
+            "unknown",
+            "airframe: unknown variant `kite`, expected `aerosonde` or `skywalker_x8`",
+        ),
     ] {
         let answer = named(&answers, section, id);
         assert_eq!(answer["error"], sentence, "{section} {id}");
@@ -183,6 +211,7 @@ fn constants_compile_and_hold_every_bit() {
              assert_eq!(gains::CART_L[1][0].to_bits(), {});\n\
              assert_eq!(gains::PAIR_L[1][0].to_bits(), {});\n\
              assert_eq!(gains::CART_K[1][0].to_bits(), {});\n\
+             let _ = (gains::ANOTHER_A_20, gains::ANOTHER_B_20, gains::X8_A_15, gains::X8_B_15, gains::X8_A_18_5, gains::X8_B_18_5, gains::X8_A_24, gains::X8_B_24);\n\
              let _ = (gains::CART_L_2, gains::CART_L_3, gains::CART_A, gains::CART_B, gains::PLAIN_P, gains::OBSERVER_P);\n}}",
             bits("pole_placement", "cart", "L"),
             bits("pole_placement", "pair", "L"),

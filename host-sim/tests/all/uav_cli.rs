@@ -246,6 +246,14 @@ fn a_trim_is_taken_off_and_put_back() {
     for topic in ["/uav/inputs", "/uav/sensors", "/uav/estimate"] {
         assert_eq!(messages(&file).get(topic), Some(&200), "{topic}");
     }
+    // The same aircraft by its published coefficients.
+    let flown = r#"{"airframe": "aerosonde", "airspeed": 40, "climb_angle": 0.06981317007977318, "note": 1}"#;
+    let model = desk.file("aerosonde.json", flown);
+    let output =
+        host_sim(&["replay", "uav", "--log", &log, "--model", &model, "--absolute", "--json"]);
+    assert!(text(&output.stderr).contains("not used: note"), "{}", text(&output.stderr));
+    let estimate = numbers(&json(&output)["estimate"]);
+    assert!((estimate[2] - 40.0).abs() < 1e-3 && (estimate[3] - 0.053_941_088).abs() < 1e-5);
     let warned = host_sim(&files);
     assert!(text(&warned.stderr).contains("--absolute"));
     let sentence = refusal(&["replay", "uav", "--log", &log, "--model", "P2", "--absolute"]);
@@ -276,6 +284,9 @@ fn wrong_input_is_refused_with_a_sentence() {
     };
     assert!(model("{").contains("line 1"));
     assert!(model("{\"A\": [[1]]}").contains("expected a JSON object"));
+    assert!(model("{}").contains("A and B, or an airspeed"));
+    assert!(model("{\"airframe\": \"aerosonde\"}").contains("an airspeed beside airframe"));
+    assert!(model("{\"airframe\": \"aerosonde\", \"airspeed\": 90}").contains("no throttle"));
     let plant =
         "\"A\": [[-1,0,0,0],[0,-2,0,0],[0,0,-3,0],[0,0,0,-4]], \"B\": [[1,0],[0,1],[0,0],[0,0]]";
     assert!(model(&format!("{{{plant}, \"C\": [[1,0,0,0]]}}")).contains("outputs"));

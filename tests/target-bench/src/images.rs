@@ -107,6 +107,11 @@ impl Images {
         Self::of_form(SNAPSHOTS, target, profile)
     }
 
+    /// Whether only what CI has time for is asked for (`KESTIRIM_TARGETS=short`).
+    pub fn is_short() -> bool {
+        env::var(TARGETS).is_ok_and(|form| form == "short")
+    }
+
     fn of_form(
         packages: Packages,
         target: &'static Target,
@@ -114,7 +119,7 @@ impl Images {
     ) -> Result<Option<Self>> {
         let is_this = |(of, at): &(&Target, Profile)| of.triple == target.triple && *at == profile;
         let short = if packages == SURFACE { &SHORT_FORM[1..] } else { &SHORT_FORM[..] };
-        if is_short() && !short.iter().any(is_this) {
+        if Self::is_short() && !short.iter().any(is_this) {
             let (triple, opt) = (target.triple, profile.opt());
             return left_out(&format!("images for {triple} at {opt}"));
         }
@@ -196,17 +201,13 @@ pub(crate) fn build_apart(
     package: Apart,
     profile: Profile,
 ) -> Result<Option<PathBuf>> {
-    if is_short() {
+    if Images::is_short() {
         return left_out(package.name);
     }
     match Toolchain::find(target) {
         Ok(toolchain) => toolchain.build_apart(package, profile.name()).map(Some),
         Err(why) => skip(target, &why),
     }
-}
-
-fn is_short() -> bool {
-    env::var(TARGETS).is_ok_and(|form| form == "short")
 }
 
 /// Says that the short form leaves something out.

@@ -61,7 +61,7 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Resu
     Ok(output)
 }
 
-/// Budgets: instructions a particle and step at most, in `f32` and in fixed point.
+/// Budgets: instructions a particle and step at most, in `f32` and in fixed point. The short form runs what has one.
 fn check<const L: usize>(target: &'static Target, budgets: [f64; 2]) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
     let records = circle();
@@ -71,6 +71,9 @@ fn check<const L: usize>(target: &'static Target, budgets: [f64; 2]) -> Result<(
         ("locator-fixed", estimates::<Q16_16, L>(&records)),
     ];
     for ((image, host), budget) in cases.into_iter().zip(budgets) {
+        if Images::is_short() && budget.is_infinite() {
+            continue;
+        }
         let output = agree(&images, image, &stream, &host)?;
         let cost = output.cost("step", "update")?.context("every step is an update")?;
         let [mean, min, max] = [cost.mean(), cost.min as f64, cost.max as f64]

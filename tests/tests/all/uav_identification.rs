@@ -6,7 +6,7 @@ use host_sim::systems::uav::identify::flight;
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_identification::identify;
 
-/// Equation error in the frequency domain (Morelli), by NumPy: q̇ and az/V of α, q and δe at 0.08 to 1.2 Hz, slopes as jω after a
+/// Equation error in the frequency domain (Morelli), by `NumPy`: q̇ and az/V of α, q and δe at 0.08 to 1.2 Hz, slopes as jω after a
 /// straight line through the ends is taken away; α moved to the centre of mass by the vane's lead of 0.1029 s. No filter, no
 /// prior, no az in the first three; no common code.
 const INDEPENDENT: [(&str, f64); 6] = [

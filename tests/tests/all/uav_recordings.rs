@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use kestirim_replay::uav::{
-    Deviations, EstimatorKind, Extended, Followed, Log, Model, Options, STATE_COLUMNS, Sample,
+    Deviations, EstimatorKind, Extended, Followed, Log, Model, ModelFile, Options, STATE_COLUMNS,
+    Sample,
 };
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_estimator::{Drift, Dynamics};
@@ -231,6 +232,52 @@ fn an_airliner_by_the_model_of_its_other_flight() {
         let told = followed(name, &model, log, flown, &Options::default());
         assert!(told.errors[0] < 0.9, "{name}: {:?}", told.errors);
         assert_eq!(told.contradictions, 0, "{name}");
+    }
+}
+
+/// What `identify uav` finds from a flight with this noise, as `replay uav` reads it from a file.
+fn by_filter_error(name: &str, noise: Option<&Sensors>) -> Option<Model> {
+    let path = folder_of("uav")?.join("flights").join(name).with_extension("csv");
+    let mut flight = host_sim::systems::uav::identify::flight(&path).expect("a flight");
+    flight.columns.retain(|(name, _)| OUTPUTS.contains(&name.as_str()));
+    let mut dice = Dice(3);
+    for (name, values) in &mut flight.columns {
+        let output = OUTPUTS.iter().position(|output| output == name).expect("an output");
+        let sigma = noise.map_or(0.0, |sensors| sensors.sigmas[output]);
+        values.iter_mut().flatten().for_each(|value| *value += sigma * dice.gaussian());
+    }
+    let found = kestirim_uav_identification::identify(&[flight], None).expect("a model");
+    let file = serde_json::to_string(&found.model).expect("a file");
+    let model: ModelFile = serde_json::from_str(&file).expect("a model's file");
+    Some(model.model().expect("a model"))
+}
+
+#[test]
+fn aircraft_by_models_that_were_identified() {
+    let Some(light) = by_filter_error("jsbsim_c172p_ident", Some(&USUAL)) else { return };
+    let (all, vane) = (["q", "V", "theta", "az"], ["alpha", "q", "V", "theta"]);
+    for (name, outputs, added, alpha) in [
+        ("valid", &all, [0.0; 4], 0.6),
+        ("valid", &all, [0.01, 0.0, 0.02, 0.0], 1.0),
+        ("slow", &all, [0.0; 4], 1.5),
+        ("turb3", &all, [0.0; 4], 4.5),
+        ("turb3", &vane, [0.0; 4], 3.9),
+    ] {
+        let flight = read(&format!("jsbsim_c172p_{name}")).expect("a flight");
+        let log = log(&light, &flight, outputs, Some(&USUAL), &added, 1);
+        let told = followed(name, &light, log, &flight, &Options::default());
+        assert!(told.errors[0] < alpha, "{name} {outputs:?} {added:?}: α {:?}", told.errors);
+        assert!(told.contradictions == 0 || name == "slow", "{name} {outputs:?} {added:?}");
+    }
+    for (known, flown, alpha) in
+        [("attas_elv1", "attas_elv2", 0.95), ("attas_elv2", "attas_elv1", 1.1)]
+    {
+        let model = by_filter_error(known, None).expect("a model");
+        let flight = read(flown).expect("a flight");
+        let log = log(&model, &flight, &["q", "V", "theta", "az", "qbar"], None, &[0.0; 5], 0);
+        let told = followed(flown, &model, log, &flight, &Options::default());
+        assert!(told.errors[0] < alpha, "{flown}: {:?}", told.errors);
+        assert_eq!(told.contradictions, 0, "{flown}");
     }
 }
 

@@ -91,7 +91,7 @@ impl<const N: usize> Held<N> {
         }
         let mut pairs = Vec::new();
         // By reference: a vector that is taken apart may panic.
-        for pair in &Pair::all::<N>(known.iter()) {
+        for pair in &Pair::all::<N>(&known.iter()) {
             if let (Some(one), Some(reference)) = (self.of(&pair.one), self.of(&pair.reference)) {
                 let _ = pairs.push((*pair, one.first.wrapping_sub(reference.first)));
             }
@@ -125,7 +125,7 @@ mod tests {
     fn found(candidates: &[Candidate], integers: [i64; 3]) -> Found<12> {
         let integers = integers.into_iter().collect();
         let validation = Validation { ratio: 3.0, success_rate: 0.999 };
-        Found { pairs: Pair::all(candidates.iter()), integers, validation }
+        Found { pairs: Pair::all(&candidates.iter()), integers, validation }
     }
 
     fn integers(held: &Held<12>, candidates: &Vec<Candidate, 12>) -> Vec<i64, 12> {

@@ -27,7 +27,7 @@ pub(super) struct Pair {
 impl Pair {
     /// Each satellite with the highest of its system.
     pub(super) fn all<'a, const N: usize>(
-        candidates: impl Iterator<Item = &'a Candidate> + Clone,
+        candidates: &(impl Iterator<Item = &'a Candidate> + Clone),
     ) -> Vec<Self, N> {
         let mut pairs = Vec::new();
         for system in [Constellation::Gps, Constellation::Galileo] {
@@ -109,7 +109,7 @@ pub(super) fn search<const N: usize>(
     let mut left_out = f64::NEG_INFINITY;
     loop {
         let some = candidates.iter().filter(|it| it.elevation > left_out);
-        let pairs: Vec<Pair, N> = Pair::all(some.clone());
+        let pairs: Vec<Pair, N> = Pair::all(&some);
         if pairs.len() < FEWEST {
             return None;
         }

@@ -12,8 +12,9 @@ pub const MOST_PLACES: usize = 120;
 pub const POINTS_OPEN: usize = 800;
 /// Points on the way, where estimates are many.
 const POINTS_ON_THE_WAY: usize = 200;
-/// Most estimates on the way.
-const MOST_TOLD: usize = 30;
+/// Most estimates on the way to be drawn or written, and without.
+const MOST_DRAWN: usize = 30;
+const MOST_TOLD: usize = 10;
 
 /// Of a recorded flight.
 type Ground = GroundSearch<f64, MOST_PLACES, MOST_CORNERS>;
@@ -24,7 +25,8 @@ impl Search<'_> {
         let channel = OpenGround::new(level_prior(quantity));
         let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
         let count = self.stops.len();
-        let stride = if self.only_last { count } else { count.div_ceil(MOST_TOLD) };
+        let most = if self.with_clouds { MOST_DRAWN } else { MOST_TOLD };
+        let stride = if self.only_last { count } else { count.div_ceil(most) };
         let mut asked = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
             let Some(measurement) = self.measurement(stop) else { continue };

@@ -13,6 +13,8 @@ mod log;
 mod model;
 #[cfg(feature = "serde")]
 mod model_file;
+#[cfg(feature = "serde")]
+mod model_of_airframe;
 mod noise;
 mod options;
 mod poles;
@@ -29,6 +31,8 @@ pub use self::log::{Log, Sample, Truth};
 pub use self::model::{MOST_OUTPUTS, Model, Plant, STATE_COLUMNS, state_outputs};
 #[cfg(feature = "serde")]
 pub use self::model_file::{ModelFile, ModelFileError};
+#[cfg(feature = "serde")]
+pub use self::model_of_airframe::KnownAirframe;
 pub use self::noise::Noise;
 pub use self::options::{EstimatorKind, Options};
 pub use self::poles::{FAST, MIDDLE, Poles, SLOW, discrete, faster};

@@ -2,10 +2,11 @@
 
 use kestirim_observer_design::Discrete;
 use kestirim_uav_estimator::{Drift, Dynamics};
-use kestirim_uav_longitudinal::StateSpace;
+use kestirim_uav_longitudinal::{Airframe, StateSpace, SteadyFlight};
 use nalgebra::SMatrix;
 use serde::Deserialize;
 
+use super::model_of_airframe::KnownAirframe;
 use super::{Extended, MOST_EXTENDED_OUTPUTS, MOST_OUTPUTS, Model, STATE_COLUMNS, state_outputs};
 
 /// Columns of a log that no output can have.
@@ -54,6 +55,9 @@ pub enum ModelFileError {
         /// Which name.
         name: String,
     },
+    /// An aircraft does not fly as it is said to.
+    #[error("{0}: no steady flight of this airframe")]
+    Airframe(String),
     /// A number cannot be what it is said to be.
     #[error("expected {0}")]
     Number(&'static str),
@@ -71,56 +75,55 @@ fn printable(text: &str) -> String {
     }
 }
 
-/// A model as it stands in a JSON file: A, B and perhaps C, outputs, trim {x, u} and h, and whatever else is known.
+/// A model as it stands in a JSON file: A, B and perhaps C, outputs, trim {x, u} and h, or an airframe and its airspeed; and
+/// whatever else is known.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ModelFile {
+    airframe: Option<KnownAirframe>,
+    coefficients: Option<Box<Airframe>>,
+    airspeed: Option<f64>,
+    climb_angle: Option<f64>,
     #[serde(rename = "A")]
-    a: [[f64; 4]; 4],
+    pub(super) a: Option<[[f64; 4]; 4]>,
     #[serde(rename = "B")]
-    b: [[f64; 2]; 4],
+    pub(super) b: Option<[[f64; 2]; 4]>,
     #[serde(rename = "C")]
-    c: Option<Vec<[f64; 4]>>,
+    pub(super) c: Option<Vec<[f64; 4]>>,
     #[serde(rename = "D")]
-    d: Option<Vec<[f64; 2]>>,
-    outputs: Option<Vec<String>>,
-    trim: Option<Trim>,
+    pub(super) d: Option<Vec<[f64; 2]>>,
+    pub(super) outputs: Option<Vec<String>>,
+    pub(super) trim: Option<Trim>,
     h: Option<f64>,
-    noise: Option<Noise>,
-    bias: Option<Vec<Bias>>,
-    gust: Option<Gusts>,
+    pub(super) noise: Option<Noise>,
+    pub(super) bias: Option<Vec<Bias>>,
+    pub(super) gust: Option<Gusts>,
     wind: Option<Drifting>,
     density: Option<Drifting>,
-    affine: Option<Affine>,
-    scaled: Option<Vec<String>>,
+    pub(super) affine: Option<Affine>,
+    pub(super) scaled: Option<Vec<String>>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Trim {
-    x: [f64; 4],
-    u: [f64; 2],
-    y: Option<Vec<f64>>,
+pub(super) struct Trim {
+    pub(super) x: [f64; 4],
+    pub(super) u: [f64; 2],
+    pub(super) y: Option<Vec<f64>>,
 }
 
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Noise {
-    process: Option<Process>,
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+pub(super) struct Noise {
+    pub(super) process: Option<[f64; 4]>,
+    pub(super) process_matrix: Option<[[f64; 4]; 4]>,
     inputs: Option<[f64; 2]>,
     outputs: Option<Vec<f64>>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
-enum Process {
-    Diagonal([f64; 4]),
-    Full([[f64; 4]; 4]),
-}
-
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Bias {
-    of: String,
-    sigma: f64,
+pub(super) struct Bias {
+    pub(super) of: String,
+    pub(super) sigma: f64,
     #[serde(default)]
-    rate: f64,
+    pub(super) rate: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -131,26 +134,71 @@ struct Drifting {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-struct Gusts {
-    sigma_u: f64,
-    sigma_w: f64,
-    length_u: f64,
-    length_w: f64,
+pub(super) struct Gusts {
+    pub(super) sigma_u: f64,
+    pub(super) sigma_w: f64,
+    pub(super) length_u: f64,
+    pub(super) length_w: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-struct Affine {
-    sigma: [f64; 4],
+pub(super) struct Affine {
+    pub(super) sigma: [f64; 4],
     #[serde(default)]
-    rate: [f64; 4],
+    pub(super) rate: [f64; 4],
 }
 
 impl ModelFile {
+    /// All that a file may say.
+    pub const FIELDS: [&str; 18] = [
+        "airframe",
+        "coefficients",
+        "airspeed",
+        "climb_angle",
+        "A",
+        "B",
+        "C",
+        "D",
+        "outputs",
+        "trim",
+        "h",
+        "noise",
+        "bias",
+        "gust",
+        "wind",
+        "density",
+        "affine",
+        "scaled",
+    ];
+
     /// The model.
     ///
     /// # Errors
     /// What was expected, and what was found.
-    pub fn model(self) -> Result<Model, ModelFileError> {
+    pub fn model(mut self) -> Result<Model, ModelFileError> {
+        let known = self.airframe.take().map(KnownAirframe::airframe);
+        if let Some(airframe) = self.coefficients.take().map(|it| *it).or(known) {
+            let is_there = [
+                self.a.is_some(),
+                self.b.is_some(),
+                self.c.is_some(),
+                self.d.is_some(),
+                self.trim.is_some(),
+                self.h.is_some(),
+            ];
+            let Some(airspeed) = self.airspeed.filter(|_| !is_there.contains(&true)) else {
+                return Err(ModelFileError::Number(
+                    "an airspeed beside airframe or coefficients, and no A, B, C, D, trim or h, which come from both",
+                ));
+            };
+            let flight = SteadyFlight { airspeed, climb_angle: self.climb_angle.unwrap_or(0.0) };
+            self = self.flown(&airframe, &flight)?;
+        }
+        let (Some(a), Some(b)) = (self.a, self.b) else {
+            return Err(ModelFileError::Number(
+                "A and B, or an airspeed and airframe or coefficients",
+            ));
+        };
         let outputs = self.outputs()?;
         let extended = self.extended(&outputs)?;
         let most = if extended.is_some() { MOST_EXTENDED_OUTPUTS } else { MOST_OUTPUTS };
@@ -163,8 +211,8 @@ impl ModelFile {
                 return Err(ModelFileError::Taken(name.clone()));
             }
         }
-        let a = SMatrix::<f64, 4, 4>::from(self.a).transpose();
-        let b = SMatrix::<f64, 2, 4>::from(self.b).transpose();
+        let a = SMatrix::<f64, 4, 4>::from(a).transpose();
+        let b = SMatrix::<f64, 2, 4>::from(b).transpose();
         let dynamics = match self.h {
             None => Dynamics::Continuous(StateSpace { a, b }),
             Some(_) if extended.is_some() => {
@@ -248,12 +296,12 @@ impl ModelFile {
         if biases.len() > MOST_BIASES {
             return Err(ModelFileError::Number("no more than four biases"));
         }
-        if let Some(process) = noise.and_then(|noise| noise.process.as_ref()).map(Process::matrix) {
+        if let Some(process) = noise.and_then(Noise::density) {
             let is_covariance = process == process.transpose()
                 && process.symmetric_eigenvalues().min() >= -1e-9 * process.norm();
             if !is_covariance {
                 return Err(ModelFileError::Number(
-                    "a noise.process that is symmetric and nowhere negative",
+                    "a process noise that is symmetric and nowhere negative",
                 ));
             }
         }
@@ -272,7 +320,7 @@ impl ModelFile {
             direct,
             steady,
             scaled,
-            process: noise.and_then(|noise| noise.process.as_ref()).map(Process::matrix),
+            process: noise.and_then(Noise::density),
             inputs: noise.and_then(|noise| noise.inputs),
             sigmas,
             biases,
@@ -290,11 +338,13 @@ impl Drifting {
     }
 }
 
-impl Process {
-    fn matrix(&self) -> SMatrix<f64, 4, 4> {
-        match *self {
-            Self::Diagonal(diagonal) => SMatrix::from_diagonal(&diagonal.into()),
-            Self::Full(rows) => SMatrix::<f64, 4, 4>::from(rows).transpose(),
+impl Noise {
+    /// Spectral density on ẋ.
+    fn density(&self) -> Option<SMatrix<f64, 4, 4>> {
+        match (self.process, self.process_matrix) {
+            (_, Some(rows)) => Some(SMatrix::<f64, 4, 4>::from(rows).transpose()),
+            (Some(diagonal), None) => Some(SMatrix::from_diagonal(&diagonal.into())),
+            (None, None) => None,
         }
     }
 }

@@ -34,7 +34,7 @@ fn sigmas(found: &Identified) -> Vec<(&'static str, f64)> {
 fn derivatives_come_back_with_their_standard_errors() {
     let gusts = [4e-3, 2e-2, 5e-2, 0.0];
     let (mut sum, mut count, mut worst) = (0.0, 0.0, 0.0);
-    for seed in 1..=3 {
+    for seed in 1..=2 {
         for gusts in [[0.0; 4], gusts] {
             let found = of(fly(&Plan { seed, gusts, ..CALM }));
             for (_, off) in sigmas(&found) {
@@ -51,7 +51,8 @@ fn derivatives_come_back_with_their_standard_errors() {
 
 #[test]
 fn a_held_input_is_half_an_interval_late() {
-    let delay = of(fly(&CALM)).model.delay;
+    let found = of(fly(&CALM));
+    let delay = found.parameters.iter().find(|it| it.name == "delay").unwrap().value;
     assert!((delay - 0.01).abs() < 2e-3, "{delay}");
 }
 

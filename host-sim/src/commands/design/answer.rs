@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::case::{Case, Problem};
+use super::steady::{self, Steady};
 
 /// What was asked, and what came of it.
 #[derive(Debug, Clone, Serialize)]
@@ -19,10 +20,10 @@ pub struct Answered {
 
 impl Answered {
     /// Answers a case. What is wrong with it is its answer.
-    pub(super) fn new(value: &Value, answer: fn(&Case) -> Result<Solution, Problem>) -> Self {
+    pub(super) fn new(value: &Value, answer: fn(&Case) -> Result<Answer, Problem>) -> Self {
         let id = value.get("id").cloned().unwrap_or_default();
         let answer = match Case::new(value).and_then(|case| answer(&case)) {
-            Ok(solution) => Answer::Solved(solution),
+            Ok(answer) => answer,
             Err(error) => Answer::Refused { error },
         };
         Self { id, answer }
@@ -48,6 +49,11 @@ impl Answered {
 pub enum Answer {
     /// What was asked for.
     Solved(Solution),
+    /// Steady flights.
+    Flights {
+        /// One for each airspeed.
+        flights: Vec<Steady>,
+    },
     /// Why it was refused.
     Refused {
         /// One sentence.
@@ -55,10 +61,10 @@ pub enum Answer {
     },
 }
 
-type Section = (&'static str, fn(&Case) -> Result<Solution, Problem>);
+type Section = (&'static str, fn(&Case) -> Result<Answer, Problem>);
 
 /// The sections of a file, and how their cases are answered.
-pub(super) const SECTIONS: [Section; 7] = [
+pub(super) const SECTIONS: [Section; 8] = [
     ("pole_placement", placement),
     ("must_reject", placement),
     ("dare", riccati),
@@ -66,9 +72,14 @@ pub(super) const SECTIONS: [Section; 7] = [
     ("c2d", discretisation),
     ("lyapunov", covariance),
     ("reduced_order", reduced_order),
+    ("airframe", airframe),
 ];
 
-fn placement(case: &Case) -> Result<Solution, Problem> {
+fn airframe(case: &Case) -> Result<Answer, Problem> {
+    Ok(Answer::Flights { flights: steady::flights(case)? })
+}
+
+fn placement(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let c = case.outputs("C", a.nrows(), MOST_WIDE)?;
     let states: Vec<_> = (0..a.nrows()).collect();
@@ -76,7 +87,7 @@ fn placement(case: &Case) -> Result<Solution, Problem> {
 }
 
 /// The states that are not measured are observed through what they do to those that are: a pair of its own.
-fn reduced_order(case: &Case) -> Result<Solution, Problem> {
+fn reduced_order(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let measured = case.states("measured", a.nrows())?;
     let unmeasured = case.states("unmeasured", a.nrows())?;
@@ -95,7 +106,7 @@ fn reduced_order(case: &Case) -> Result<Solution, Problem> {
     ))
 }
 
-fn riccati(case: &Case) -> Result<Solution, Problem> {
+fn riccati(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let c = case.outputs("C", a.nrows(), MOST_WIDE)?;
     let q = case.matrix_of("Q", a.nrows(), a.nrows())?;
@@ -103,7 +114,7 @@ fn riccati(case: &Case) -> Result<Solution, Problem> {
     told(design::riccati(&a, &c, &q, &r))
 }
 
-fn discretisation(case: &Case) -> Result<Solution, Problem> {
+fn discretisation(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let b = case.inputs("B", a.nrows(), MOST_WIDE)?;
     told(design::discretise(&a, &b, case.number("h")?))
@@ -111,7 +122,7 @@ fn discretisation(case: &Case) -> Result<Solution, Problem> {
 
 /// P = F P Fᵀ + B Qu Bᵀ + L R Lᵀ with F = A − L C, or with Q instead of B Qu Bᵀ; where there is no L,
 /// P = A P Aᵀ + Q.
-fn covariance(case: &Case) -> Result<Solution, Problem> {
+fn covariance(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let states = a.nrows();
     if !case.has("L") {
@@ -131,6 +142,6 @@ fn covariance(case: &Case) -> Result<Solution, Problem> {
 }
 
 /// With what is wrong in a sentence.
-fn told(designed: Result<Solution, design::Error>) -> Result<Solution, Problem> {
-    designed.map_err(|error| error.to_string())
+fn told(designed: Result<Solution, design::Error>) -> Result<Answer, Problem> {
+    designed.map(Answer::Solved).map_err(|error| error.to_string())
 }

@@ -17,7 +17,7 @@ impl<'a> Case<'a> {
         Ok(Self { fields })
     }
 
-    fn field(&self, name: &str) -> Result<&'a Value, Problem> {
+    pub(super) fn field(&self, name: &str) -> Result<&'a Value, Problem> {
         self.fields.get(name).ok_or_else(|| format!("{name} is missing"))
     }
 

@@ -1,9 +1,10 @@
-//! `host-sim design`: the gains, discretisations and covariances of a file of cases.
+//! `host-sim design`: the gains, discretisations, covariances and steady flights of a file of cases.
 
 mod answer;
 mod case;
 mod report;
 mod rust;
+mod steady;
 
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,7 @@ pub use answer::{Answer, Answered};
 pub use kestirim_design::Solution;
 pub use report::Report;
 use serde_json::{Map, Value};
+pub use steady::{Steady, Trim};
 
 use crate::text::TextFile;
 use crate::{Error, output};
@@ -18,8 +20,8 @@ use crate::{Error, output};
 /// Options of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Design {
-    /// What to design: JSON with lists `pole_placement`, `must_reject`, `dare`, `dare_reject`, `c2d`, `lyapunov`
-    /// and `reduced_order`, each optional
+    /// What to design: JSON with lists `pole_placement`, `must_reject`, `dare`, `dare_reject`, `c2d`, `lyapunov`,
+    /// `reduced_order` and `airframe`, each optional
     #[arg(long, value_name = "FILE")]
     input: PathBuf,
     /// Write the results as constants for firmware

@@ -7,6 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::answer::{Answer, Answered};
+use super::steady::{Steady, Trim};
 use crate::output;
 
 /// The answers, section by section, in the order of the program.
@@ -43,6 +44,7 @@ impl fmt::Display for Report {
 fn summary(answer: &Answer) -> String {
     match answer {
         Answer::Refused { error } => format!("refused: {error}"),
+        Answer::Flights { flights } => flights.iter().map(flight).collect::<Vec<_>>().join("\n"),
         Answer::Solved(Solution::Gain { gain, pole_error, digits_lost }) => {
             format!(
                 "worst pole off by {pole_error:.1e} of itself ({digits_lost:.1} digits lost)\nL = {}",
@@ -61,6 +63,17 @@ fn summary(answer: &Answer) -> String {
             format!("RMSE {}", deviations.join(" "))
         }
     }
+}
+
+fn flight(flight: &Steady) -> String {
+    let Trim { x: [alpha, ..], u: [elevator, throttle], .. } = flight.trim;
+    let upper = flight.eigenvalues.iter().filter(|[_, im]| *im >= 0.0);
+    let modes: Vec<_> = upper.map(|[re, im]| format!("{re:.3} ± {im:.3}i")).collect();
+    format!(
+        "{} m/s: α {alpha:.4}, δe {elevator:.4} rad, δt {throttle:.4}; {} 1/s",
+        flight.airspeed,
+        modes.join(", ")
+    )
 }
 
 fn rows(matrix: &nalgebra::DMatrix<f64>) -> String {

@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use kestirim_design::Solution;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix2x4, Matrix4, SMatrix};
 
 use super::answer::Answer;
 use super::report::Report;
+use super::steady::Steady;
 
 /// Writes every matrix as an array of rows. Refused cases become comments.
 pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
@@ -24,6 +25,16 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
             match &answered.answer {
                 Answer::Refused { error } => {
                     writeln!(file, "\n// {id} ({section}) was refused: {error}")?;
+                }
+                Answer::Flights { flights } => {
+                    for Steady { airspeed, a, b, .. } in flights {
+                        let (at, speed) =
+                            (format!("{airspeed} m/s"), airspeed.to_string().replace('.', "_"));
+                        let (a, b) = (Matrix4::from(*a), Matrix2x4::from(*b));
+                        let (a, b) = (a.transpose(), b.transpose());
+                        constant(&format!("A_{speed}"), &format!("A at {at}"), &wide(&a))?;
+                        constant(&format!("B_{speed}"), &format!("B at {at}"), &wide(&b))?;
+                    }
                 }
                 Answer::Solved(Solution::Gain { gain, .. }) => {
                     constant("L", "Gain of the observer in predictor form", gain)?;
@@ -47,6 +58,11 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+/// With the size that it has when the program runs.
+fn wide<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> DMatrix<f64> {
+    DMatrix::from_column_slice(R, C, matrix.as_slice())
 }
 
 fn write_constant(

@@ -78,7 +78,7 @@ impl Calibration for Identify {
             flights.push(flight);
         }
         let found = identify(&flights, airplane(matches).as_ref()).map_err(|error| {
-            let path = logs.first().map_or_else(PathBuf::new, |path| path.to_path_buf());
+            let path = logs.first().copied().cloned().unwrap_or_default();
             Error::File { path, problem: error.to_string() }
         })?;
         if let Some(out) = out {

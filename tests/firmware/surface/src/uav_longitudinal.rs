@@ -24,6 +24,8 @@ fn flights() {
     keep(Airframe::trim(&airframe, &flight));
     let trim = any(Trim { state: matrix(), input: matrix() });
     keep(Airframe::linearise(&airframe, &trim));
+    keep(Airframe::specific_force(&airframe, &trim));
+    keep(Airframe::linearise(&any(Airframe::skywalker_x8()), &trim));
     if let Ok(derivatives) = any(Airframe::longitudinal(&airframe, &trim)) {
         keep(LongitudinalDerivatives::descriptor(&derivatives));
     }
