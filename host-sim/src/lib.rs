@@ -9,7 +9,6 @@
 
 pub mod commands;
 mod error;
-pub mod figure;
 pub mod mcap;
 pub mod output;
 pub mod report;
@@ -20,6 +19,7 @@ pub mod table;
 pub mod text;
 
 pub use error::Error;
+pub use kestirim_figure as figure;
 pub use kestirim_replay::metrics;
 pub use kestirim_simulate::random;
 

@@ -23,7 +23,9 @@ pub fn write(folder: &Path, chapters: &[Chapter]) -> Result<PathBuf, Error> {
     for chapter in chapters {
         for drawn in chapter.figures() {
             text(&format!("{}.svg", drawn.id), svg::draw(drawn))?;
-            figure::csv::write(&folder.join(format!("{}.csv", drawn.id)), drawn)?;
+            output::write_file(&folder.join(format!("{}.csv", drawn.id)), |file| {
+                figure::csv::write(file, drawn)
+            })?;
         }
         mcap::write(&folder.join(format!("{}.mcap", chapter.system)), &chapter.streams)?;
     }

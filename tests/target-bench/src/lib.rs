@@ -13,6 +13,8 @@
 //! ```
 
 mod app;
+#[path = "../../firmware/images/src/augmented_model.rs"]
+pub mod augmented_model;
 pub mod baseline;
 mod elf;
 mod images;

@@ -8,7 +8,9 @@ use kestirim_luenberger::Predictor;
 use kestirim_scalar::{Components, Q16_16, Scalar};
 use nalgebra::SVector;
 use target_bench::streams::{Encode, Flight, fly};
-use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target, uav};
+use target_bench::{
+    CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target, augmented_model, uav,
+};
 
 /// The bits of the estimate after every fifty samples, as the image computes it.
 fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
@@ -54,6 +56,27 @@ fn costs(target: &'static Target) -> Result<Option<[u64; 2]>> {
     let [single, fixed] = longest;
     println!("    fixed point takes {:.2} of f32's instructions", fixed as f64 / single as f64);
     Ok(Some(longest))
+}
+
+/// The filter with gusts and biases: the very bits of the host, within its budget.
+#[test]
+fn a_filter_of_nine_states_on_a_cortex_m4f() -> Result<()> {
+    let Some(images) = Images::of(&CORTEX_M4F, Profile::Speed)? else { return Ok(()) };
+    let flight = fly(&uav::plant(0.01));
+    let (mut filter, transition) = augmented_model::filter(0.01)?;
+    let step = |&[u0, u1, y0, y1, y2]: &[f32; 5]| {
+        augmented_model::step(&mut filter, &transition, [u0, u1], [y0, y1, y2])
+    };
+    let states = flight.iter().map(step).collect::<Result<Vec<_>, _>>()?;
+    let host: Vec<_> = states.chunks_exact(50).map(|chunk| chunk[49]).collect();
+    let output = images.run("augmented9-f32", &flight.encode())?;
+    println!("{}", Row::of(&images, "augmented9-f32", &output)?);
+    assert_eq!(output.rows::<4>("state")?, host, "the very bits");
+    assert_eq!(images.elf("augmented9-f32")?.panic_symbols(), Vec::<String>::new());
+    let cost = output.cost("step", "update")?.context("every step is an update")?;
+    assert_eq!(cost.steps, flight.len() as u64);
+    println!("    {:.0} instructions a sample, {} at most", cost.mean(), cost.max);
+    Ok(())
 }
 
 #[test]

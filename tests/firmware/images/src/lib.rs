@@ -6,6 +6,8 @@
 #![no_std]
 
 pub mod attitude;
+pub mod augmented;
+pub mod augmented_model;
 pub mod design;
 pub mod four_ranges;
 pub mod observer;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Series;
+use crate::Series;
 
 /// What a screen shows of a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub struct View {
 
 /// Indices of points that look like all of them in this view: the lowest and the highest of each stretch, so
 /// that no peak is lost.
-pub(super) fn indices(series: &Series, view: View) -> Vec<usize> {
+pub(crate) fn indices(series: &Series, view: View) -> Vec<usize> {
     let seen = seen(series, view.window);
     if seen.len() <= view.most_points {
         return seen.collect();

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Axis, Colour, Figure, Mark, Series, View, thin};
+use crate::{Axis, Colour, Figure, Mark, Series, View, thin};
 
 /// The figure for the page: its words, and `data` and `layout` of `Plotly.react`.
 ///

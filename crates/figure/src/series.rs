@@ -130,7 +130,7 @@ impl Series {
     }
 
     /// Points and their error bars and labels; a bar or text that is missing is none.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.x.len().min(self.y.len())
     }
 }

@@ -6,7 +6,7 @@ use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
-use super::{Axis, Figure, Mark, Series};
+use crate::{Axis, Figure, Mark, Series};
 
 /// Width and height, px; text is sized for half a page.
 const SIZE: (u32, u32) = (720, 430);
@@ -178,8 +178,8 @@ fn stretches(series: &Series) -> Vec<Vec<(f64, f64)>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Colour;
     use super::*;
+    use crate::Colour;
 
     #[test]
     fn every_mark_is_drawn_and_gaps_break_a_line() {

@@ -1,4 +1,4 @@
-//! What a figure shows, whoever draws it: the [page](plotly), a [file for a paper](svg) or a table.
+#![doc = include_str!("../README.md")]
 
 pub mod csv;
 pub mod plotly;
