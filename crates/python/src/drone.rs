@@ -34,7 +34,8 @@ pub(crate) fn drone<'py>(
     let found = py.detach(|| {
         let search = move || -> PyResult<Found> {
             let stops = thinned(&stops, environment);
-            let search = Search::new(&stops, area.as_deref(), None, !every, false);
+            // With clouds, which nobody takes here, there are as many estimates as in a table of the program.
+            let search = Search::new(&stops, area.as_deref(), None, !every, every);
             let estimates = search.map_err(refused)?.find(environment, quantity);
             Ok(Found { stops, estimates })
         };

@@ -92,6 +92,7 @@ const fn one() -> f64 {
     1.0
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<Published> for Airframe {
     type Error = &'static str;
 
