@@ -2,7 +2,7 @@
 
 use kestirim_health::{Health, Reason};
 use kestirim_replay::drone::{
-    Area, EnvironmentKind, Estimate, Quantity, Search, Stop, level_step, thinned,
+    Area, EnvironmentKind, Estimate, MOST_DRAWN, Quantity, Search, Stop, level_step, thinned,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -34,8 +34,8 @@ pub(crate) fn drone<'py>(
     let found = py.detach(|| {
         let search = move || -> PyResult<Found> {
             let stops = thinned(&stops, environment);
-            // With clouds, which nobody takes here, there are as many estimates as in a table of the program.
-            let search = Search::new(&stops, area.as_deref(), None, !every, every);
+            let most = if every { MOST_DRAWN } else { 1 };
+            let search = Search::new(&stops, area.as_deref(), None, most, false);
             let estimates = search.map_err(refused)?.find(environment, quantity);
             Ok(Found { stops, estimates })
         };

@@ -19,6 +19,6 @@ pub use self::estimate::Estimate;
 pub use self::flight::{
     Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step,
 };
-pub use self::open_ground::{MOST_PLACES, POINTS_OPEN};
+pub use self::open_ground::{MOST_DRAWN, MOST_PLACES, POINTS_OPEN};
 pub use self::search::{BEYOND_M, MOST, POINTS, Search, level_prior, thinned};
 pub use self::trace::{Flown, Track};

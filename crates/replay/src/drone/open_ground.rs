@@ -10,11 +10,10 @@ use super::{Cloud, Estimate, MOST_CORNERS, Quantity, Search, level_prior};
 pub const MOST_PLACES: usize = 120;
 /// Points of a lattice: with them a posterior's mean is right to a metre in a hundred of its width.
 pub const POINTS_OPEN: usize = 800;
+/// Estimates of a flight that are enough to be drawn.
+pub const MOST_DRAWN: usize = 30;
 /// Points on the way, where estimates are many.
 const POINTS_ON_THE_WAY: usize = 200;
-/// Most estimates on the way to be drawn or written, and without.
-const MOST_DRAWN: usize = 30;
-const MOST_TOLD: usize = 10;
 
 /// Of a recorded flight.
 type Ground = GroundSearch<f64, MOST_PLACES, MOST_CORNERS>;
@@ -25,8 +24,7 @@ impl Search<'_> {
         let channel = OpenGround::new(level_prior(quantity));
         let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
         let count = self.stops.len();
-        let most = if self.with_clouds { MOST_DRAWN } else { MOST_TOLD };
-        let stride = if self.only_last { count } else { count.div_ceil(most) };
+        let stride = count.div_ceil(self.most.max(1));
         let mut asked = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
             let Some(measurement) = self.measurement(stop) else { continue };

@@ -56,8 +56,8 @@ pub struct Search<'a> {
     pub(super) origin: [f64; 2],
     pub(super) area: Box<Area>,
     pub(super) truth: Option<[f64; 2]>,
-    /// Whether only the last estimate is wanted.
-    pub(super) only_last: bool,
+    /// How many estimates are wanted at the most, the last among them, where each takes long.
+    pub(super) most: usize,
     /// Whether all that is believed is wanted.
     pub(super) with_clouds: bool,
 }
@@ -71,7 +71,7 @@ impl<'a> Search<'a> {
         stops: &'a [Stop],
         area: Option<&Area>,
         truth: Option<[f64; 2]>,
-        only_last: bool,
+        most: usize,
         with_clouds: bool,
     ) -> Result<Self, Error> {
         let (origin, area) = match area {
@@ -82,7 +82,7 @@ impl<'a> Search<'a> {
             None => surroundings(stops)?,
         };
         let area = Box::new(area);
-        Ok(Self { stops, origin, area, truth, only_last, with_clouds })
+        Ok(Self { stops, origin, area, truth, most, with_clouds })
     }
 
     /// Where the user is after each measurement that some place explains: through the channel of an environment, or

@@ -63,7 +63,7 @@ impl Listener {
             return None;
         }
         let Listening { area, environment } = &self.plan;
-        let search = Search::new(stops, area.as_deref(), None, true, false).ok()?;
+        let search = Search::new(stops, area.as_deref(), None, 1, false).ok()?;
         search.find(*environment, Quantity::PathLoss).pop()
     }
 }

@@ -1,6 +1,8 @@
 //! Feeds a flight to the filters, recorded or synthetic.
 
-use kestirim_replay::drone::{Area, BEYOND_M, EnvironmentKind, Search, Stop, Track, thinned};
+use kestirim_replay::drone::{
+    Area, BEYOND_M, EnvironmentKind, MOST_DRAWN, Search, Stop, Track, thinned,
+};
 
 use super::recording::{Recorded, Recording};
 use super::settings::{built, filter_of, geometry, walk};
@@ -10,6 +12,8 @@ use crate::system::{Detail, Settings};
 
 /// From here on a drone hears nothing, m.
 const FAR_M: f64 = 20_000.0;
+/// Estimates on the way that are held against the truth, and not drawn.
+const MOST_JUDGED: usize = 10;
 /// A drone that searches an area is not beside it for a larger share of its measurements.
 const MOST_OUTSIDE: f64 = 0.25;
 
@@ -42,8 +46,12 @@ fn find(
     let area = area.as_deref();
     let (stops, mut warnings) = used(recorded, environment);
     // What comes in between takes as long as the end, each time.
-    let only_last = truth.is_none() && detail == Detail::Result;
-    let search = Search::new(&stops, area, *truth, only_last, detail == Detail::Every);
+    let most = match (detail, truth) {
+        (Detail::Every, _) => MOST_DRAWN,
+        (Detail::Result, Some(_)) => MOST_JUDGED,
+        (Detail::Result, None) => 1,
+    };
+    let search = Search::new(&stops, area, *truth, most, detail == Detail::Every);
     let search = search.map_err(|error| recorded.refused(&error.to_string()))?;
     let estimates = search.find(environment, flight.quantity);
     if estimates.is_empty() {
