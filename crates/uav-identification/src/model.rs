@@ -1,5 +1,6 @@
 //! The model as a filter takes it.
 
+use kestirim_uav_longitudinal::StateSpace;
 use nalgebra::{Matrix4, RowVector4, SMatrix, SVector, Vector2, Vector4};
 
 use crate::accuracy::Whiteness;
@@ -188,6 +189,8 @@ impl Model {
         let constant = Vector4::from_fn(|state, _| mean(4 + state));
         let moved = moved(flights);
         let (x, u) = steady(structure, constant, &moved);
+        let linear = StateSpace { a: structure.a, b: structure.b };
+        let wrong = linear.process_noise(WRONG, &moved, LASTING);
         let at = [reference.state, [reference.force[0], reference.force[1], 0.0, 0.0]].concat();
         let mut model = Self {
             a: rows4(&structure.a),
@@ -202,9 +205,7 @@ impl Model {
             },
             noise: Noise {
                 process: std::array::from_fn(|state| {
-                    filter.process[state]
-                        .max(LEAST_PROCESS[state])
-                        .max(wrong(structure, &moved, state))
+                    filter.process[state].max(LEAST_PROCESS[state]).max(wrong[state])
                 }),
                 outputs: Vec::new(),
             },
@@ -279,18 +280,6 @@ impl Model {
         let shown = mean + offset + (row * x)[0];
         self.push((name, [row[0], row[1], row[2], row[3]], [0.0; 2], shown), sigma);
     }
-}
-
-/// Spectral density on a state's derivative of what the model is wrong by in other flights.
-fn wrong(structure: &Structure, moved: &[f64; 6], state: usize) -> f64 {
-    // The pitch angle's row is kinematics.
-    if state == 3 {
-        return 0.0;
-    }
-    let (a, b) = (structure.a.row(state), structure.b.row(state));
-    let terms = a.iter().chain(b.iter()).zip(moved);
-    let squares = terms.map(|(part, moved)| (WRONG * part * moved).powi(2));
-    LASTING * squares.sum::<f64>()
 }
 
 fn rows4(matrix: &Matrix4<f64>) -> [[f64; 4]; 4] {

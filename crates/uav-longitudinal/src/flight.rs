@@ -124,9 +124,7 @@ impl Airframe {
     /// # Errors
     /// As [`Airframe::rates`].
     pub fn specific_force(&self, trim: &Trim) -> Result<SpecificForce, Error> {
-        // Checks all numbers.
-        self.differentiated(&trim.state, &trim.input)?;
-        let variables = variables(&trim.state, &trim.input);
+        let variables = self.variables(&trim.state, &trim.input)?;
         let [alpha, ..] = variables;
         let Forces { lift, drag, thrust, .. } = self.forces(&variables);
         let per_mass = 1.0 / self.mass;
@@ -134,6 +132,7 @@ impl Airframe {
             (thrust - drag * alpha.cos() + lift * alpha.sin()) * per_mass,
             -(lift * alpha.cos() + drag * alpha.sin()) * per_mass,
         ];
+        let force = finite(force)?;
         Ok(SpecificForce {
             steady: force.map(|axis| axis.value).into(),
             c: SMatrix::from_fn(|row, column| force[row].gradient[column]),
@@ -180,6 +179,26 @@ impl Airframe {
         state: &SVector<f64, 4>,
         input: &SVector<f64, 2>,
     ) -> Result<[Dual; 4], Error> {
+        let variables = self.variables(state, input)?;
+        let [alpha, rate, airspeed, theta, ..] = variables;
+        let Forces { lift, drag, moment, thrust } = self.forces(&variables);
+        let climb = theta - alpha;
+        let upwards = (lift + thrust * alpha.sin()) * (1.0 / self.mass);
+        let forwards = (thrust * alpha.cos() - drag) * (1.0 / self.mass);
+        finite([
+            rate - (upwards - climb.cos() * self.gravity) / airspeed,
+            moment * (1.0 / self.inertia.y),
+            forwards - climb.sin() * self.gravity,
+            rate,
+        ])
+    }
+
+    /// What forces depend on, if one can calculate with it.
+    fn variables(
+        &self,
+        state: &SVector<f64, 4>,
+        input: &SVector<f64, 2>,
+    ) -> Result<[Dual; 6], Error> {
         self.check()?;
         if state.iter().chain(input.iter()).any(|number| !number.is_finite()) {
             return Err(Error::NotFinite);
@@ -187,23 +206,7 @@ impl Airframe {
         if state[2] <= 0.0 {
             return Err(Error::NotPositive);
         }
-        let variables = variables(state, input);
-        let [alpha, rate, airspeed, theta, ..] = variables;
-        let Forces { lift, drag, moment, thrust } = self.forces(&variables);
-        let climb = theta - alpha;
-        let upwards = (lift + thrust * alpha.sin()) * (1.0 / self.mass);
-        let forwards = (thrust * alpha.cos() - drag) * (1.0 / self.mass);
-        let rates = [
-            rate - (upwards - climb.cos() * self.gravity) / airspeed,
-            moment * (1.0 / self.inertia.y),
-            forwards - climb.sin() * self.gravity,
-            rate,
-        ];
-        if rates.iter().all(|rate| rate.value.is_finite()) {
-            Ok(rates)
-        } else {
-            Err(Error::NotFinite)
-        }
+        Ok(variables(state, input))
     }
 
     fn forces(&self, &[alpha, rate, airspeed, _, elevator, throttle]: &[Dual; 6]) -> Forces {
@@ -259,6 +262,11 @@ struct Forces {
     drag: Dual,
     moment: Dual,
     thrust: Dual,
+}
+
+/// Those that have values.
+fn finite<const N: usize>(of: [Dual; N]) -> Result<[Dual; N], Error> {
+    if of.iter().all(|it| it.value.is_finite()) { Ok(of) } else { Err(Error::NotFinite) }
 }
 
 fn variables(state: &SVector<f64, 4>, input: &SVector<f64, 2>) -> [Dual; 6] {

@@ -1,3 +1,4 @@
+use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 
 use crate::Error;
@@ -42,6 +43,23 @@ impl Descriptor {
 }
 
 impl StateSpace {
+    /// Spectral densities of white noise on ẋ that stands for a model of which every part is `wrong` by such a share, in
+    /// `deviations` of states and inputs of this size that last for `lasting` seconds. None on θ̇, which is kinematics.
+    pub fn process_noise(&self, wrong: f64, deviations: &[f64; 6], lasting: f64) -> [f64; 4] {
+        let (a, b) = (self.a.as_columns(), self.b.as_columns());
+        core::array::from_fn(|state| {
+            if state == 3 {
+                return 0.0;
+            }
+            let parts = a.iter().chain(b).map(|column| column[state]);
+            let squares = parts.zip(deviations).map(|(part, deviation)| {
+                let off = wrong * part * deviation;
+                off * off
+            });
+            lasting * squares.sum::<f64>()
+        })
+    }
+
     pub(crate) fn finite(self) -> Result<Self, Error> {
         if self.a.iter().chain(self.b.iter()).all(|number| number.is_finite()) {
             Ok(self)

@@ -16,6 +16,8 @@ const WRONG: f64 = 0.1;
 const DEVIATIONS: [f64; 6] = [0.03, 0.1, 1.0, 0.05, 0.03, 0.1];
 /// … that last so long, s.
 const LASTING: f64 = 0.5;
+/// What θ̇ is off by rounding and filtering, rad²/s.
+const PITCH: f64 = 1e-8;
 /// Light turbulence: deviations (m/s) and lengths (m) along and across. `replay` tries stronger and weaker.
 const GUST: Gusts = Gusts { sigma_u: 1.0, sigma_w: 1.0, length_u: 200.0, length_w: 50.0 };
 /// The trim is another one than computed, of ẋ.
@@ -60,14 +62,13 @@ impl ModelFile {
         let names = names.unwrap_or_else(|| USUAL.map(str::to_owned).to_vec());
         let rows = names.iter().map(|name| row(name, &force, &trim.state.into()));
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
-        let a: [[f64; 4]; 4] = model.a.transpose().into();
-        let b: [[f64; 2]; 4] = model.b.transpose().into();
         let is_there = |name: &str| names.iter().any(|other| other == name);
         let biases = BIASES.into_iter().filter(|(of, _)| is_there(of));
         let biases = biases.map(|(of, [sigma, rate])| Bias { of: of.to_owned(), sigma, rate });
         let noise = self.noise.get_or_insert_default();
         if noise.process_matrix.is_none() {
-            noise.process.get_or_insert(process(&a, &b));
+            let [alpha, rate, airspeed, _] = model.process_noise(WRONG, &DEVIATIONS, LASTING);
+            noise.process.get_or_insert([alpha, rate, airspeed, PITCH]);
         }
         self.bias.get_or_insert_with(|| biases.collect());
         self.gust.get_or_insert(GUST);
@@ -75,8 +76,8 @@ impl ModelFile {
         // Drag goes with the square of the airspeed, but thrust does not: ax is not in proportion.
         let scaled = || names.iter().filter(|name| *name == "az").cloned().collect();
         self.scaled.get_or_insert_with(scaled);
-        self.a = Some(a);
-        self.b = Some(b);
+        self.a = Some(model.a.transpose().into());
+        self.b = Some(model.b.transpose().into());
         self.c = Some(rows.iter().map(|(c, ..)| *c).collect());
         self.d = Some(rows.iter().map(|(_, d, _)| *d).collect());
         self.trim = Some(Trim {
@@ -102,14 +103,4 @@ fn row(name: &str, force: &SpecificForce, steady: &[f64; 4]) -> Result<Row, Mode
     })?;
     let c = std::array::from_fn(|state| force.c[(axis, state)]);
     Ok((c, std::array::from_fn(|input| force.d[(axis, input)]), force.steady[axis]))
-}
-
-/// Spectral densities on ẋ of what coefficients are wrong by.
-fn process(a: &[[f64; 4]; 4], b: &[[f64; 2]; 4]) -> [f64; 4] {
-    // The last state's row is kinematics.
-    std::array::from_fn(|state| {
-        let terms = a[state].iter().chain(&b[state]).zip(DEVIATIONS);
-        let squares = terms.map(|(part, deviation)| (WRONG * part * deviation).powi(2));
-        if state == 3 { 1e-8 } else { LASTING * squares.sum::<f64>() }
-    })
 }

@@ -1,8 +1,9 @@
 //! Everything of `kestirim-uav-longitudinal`.
 
 use kestirim_uav_longitudinal::{
-    Airframe, Descriptor, LateralDerivatives, LongitudinalDerivatives, Stall, SteadyFlight, Trim,
-    aerosonde, airspeed_and_pitch, full_state, navion, rate_airspeed_and_pitch, thesis_like,
+    Airframe, Descriptor, LateralDerivatives, LongitudinalDerivatives, Stall, StateSpace,
+    SteadyFlight, Trim, aerosonde, airspeed_and_pitch, full_state, navion, rate_airspeed_and_pitch,
+    thesis_like,
 };
 
 use super::values::{any, call_each, keep, matrix, number};
@@ -23,7 +24,9 @@ fn flights() {
     let flight = any(SteadyFlight { airspeed: number(), climb_angle: number() });
     keep(Airframe::trim(&airframe, &flight));
     let trim = any(Trim { state: matrix(), input: matrix() });
-    keep(Airframe::linearise(&airframe, &trim));
+    if let Ok(model) = any(Airframe::linearise(&airframe, &trim)) {
+        keep(StateSpace::process_noise(&model, number(), &[number(); 6], number()));
+    }
     keep(Airframe::specific_force(&airframe, &trim));
     keep(Airframe::linearise(&any(Airframe::skywalker_x8()), &trim));
     if let Ok(derivatives) = any(Airframe::longitudinal(&airframe, &trim)) {
