@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::Error;
 use crate::flight::OUTPUTS;
 use crate::likelihood::Problem;
 use crate::scoring::Top;
@@ -46,11 +45,12 @@ pub(crate) fn autocorrelation(values: &[f64], lags: usize) -> Vec<f64> {
 
 /// The covariance of the coordinates: F⁻¹ (Σ sᵢ ρ(i − j) sⱼᵀ) F⁻¹ with what residuals of an output have to do with one another
 /// (Maine & Iliff, NASA RP-1077, 1981; Morelli & Klein, J. Aircraft 34(2), 1997).
-///
-/// # Errors
-/// [`Error::NotConverged`]
-pub(crate) fn covariance(problem: &Problem, top: &Top) -> Result<DMatrix<f64>, Error> {
-    let inverse = top.information.clone().cholesky().ok_or(Error::NotConverged)?.inverse();
+pub(crate) fn covariance(
+    problem: &Problem,
+    top: &Top,
+    // F⁻¹.
+    inverse: &DMatrix<f64>,
+) -> DMatrix<f64> {
     let lags = (LONGEST_S / problem.reference.interval).ceil() as usize;
     let columns = top.coordinates.len();
     let mut middle = DMatrix::<f64>::zeros(columns, columns);
@@ -81,14 +81,14 @@ pub(crate) fn covariance(problem: &Problem, top: &Top) -> Result<DMatrix<f64>, E
     }
     // What comes of expectations and of the noise's own size is as it was.
     let rest = &top.information - white;
-    let coloured = &inverse * (middle + rest) * &inverse;
+    let coloured = inverse * (middle + rest) * inverse;
     // Coloured residuals take certainty away; they give none.
     let least = DVector::from_fn(columns, |place, _| {
         (inverse[(place, place)] / coloured[(place, place)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
     });
-    Ok(DMatrix::from_fn(columns, columns, |row, column| {
+    DMatrix::from_fn(columns, columns, |row, column| {
         coloured[(row, column)] * least[row] * least[column]
-    }))
+    })
 }
 
 /// How white the residuals of an output are.

@@ -141,8 +141,8 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
     let filter = problem.filter(unknown, &structure);
     let white = whiteness(problem, filter_error);
     let model = Model::of(flights, &reference, &filter, &filter_error.explained.linear, &white);
-    let covariance = covariance(problem, filter_error)?;
     let bound = filter_error.information.clone().cholesky().ok_or(Error::NotConverged)?.inverse();
+    let covariance = covariance(problem, filter_error, &bound);
     let sigma = |place: usize| covariance[(place, place)].max(0.0).sqrt();
     let place = |which: usize| {
         let wanted = Coordinate::Derivative(which);
@@ -180,16 +180,15 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
         let of = [PARAMETERS[one].0, PARAMETERS[other].0];
         (value.abs() >= CORRELATED).then_some(Correlation { of, value })
     });
-    let fits_of =
-        |top: &Top| fits(problem, &top.unknown, &problem.segments, &whiteness(problem, top));
+    let fits_of = |top: &Top, white| fits(problem, &top.unknown, &problem.segments, white);
     let modes = structure.a.complex_eigenvalues();
     Ok(Identified {
         model,
         modes: modes.iter().map(|mode| [mode.re, mode.im]).collect(),
         correlations: correlations.collect(),
         parameters,
-        fits: fits_of(filter_error)?,
-        without_process_noise: fits_of(output_error)?,
+        fits: fits_of(filter_error, &white)?,
+        without_process_noise: fits_of(output_error, &whiteness(problem, output_error))?,
         gain: output_error.explained.cost - filter_error.explained.cost,
         validation: validation(flights),
         compatibility: compatibility(flights),
