@@ -72,13 +72,31 @@ impl TextFile {
     /// # Errors
     /// [`Error::Line`]: what was `expected`, and what the parser found instead.
     pub fn json<T: DeserializeOwned>(&self, expected: &str) -> Result<T, Error> {
-        serde_json::from_str(&self.text).map_err(|error| {
+        Ok(self.json_with_unused(expected)?.0)
+    }
+
+    /// The same, with the names of what nobody asks for: `noise.inputz`.
+    ///
+    /// # Errors
+    /// As [`TextFile::json`].
+    pub fn json_with_unused<T: DeserializeOwned>(
+        &self,
+        expected: &str,
+    ) -> Result<(T, Vec<String>), Error> {
+        let mut unused = Vec::new();
+        let mut json = serde_json::Deserializer::from_str(&self.text);
+        let contents =
+            // What may be missing is a question mark in the path.
+            serde_ignored::deserialize(&mut json, |path| unused.push(path.to_string().replace(".?", "")));
+        let ended = contents.and_then(|contents| json.end().map(|()| contents));
+        let contents = ended.map_err(|error| {
             let complaint = error.to_string();
             // The parser ends with the place, with which the sentence begins.
             let reason = complaint.split(" at line ").next().unwrap_or_default();
             let problem = format!("expected {expected}: {reason}");
             Error::Line { path: self.path.clone(), line: error.line(), problem }
-        })
+        })?;
+        Ok((contents, unused))
     }
 
     /// The lines that are not blank, trimmed.

@@ -149,28 +149,6 @@ pub(super) struct Affine {
 }
 
 impl ModelFile {
-    /// All that a file may say.
-    pub const FIELDS: [&str; 18] = [
-        "airframe",
-        "coefficients",
-        "airspeed",
-        "climb_angle",
-        "A",
-        "B",
-        "C",
-        "D",
-        "outputs",
-        "trim",
-        "h",
-        "noise",
-        "bias",
-        "gust",
-        "wind",
-        "density",
-        "affine",
-        "scaled",
-    ];
-
     /// The model.
     ///
     /// # Errors
