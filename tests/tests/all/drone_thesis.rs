@@ -10,8 +10,8 @@ use kestirim_particle_filter::Resampler;
 use kestirim_replay::ScalarKind;
 use rayon::prelude::*;
 
-/// Trials of a cell: our own error is then 0.7 of that of the published hundred.
-const TRIALS: u64 = 200;
+/// Trials of a cell: our own error is then half of that of the published hundred.
+const TRIALS: u64 = 400;
 const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
 
 fn fly(job: &Job, scalar: ScalarKind, trials: u64) -> Vec<Outcome> {

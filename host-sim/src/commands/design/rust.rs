@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use kestirim_design::Solution;
-use nalgebra::{DMatrix, Matrix2x4, Matrix4, SMatrix};
+use nalgebra::DMatrix;
 
 use super::answer::Answer;
 use super::report::Report;
@@ -30,10 +30,8 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
                     for Steady { airspeed, a, b, .. } in flights {
                         let (at, speed) =
                             (format!("{airspeed} m/s"), airspeed.to_string().replace('.', "_"));
-                        let (a, b) = (Matrix4::from(*a), Matrix2x4::from(*b));
-                        let (a, b) = (a.transpose(), b.transpose());
-                        constant(&format!("A_{speed}"), &format!("A at {at}"), &wide(&a))?;
-                        constant(&format!("B_{speed}"), &format!("B at {at}"), &wide(&b))?;
+                        constant(&format!("A_{speed}"), &format!("A at {at}"), &of_rows(a))?;
+                        constant(&format!("B_{speed}"), &format!("B at {at}"), &of_rows(b))?;
                     }
                 }
                 Answer::Solved(Solution::Gain { gain, .. }) => {
@@ -60,9 +58,8 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
     Ok(())
 }
 
-/// With the size that it has when the program runs.
-fn wide<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> DMatrix<f64> {
-    DMatrix::from_column_slice(R, C, matrix.as_slice())
+fn of_rows<const C: usize>(rows: &[[f64; C]]) -> DMatrix<f64> {
+    DMatrix::from_row_iterator(rows.len(), C, rows.iter().flatten().copied())
 }
 
 fn write_constant(
