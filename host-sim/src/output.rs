@@ -193,6 +193,16 @@ fn draft_path(path: &Path) -> io::Result<PathBuf> {
     Ok(path.with_file_name(draft))
 }
 
+/// Refuses a file that cannot be written, before what would be written is calculated.
+///
+/// # Errors
+/// [`Error::Write`].
+pub fn refuse_unwritable(path: &Path) -> Result<(), Error> {
+    let failed = |source| Error::Write { path: path.to_path_buf(), source };
+    let draft = draft_path(path).map_err(failed)?;
+    write_new(&draft, |_| Ok(())).and_then(|()| fs::remove_file(&draft)).map_err(failed)
+}
+
 fn write_new(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut file = BufWriter::new(File::create_new(path)?);
     write(&mut file)?;

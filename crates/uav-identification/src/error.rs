@@ -31,6 +31,49 @@ pub enum Error {
     /// The elevator stands still.
     #[error("expected an elevator that is moved, found a standard deviation of {0:.1e} rad")]
     NotExcited(f64),
+    /// An angle is farther than one of its kind can be.
+    #[error("expected {0} in rad, found {1:.2}: in degrees?")]
+    Angle(&'static str, f64),
+    /// The same flight is there again, which would count as independent.
+    #[error("expected different flights, found one given twice")]
+    Twice,
+    /// A sensor says the same all the time.
+    #[error(
+        "expected {0} to change in flight, found one value throughout: leave out a sensor that stands still"
+    )]
+    Stuck(&'static str),
+    /// The mean of az carries no aircraft.
+    #[error(
+        "expected az of about -9.8 m/s² on average, found {0:.2}: in g, of the other sign, or without gravity?"
+    )]
+    Force(f64),
+    /// 2·qbar/V² is not air's.
+    #[error(
+        "expected qbar to be ½ρV², found air of {0:.3} kg/m³: qbar not in Pa, or V not in m/s?"
+    )]
+    Density(f64),
+    /// A sensor shows another motion than others do.
+    #[error(
+        "expected {of} to move as {by} tells, found {scale:.3} of that: other units, or another sign?"
+    )]
+    Contradiction {
+        /// Which sensor.
+        of: &'static str,
+        /// What it is compared with.
+        by: &'static str,
+        /// What it shows, as a part of what is expected.
+        scale: f64,
+    },
+    /// Pitching does not depend on the elevator.
+    #[error(
+        "expected an elevator that turns the aircraft, found M_delta_e of {value:.2} ± {sigma:.2} 1/s²: its column, its times?"
+    )]
+    NoEffect {
+        /// `M_delta_e`, 1/s².
+        value: f64,
+        /// Its standard error.
+        sigma: f64,
+    },
     /// The likelihood has no top near these measurements.
     #[error("expected measurements that a linear model explains, found none that does")]
     NotConverged,

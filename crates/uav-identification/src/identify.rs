@@ -9,6 +9,7 @@ use crate::likelihood::{Coordinate, Problem, Unknown};
 use crate::model::Model;
 use crate::nondimensional::{Airplane, Coefficient, coefficients};
 use crate::parameter::{COUNT, PARAMETERS, priors};
+use crate::plausible;
 use crate::scoring::{Top, climb};
 use crate::start::{expected_noise, first_guess, floors};
 use crate::structure::Structure;
@@ -50,8 +51,8 @@ pub struct Parameter {
     pub bound: f64,
     /// The guess of least squares that it began with.
     pub equation_error: f64,
-    /// What output error said, without process noise.
-    pub output_error: f64,
+    /// What output error said, without process noise; none where that explains no flight.
+    pub output_error: Option<f64>,
     /// Whether the flight tells it.
     pub known: Known,
 }
@@ -80,10 +81,10 @@ pub struct Identified {
     pub correlations: Vec<Correlation>,
     /// How well the outputs fit.
     pub fits: Vec<Fit>,
-    /// Residuals of output error, whose colour says whether process noise was needed.
-    pub without_process_noise: Vec<Fit>,
-    /// By how much process noise raises the logarithm of the likelihood.
-    pub gain: f64,
+    /// Residuals of output error, whose colour says whether process noise was needed; none where it explains no flight.
+    pub without_process_noise: Option<Vec<Fit>>,
+    /// By how much process noise raises the logarithm of the likelihood of output error.
+    pub gain: Option<f64>,
     /// A model of the first part of the flights, on the rest; none if either is too short.
     pub validation: Option<Vec<Fit>>,
     /// What sensors say of one another.
@@ -98,7 +99,8 @@ pub struct Identified {
 struct Fitted {
     problem: Problem,
     first: Unknown,
-    output_error: Top,
+    /// None where the aircraft strays too far from what it does in calm air.
+    output_error: Option<Top>,
     filter_error: Top,
 }
 
@@ -115,13 +117,22 @@ fn fit(flights: &[Flight], reference: &Reference) -> Result<Fitted, Error> {
         expected_measured,
     };
     let first = first_guess(&problem);
-    let output_error = climb(&problem, first)?;
-    // With process noise, what was taken for a bad sensor need not be one.
-    let measured = std::array::from_fn(|output| {
-        output_error.unknown.measured[output].min(expected_measured[output])
-    });
-    let start = Unknown { process: Some(expected_process), measured, ..output_error.unknown };
-    let filter_error = climb(&problem, start)?;
+    let filter_error_from = |unknown: Unknown| {
+        // With process noise, what was taken for a bad sensor need not be one.
+        let measured =
+            std::array::from_fn(|output| unknown.measured[output].min(expected_measured[output]));
+        climb(&problem, Unknown { process: Some(expected_process), measured, ..unknown })
+    };
+    let output_error = climb(&problem, first).ok();
+    let starts = output_error.iter().map(|top| top.unknown).chain([first]);
+    // Without corrections, turbulence and motion that grows may have led astray: a filter's corrections lead back.
+    let filter_error =
+        starts.map(filter_error_from).find_map(Result::ok).ok_or(Error::NotConverged)?;
+    let calm = Unknown { process: None, ..filter_error.unknown };
+    let output_error = match output_error {
+        None => climb(&problem, calm).ok(),
+        some => some,
+    };
     Ok(Fitted { problem, first, output_error, filter_error })
 }
 
@@ -134,6 +145,8 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
         return Err(Error::NotPositive);
     }
     let reference = Reference::of(flights)?;
+    let compatibility = compatibility(flights);
+    plausible::check(flights, &compatibility)?;
     let fitted = fit(flights, &reference)?;
     let Fitted { problem, filter_error, output_error, .. } = &fitted;
     let unknown = &filter_error.unknown;
@@ -166,11 +179,12 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
             sigma,
             bound,
             equation_error: fitted.first.derivative[which],
-            output_error: output_error.unknown.derivative[which],
+            output_error: output_error.as_ref().map(|top| top.unknown.derivative[which]),
             known,
         }
     };
     let parameters: Vec<_> = (0..COUNT).map(parameter).collect();
+    plausible::check_effect(&parameters)?;
     let coefficients =
         airplane.map(|airplane| coefficients(airplane, &parameters, &model)).unwrap_or_default();
     let pairs = (0..COUNT).flat_map(|one| (0..one).map(move |other| (other, one)));
@@ -180,7 +194,8 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
         let of = [PARAMETERS[one].0, PARAMETERS[other].0];
         (value.abs() >= CORRELATED).then_some(Correlation { of, value })
     });
-    let fits_of = |top: &Top, white| fits(problem, &top.unknown, &problem.segments, white);
+    let fits_of =
+        |top: &Top, white: &[_; OUTPUTS]| fits(problem, &top.unknown, &problem.segments, white);
     let modes = structure.a.complex_eigenvalues();
     Ok(Identified {
         model,
@@ -188,10 +203,13 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
         correlations: correlations.collect(),
         parameters,
         fits: fits_of(filter_error, &white)?,
-        without_process_noise: fits_of(output_error, &whiteness(problem, output_error))?,
-        gain: output_error.explained.cost - filter_error.explained.cost,
+        without_process_noise: output_error
+            .as_ref()
+            .map(|top| fits_of(top, &whiteness(problem, top)))
+            .transpose()?,
+        gain: output_error.as_ref().map(|top| top.explained.cost - filter_error.explained.cost),
         validation: validation(flights),
-        compatibility: compatibility(flights),
+        compatibility,
         coefficients,
         seconds: problem.segments.iter().filter_map(|it| it.times.last()).sum(),
     })

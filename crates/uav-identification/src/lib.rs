@@ -11,6 +11,7 @@ mod likelihood;
 mod model;
 mod nondimensional;
 mod parameter;
+mod plausible;
 mod report;
 mod scoring;
 mod start;

@@ -9,7 +9,7 @@ use crate::innovations::{Filter, UNKNOWNS};
 use crate::structure::{Structure, inverse};
 
 /// Of what else the log may have, kinematics says what it is.
-const DERIVED: [&str; 3] = ["qbar", "climb", "V_ground"];
+pub(crate) const DERIVED: [&str; 3] = ["qbar", "climb", "V_ground"];
 /// What a steady flight may differ in from the one that was recorded, of ẋ: its deviation, and how it wanders per √s.
 const AFFINE: ([f64; 4], [f64; 4]) = ([0.005, 0.01, 0.3, 0.0], [1e-3, 1e-4, 0.02, 0.0]);
 /// Of a gyro, a pitch angle and an accelerometer from flight to flight, rad/s, rad and m/s², with their wandering.

@@ -38,6 +38,13 @@ impl Identified {
             });
         }
         self.note_sensors(&mut notes);
+        let is_there = |name: &str| self.fits.iter().any(|fit| fit.output == name);
+        if !is_there("alpha") && !self.model.outputs.contains(&"climb") {
+            notes.push("without alpha or climb, the flights are taken for level on average: α is off by their mean climb".to_owned());
+        }
+        if !is_there("az") {
+            notes.push("without az nothing checks the vane: its scale and its place ahead of the centre of mass are in the derivatives of α".to_owned());
+        }
         let mut pairs = self.correlations.clone();
         pairs.sort_by(|one, other| other.value.abs().total_cmp(&one.value.abs()));
         let pair = |it: &Correlation| format!("{} and {} ({:+.2})", it.of[0], it.of[1], it.value);
@@ -90,10 +97,12 @@ impl Display for Identified {
                 continue;
             }
             let mark = if it.known == Known::Weak { " (hardly told)" } else { "" };
+            let output_error =
+                it.output_error.map_or("none".to_owned(), |value| format!("{value:.4}"));
             writeln!(
                 f,
-                "{:<16} {:>10.4} {:>9.4}  {:<10} {:.4}, {:.4}{mark}",
-                it.name, it.value, it.sigma, it.unit, it.equation_error, it.output_error
+                "{:<16} {:>10.4} {:>9.4}  {:<10} {:.4}, {output_error}{mark}",
+                it.name, it.value, it.sigma, it.unit, it.equation_error
             )?;
         }
         for it in &self.coefficients {

@@ -16,16 +16,22 @@ pub enum Error {
     NotConverged,
     /// Steady flight would take a throttle below 0 or above 1.
     BeyondThrottle,
+    /// Steady flight would take an angle of attack beyond the wing's stall.
+    BeyondStall,
+    /// A climb angle is not between −π/2 and π/2.
+    BeyondVertical,
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::NotFinite => "a number is not finite",
-            Self::NotPositive => "a number that must be positive is not",
+            Self::NotPositive => "a mass, inertia, size, density or speed is not above zero",
             Self::Singular => "a matrix has no inverse",
             Self::NotConverged => "no steady flight was found",
             Self::BeyondThrottle => "no throttle from 0 to 1 holds this flight",
+            Self::BeyondStall => "the wing is stalled at the angle of attack that it takes",
+            Self::BeyondVertical => "a climb angle is not between -π/2 and π/2 rad",
         })
     }
 }

@@ -1,6 +1,7 @@
 //! The forces along the flight path: steady flight, and what happens near it.
 
 use core::array::from_fn;
+use core::f64::consts::FRAC_PI_2;
 
 use kestirim_scalar::Components;
 use nalgebra::{SMatrix, SVector};
@@ -13,6 +14,8 @@ use crate::{Airframe, Drag, Error, LongitudinalDerivatives, StateSpace};
 const MOST_STEPS: u32 = 50;
 /// A step of this size, beside 1 and the unknown, is made of rounding errors.
 const LAST_STEP: f64 = 1e-14;
+/// Where nothing is said of a stall, the flow over no plain wing stays attached at this angle of attack, rad.
+const STALLED: f64 = 0.35;
 
 /// A flight straight ahead in which nothing changes but the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,9 +71,14 @@ impl Airframe {
     /// Finds angle of attack, elevator and throttle of a steady flight, by Newton's method.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::NotPositive`], [`Error::NotConverged`], [`Error::BeyondThrottle`].
+    /// [`Error::NotFinite`], [`Error::NotPositive`], [`Error::BeyondVertical`], [`Error::NotConverged`],
+    /// [`Error::BeyondStall`], [`Error::BeyondThrottle`].
     pub fn trim(&self, flight: &SteadyFlight) -> Result<Trim, Error> {
         let SteadyFlight { airspeed, climb_angle } = *flight;
+        if climb_angle.is_finite() && libm::fabs(climb_angle) >= FRAC_PI_2 {
+            return Err(Error::BeyondVertical);
+        }
+        let most = self.lift.stall.map_or(STALLED, |stall| stall.alpha);
         let point = |alpha: f64, elevator: f64, throttle: f64| Trim {
             state: SVector::from([alpha, 0.0, airspeed, alpha + climb_angle]),
             input: SVector::from([elevator, throttle]),
@@ -97,6 +105,9 @@ impl Airframe {
             unknown = from_fn(|i| unknown[i] - step[i]);
             if settled {
                 let [alpha, elevator, throttle] = unknown;
+                if libm::fabs(alpha) > most {
+                    return Err(Error::BeyondStall);
+                }
                 if !(0.0..=1.0).contains(&throttle) {
                     return Err(Error::BeyondThrottle);
                 }

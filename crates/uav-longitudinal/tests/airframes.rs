@@ -114,4 +114,8 @@ fn a_flight_that_cannot_be_is_refused() {
     let x8 = Airframe::skywalker_x8();
     let fast = x8.trim(&SteadyFlight { airspeed: 60.0, climb_angle: 0.0 });
     assert_eq!(fast, Err(Error::BeyondThrottle));
+    let slow = x8.trim(&SteadyFlight { airspeed: 7.0, climb_angle: 0.0 });
+    assert_eq!(slow, Err(Error::BeyondStall));
+    let backwards = x8.trim(&SteadyFlight { airspeed: 18.0, climb_angle: 1.6 });
+    assert_eq!(backwards, Err(Error::BeyondVertical));
 }

@@ -44,6 +44,9 @@ fn cases() -> Value {
             {"id": "another", "coefficients": glider(), "airspeed": 20},
             {"id": "too fast", "airframe": "skywalker_x8", "airspeed": 60},
             {"id": "unknown", "airframe": "kite", "airspeed": 60},
+            {"id": "both", "airframe": "skywalker_x8", "coefficients": glider(), "airspeed": 20},
+            {"id": "no speed", "airframe": "skywalker_x8", "airspeed": []},
+            {"id": "partly", "airframe": "skywalker_x8", "airspeed": [7, 18], "climb_angel": 0.1},
         ],
     })
 }
@@ -105,6 +108,12 @@ fn every_case_has_its_answer() {
     let throttle = flights[0]["trim"]["u"][1].as_f64().expect("a throttle");
     assert!((throttle - 0.431_495_063).abs() < 1e-9, "{throttle}");
     assert_eq!(flights.as_array().map(Vec::len), Some(3));
+    let partly = named(&answers, "airframe", "partly");
+    assert_eq!(partly["flights"].as_array().map(Vec::len), Some(1));
+    assert_eq!(
+        partly["refused"],
+        value!(["7 m/s: the wing is stalled at the angle of attack that it takes"])
+    );
     let another = first("airframe", "another", "flights");
     assert_eq!(another[0]["A"][3], value!([0.0, 1.0, 0.0, 0.0]));
     assert!(filter["doublings"].as_u64().is_some_and(|doublings| doublings < 20));
@@ -133,6 +142,8 @@ fn what_is_wrong_with_a_case_is_its_answer_alone() {
             "unknown",
             "airframe: unknown variant `kite`, expected `aerosonde` or `skywalker_x8`",
         ),
+        ("airframe", "both", "expected airframe or coefficients, found both"),
+        ("airframe", "no speed", "airspeed: expected a number or a list of some"),
     ] {
         let answer = named(&answers, section, id);
         assert_eq!(answer["error"], sentence, "{section} {id}");
@@ -181,6 +192,8 @@ fn a_file_without_a_section_has_no_answers() {
 fn tables_are_for_people() {
     let desk = Desk::new();
     let output = host_sim(&["design", "--input", &desk.file("cases.json", cases().to_string())]);
+    let warned = text(&output.stderr);
+    assert!(warned.contains("partly: not used: climb_angel"), "{warned}");
     let table = text(&output.stdout);
     for part in [
         "pole_placement",
@@ -207,11 +220,11 @@ fn constants_compile_and_hold_every_bit() {
     let program = desk.file(
         "main.rs",
         format!(
-            "#![deny(warnings)]\nmod gains;\nfn main() {{\n\
+            "#![deny(warnings)]\n#[allow(dead_code)]\nmod gains;\nfn main() {{\n\
              assert_eq!(gains::CART_L[1][0].to_bits(), {});\n\
              assert_eq!(gains::PAIR_L[1][0].to_bits(), {});\n\
              assert_eq!(gains::CART_K[1][0].to_bits(), {});\n\
-             let _ = (gains::ANOTHER_A_20, gains::ANOTHER_B_20, gains::X8_A_15, gains::X8_B_15, gains::X8_A_18_5, gains::X8_B_18_5, gains::X8_A_24, gains::X8_B_24);\n\
+             let _ = (gains::ANOTHER_A_20, gains::ANOTHER_B_20, gains::X8_A_15, gains::X8_B_15, gains::X8_A_18_5, gains::X8_B_18_5, gains::X8_C_24, gains::X8_D_24, gains::PARTLY_X_18, gains::PARTLY_U_18, gains::PARTLY_Y_18);\n\
              let _ = (gains::CART_L_2, gains::CART_L_3, gains::CART_A, gains::CART_B, gains::PLAIN_P, gains::OBSERVER_P);\n}}",
             bits("pole_placement", "cart", "L"),
             bits("pole_placement", "pair", "L"),

@@ -286,6 +286,8 @@ fn wrong_input_is_refused_with_a_sentence() {
     assert!(model("{\"A\": [[1]]}").contains("expected a JSON object"));
     assert!(model("{}").contains("A and B, or an airspeed"));
     assert!(model("{\"airframe\": \"aerosonde\"}").contains("an airspeed beside airframe"));
+    let both = "{\"airframe\": \"aerosonde\", \"airspeed\": 30, \"coefficients\": {}}";
+    assert!(model(both).contains("coefficients"));
     assert!(model("{\"airframe\": \"aerosonde\", \"airspeed\": 90}").contains("no throttle"));
     let plant =
         "\"A\": [[-1,0,0,0],[0,-2,0,0],[0,0,-3,0],[0,0,0,-4]], \"B\": [[1,0],[0,1],[0,0],[0,0]]";

@@ -32,7 +32,7 @@ pub enum ModelFileError {
         found: usize,
     },
     /// A name stands twice, or belongs to another column.
-    #[error("expected names of outputs that are free, found {}", printable(.0))]
+    #[error("expected each output to be one column of the log, and once; found {}", printable(.0))]
     Taken(String),
     /// An interval of discrete time is not above zero.
     #[error("expected an h above 0 s, found {}", printable(&.0.to_string()))]
@@ -154,6 +154,9 @@ impl ModelFile {
     /// # Errors
     /// What was expected, and what was found.
     pub fn model(mut self) -> Result<Model, ModelFileError> {
+        if self.airframe.is_some() && self.coefficients.is_some() {
+            return Err(ModelFileError::Number("airframe or coefficients, found both"));
+        }
         let known = self.airframe.take().map(KnownAirframe::airframe);
         if let Some(airframe) = self.coefficients.take().map(|it| *it).or(known) {
             let is_there = [

@@ -16,17 +16,23 @@ pub struct Answered {
     /// The answer.
     #[serde(flatten)]
     pub answer: Answer,
+    /// What the case says that nobody asked for.
+    #[serde(skip)]
+    pub unused: Vec<String>,
 }
 
 impl Answered {
     /// Answers a case. What is wrong with it is its answer.
     pub(super) fn new(value: &Value, answer: fn(&Case) -> Result<Answer, Problem>) -> Self {
         let id = value.get("id").cloned().unwrap_or_default();
-        let answer = match Case::new(value).and_then(|case| answer(&case)) {
-            Ok(answer) => answer,
-            Err(error) => Answer::Refused { error },
-        };
-        Self { id, answer }
+        let mut unused = Vec::new();
+        let answered = Case::new(value).and_then(|case| {
+            let answer = answer(&case)?;
+            unused = case.unused();
+            Ok(answer)
+        });
+        let answer = answered.unwrap_or_else(|error| Answer::Refused { error });
+        Self { id, answer, unused }
     }
 
     /// The name of the case, for people: whatever it holds, it stays on its line.
@@ -51,8 +57,11 @@ pub enum Answer {
     Solved(Solution),
     /// Steady flights.
     Flights {
-        /// One for each airspeed.
+        /// One for each airspeed that the aircraft flies at.
         flights: Vec<Steady>,
+        /// Why there is none of the others.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        refused: Vec<String>,
     },
     /// Why it was refused.
     Refused {
@@ -76,7 +85,8 @@ pub(super) const SECTIONS: [Section; 8] = [
 ];
 
 fn airframe(case: &Case) -> Result<Answer, Problem> {
-    Ok(Answer::Flights { flights: steady::flights(case)? })
+    let (flights, refused) = steady::flights(case)?;
+    Ok(Answer::Flights { flights, refused })
 }
 
 fn placement(case: &Case) -> Result<Answer, Problem> {

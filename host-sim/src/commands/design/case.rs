@@ -1,11 +1,19 @@
 //! A case, as it stands in the file.
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Map, Value};
+
+/// What names a case.
+const NAME: &str = "id";
 
 /// An object. What it holds is looked at when it is asked for.
 pub(super) struct Case<'a> {
     fields: &'a Map<String, Value>,
+    asked: RefCell<BTreeSet<String>>,
+    left: RefCell<Vec<String>>,
 }
 
 /// What is wrong with a case, in a sentence.
@@ -14,10 +22,24 @@ pub(super) type Problem = String;
 impl<'a> Case<'a> {
     pub(super) fn new(value: &'a Value) -> Result<Self, Problem> {
         let fields = value.as_object().ok_or("expected an object")?;
-        Ok(Self { fields })
+        Ok(Self { fields, asked: RefCell::default(), left: RefCell::default() })
+    }
+
+    /// Notes a part of a field that nobody asks for.
+    pub(super) fn leave(&self, path: &str) {
+        self.left.borrow_mut().push(path.to_owned());
+    }
+
+    /// What nobody asked for.
+    pub(super) fn unused(&self) -> Vec<String> {
+        let asked = self.asked.borrow();
+        let is_unused = |name: &&String| !asked.contains(*name) && *name != NAME;
+        let fields = self.fields.keys().filter(is_unused).cloned();
+        fields.chain(self.left.borrow().iter().cloned()).collect()
     }
 
     pub(super) fn field(&self, name: &str) -> Result<&'a Value, Problem> {
+        self.asked.borrow_mut().insert(name.to_owned());
         self.fields.get(name).ok_or_else(|| format!("{name} is missing"))
     }
 

@@ -45,6 +45,7 @@ impl Design {
             let warning = format!("expected one of {names}, found none");
             output::warn_of(&self.input, &[warning]);
         }
+        output::warn_of(&self.input, &report.warnings());
         if let Some(path) = &self.rust {
             output::write_file(path, |file| rust::write(file, &report))?;
         }

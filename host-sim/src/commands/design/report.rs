@@ -17,6 +17,24 @@ pub struct Report {
     pub sections: Vec<(&'static str, Vec<Answered>)>,
 }
 
+impl Report {
+    /// What a user should know beside the answers.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let answers = || self.sections.iter().flat_map(|(_, answers)| answers);
+        let unused = answers().filter(|answered| !answered.unused.is_empty());
+        let mut warnings: Vec<_> = unused
+            .map(|answered| {
+                format!("{}: not used: {}", answered.name(), answered.unused.join(", "))
+            })
+            .collect();
+        let is_refused = |answered: &Answered| matches!(answered.answer, Answer::Refused { .. });
+        if answers().next().is_none() || answers().all(is_refused) {
+            warnings.push("no case has an answer".to_owned());
+        }
+        warnings
+    }
+}
+
 impl Serialize for Report {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.sections.len()))?;
@@ -44,7 +62,10 @@ impl fmt::Display for Report {
 fn summary(answer: &Answer) -> String {
     match answer {
         Answer::Refused { error } => format!("refused: {error}"),
-        Answer::Flights { flights } => flights.iter().map(flight).collect::<Vec<_>>().join("\n"),
+        Answer::Flights { flights, refused } => {
+            let refused = refused.iter().map(|problem| format!("refused: {problem}"));
+            flights.iter().map(flight).chain(refused).collect::<Vec<_>>().join("\n")
+        }
         Answer::Solved(Solution::Gain { gain, pole_error, digits_lost }) => {
             format!(
                 "worst pole off by {pole_error:.1e} of itself ({digits_lost:.1} digits lost)\nL = {}",

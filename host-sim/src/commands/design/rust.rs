@@ -26,12 +26,25 @@ pub(super) fn write(file: &mut dyn Write, report: &Report) -> io::Result<()> {
                 Answer::Refused { error } => {
                     writeln!(file, "\n// {id} ({section}) was refused: {error}")?;
                 }
-                Answer::Flights { flights } => {
-                    for Steady { airspeed, a, b, .. } in flights {
-                        let (at, speed) =
-                            (format!("{airspeed} m/s"), airspeed.to_string().replace('.', "_"));
-                        constant(&format!("A_{speed}"), &format!("A at {at}"), &of_rows(a))?;
-                        constant(&format!("B_{speed}"), &format!("B at {at}"), &of_rows(b))?;
+                Answer::Flights { flights, refused } => {
+                    for Steady { airspeed, trim, a, b, c, d, .. } in flights {
+                        let speed = airspeed.to_string().replace('.', "_");
+                        let matrices = [
+                            ("A", of_rows(a)),
+                            ("B", of_rows(b)),
+                            ("C", of_rows(c)),
+                            ("D", of_rows(d)),
+                            ("X", of_rows(&[trim.x])),
+                            ("U", of_rows(&[trim.u])),
+                            ("Y", of_rows(&[trim.y])),
+                        ];
+                        for (letter, matrix) in matrices {
+                            let what = format!("{letter} at {airspeed} m/s");
+                            constant(&format!("{letter}_{speed}"), &what, &matrix)?;
+                        }
+                    }
+                    for problem in refused {
+                        writeln!(file, "\n// {id} ({section}) was refused: {problem}")?;
                     }
                 }
                 Answer::Solved(Solution::Gain { gain, .. }) => {

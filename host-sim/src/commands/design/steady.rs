@@ -43,16 +43,27 @@ pub struct Trim {
     pub y: [f64; 2],
 }
 
-/// A flight for each airspeed of a case, which is a number or a list.
-pub(super) fn flights(case: &Case) -> Result<Vec<Steady>, Problem> {
-    let airframe = if case.has("coefficients") {
-        Airframe::deserialize(case.field("coefficients")?)
-    } else {
-        KnownAirframe::deserialize(case.field("airframe")?).map(KnownAirframe::airframe)
+/// A flight for each airspeed of a case, which is a number or a list; and why there is none of others.
+///
+/// # Errors
+/// What is wrong with the case, or with the first of the airspeeds if the aircraft flies at none of them.
+pub(super) fn flights(case: &Case) -> Result<(Vec<Steady>, Vec<Problem>), Problem> {
+    let airframe = match (case.has("coefficients"), case.has("airframe")) {
+        (true, true) => return Err("expected airframe or coefficients, found both".to_owned()),
+        (true, false) => {
+            let fields = case.field("coefficients")?;
+            let unused =
+                |path: serde_ignored::Path<'_>| case.leave(&format!("coefficients.{path}"));
+            let airframe: Result<Airframe, _> = serde_ignored::deserialize(fields, unused);
+            airframe.map_err(|error| format!("coefficients: {error}"))?
+        }
+        (false, _) => {
+            let known = KnownAirframe::deserialize(case.field("airframe")?);
+            known.map_err(|error| format!("airframe: {error}"))?.airframe()
+        }
     };
-    let airframe = airframe.map_err(|error| format!("airframe: {error}"))?;
     let climb_angle = if case.has("climb_angle") { case.number("climb_angle")? } else { 0.0 };
-    let wrong = || "airspeed: expected a number or a list of numbers".to_owned();
+    let wrong = || "airspeed: expected a number or a list of some".to_owned();
     let airspeeds: Vec<f64> = match case.field("airspeed")? {
         Value::Array(list) => list.iter().map(Value::as_f64).collect::<Option<_>>(),
         number => number.as_f64().map(|airspeed| vec![airspeed]),
@@ -75,5 +86,16 @@ pub(super) fn flights(case: &Case) -> Result<Vec<Steady>, Problem> {
             eigenvalues: eigenvalues.iter().map(|it| [it.re, it.im]).collect(),
         })
     };
-    airspeeds.into_iter().map(flight).collect()
+    let (mut flown, mut refused) = (Vec::new(), Vec::new());
+    for airspeed in airspeeds {
+        match flight(airspeed) {
+            Ok(steady) => flown.push(steady),
+            Err(problem) => refused.push(problem),
+        }
+    }
+    match refused.first() {
+        Some(problem) if flown.is_empty() => Err(problem.clone()),
+        None if flown.is_empty() => Err(wrong()),
+        _ => Ok((flown, refused)),
+    }
 }

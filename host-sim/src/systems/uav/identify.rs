@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use kestirim_uav_identification::{Airplane, Flight, Identified, identify};
 use serde::Serialize;
@@ -45,7 +46,7 @@ impl Calibration for Identify {
         Command::new(Uav::NAME)
             .about("Derivatives, trim and noise from flights with a 3-2-1-1 of the elevator")
             .arg(
-                file("log", "Flight, as for replay, with q, V, theta, alpha or az, best ax as well; may be given again")
+                file("log", "Flight, as for replay, with q, V, theta and alpha or az or both; ax tells more. May be given again")
                     .action(ArgAction::Append),
             )
             .arg(file("out", "Where to write the model: JSON, as replay takes it with --model"))
@@ -68,6 +69,7 @@ impl Calibration for Identify {
         let logs: Vec<_> = matches.get_many::<PathBuf>("log").into_iter().flatten().collect();
         let out = matches.get_one::<PathBuf>("out").map(PathBuf::as_path);
         output::refuse_overwriting("--out", out, logs.iter().copied())?;
+        out.map_or(Ok(()), output::refuse_unwritable)?;
         let reading = Reading::matched(matches)?;
         let (mut flights, mut said) = (Vec::new(), Found::default());
         for path in &logs {
@@ -77,7 +79,9 @@ impl Calibration for Identify {
             said.warnings.extend(found.warnings);
             flights.push(flight);
         }
-        let found = identify(&flights, airplane(matches).as_ref()).map_err(|error| {
+        let airplane = airplane(matches);
+        said.warnings.extend(density(matches, airplane.as_ref(), &flights));
+        let found = identify(&flights, airplane.as_ref()).map_err(|error| {
             let path = logs.first().copied().cloned().unwrap_or_default();
             Error::File { path, problem: error.to_string() }
         })?;
@@ -105,6 +109,31 @@ fn airplane(matches: &ArgMatches) -> Option<Airplane> {
     let [mass, inertia, area, chord] = SIZE.map(|(name, _)| number(name));
     let (mass, inertia, area, chord) = (mass?, inertia?, area?, chord?);
     Some(Airplane { mass, inertia, area, chord, density: number("density")? })
+}
+
+/// Which density of the air counts, where more than one could.
+fn density(
+    matches: &ArgMatches,
+    airplane: Option<&Airplane>,
+    flights: &[Flight],
+) -> Option<String> {
+    let is_said = matches.value_source("density") == Some(ValueSource::CommandLine);
+    let has_pressure = |it: &Flight| it.columns.iter().any(|(name, _)| name == "qbar");
+    let is_logged = flights.iter().all(has_pressure);
+    match (airplane, is_said) {
+        (None, true) => {
+            Some("--density is used for coefficients alone: --mass and the others are missing")
+        }
+        (Some(_), true) if is_logged => Some("--density is not used: the log has qbar"),
+        (Some(_), false) if !is_logged => {
+            Some("the air's density is taken for 1.225 kg/m³: --density says another")
+        }
+        _ => None,
+    }
+    .map(|said| {
+        output::warn(said);
+        said.to_owned()
+    })
 }
 
 fn read(path: &Path, reading: &Reading) -> Result<(Flight, Found), Error> {
