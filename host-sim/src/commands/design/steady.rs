@@ -86,7 +86,7 @@ pub(super) fn flights(case: &Case) -> Result<(Vec<Steady>, Vec<Problem>), Proble
             eigenvalues: eigenvalues.iter().map(|it| [it.re, it.im]).collect(),
         })
     };
-    let (mut flown, mut refused) = (Vec::new(), Vec::new());
+    let (mut flown, mut refused) = (Vec::new(), Vec::<Problem>::new());
     for airspeed in airspeeds {
         match flight(airspeed) {
             Ok(steady) => flown.push(steady),
