@@ -105,11 +105,11 @@ impl Airframe {
             unknown = from_fn(|i| unknown[i] - step[i]);
             if settled {
                 let [alpha, elevator, throttle] = unknown;
-                if libm::fabs(alpha) > most {
-                    return Err(Error::BeyondStall);
-                }
                 if !(0.0..=1.0).contains(&throttle) {
                     return Err(Error::BeyondThrottle);
+                }
+                if libm::fabs(alpha) > most {
+                    return Err(Error::BeyondStall);
                 }
                 return Ok(point(alpha, elevator, throttle));
             }

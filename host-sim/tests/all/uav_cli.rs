@@ -286,8 +286,10 @@ fn wrong_input_is_refused_with_a_sentence() {
     assert!(model("{\"A\": [[1]]}").contains("expected a JSON object"));
     assert!(model("{}").contains("A and B, or an airspeed"));
     assert!(model("{\"airframe\": \"aerosonde\"}").contains("an airspeed beside airframe"));
-    let both = "{\"airframe\": \"aerosonde\", \"airspeed\": 30, \"coefficients\": {}}";
-    assert!(model(both).contains("coefficients"));
+    let both = r#"{"airframe": "aerosonde", "airspeed": 30, "coefficients": {
+        "mass": 5, "Jx": 1, "Jy": 1, "Jz": 1, "S_wing": 1, "b": 3, "c": 0.3, "S_prop": 0.1, "k_motor": 50,
+        "C_L_alpha": 5, "C_D_0": 0.03, "C_m_alpha": -1, "C_m_q": -12, "C_m_delta_e": -1}}"#;
+    assert!(model(both).contains("airframe or coefficients, found both"));
     assert!(model("{\"airframe\": \"aerosonde\", \"airspeed\": 90}").contains("no throttle"));
     let plant =
         "\"A\": [[-1,0,0,0],[0,-2,0,0],[0,0,-3,0],[0,0,0,-4]], \"B\": [[1,0],[0,1],[0,0],[0,0]]";

@@ -131,7 +131,7 @@ fn density(
         _ => None,
     }
     .map(|said| {
-        output::warn(said);
+        output::warn(&format!("warning: {said}"));
         said.to_owned()
     })
 }
