@@ -8,6 +8,7 @@ mod cloud;
 mod error;
 mod estimate;
 mod flight;
+mod misfit;
 mod open_ground;
 mod search;
 mod trace;
@@ -19,6 +20,7 @@ pub use self::estimate::Estimate;
 pub use self::flight::{
     Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step,
 };
+pub use self::misfit::Misfit;
 pub use self::open_ground::{MOST_DRAWN, MOST_PLACES, POINTS_OPEN};
 pub use self::search::{BEYOND_M, MOST, POINTS, Search, level_prior, thinned};
 pub use self::trace::{Flown, Track};

@@ -2,7 +2,7 @@
 
 mod accuracy;
 
-use kestirim_replay::drone::{Estimate, Track, level_step};
+use kestirim_replay::drone::{Estimate, Misfit, Track, level_step};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -96,10 +96,16 @@ pub(super) fn account(
                 ));
                 account.doubt(Reason::Innovations);
             }
+            let built = super::settings::built(settings);
+            let misfit = built.and_then(|it| Misfit::find(&track.stops[..=shown.stop], shown, it));
+            if let Some(misfit) = misfit {
+                account.warn(in_words(&misfit, &settings.choice("environment")));
+                account.doubt(Reason::Innovations);
+            }
             account.about = Some(recorded.log.clone());
             if let Some(level) = shown.level_db {
-                let is_open = super::settings::built(settings).is_none();
-                let what = if is_open { "level at one metre" } else { "level of the transmitter" };
+                let what =
+                    if built.is_none() { "level at one metre" } else { "level of the transmitter" };
                 account.fact(what, format!("{level:.1} dB"));
             }
             for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
@@ -111,6 +117,14 @@ pub(super) fn account(
         }
     }
     Ok(account)
+}
+
+fn in_words(misfit: &Misfit, environment: &str) -> String {
+    let Misfit { found_db, expected_db, is_large } = misfit;
+    let how = if *is_large { "" } else { " for many measurements in a row" };
+    format!(
+        "the levels are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB){how}: the place and its deviation are not to be relied upon; --environment open assumes less"
+    )
 }
 
 /// What is known of a flight whose user and channel are.

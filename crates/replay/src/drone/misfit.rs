@@ -1,0 +1,52 @@
+//! Whether measurements are those that an environment lets one expect.
+
+use super::{EnvironmentKind, Estimate, Stop};
+use crate::metrics::{distance, mean};
+
+/// Fewer measurements fit any environment at some place.
+const FEWEST: usize = 8;
+/// Variance of the square of a deviation over its sigma: of a normal distribution 2, of two mixed ones up to this.
+const SPREAD: f64 = 8.0;
+/// By so many of its own standard deviations a mean must be off.
+const CLEAR: f64 = 5.0;
+/// Mean product of neighbouring deviations over their sigmas that is not counted: shadowing lasts a little.
+const LASTING: f64 = 0.4;
+
+/// Deviations of measurements from an environment that does not explain them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// Root mean square of the deviations, dB.
+    pub found_db: f64,
+    /// What the environment explains, dB.
+    pub expected_db: f64,
+    /// Whether they are too large; otherwise they last too long, from measurement to measurement.
+    pub is_large: bool,
+}
+
+impl Misfit {
+    /// Of the measurements, in their order, seen from where the user is believed to be; none if the environment explains them.
+    pub fn find(stops: &[Stop], estimate: &Estimate, environment: EnvironmentKind) -> Option<Self> {
+        let channel = environment.channel::<f64>();
+        let level = estimate.level_db.unwrap_or(0.0);
+        let deviation = |stop: &Stop| {
+            let far = distance(stop.place, estimate.place);
+            let expected = channel.path_loss(far, stop.height).ok()?;
+            Some((stop.loss + level - expected.mean(), expected.sigma()))
+        };
+        let deviations: Vec<_> = stops.iter().filter_map(deviation).collect();
+        let count = deviations.len();
+        if count < FEWEST {
+            return None;
+        }
+        let ratios: Vec<_> = deviations.iter().map(|(off, sigma)| off / sigma).collect();
+        let squares: Vec<_> = ratios.iter().map(|ratio| ratio * ratio).collect();
+        let products: Vec<_> = ratios.windows(2).map(|pair| pair[0] * pair[1]).collect();
+        let is_large = mean(&squares) > 1.0 + CLEAR * (SPREAD / count as f64).sqrt();
+        let is_lasting = mean(&products) > LASTING + CLEAR / (count as f64).sqrt();
+        let root = |of: fn(&(f64, f64)) -> f64| {
+            mean(&deviations.iter().map(|it| of(it).powi(2)).collect::<Vec<_>>()).sqrt()
+        };
+        let [found_db, expected_db] = [root(|(off, _)| *off), root(|(_, sigma)| *sigma)];
+        (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large })
+    }
+}
