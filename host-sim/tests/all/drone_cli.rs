@@ -126,6 +126,7 @@ fn path_losses_through_a_city_need_no_level() {
     let report = replay(&log);
     assert!(report["accuracy"]["error_m"].as_f64().is_some_and(|error| error < 60.0));
     assert!(report["level_db"].is_null());
+    assert_eq!((&report["warnings"], &report["health"]["state"]), (&value!([]), &value!("good")));
     // As levels of a transmitter that nobody knows.
     let levels = rows.lines().map(|line| {
         let (rest, loss) = line.rsplit_once(',').expect("fields");

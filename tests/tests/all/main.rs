@@ -4,6 +4,7 @@
 mod any_input;
 mod apps_on_target;
 mod common_scenario;
+mod drone_environments;
 mod drone_figures;
 mod drone_on_target;
 mod drone_recordings;

@@ -9,8 +9,10 @@ const FEWEST: usize = 8;
 const SPREAD: f64 = 8.0;
 /// By so many of its own standard deviations a mean must be off.
 const CLEAR: f64 = 5.0;
-/// Mean product of neighbouring deviations over their sigmas that is not counted: shadowing lasts a little.
-const LASTING: f64 = 0.4;
+/// Correlation of neighbouring deviations that is not counted, as an environment's are independent: shadowing lasts a little.
+const LASTING: f64 = 0.3;
+/// A correlation must be off by so many of its own standard deviations.
+const CLEARLY_LASTING: f64 = 3.0;
 
 /// Deviations of measurements from an environment that does not explain them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +23,8 @@ pub struct Misfit {
     pub expected_db: f64,
     /// Whether they are too large; otherwise they last too long, from measurement to measurement.
     pub is_large: bool,
+    /// Correlation of each with the next; the environment expects none.
+    pub next: f64,
 }
 
 impl Misfit {
@@ -42,11 +46,12 @@ impl Misfit {
         let squares: Vec<_> = ratios.iter().map(|ratio| ratio * ratio).collect();
         let products: Vec<_> = ratios.windows(2).map(|pair| pair[0] * pair[1]).collect();
         let is_large = mean(&squares) > 1.0 + CLEAR * (SPREAD / count as f64).sqrt();
-        let is_lasting = mean(&products) > LASTING + CLEAR / (count as f64).sqrt();
+        let next = mean(&products) / mean(&squares).max(f64::MIN_POSITIVE);
+        let is_lasting = next > LASTING + CLEARLY_LASTING / (count as f64).sqrt();
         let root = |of: fn(&(f64, f64)) -> f64| {
             mean(&deviations.iter().map(|it| of(it).powi(2)).collect::<Vec<_>>()).sqrt()
         };
         let [found_db, expected_db] = [root(|(off, _)| *off), root(|(_, sigma)| *sigma)];
-        (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large })
+        (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large, next })
     }
 }

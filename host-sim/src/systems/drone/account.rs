@@ -120,11 +120,17 @@ pub(super) fn account(
 }
 
 fn in_words(misfit: &Misfit, environment: &str) -> String {
-    let Misfit { found_db, expected_db, is_large } = misfit;
-    let how = if *is_large { "" } else { " for many measurements in a row" };
-    format!(
-        "the levels are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB){how}: the place and its deviation are not to be relied upon; --environment open assumes less"
-    )
+    let Misfit { found_db, expected_db, is_large, next } = misfit;
+    let off = if *is_large {
+        format!(
+            "the levels are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB)"
+        )
+    } else {
+        format!(
+            "the levels are off what {environment} explains in the same way for long (correlation {next:.2})"
+        )
+    };
+    format!("{off}: place and deviation are not to be relied upon, --environment open assumes less")
 }
 
 /// What is known of a flight whose user and channel are.
