@@ -3,6 +3,8 @@
 use std::fs;
 use std::process::Command;
 
+use serde_json::json as value;
+
 use crate::program::{Desk, host_sim, json, messages, refusal, text};
 
 /// Losses over open ground round a user at (120, −40), of an unknown level.
