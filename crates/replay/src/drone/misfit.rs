@@ -5,6 +5,8 @@ use crate::metrics::{distance, mean};
 
 /// Fewer measurements fit any environment at some place.
 const FEWEST: usize = 8;
+/// A path that is obstructed where hardly one is lies ten sigmas and more off: what is farther counts as so many.
+const FARTHEST: f64 = 4.0;
 /// Variance of the square of a deviation over its sigma: of a normal distribution 2, of two mixed ones up to this.
 const SPREAD: f64 = 8.0;
 /// By so many of its own standard deviations a mean must be off.
@@ -42,7 +44,10 @@ impl Misfit {
         if count < FEWEST {
             return None;
         }
-        let ratios: Vec<_> = deviations.iter().map(|(off, sigma)| off / sigma).collect();
+        let ratios: Vec<_> = deviations
+            .iter()
+            .map(|(off, sigma)| (off / sigma).clamp(-FARTHEST, FARTHEST))
+            .collect();
         let squares: Vec<_> = ratios.iter().map(|ratio| ratio * ratio).collect();
         let products: Vec<_> = ratios.windows(2).map(|pair| pair[0] * pair[1]).collect();
         let is_large = mean(&squares) > 1.0 + CLEAR * (SPREAD / count as f64).sqrt();
