@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod chain;
+mod clipped;
 pub mod drone;
 mod finding;
 pub mod gnss;

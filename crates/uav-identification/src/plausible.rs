@@ -62,20 +62,15 @@ fn check_columns(flight: &Flight) -> Result<(), Error> {
         }
     }
     let turned = flight.inputs.iter().map(|input| input[0].abs()).fold(0.0, f64::max);
-    let mean_square = |name: &str| {
-        let values = flight.column(name).into_iter().flatten().flatten();
-        let (mean, spread) = spread(values.copied());
-        mean.hypot(spread)
-    };
+    // Mean and deviation.
+    let of = |name: &str| Some(spread(flight.column(name)?.iter().flatten().copied()));
+    let mean = |name: &str| of(name).map(|(mean, _)| mean);
+    let mean_square = |name: &str| of(name).map_or(0.0, |(mean, spread)| mean.hypot(spread));
     let angles =
         [("delta_e", turned), ("alpha", mean_square("alpha")), ("theta", mean_square("theta"))];
     if let Some((name, angle)) = angles.into_iter().find(|(_, angle)| *angle > FARTHEST) {
         return Err(Error::Angle(name, angle));
     }
-    let mean = |name: &str| {
-        let values = flight.column(name)?.iter().flatten().copied();
-        Some(spread(values).0)
-    };
     if let Some(force) = mean("az").filter(|force| !FORCE.contains(&(force / -GRAVITY))) {
         return Err(Error::Force(force));
     }

@@ -1,7 +1,8 @@
 //! Whether measurements are those that an environment lets one expect.
 
 use super::{EnvironmentKind, Estimate, Stop};
-use crate::metrics::{distance, mean};
+use crate::clipped::Clipped;
+use crate::metrics::{distance, rms};
 
 /// Fewer measurements fit any environment at some place.
 const FEWEST: usize = 8;
@@ -39,24 +40,17 @@ impl Misfit {
             let expected = channel.path_loss(far, stop.height).ok()?;
             Some((stop.loss + level - expected.mean(), expected.sigma()))
         };
-        let deviations: Vec<_> = stops.iter().filter_map(deviation).collect();
+        let (deviations, sigmas): (Vec<_>, Vec<_>) = stops.iter().filter_map(deviation).unzip();
         let count = deviations.len();
         if count < FEWEST {
             return None;
         }
-        let ratios: Vec<_> = deviations
-            .iter()
-            .map(|(off, sigma)| (off / sigma).clamp(-FARTHEST, FARTHEST))
-            .collect();
-        let squares: Vec<_> = ratios.iter().map(|ratio| ratio * ratio).collect();
-        let products: Vec<_> = ratios.windows(2).map(|pair| pair[0] * pair[1]).collect();
-        let is_large = mean(&squares) > 1.0 + CLEAR * (SPREAD / count as f64).sqrt();
-        let next = mean(&products) / mean(&squares).max(f64::MIN_POSITIVE);
+        let ratios = deviations.iter().zip(&sigmas).map(|(off, sigma)| off / sigma);
+        let Clipped { square, product } = Clipped::of(ratios, FARTHEST);
+        let is_large = square > 1.0 + CLEAR * (SPREAD / count as f64).sqrt();
+        let next = product / square.max(f64::MIN_POSITIVE);
         let is_lasting = next > LASTING + CLEARLY_LASTING / (count as f64).sqrt();
-        let root = |of: fn(&(f64, f64)) -> f64| {
-            mean(&deviations.iter().map(|it| of(it).powi(2)).collect::<Vec<_>>()).sqrt()
-        };
-        let [found_db, expected_db] = [root(|(off, _)| *off), root(|(_, sigma)| *sigma)];
+        let [found_db, expected_db] = [rms(&deviations), rms(&sigmas)];
         (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large, next })
     }
 }

@@ -1,6 +1,7 @@
 //! Whether the data contradict the model: what innovations would be if it were right, they are not.
 
 use super::Followed;
+use crate::clipped::Clipped;
 
 /// Innovations of an output from which on it is judged.
 const FEWEST: usize = 200;
@@ -60,10 +61,7 @@ fn of_output(output: usize, innovations: &[f64]) -> Option<Contradiction> {
     if innovations.len() < FEWEST {
         return None;
     }
-    let clipped: Vec<f64> = innovations.iter().map(|it| it.clamp(-LARGEST, LARGEST)).collect();
-    let count = clipped.len() as f64;
-    let square = clipped.iter().map(|it| it * it).sum::<f64>() / count;
-    let product = clipped.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / (count - 1.0);
+    let Clipped { square, product } = Clipped::of(innovations.iter().copied(), LARGEST);
     if square > SQUARE {
         Some(Contradiction::Large { output, size: square.sqrt() })
     } else if product > PRODUCT {
