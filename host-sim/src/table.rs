@@ -83,10 +83,13 @@ pub fn parse<T>(
     let text = Text::new(bytes).map_err(|_| nothing())?;
     let found = NamedTable::find(&text, options, |heading| {
         let header = Header { path, heading, found: RefCell::default() };
-        columns(&header).map(|columns| (columns, header.found.into_inner()))
+        let columns = columns(&header)?;
+        let left_out = header.left_out();
+        Ok::<_, Error>((columns, header.found.into_inner(), left_out))
     });
-    let (table, (columns, places)) = found.ok_or_else(nothing)??;
+    let (table, (columns, places, left_out)) = found.ok_or_else(nothing)??;
     let mut import = conclusions(&table, &places);
+    import.extend(left_out);
     let mut second = 1.0;
     if let Some(usual) = usual_step_s {
         let unit = unit_of_time(&table, &places, usual).map_err(|error| refused(path, &error))?;
@@ -247,11 +250,9 @@ impl Header<'_> {
         }
         Ok(Some(columns))
     }
-}
 
-impl Header<'_> {
-    /// A sentence that names the columns which were not looked for until now, if there are any.
-    pub fn left_out(&self) -> Option<String> {
+    /// A sentence that names the columns of which nobody asked, if there are any.
+    fn left_out(&self) -> Option<String> {
         let found = self.found.borrow();
         let is_found = |at: usize| found.iter().any(|(_, column, _)| column.at == at);
         let names = self.heading.names().iter().enumerate();

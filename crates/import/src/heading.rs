@@ -67,6 +67,20 @@ const KNOWN: &[Known] = &[
     ),
     of(Quantity::Level, "rssi_db", &["rssi", "rss", "signal", "level", "power", "rxpower"]),
     of(Quantity::Level, "path_loss_db", &["pathloss", "loss", "pl"]),
+    named_only(
+        "user",
+        &[
+            "user",
+            "userid",
+            "transmitter",
+            "transmitterid",
+            "txid",
+            "emitter",
+            "collar",
+            "tag",
+            "tagid",
+        ],
+    ),
     of(
         Quantity::Speed,
         "v_left",

@@ -1,8 +1,10 @@
 //! Where the user of a drone is, from path losses or levels alone.
 
+use kestirim_air_to_ground::Channel;
 use kestirim_health::{Health, Reason};
 use kestirim_replay::drone::{
-    Area, EnvironmentKind, Estimate, MOST_DRAWN, Quantity, Search, Stop, level_step, thinned,
+    Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Quantity, Search, Stop, level_step, thinned,
+    wavelength_m,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -13,9 +15,13 @@ use crate::error::{KestirimError, refused, unknown};
 /// Stack of a thread that estimates: lattices of thousands of points are moved about before they lie on the heap.
 const STACK_BYTES: usize = 16 << 20;
 
-/// A flight: t (n,), place (n, 2), height (n,), and what was measured (n,): losses, or levels if `levels`.
+/// Frequencies of transmitters, Hz.
+const LOWEST_HZ: f64 = 30e6;
+const HIGHEST_HZ: f64 = 30e9;
+
+/// A flight: t (n,), place (n, 2), height (n,), and what was measured (n,): losses, or levels if `levels`; at a frequency, Hz.
 #[pyfunction]
-#[pyo3(signature = (t, place, height, value, levels, area, environment, every))]
+#[pyo3(signature = (t, place, height, value, levels, area, environment, frequency, every))]
 pub(crate) fn drone<'py>(
     py: Python<'py>,
     t: Line<'py>,
@@ -25,9 +31,16 @@ pub(crate) fn drone<'py>(
     levels: bool,
     area: Option<Table<'py>>,
     environment: Option<&str>,
+    frequency: f64,
     every: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let environment = environment.map(self::environment).transpose()?;
+    if !(LOWEST_HZ..=HIGHEST_HZ).contains(&frequency) {
+        return Err(refused(format!(
+            "frequency: expected {LOWEST_HZ:e} to {HIGHEST_HZ:e} Hz, found {frequency:e}"
+        )));
+    }
+    let wavelength_m = wavelength_m(frequency);
     let quantity = if levels { Quantity::Level } else { Quantity::PathLoss };
     let stops = stops(values(&t)?, rows(&place)?, values(&height)?, values(&value)?, quantity)?;
     let area = area.as_ref().map(|area| rows::<2>(area).and_then(polygon)).transpose()?;
@@ -36,8 +49,10 @@ pub(crate) fn drone<'py>(
             let stops = thinned(&stops, environment);
             let most = if every { MOST_DRAWN } else { 1 };
             let search = Search::new(&stops, area.as_deref(), None, most, false);
-            let estimates = search.map_err(refused)?.find(environment, quantity);
-            Ok(Found { stops, estimates })
+            let search = search.map_err(refused)?.at_wavelength(wavelength_m);
+            let estimates = search.find(environment, quantity);
+            let channel = environment.and_then(|it| it.channel_at(wavelength_m).ok());
+            Ok(Found { stops, estimates, channel })
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(search);
         let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
@@ -99,16 +114,19 @@ struct Found {
     /// The measurements that were used.
     stops: Vec<Stop>,
     estimates: Vec<Estimate>,
+    /// That of the environment; none over open ground.
+    channel: Option<Channel<f64>>,
 }
 
 impl Found {
     fn results(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let Self { stops, estimates } = self;
+        let Self { stops, estimates, channel } = self;
         let Some(last) = estimates.last() else {
             return Err(refused("no place explains the measurements"));
         };
         let is_stepping = level_step(&stops, last.place).is_some();
-        let doubts = Health::GOOD.with(Reason::Innovations, is_stepping);
+        let is_off = channel.is_some_and(|it| Misfit::find(&stops, last, &it).is_some());
+        let doubts = Health::GOOD.with(Reason::Innovations, is_stepping || is_off);
         let level = |estimate: &Estimate| estimate.level_db.unwrap_or(f64::NAN);
         Ok(Results::new(py)
             .line("t", estimates.iter().map(|estimate| stops[estimate.stop].t).collect())?

@@ -17,6 +17,7 @@ import kestirim
     [
         ("afar_1204/stops.csv", {}, []),
         ("afar_1204/stops.csv", {"environment": "suburban"}, ["--environment", "suburban"]),
+        ("collars/collar_000419_0.csv", {"environment": "urban"}, ["--environment", "urban"]),
         ("lora_20190619", {"every": False}, []),
     ],
 )
@@ -53,6 +54,12 @@ def test_a_loss_of_known_power_is_found_and_refusals_are_sentences() -> None:
     loss = 20 * np.log10(4 * np.pi / 0.15 * distance)
     found = kestirim.drone(t, place, height, path_loss=loss, every=False)
     assert np.hypot(*(found.position[-1] - user)) < 3 * found.sigma[-1]
+    # On another frequency the same distances lose less: 13.3 dB at 433 MHz.
+    lower = 20 * np.log10(4 * np.pi * 433e6 / 3e8 * distance)
+    told = kestirim.drone(t, place, height, path_loss=lower, frequency=433e6, every=False)
+    assert np.allclose(told.position[-1], found.position[-1], atol=0.1)
+    with pytest.raises(kestirim.KestirimError, match="frequency: expected 3e7 to 3e10 Hz, found 2.4e0"):
+        kestirim.drone(t, place, height, path_loss=loss, frequency=2.4)
     with pytest.raises(kestirim.KestirimError, match="at least three measurements .* found 2"):
         kestirim.drone(t[:2], place[:2], height[:2], path_loss=loss[:2])
     with pytest.raises(kestirim.KestirimError, match="path_loss or rssi"):

@@ -3,9 +3,10 @@
 //! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
-use host_sim::systems::robot::recording::{Recording, Truth};
-use host_sim::systems::robot::track::Tracks;
-use kestirim_replay::robot::{Course, Epoch, Unsmoothed};
+use host_sim::metrics::mean;
+use host_sim::systems::robot::recording::{Part, Recording, Truth};
+use host_sim::systems::robot::track::{Tracks, track};
+use kestirim_replay::robot::{Course, Epoch, Event, Setup, Trace, Tracked, Unsmoothed, smooth};
 use kestirim_tests::recordings::folder_of;
 
 use crate::robot_sigmas::{MOVING, STANDING, Told, opened};
@@ -104,6 +105,67 @@ fn a_walk_between_cones_is_found_with_one_beacon_blocked() {
         println!("{name}: {:.1} cm across the way", 100.0 * across);
         assert!(tracks.smoothed().is_some() && across <= goal, "{name}: {across} m");
     }
+}
+
+/// The last place of what came in `seconds`, as the smoother has it of these alone, at sixty times of each recording: what a
+/// window with its models would say while the tag moves.
+#[test]
+#[ignore = "a measurement: cargo test -p kestirim-tests --test all robot_smoothed::causal -- --ignored --nocapture"]
+fn causal_windows_are_no_nearer_than_the_tracker() {
+    println!("| | the tracker's RMSE, m | of 10 s | of all so far |\n|---|---|---|---|");
+    let mut totals = [0.0; 3];
+    for (name, dimensions) in MOVING {
+        let Some(folder) = folder_of("robot") else { return };
+        let (recording, setup) = opened(&folder, name, dimensions);
+        let traces = track(&recording, &setup).expect("a track");
+        let errors = [10.0, f64::INFINITY].map(|seconds| {
+            let parts = recording.parts.iter().zip(&traces);
+            let squares: Vec<_> =
+                parts.flat_map(|(part, trace)| at_ends(&setup, part, trace, seconds)).collect();
+            [0, 1].map(|which| mean(&squares.iter().map(|pair| pair[which]).collect::<Vec<_>>()))
+        });
+        let [[tracked, window], [_, all]] = errors.map(|squares| squares.map(f64::sqrt));
+        println!("| `{name}` | {tracked:.3} | {window:.3} | {all:.3} |");
+        for (total, error) in totals.iter_mut().zip([tracked, window, all]) {
+            *total += error.ln();
+        }
+    }
+    let [tracked, window, all] = totals.map(|total| (total / MOVING.len() as f64).exp());
+    println!("| geometric mean | {tracked:.3} | {window:.3} | {all:.3} |");
+    assert!(window > 1.05 * tracked && all > 0.95 * tracked, "a window pays now");
+}
+
+/// Squared errors of the tracker's last place and of the smoother's, or again the tracker's where that has none, at the ends
+/// of stretches of so many seconds.
+fn at_ends(setup: &Setup, part: &Part, trace: &Trace, seconds: f64) -> Vec<[f64; 2]> {
+    // Of every epoch: its time, and how many events and ranges came up to its end.
+    let (mut ends, mut ranges) = (Vec::new(), 0);
+    for (index, event) in part.events.iter().enumerate() {
+        match event {
+            Event::Range(_) => ranges += 1,
+            Event::EpochEnd { time_us } => ends.push((*time_us, index + 1, ranges)),
+            _ => {}
+        }
+    }
+    let count = ends.len().min(trace.epochs.len());
+    let stretch = |last: usize| {
+        let (time_us, events, ranges) = ends[last];
+        let is_before = |end: &&(i64, usize, usize)| (time_us - end.0) as f64 * 1e-6 > seconds;
+        let before = ends.iter().take_while(is_before).count();
+        let (_, first_event, first_range) = before.checked_sub(1).map_or((0, 0, 0), |k| ends[k]);
+        let cut = Trace {
+            epochs: trace.epochs[before..=last].to_vec(),
+            ranges: trace.ranges[first_range..ranges].to_vec(),
+            ..Trace::default()
+        };
+        let events = &part.events[first_event..events];
+        let smoothed = smooth(setup, &[Tracked { events, trace: &cut }], false).ok();
+        let tracked = trace.epochs[last].position?;
+        let smoothed = smoothed.and_then(|it| it.parts[0].last()?.position).unwrap_or(tracked);
+        let truth = part.truth.as_ref()?.at(time_us)?;
+        Some([tracked, smoothed].map(|at| (at[0] - truth[0]).powi(2) + (at[1] - truth[1]).powi(2)))
+    };
+    (1..=60).filter_map(|k| stretch((k * count / 60).checked_sub(1)?)).collect()
 }
 
 /// Root mean square distance (m) to the line between the places of a truth within five seconds.

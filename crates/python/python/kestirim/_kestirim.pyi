@@ -256,6 +256,7 @@ def drone(
     levels: bool,
     area: Optional[_Floats],
     environment: Optional[str],
+    frequency: float,
     every: bool,
 ) -> _UserTrack: ...
 def uav_model(name: str) -> _UavModel: ...

@@ -1,6 +1,6 @@
 //! What a drone measures, and where.
 
-use kestirim_air_to_ground::{Channel, Environment, Measurement};
+use kestirim_air_to_ground::{Channel, Environment, Error as ChannelError, Measurement};
 use kestirim_scalar::Scalar;
 use kestirim_user_locator::LevelStep;
 
@@ -47,6 +47,14 @@ impl Stop {
 /// Wavelength of 2 GHz with the thesis' speed of light, m.
 pub const WAVELENGTH_M: f64 = 0.15;
 
+/// The speed of light as the thesis has it, m/s.
+const LIGHT: f64 = 3e8;
+
+/// Wavelength of a frequency (Hz), m.
+pub fn wavelength_m(frequency_hz: f64) -> f64 {
+    LIGHT / frequency_hz
+}
+
 /// What is built on the ground.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -68,13 +76,21 @@ impl EnvironmentKind {
     /// # Panics
     /// Never: the published constants make a channel.
     pub fn channel<T: Scalar>(self) -> Channel<T> {
+        self.channel_at(WAVELENGTH_M).expect("the thesis' constants")
+    }
+
+    /// Its channel at a wavelength (m). What is lost beyond free space is what was published for 2 GHz.
+    ///
+    /// # Errors
+    /// [`ChannelError`] if it is no wavelength.
+    pub fn channel_at<T: Scalar>(self, wavelength_m: f64) -> Result<Channel<T>, ChannelError> {
         let environment = match self {
             Self::Suburban => Environment::suburban(),
             Self::Urban => Environment::urban(),
             Self::DenseUrban => Environment::dense_urban(),
             Self::HighRise => Environment::high_rise(),
         };
-        Channel::new(&environment, T::from_f64(WAVELENGTH_M)).expect("the thesis' constants")
+        Channel::new(&environment, T::from_f64(wavelength_m))
     }
 }
 

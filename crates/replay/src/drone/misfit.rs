@@ -1,6 +1,8 @@
 //! Whether measurements are those that an environment lets one expect.
 
-use super::{EnvironmentKind, Estimate, Stop};
+use kestirim_air_to_ground::Channel;
+
+use super::{Estimate, Stop};
 use crate::clipped::Clipped;
 use crate::metrics::{distance, rms};
 
@@ -14,6 +16,8 @@ const SPREAD: f64 = 8.0;
 const CLEAR: f64 = 5.0;
 /// Correlation of neighbouring deviations that is not counted, as an environment's are independent: shadowing lasts a little.
 const LASTING: f64 = 0.3;
+/// Mean square of deviations over their sigmas below which they may last: measurements without noise leave roundings.
+const NEGLIGIBLE: f64 = 0.01;
 /// A correlation must be off by so many of its own standard deviations.
 const CLEARLY_LASTING: f64 = 3.0;
 
@@ -31,9 +35,9 @@ pub struct Misfit {
 }
 
 impl Misfit {
-    /// Of the measurements, in their order, seen from where the user is believed to be; none if the environment explains them.
-    pub fn find(stops: &[Stop], estimate: &Estimate, environment: EnvironmentKind) -> Option<Self> {
-        let channel = environment.channel::<f64>();
+    /// Of the measurements, in their order, seen from where the user is believed to be; none if the environment's channel
+    /// explains them.
+    pub fn find(stops: &[Stop], estimate: &Estimate, channel: &Channel<f64>) -> Option<Self> {
         let level = estimate.level_db.unwrap_or(0.0);
         let deviation = |stop: &Stop| {
             let far = distance(stop.place, estimate.place);
@@ -49,7 +53,8 @@ impl Misfit {
         let Clipped { square, product } = Clipped::of(ratios, FARTHEST);
         let is_large = square > 1.0 + CLEAR * (SPREAD / count as f64).sqrt();
         let next = product / square.max(f64::MIN_POSITIVE);
-        let is_lasting = next > LASTING + CLEARLY_LASTING / (count as f64).sqrt();
+        let is_lasting =
+            square > NEGLIGIBLE && next > LASTING + CLEARLY_LASTING / (count as f64).sqrt();
         let [found_db, expected_db] = [rms(&deviations), rms(&sigmas)];
         (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large, next })
     }

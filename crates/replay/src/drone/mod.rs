@@ -18,7 +18,7 @@ pub use self::cloud::Cloud;
 pub use self::error::Error;
 pub use self::estimate::Estimate;
 pub use self::flight::{
-    Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step,
+    Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step, wavelength_m,
 };
 pub use self::misfit::Misfit;
 pub use self::open_ground::{MOST_DRAWN, MOST_PLACES, POINTS_OPEN};

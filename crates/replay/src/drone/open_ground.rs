@@ -21,7 +21,7 @@ type Ground = GroundSearch<f64, MOST_PLACES, MOST_CORNERS>;
 impl Search<'_> {
     /// After each measurement of a short flight, after one in several of a long one, and after the last.
     pub(super) fn over_open_ground(&self, quantity: Quantity) -> Vec<Estimate> {
-        let channel = OpenGround::new(level_prior(quantity));
+        let channel = OpenGround::new(level_prior(quantity, self.wavelength_m));
         let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
         let count = self.stops.len();
         let stride = count.div_ceil(self.most.max(1));

@@ -36,13 +36,13 @@ pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop
     }
 }
 
-/// What is known of the level received at one metre over open ground; none if nothing is.
-pub fn level_prior(quantity: Quantity) -> Option<LevelPrior<f64>> {
+/// What is known of the level received at one metre over open ground, at a wavelength (m); none if nothing is.
+pub fn level_prior(quantity: Quantity, wavelength_m: f64) -> Option<LevelPrior<f64>> {
     match quantity {
         Quantity::Level => None,
-        // What 2 GHz loses on the first metre.
+        // What is lost on the first metre.
         Quantity::PathLoss => Some(LevelPrior {
-            mean: -20.0 * (4.0 * std::f64::consts::PI / WAVELENGTH_M).log10(),
+            mean: -20.0 * (4.0 * std::f64::consts::PI / wavelength_m).log10(),
             sigma: CALIBRATION_DB,
         }),
     }
@@ -60,6 +60,8 @@ pub struct Search<'a> {
     pub(super) most: usize,
     /// Whether all that is believed is wanted.
     pub(super) with_clouds: bool,
+    /// Of what the transmitter sends, m.
+    pub(super) wavelength_m: f64,
 }
 
 impl<'a> Search<'a> {
@@ -82,7 +84,13 @@ impl<'a> Search<'a> {
             None => surroundings(stops)?,
         };
         let area = Box::new(area);
-        Ok(Self { stops, origin, area, truth, most, with_clouds })
+        let wavelength_m = WAVELENGTH_M;
+        Ok(Self { stops, origin, area, truth, most, with_clouds, wavelength_m })
+    }
+
+    /// The same at another wavelength than that of 2 GHz, m.
+    pub fn at_wavelength(self, wavelength_m: f64) -> Self {
+        Self { wavelength_m, ..self }
     }
 
     /// Where the user is after each measurement that some place explains: through the channel of an environment, or
@@ -108,7 +116,8 @@ impl<'a> Search<'a> {
 
     /// Through the thesis' channel.
     fn among_buildings(&self, environment: EnvironmentKind, quantity: Quantity) -> Vec<Estimate> {
-        let channel = Within::new(environment.channel(), &*self.area);
+        let Ok(channel) = environment.channel_at(self.wavelength_m) else { return Vec::new() };
+        let channel = Within::new(channel, &*self.area);
         let region = self.area.region();
         match quantity {
             Quantity::PathLoss => self.follow::<2>(Locator::new(channel, region)),

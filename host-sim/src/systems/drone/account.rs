@@ -2,7 +2,7 @@
 
 mod accuracy;
 
-use kestirim_replay::drone::{Estimate, Misfit, Track, level_step};
+use kestirim_replay::drone::{EnvironmentKind, Estimate, Misfit, Track, level_step};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -96,16 +96,20 @@ pub(super) fn account(
                 ));
                 account.doubt(Reason::Innovations);
             }
-            let built = super::settings::built(settings);
-            let misfit = built.and_then(|it| Misfit::find(&track.stops[..=shown.stop], shown, it));
+            let channel = super::settings::channel(settings);
+            let stops = &track.stops[..=shown.stop];
+            let misfit = channel.as_ref().and_then(|it| Misfit::find(stops, shown, it));
             if let Some(misfit) = misfit {
                 account.warn(in_words(&misfit, &settings.choice("environment")));
                 account.doubt(Reason::Innovations);
             }
             account.about = Some(recorded.log.clone());
             if let Some(level) = shown.level_db {
-                let what =
-                    if built.is_none() { "level at one metre" } else { "level of the transmitter" };
+                let what = if channel.is_none() {
+                    "level at one metre"
+                } else {
+                    "level of the transmitter"
+                };
                 account.fact(what, format!("{level:.1} dB"));
             }
             for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
@@ -146,7 +150,8 @@ fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, sh
     }
     let stop = track.stop(shown);
     account.fact("loss measured", format!("{:.1} dB", stop.loss));
-    if let Some(expected) = expected_loss_db(settings.chosen("environment"), &stop, shown.place) {
+    let environment: EnvironmentKind = settings.chosen("environment");
+    if let Some(expected) = expected_loss_db(&environment.channel(), &stop, shown.place) {
         account.fact("loss expected at the estimate", format!("{expected:.1} dB"));
     }
     if let Some(flown) = &track.flown {

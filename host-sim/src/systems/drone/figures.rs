@@ -3,10 +3,11 @@
 mod cloud;
 pub mod streams;
 
+use kestirim_air_to_ground::Channel;
 use kestirim_replay::drone::{EnvironmentKind, Estimate, Quantity, Track};
 
 use super::recording::Recording;
-use super::settings::{built, expected_loss_db};
+use super::settings::{channel, expected_loss_db};
 use super::simulate::{moving_user, trajectory};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::{Answer, Settings};
@@ -15,16 +16,17 @@ use crate::system::{Answer, Settings};
 pub(super) fn draw(recording: &Recording, settings: &Settings, track: &Track, answer: &mut Answer) {
     let now = track.now(settings.number("step"));
     answer.fact("step", format!("{} of {}", now + 1, track.estimates.len()));
-    let (environment, plane_m) = match recording {
-        Recording::Moving => (Some(settings.chosen("environment")), Some(moving_user::SIDE_M)),
-        Recording::Staying => (Some(settings.chosen("environment")), Some(trajectory::SIDE_M)),
+    let synthetic = || Some(settings.chosen::<EnvironmentKind>("environment").channel());
+    let (channel, plane_m) = match recording {
+        Recording::Moving => (synthetic(), Some(moving_user::SIDE_M)),
+        Recording::Staying => (synthetic(), Some(trajectory::SIDE_M)),
         // A level says nothing of what is lost in between.
         Recording::Flight(recorded) if recorded.flight.quantity == Quantity::PathLoss => {
-            (built(settings), None)
+            (channel(settings), None)
         }
         Recording::Flight(_) => (None, None),
     };
-    let drawing = Drawing { recording, track, now, environment };
+    let drawing = Drawing { recording, track, now, channel };
     let errors = track.estimates.iter().map(|estimate| track.error_m(estimate).unwrap_or(f64::NAN));
     let spread = track.estimates.iter().map(|estimate| estimate.sd_m).collect();
     let error = [("error", Colour::Ours, errors.collect())];
@@ -52,7 +54,7 @@ struct Drawing<'a> {
     /// Counted from 0.
     now: usize,
     /// By whose channel losses are expected, if that is known.
-    environment: Option<EnvironmentKind>,
+    channel: Option<Channel<f64>>,
 }
 
 impl Drawing<'_> {
@@ -129,10 +131,10 @@ impl Drawing<'_> {
         let begin = track.stops.first().map_or(0.0, |stop| stop.t);
         let (times, losses) = track.stops.iter().map(|stop| (stop.t - begin, stop.loss)).unzip();
         let expected = |name: &str, place: &dyn Fn(&Estimate) -> Option<[f64; 2]>, colour| {
-            let environment = self.environment?;
+            let channel = self.channel.as_ref()?;
             let points = track.estimates.iter().filter_map(|estimate| {
                 let stop = track.stop(estimate);
-                let loss = expected_loss_db(environment, &stop, place(estimate)?)?;
+                let loss = expected_loss_db(channel, &stop, place(estimate)?)?;
                 Some([track.seconds(estimate), loss])
             });
             let (times, losses) = points.map(|[t, loss]| (t, loss)).unzip();

@@ -5,7 +5,7 @@ use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
 use super::recording::area;
-use super::settings::built;
+use super::settings::{built, wavelength_m};
 use crate::Error;
 use crate::figure::{Colour, Mark, Series};
 use crate::system::{Files, Online, Outcome, Plan, Settings};
@@ -16,6 +16,7 @@ use crate::table::FARTHEST_POSITION;
 pub(super) struct Listening {
     area: Option<Box<Area>>,
     environment: Option<EnvironmentKind>,
+    wavelength_m: f64,
 }
 
 impl Listening {
@@ -25,7 +26,7 @@ impl Listening {
     /// Whatever is wrong with the area.
     pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let area = files.one("area").map(|path| area::read(path, None)).transpose()?;
-        Ok(Self { area, environment: built(settings) })
+        Ok(Self { area, environment: built(settings), wavelength_m: wavelength_m(settings) })
     }
 }
 
@@ -62,9 +63,9 @@ impl Listener {
         if stops.len() < 3 {
             return None;
         }
-        let Listening { area, environment } = &self.plan;
+        let Listening { area, environment, wavelength_m } = &self.plan;
         let search = Search::new(stops, area.as_deref(), None, 1, false).ok()?;
-        search.find(*environment, Quantity::PathLoss).pop()
+        search.at_wavelength(*wavelength_m).find(*environment, Quantity::PathLoss).pop()
     }
 }
 

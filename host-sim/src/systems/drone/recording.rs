@@ -3,6 +3,7 @@
 pub mod area;
 pub mod flight;
 pub mod plane;
+mod users;
 
 use std::path::PathBuf;
 

@@ -5,7 +5,8 @@ pub mod choices;
 mod firmware;
 
 use clap::ValueEnum;
-use kestirim_replay::drone::{EnvironmentKind, Stop};
+use kestirim_air_to_ground::Channel;
+use kestirim_replay::drone::{self, EnvironmentKind, Quantity, Stop};
 
 use self::choices::{FilterKind, FlightKind, ResamplerKind, TrajectoryKind};
 pub(super) use self::firmware::firmware;
@@ -52,6 +53,14 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
         environment(!matches!(recording, Some(Recording::Moving | Recording::Staying)))
             .flags(&[("free-space", OPEN)])
             .live(),
+        Setting::number(
+            "frequency",
+            "Carrier frequency of path losses; what an environment adds to free space is that of 2000 MHz",
+            "MHz",
+            [30.0, 30_000.0, 10.0],
+            2000.0,
+        )
+        .live(),
         Setting::one_of("flight", "What the drone does", &FlightKind::default()),
         filter(),
         resampler(),
@@ -78,7 +87,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
 fn environment(with_open: bool) -> Setting {
     let mut setting = Setting::one_of(
         "environment",
-        "What is built on the ground: the thesis' channel at 2 GHz; of synthetic users urban unless told otherwise",
+        "What is built on the ground: the thesis' channel; of synthetic users urban unless told otherwise",
         &EnvironmentKind::default(),
     );
     if let Kind::Choice { of, default } = &mut setting.kind
@@ -143,7 +152,7 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
     match recording {
         Some(recording) => idle_of(recording, settings, name),
         // Some synthetic user or a recorded flight.
-        None if name == "environment" || name == "step" => None,
+        None if ["environment", "frequency", "step"].contains(&name) => None,
         None => synthetic
             .map(|recording| idle_of(recording, settings, name))
             .into_iter()
@@ -161,6 +170,12 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
     };
     match (recording, name) {
         (_, "step") | (Recording::Flight(_), "environment") => None,
+        (Recording::Flight(recorded), "frequency") => {
+            let is_level = recorded.flight.quantity == Quantity::Level;
+            is_level
+                .then(|| Idle::implied("levels of unknown offset tell the same at any frequency"))
+        }
+        (_, "frequency") => Some(Idle::foreign("is for a recorded flight")),
         (_, "environment") => {
             let is_open = settings.is_given(name) && settings.choice(name) == OPEN;
             is_open.then(|| Idle::foreign("open is for a recorded flight"))
@@ -193,6 +208,16 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
 /// What is built where a flight was recorded; none over open ground.
 pub(super) fn built(settings: &Settings) -> Option<EnvironmentKind> {
     EnvironmentKind::from_str(&settings.choice("environment"), false).ok()
+}
+
+/// Of what the transmitter sends, m.
+pub(super) fn wavelength_m(settings: &Settings) -> f64 {
+    drone::wavelength_m(1e6 * settings.decided("frequency"))
+}
+
+/// The channel of a recorded flight; none over open ground.
+pub(super) fn channel(settings: &Settings) -> Option<Channel<f64>> {
+    built(settings)?.channel_at(wavelength_m(settings)).ok()
 }
 
 /// A synthetic user who moves, and how the drone follows.
@@ -247,12 +272,12 @@ pub(super) fn filter_of(settings: &Settings) -> FilterSetting {
     }
 }
 
-/// What the channel of an environment expects of a user at a place, dB; none right at the drone.
+/// What a channel expects of a user at a place, dB; none right at the drone.
 pub(super) fn expected_loss_db(
-    environment: EnvironmentKind,
+    channel: &Channel<f64>,
     stop: &Stop,
     place: [f64; 2],
 ) -> Option<f64> {
-    let loss = environment.channel::<f64>().path_loss(distance(stop.place, place), stop.height);
+    let loss = channel.path_loss(distance(stop.place, place), stop.height);
     loss.ok().map(|loss| loss.mean())
 }

@@ -1,4 +1,4 @@
-use kestirim_replay::drone::Quantity;
+use kestirim_replay::drone::{EnvironmentKind, Quantity, wavelength_m};
 use std::fmt::Write as _;
 use std::fs;
 
@@ -192,6 +192,38 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
     assert!(refusal.contains("at least three measurements"), "{refusal}");
 }
 
+/// Path losses at 433 MHz, among houses: with the frequency all is as at 2 GHz, without it nothing fits.
+#[test]
+fn path_losses_are_those_of_a_frequency() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("stops.csv");
+    let channel = EnvironmentKind::Suburban.channel_at::<f64>(wavelength_m(433e6)).unwrap();
+    let mut text = "t,x,y,h,path_loss_db\n".to_owned();
+    for k in 0..40 {
+        let (t, turn) = (f64::from(k), f64::from(k) * 0.3);
+        let (x, y) = (200.0 + 150.0 * turn.cos(), 100.0 + 150.0 * turn.sin());
+        let loss = channel.path_loss((x - 150.0).hypot(y - 120.0), 200.0).unwrap();
+        writeln!(text, "{t},{x:.3},{y:.3},200,{:.3}", loss.mean()).unwrap();
+    }
+    fs::write(&log, text).unwrap();
+    let mut files = Files::default();
+    files.add("log", &log);
+    let found = |given: &[(&'static str, &str)]| {
+        let mut settings = Settings::new(settings::table(None));
+        for (name, text) in given {
+            settings.set(name, text).unwrap();
+        }
+        let opened = Drone.open(Source::Files(files.clone()), &settings).unwrap();
+        let report = opened.replay(&settings, &Wanted::default()).unwrap().report;
+        let [x, y] = ["x", "y"].map(|axis| report["estimate"][axis].as_f64().unwrap());
+        ((x - 150.0).hypot(y - 120.0), report["health"]["state"].clone())
+    };
+    let (near, health) = found(&[("environment", "suburban"), ("frequency", "433")]);
+    assert!(near < 10.0 && health == "good", "{near} m, {health}");
+    let (far, health) = found(&[("environment", "suburban")]);
+    assert!(far > 3.0 * near && health == "bad", "{far} m, {health}");
+}
+
 #[test]
 fn settings_are_refused_only_where_no_recording_has_them() {
     let refused = |given: &[(&str, &str)]| {
@@ -224,6 +256,11 @@ fn firmware_says_which_filter_and_what_differs() {
     for (recording, given, expected) in [
         (Some(&level), &[][..], "OpenGround::new(None)"),
         (Some(&loss), &[], "LevelPrior { mean: -38.46"),
+        (
+            Some(&loss),
+            &[("environment", "urban"), ("frequency", "1000")],
+            "Channel::new(&Environment::urban(), 0.3)",
+        ),
         (Some(&level), &[("environment", "high-rise")], "Locator::<f32, 2000, 400, 3>"),
         (Some(&Recording::Staying), &[("particles", "250")], "Locator::<f32, 250, 12, 2>"),
         (

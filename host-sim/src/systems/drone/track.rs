@@ -5,7 +5,7 @@ use kestirim_replay::drone::{
 };
 
 use super::recording::{Recorded, Recording};
-use super::settings::{built, filter_of, geometry, walk};
+use super::settings::{built, filter_of, geometry, walk, wavelength_m};
 use super::simulate::{moving_user, static_user};
 use crate::Error;
 use crate::system::{Detail, Settings};
@@ -28,7 +28,7 @@ pub(super) fn track(
 ) -> Result<Track, Error> {
     let seed = settings.decided("seed") as u64;
     match recording {
-        Recording::Flight(recorded) => find(recorded, built(settings), detail),
+        Recording::Flight(recorded) => find(recorded, settings, detail),
         Recording::Moving => Ok(moving_user::track(&walk(settings), seed, 0)),
         Recording::Staying => {
             Ok(static_user::track(&geometry(settings), filter_of(settings), seed, 0))
@@ -37,12 +37,9 @@ pub(super) fn track(
 }
 
 /// Finds the user of a recorded flight.
-fn find(
-    recorded: &Recorded,
-    environment: Option<EnvironmentKind>,
-    detail: Detail,
-) -> Result<Track, Error> {
+fn find(recorded: &Recorded, settings: &Settings, detail: Detail) -> Result<Track, Error> {
     let Recorded { flight, truth, area, .. } = recorded;
+    let environment = built(settings);
     let area = area.as_deref();
     let (stops, mut warnings) = used(recorded, environment);
     // What comes in between takes as long as the end, each time.
@@ -53,6 +50,7 @@ fn find(
     };
     let search = Search::new(&stops, area, *truth, most, detail == Detail::Every);
     let search = search.map_err(|error| recorded.refused(&error.to_string()))?;
+    let search = search.at_wavelength(wavelength_m(settings));
     let estimates = search.find(environment, flight.quantity);
     if estimates.is_empty() {
         return Err(recorded.refused("no place explains the measurements"));

@@ -6,6 +6,7 @@ use kestirim_import::{Options, levels};
 use kestirim_replay::drone::{Quantity, Stop};
 
 use super::plane::{Origin, Places};
+use super::users::Users;
 use crate::Error;
 use crate::table::{self, Column, Found, Header, Log};
 use crate::text;
@@ -25,7 +26,8 @@ pub struct Flight {
 
 /// From stop to stop it takes so long, s.
 const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
-/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP.
+/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP. Of
+/// several transmitters, which a column user names, the one that `--topic` says.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
@@ -37,16 +39,21 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     }
     let mut flight =
         Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0, origin: None };
-    let found = table::parse(
+    let mut users = Users::new(options.topic.as_deref());
+    let mut found = table::parse(
         path,
         &bytes,
         &Log { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         columns,
-        |&(places, [t, h, value], quantity), row| {
+        |&(places, [t, h, value], quantity, user), row| {
             flight.quantity = quantity;
+            let is_wanted = user.is_none_or(|user| users.hear(&row.text(user)));
             let t = row.time_us(t)? as f64 * 1e-6;
             let place = places.read(row, &mut flight.origin)?;
             let height = row.number("h", h)?;
+            if !is_wanted {
+                return Ok(());
+            }
             // An empty field means that no measurement came.
             if row.is_empty(value) {
                 flight.unusable += 1;
@@ -65,6 +72,7 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
             Ok(())
         },
     )?;
+    found.import.extend(users.decided(path)?);
     flight.stops.sort_by(|a, b| a.t.total_cmp(&b.t));
     Ok((flight, found))
 }
@@ -85,12 +93,13 @@ fn of_levels(levels: levels::Levels) -> (Flight, Found) {
     (flight, Found { import: levels.conclusions, warnings: levels.damage.sentences() })
 }
 
-fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity), Error> {
-    let places = Places::find(header)?;
+fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity, Option<Column>), Error> {
+    let (places, user) = (Places::find(header)?, header.find("user")?);
     if header.find("path_loss_db")?.is_some() {
-        return Ok((places, header.require(["t", "h", "path_loss_db"])?, Quantity::PathLoss));
+        let columns = header.require(["t", "h", "path_loss_db"])?;
+        return Ok((places, columns, Quantity::PathLoss, user));
     }
-    Ok((places, header.require(["t", "h", "rssi_db"])?, Quantity::Level))
+    Ok((places, header.require(["t", "h", "rssi_db"])?, Quantity::Level, user))
 }
 
 /// Reads the user's true place: columns x,y or lat,lon as in the log, one line.

@@ -1,9 +1,11 @@
 //! The same in firmware.
 
-use kestirim_replay::drone::{EnvironmentKind, MOST, MOST_PLACES, POINTS, Quantity, level_prior};
+use kestirim_replay::drone::{
+    EnvironmentKind, MOST, MOST_PLACES, POINTS, Quantity, WAVELENGTH_M, level_prior,
+};
 
 use super::choices::{FlightKind, ResamplerKind};
-use super::{Recording, Settings, built, filter_of, geometry, walk};
+use super::{Recording, Settings, built, filter_of, geometry, walk, wavelength_m};
 use crate::system::{Literal, ScalarKind};
 use crate::systems::drone::simulate::moving_user::{Policy, Walk};
 use crate::systems::drone::simulate::static_user::FilterSetting;
@@ -28,10 +30,13 @@ pub(in crate::systems::drone) fn firmware(
 
 /// The search of a recorded flight.
 fn recorded_flight(settings: &Settings, quantity: Quantity) -> Literal {
+    let wavelength_m = wavelength_m(settings);
     if let Some(environment) = built(settings) {
-        return lattice(environment, POINTS, MOST, if quantity == Quantity::Level { 3 } else { 2 });
+        let dimensions = if quantity == Quantity::Level { 3 } else { 2 };
+        let channel = through(environment, wavelength_m);
+        return lattice(&channel, POINTS, MOST, dimensions);
     }
-    let level = level_prior(quantity);
+    let level = level_prior(quantity, wavelength_m);
     let base = level.map_or_else(
         || "OpenGround::new(None)".to_owned(),
         |level| {
@@ -54,7 +59,8 @@ fn staying(settings: &Settings) -> Literal {
     match filter_of(settings) {
         FilterSetting::Best(points) => {
             let geometry = geometry(settings);
-            lattice(geometry.environment, points, geometry.stops as usize, 2)
+            let channel = through(geometry.environment, WAVELENGTH_M);
+            lattice(&channel, points, geometry.stops as usize, 2)
         }
         FilterSetting::Published(filter) => {
             published(settings, filter.particles, geometry(settings).environment, None)
@@ -111,23 +117,14 @@ fn published(
 }
 
 /// A lattice that is laid anew where the posterior is; with three dimensions the level is one of them.
-fn lattice(
-    environment: EnvironmentKind,
-    points: usize,
-    measurements: usize,
-    dimensions: usize,
-) -> Literal {
-    literal(
-        &format!("{CHANNELS}::{{Channel, Environment}}"),
-        "Channel::<f32>",
-        &through(environment),
-    )
-    .import(&format!("{FILTERS}::Region"))
-    .import(&format!("{LOCATORS}::Locator"))
-    .then(format!(
-        "let locator = |region: &Region<f32, {dimensions}>| {{\n    \
+fn lattice(channel: &str, points: usize, measurements: usize, dimensions: usize) -> Literal {
+    literal(&format!("{CHANNELS}::{{Channel, Environment}}"), "Channel::<f32>", channel)
+        .import(&format!("{FILTERS}::Region"))
+        .import(&format!("{LOCATORS}::Locator"))
+        .then(format!(
+            "let locator = |region: &Region<f32, {dimensions}>| {{\n    \
          Locator::<f32, {points}, {measurements}, {dimensions}>::new(config, region)\n}};"
-    ))
+        ))
 }
 
 fn literal(imports: &str, config: &str, base: &str) -> Literal {
@@ -137,16 +134,18 @@ fn literal(imports: &str, config: &str, base: &str) -> Literal {
 fn channel(environment: EnvironmentKind) -> String {
     format!(
         "let channel = {};",
-        through(environment).replace("Channel::new", "Channel::<f32>::new")
+        through(environment, WAVELENGTH_M).replace("Channel::new", "Channel::<f32>::new")
     )
 }
 
-fn through(environment: EnvironmentKind) -> String {
+fn through(environment: EnvironmentKind, wavelength_m: f64) -> String {
     let environment = match environment {
         EnvironmentKind::Suburban => "suburban",
         EnvironmentKind::Urban => "urban",
         EnvironmentKind::DenseUrban => "dense_urban",
         EnvironmentKind::HighRise => "high_rise",
     };
-    format!("Channel::new(&Environment::{environment}(), 0.15).expect(\"a wavelength above zero\")")
+    format!(
+        "Channel::new(&Environment::{environment}(), {wavelength_m:?}).expect(\"a wavelength above zero\")"
+    )
 }

@@ -72,8 +72,8 @@ fn of_table(
     options: &Options,
 ) -> Result<Contents, Error> {
     let mut samples: Vec<Sample> = Vec::new();
-    let (mut outputs, mut unused) = (Vec::new(), None);
-    let mut found = table::parse(
+    let mut outputs = Vec::new();
+    let found = table::parse(
         path,
         bytes,
         &table::Log { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
@@ -86,12 +86,9 @@ fn of_table(
                     names.join(", ")
                 )));
             }
-            Ok((inputs, columns, header.left_out()))
+            Ok((inputs, columns))
         },
-        |([t, elevator, throttle], columns, left_out), row| {
-            if samples.is_empty() {
-                unused.clone_from(left_out);
-            }
+        |([t, elevator, throttle], columns), row| {
             outputs = columns.iter().map(|(output, _)| *output).collect();
             let number = |name: &str, column: Column| {
                 let value = row.number(name, column)?;
@@ -116,7 +113,6 @@ fn of_table(
             Ok(())
         },
     )?;
-    found.import.extend(unused);
     Ok((outputs, samples, found))
 }
 

@@ -27,7 +27,7 @@ impl Walks {
 
     /// Of the flight that circles the estimate.
     pub(super) fn streams(&self) -> Vec<Stream> {
-        let track = &self.orbiting;
+        let (track, channel) = (&self.orbiting, EnvironmentKind::Urban.channel());
         let stream = |topic: &str, columns: &[&str], values: &dyn Fn(&Estimate) -> Vec<f64>| {
             let rows = track.estimates.iter();
             let rows = rows.map(|estimate| (track.stop(estimate).t, values(estimate)));
@@ -40,7 +40,7 @@ impl Walks {
             }),
             stream("/drone/path_loss", &["measured_db", "expected_db"], &|estimate| {
                 let stop = track.stop(estimate);
-                let expected = expected_loss_db(EnvironmentKind::Urban, &stop, estimate.place);
+                let expected = expected_loss_db(&channel, &stop, estimate.place);
                 vec![stop.loss, expected.unwrap_or(f64::NAN)]
             }),
             stream("/drone/truth", &["x_m", "y_m"], &|estimate| {
