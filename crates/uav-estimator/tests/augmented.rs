@@ -243,6 +243,33 @@ fn other_numbers_find_the_same() {
     }
 }
 
+/// A satellite receiver that is silent for three minutes, in a filter with room for more states: roundings must not pile up.
+#[test]
+fn fixed_point_goes_on_after_minutes_without_an_output() {
+    let roomy = AugmentedModel::<16, 10, 6>::new(
+        &navion(),
+        &SMatrix::from_diagonal(&Vector4::new(1e-8, 1e-5, 1e-4, 1e-9)),
+        &outputs(),
+    );
+    let wind = Drift { sigma: 8.0, rate: 0.0 };
+    let roomy = roomy.unwrap().with_gust(&gusts(1.0)).unwrap().with_wind(&wind).unwrap();
+    let mut filter =
+        AugmentedFlight::<Q16_16, 16, 10, 6>::new(&roomy, &Vector2::zeros(), USUAL_S).unwrap();
+    let (samples, truths) = flight(240.0, 1.0, [0.0, 0.0, 0.0, 5.0], &mut Dice(3));
+    let place = 10;
+    for (index, sample) in samples.iter().enumerate() {
+        let is_silent = (1_000..10_000).contains(&index);
+        let measured = std::array::from_fn(|i| sample.measured[i].filter(|_| i != 4 || !is_silent));
+        filter.take(&Sample { measured, ..*sample }).unwrap();
+        let sigma = filter.filter().sigma();
+        assert!(sigma[place] < 2.1 * wind.sigma, "{index}: {sigma}");
+        assert!(sigma.rows(6, 4).max() < 0.1 && sigma.rows(11, 5).max() < 0.1, "{index}: {sigma}");
+    }
+    let (estimate, truth) = (filter.filter().estimate(), truths[truths.len() - 1]);
+    assert!((estimate[place] - truth[9]).abs() < 1.5, "{}", estimate[place]);
+    assert!((estimate[0] - truth[0]).abs() < 0.01, "{}", estimate[0]);
+}
+
 #[test]
 fn what_does_not_fit_is_refused() {
     let full = model(1.0);

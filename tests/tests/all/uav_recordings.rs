@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use kestirim_replay::ScalarKind;
 use kestirim_replay::uav::{
     Deviations, EstimatorKind, Extended, Followed, Log, Model, ModelFile, Options, STATE_COLUMNS,
     Sample,
@@ -218,6 +219,25 @@ fn a_light_aircraft_calm_in_turbulence_with_biases_and_with_less_throttle() {
             let may_be = usize::from(name == "slow");
             assert!(told.contradictions <= may_be, "{name} {outputs:?} {added:?}");
         }
+    }
+}
+
+/// In fixed point, too: outputs that the log has not, and those that all eight places hold.
+#[test]
+fn fixed_point_holds_a_light_aircraft() {
+    let Some(ident) = read("jsbsim_c172p_ident") else { return };
+    let model = identified(&ident, &USUAL);
+    for (name, outputs, alpha) in [
+        ("valid", &OUTPUTS[1..5], 0.45),
+        ("valid", &OUTPUTS[..], 0.45),
+        ("turb3", &OUTPUTS[1..5], 4.5),
+    ] {
+        let flight = read(&format!("jsbsim_c172p_{name}")).expect("a flight");
+        let log = log(&model, &flight, outputs, Some(&USUAL), &[0.0; 6], 1);
+        let options = Options { scalar: ScalarKind::Fixed, ..Options::default() };
+        let told = followed(name, &model, log, &flight, &options);
+        assert!(told.errors[0] < alpha, "{name} {outputs:?}: {:?}", told.errors);
+        assert_eq!(told.contradictions, 0, "{name} {outputs:?}");
     }
 }
 

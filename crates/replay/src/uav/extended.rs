@@ -20,6 +20,8 @@ pub const MOST_EXTENDED_OUTPUTS: usize = 8;
 /// Intervals of a log of which the steps are kept.
 const KEPT: usize = 32;
 
+/// V among the states.
+const AIRSPEED: usize = 2;
 /// Outputs of these names refer to the ground.
 const GROUND: [&str; 2] = ["V_ground", "climb"];
 /// Gusts are tried at these times what the model says; the innovations decide.
@@ -233,8 +235,8 @@ impl Parts {
 
     /// The model of the filter.
     fn model(&self, plant: &StateSpace) -> Result<Built, uav::Error> {
-        // Outputs that are never measured fill the rest.
-        let mut outputs = [Output::state(0, 1.0); MOST_EXTENDED_OUTPUTS];
+        // Outputs that are never measured fill the rest: of the airspeed, so that fixed point holds their variance.
+        let mut outputs = [Output::state(AIRSPEED, 1.0); MOST_EXTENDED_OUTPUTS];
         for (place, output) in outputs.iter_mut().zip(&self.outputs) {
             *place = *output;
         }

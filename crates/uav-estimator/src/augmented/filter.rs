@@ -12,6 +12,10 @@ use crate::kalman_filter::{UNITS, add_inputs, power_of_two};
 const AIRSPEED: usize = 2;
 /// Fixed point holds a variance of so many units squared as well as what is left of it.
 const UNITS_A_SIGMA: f64 = 8.0;
+/// In fixed point the variance of a state beside the four stays about so many times that at the start, …
+const MOST_VARIANCE: f64 = 4.0;
+/// … from which on so much of the state is left after a step.
+const FADING: f64 = 0.98;
 
 /// A step of an [`AugmentedModel`] in the scalar and the units of an [`AugmentedFilter`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,10 +196,32 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
     ) -> Result<(), Error> {
         let AugmentedTransition { rows, b, fading, noise } = transition;
         let mut next = self.state;
-        next.advance(&Driven { rows, fading: fading.as_array(), noise })?;
+        let fading = &self.bounded(fading.as_array());
+        next.advance(&Driven { rows, fading, noise })?;
         add_inputs(next.mean.as_array_mut(), b, input)?;
         self.state = next;
         Ok(())
+    }
+
+    /// What is left of each state after a step; of one that is too uncertain less.
+    ///
+    /// In fixed point roundings pile up in a state that nothing measures, such as a head wind without a speed over ground, until
+    /// its variance fits no more: the next output would be refused, and all after it.
+    #[inline(always)]
+    fn bounded(&self, fading: &[T; N]) -> [T; N] {
+        let mut bounded = *fading;
+        // Floats have room.
+        if T::headroom(0) == Some(0) {
+            return bounded;
+        }
+        let variances = self.state.covariance.variances();
+        let beside = variances.as_array().iter().zip(self.start.as_array());
+        for (left, (variance, start)) in bounded.iter_mut().zip(beside) {
+            if *variance > *start * T::from_f64(MOST_VARIANCE) {
+                *left *= T::from_f64(FADING);
+            }
+        }
+        bounded
     }
 
     /// Takes in the outputs that were measured while these inputs were applied, and answers with what each said beyond

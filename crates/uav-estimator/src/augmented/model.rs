@@ -277,7 +277,15 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
             return Err(DesignError::Interval.into());
         }
         let flow = Flow::<N, K>::new(&self.a, &density, interval).ok_or(DesignError::NotFinite)?;
-        let transition = Discrete { a: flow.transition, b: flow.integral * self.b };
+        let mut a = flow.transition;
+        // Fixed point adds roundings to what is remembered: in places that no state takes they would pile up.
+        let [moving, others] = self.taken.map(usize::from);
+        for state in (moving..K).chain(others..N) {
+            if let Some(part) = a.as_columns_mut().get_mut(state).and_then(|it| it.get_mut(state)) {
+                *part = 0.0;
+            }
+        }
+        let transition = Discrete { a, b: flow.integral * self.b };
         Ok(AugmentedStep { transition, noise: flow.noise })
     }
 }

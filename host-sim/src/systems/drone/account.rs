@@ -123,7 +123,8 @@ pub(super) fn account(
     Ok(account)
 }
 
-fn in_words(misfit: &Misfit, environment: &str) -> String {
+/// What is told of measurements that an environment does not explain.
+pub(super) fn in_words(misfit: &Misfit, environment: &str) -> String {
     let Misfit { found_db, expected_db, is_large, next } = misfit;
     let off = if *is_large {
         format!(

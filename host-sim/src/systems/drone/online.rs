@@ -1,11 +1,15 @@
 //! A user on the ground, heard by a drone that still flies.
 
-use kestirim_replay::drone::{Area, EnvironmentKind, Estimate, MOST, Quantity, Search, Stop};
+use kestirim_air_to_ground::Channel;
+use kestirim_replay::drone::{
+    Area, EnvironmentKind, Estimate, MOST, Misfit, Quantity, Search, Stop,
+};
 use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
+use super::account::in_words;
 use super::recording::area;
-use super::settings::{built, wavelength_m};
+use super::settings::{built, channel, wavelength_m};
 use crate::Error;
 use crate::figure::{Colour, Mark, Series};
 use crate::system::{Files, Online, Outcome, Plan, Settings};
@@ -16,6 +20,10 @@ use crate::table::FARTHEST_POSITION;
 pub(super) struct Listening {
     area: Option<Box<Area>>,
     environment: Option<EnvironmentKind>,
+    /// As it is called.
+    name: String,
+    /// Its channel; none over open ground.
+    channel: Option<Channel<f64>>,
     wavelength_m: f64,
 }
 
@@ -26,7 +34,13 @@ impl Listening {
     /// Whatever is wrong with the area.
     pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let area = files.one("area").map(|path| area::read(path, None)).transpose()?;
-        Ok(Self { area, environment: built(settings), wavelength_m: wavelength_m(settings) })
+        Ok(Self {
+            area,
+            environment: built(settings),
+            name: settings.choice("environment"),
+            channel: channel(settings),
+            wavelength_m: wavelength_m(settings),
+        })
     }
 }
 
@@ -63,7 +77,7 @@ impl Listener {
         if stops.len() < 3 {
             return None;
         }
-        let Listening { area, environment, wavelength_m } = &self.plan;
+        let Listening { area, environment, wavelength_m, .. } = &self.plan;
         let search = Search::new(stops, area.as_deref(), None, 1, false).ok()?;
         search.at_wavelength(*wavelength_m).find(*environment, Quantity::PathLoss).pop()
     }
@@ -103,5 +117,13 @@ impl Online for Listener {
     fn facts(&self) -> Vec<(String, String)> {
         let found = self.found.iter();
         found.map(|it| ("standard deviation".to_owned(), format!("{:.0} m", it.sd_m))).collect()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let Listening { channel, name, .. } = &self.plan;
+        let found = self.found.as_ref().zip(channel.as_ref());
+        let misfit =
+            found.and_then(|(it, channel)| Misfit::find(self.stops.as_slice(), it, channel));
+        misfit.iter().map(|misfit| in_words(misfit, name)).collect()
     }
 }

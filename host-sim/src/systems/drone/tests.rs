@@ -1,4 +1,5 @@
-use kestirim_replay::drone::{EnvironmentKind, Quantity, wavelength_m};
+use kestirim_replay::drone::{EnvironmentKind, Quantity, Stop, wavelength_m};
+use kestirim_telemetry::{Message, PathLoss};
 use std::fmt::Write as _;
 use std::fs;
 
@@ -192,18 +193,26 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
     assert!(refusal.contains("at least three measurements"), "{refusal}");
 }
 
-/// Path losses at 433 MHz, among houses: with the frequency all is as at 2 GHz, without it nothing fits.
+/// Path losses of a user at 150 m, 120 m, among houses at 433 MHz.
+fn at_433_mhz() -> Vec<Stop> {
+    let channel = EnvironmentKind::Suburban.channel_at::<f64>(wavelength_m(433e6)).unwrap();
+    let stop = |k: u32| {
+        let (t, turn) = (f64::from(k), f64::from(k) * 0.3);
+        let place = [200.0 + 150.0 * turn.cos(), 100.0 + 150.0 * turn.sin()];
+        let far = (place[0] - 150.0).hypot(place[1] - 120.0);
+        Stop { t, place, height: 200.0, loss: channel.path_loss(far, 200.0).unwrap().mean() }
+    };
+    (0..40).map(stop).collect()
+}
+
+/// With the frequency all is as at 2 GHz, without it nothing fits.
 #[test]
 fn path_losses_are_those_of_a_frequency() {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("stops.csv");
-    let channel = EnvironmentKind::Suburban.channel_at::<f64>(wavelength_m(433e6)).unwrap();
     let mut text = "t,x,y,h,path_loss_db\n".to_owned();
-    for k in 0..40 {
-        let (t, turn) = (f64::from(k), f64::from(k) * 0.3);
-        let (x, y) = (200.0 + 150.0 * turn.cos(), 100.0 + 150.0 * turn.sin());
-        let loss = channel.path_loss((x - 150.0).hypot(y - 120.0), 200.0).unwrap();
-        writeln!(text, "{t},{x:.3},{y:.3},200,{:.3}", loss.mean()).unwrap();
+    for Stop { t, place: [x, y], height, loss } in at_433_mhz() {
+        writeln!(text, "{t},{x:.3},{y:.3},{height},{loss:.3}").unwrap();
     }
     fs::write(&log, text).unwrap();
     let mut files = Files::default();
@@ -222,6 +231,31 @@ fn path_losses_are_those_of_a_frequency() {
     assert!(near < 10.0 && health == "good", "{near} m, {health}");
     let (far, health) = found(&[("environment", "suburban")]);
     assert!(far > 3.0 * near && health == "bad", "{far} m, {health}");
+}
+
+#[test]
+fn a_stream_that_contradicts_its_environment_is_told() {
+    let heard = |given: &[(&str, &str)]| {
+        let mut settings = Settings::new(settings::table(None));
+        for (name, text) in given {
+            settings.set(name, text).unwrap();
+        }
+        let plan = <Drone as System>::online(&settings, &Files::default()).unwrap().unwrap();
+        let mut listener = plan.build().unwrap();
+        for Stop { t, place: [x, y], height, loss } in at_433_mhz() {
+            let place = [x as f32, y as f32, height as f32];
+            let time_us = (t * 1e6) as u64;
+            listener.take(&Message::PathLoss(PathLoss { time_us, place, loss: loss as f32 }));
+        }
+        listener.finish().unwrap();
+        let [x, y, _] = listener.position().unwrap();
+        ((x - 150.0).hypot(y - 120.0), listener.warnings())
+    };
+    let (near, warnings) = heard(&[("environment", "suburban"), ("frequency", "433")]);
+    assert!(near < 10.0 && warnings.is_empty(), "{near} m, {warnings:?}");
+    let (_, warnings) = heard(&[("environment", "suburban")]);
+    assert!(warnings[0].contains("off what suburban explains"), "{warnings:?}");
+    assert!(heard(&[]).1.is_empty());
 }
 
 #[test]

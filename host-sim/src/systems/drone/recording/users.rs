@@ -15,7 +15,7 @@ pub(super) struct Users<'a> {
 }
 
 /// So many are named in a complaint.
-const MOST_NAMED: usize = 8;
+const MOST_NAMED: usize = 4;
 
 impl<'a> Users<'a> {
     /// None was heard yet.
@@ -47,15 +47,19 @@ impl<'a> Users<'a> {
         let refused = |problem| Err(Error::File { path: path.to_path_buf(), problem });
         match self.wanted {
             None if count > 1 => {
-                let first = self.heard.first().map_or("", String::as_str);
+                let first = self.heard.first().map_or_else(String::new, |name| printable(name));
                 refused(format!("expected one transmitter, found {names}: --topic {first}"))
             }
-            Some(wanted) if !self.heard.contains(wanted) => refused(match count {
-                0 => format!(
-                    "--topic {wanted}: expected a column user that names transmitters, found none"
-                ),
-                _ => format!("--topic {wanted}: expected one of the transmitters {names}"),
-            }),
+            Some(wanted) if !self.heard.contains(wanted) => {
+                let wanted = printable(wanted);
+                refused(if count == 0 {
+                    format!(
+                        "--topic {wanted}: expected a column user that names transmitters, found none"
+                    )
+                } else {
+                    format!("--topic {wanted}: expected one of the transmitters {names}")
+                })
+            }
             Some(wanted) if count > 1 => {
                 Ok(Some(format!("transmitter {}, of {count}: --topic", printable(wanted))))
             }
@@ -92,11 +96,11 @@ mod tests {
         );
         assert_eq!(
             read(LOG, None).unwrap_err(),
-            "log.csv: expected one transmitter, found \"a\", \"b\": --topic a"
+            "log.csv: expected one transmitter, found \"a\", \"b\": --topic \"a\""
         );
         assert_eq!(
             read(LOG, Some("c")).unwrap_err(),
-            "log.csv: --topic c: expected one of the transmitters \"a\", \"b\""
+            "log.csv: --topic \"c\": expected one of the transmitters \"a\", \"b\""
         );
     }
 
@@ -109,7 +113,7 @@ mod tests {
         assert_eq!(told, ["columns that are not used: \"remark\""]);
         assert_eq!(
             read(&without, Some("a")).unwrap_err(),
-            "log.csv: --topic a: expected a column user that names transmitters, found none"
+            "log.csv: --topic \"a\": expected a column user that names transmitters, found none"
         );
     }
 }
