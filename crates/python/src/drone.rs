@@ -3,8 +3,8 @@
 use kestirim_air_to_ground::Channel;
 use kestirim_health::{Health, Reason};
 use kestirim_replay::drone::{
-    Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Quantity, Search, Stop, level_step, thinned,
-    wavelength_m,
+    Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Quantity, Search, Stop, level_step,
+    thinned, wavelength_m,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use kestirim_replay::ScalarKind;
 use kestirim_replay::uav::{
-    Deviations, EstimatorKind, Extended, Followed, Log, Model, ModelFile, Options, STATE_COLUMNS,
-    Sample,
+    Deviations, Error, EstimatorKind, Extended, Followed, Log, Model, ModelFile, Options,
+    STATE_COLUMNS, Sample,
 };
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_estimator::{Drift, Dynamics};
@@ -239,6 +239,11 @@ fn fixed_point_holds_a_light_aircraft() {
         assert!(told.errors[0] < alpha, "{name} {outputs:?}: {:?}", told.errors);
         assert_eq!(told.contradictions, 0, "{name} {outputs:?}");
     }
+    let flight = read("jsbsim_c172p_valid").expect("a flight");
+    let far = log(&model, &flight, &["V"], None, &[1e6], 1);
+    let options = Options { scalar: ScalarKind::Fixed, ..Options::default() };
+    let deviations = Deviations::new(model, far, None, true).expect("a trim");
+    assert_eq!(deviations.follow(&options).err(), Some(Error::BeyondRange));
 }
 
 #[test]

@@ -60,8 +60,17 @@ impl Deviations {
     /// By an estimator.
     ///
     /// # Errors
-    /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample.
+    /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample, [`Error::BeyondRange`] if fixed
+    /// point does not hold a number.
     pub fn follow(&self, options: &Options) -> Result<Followed, Error> {
+        let followed = self.followed(options);
+        match options.scalar {
+            ScalarKind::Fixed => followed.map_err(Error::of_fixed_point),
+            ScalarKind::F32 | ScalarKind::F64 => followed,
+        }
+    }
+
+    fn followed(&self, options: &Options) -> Result<Followed, Error> {
         let assumed = Assumed::of(&self.model, &self.log.outputs, options);
         let kalman = |scalar| match &self.model.extended {
             Some(extended) => extended::follow(&self.model, extended, &self.log, options, scalar),

@@ -1,3 +1,4 @@
+use kestirim_kalman as kalman;
 use kestirim_uav_estimator as uav;
 
 /// Why a flight is not followed.
@@ -26,6 +27,9 @@ pub enum Error {
     /// Values are absolute, and the model does not say what is to be taken from them.
     #[error("absolute values need a model with a trim")]
     NoTrim,
+    /// Something is beyond the range of fixed point.
+    #[error("a number is beyond ±32768 units, as far as Q16.16 goes: f32 and f64 have room")]
+    BeyondRange,
     /// No such estimator can be built.
     #[error("{0}")]
     Estimator(#[from] uav::Error),
@@ -37,4 +41,19 @@ pub enum Error {
         /// Why.
         source: uav::Error,
     },
+}
+
+impl Error {
+    /// The same of an estimator in fixed point: what is read is finite, so what is not does not fit.
+    pub(super) fn of_fixed_point(self) -> Self {
+        match self {
+            Self::Estimator(source) | Self::Sample { source, .. } => match source {
+                uav::Error::NotFinite | uav::Error::Estimate(kalman::Error::NotFinite) => {
+                    Self::BeyondRange
+                }
+                _ => self,
+            },
+            other => other,
+        }
+    }
 }
