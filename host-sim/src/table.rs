@@ -16,6 +16,9 @@ const LATEST_TIME: f64 = 1e10;
 /// Beyond any place on earth in any projection, m.
 pub(crate) const FARTHEST_POSITION: f64 = 1e8;
 
+/// So many columns that are not used are named.
+const MOST_NAMED: usize = 12;
+
 /// How a log was read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
@@ -257,7 +260,12 @@ impl Header<'_> {
         let is_found = |at: usize| found.iter().any(|(_, column, _)| column.at == at);
         let names = self.heading.names().iter().enumerate();
         let names = names.filter(|(at, name)| !is_found(*at) && !name.trim().is_empty());
-        let names: Vec<_> = names.map(|(_, name)| printable(name)).collect();
+        let mut names: Vec<_> = names.map(|(_, name)| printable(name)).collect();
+        let more = names.len().saturating_sub(MOST_NAMED);
+        names.truncate(MOST_NAMED);
+        if more > 0 {
+            names.push(format!("and {more} more"));
+        }
         (!names.is_empty()).then(|| format!("columns that are not used: {}", names.join(", ")))
     }
 }

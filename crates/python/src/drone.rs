@@ -1,6 +1,5 @@
 //! Where the user of a drone is, from path losses or levels alone.
 
-use kestirim_air_to_ground::Channel;
 use kestirim_health::{Health, Reason};
 use kestirim_replay::drone::{
     Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Quantity, Search, Stop, level_step,
@@ -52,7 +51,10 @@ pub(crate) fn drone<'py>(
             let search = search.map_err(refused)?.at_wavelength(wavelength_m);
             let estimates = search.find(environment, quantity);
             let channel = environment.and_then(|it| it.channel_at(wavelength_m).ok());
-            Ok(Found { stops, estimates, channel })
+            let is_off = estimates.last().zip(channel).is_some_and(|(last, channel)| {
+                Misfit::find(&stops[..=last.stop], last, &channel).is_some()
+            });
+            Ok(Found { stops, estimates, is_off })
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(search);
         let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
@@ -114,18 +116,17 @@ struct Found {
     /// The measurements that were used.
     stops: Vec<Stop>,
     estimates: Vec<Estimate>,
-    /// That of the environment; none over open ground.
-    channel: Option<Channel<f64>>,
+    /// Whether the environment does not explain the measurements.
+    is_off: bool,
 }
 
 impl Found {
     fn results(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let Self { stops, estimates, channel } = self;
+        let Self { stops, estimates, is_off } = self;
         let Some(last) = estimates.last() else {
             return Err(refused("no place explains the measurements"));
         };
         let is_stepping = level_step(&stops, last.place).is_some();
-        let is_off = channel.is_some_and(|it| Misfit::find(&stops, last, &it).is_some());
         let doubts = Health::GOOD.with(Reason::Innovations, is_stepping || is_off);
         let level = |estimate: &Estimate| estimate.level_db.unwrap_or(f64::NAN);
         Ok(Results::new(py)

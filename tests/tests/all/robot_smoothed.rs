@@ -107,7 +107,7 @@ fn a_walk_between_cones_is_found_with_one_beacon_blocked() {
     }
 }
 
-/// The last place of what came in `seconds`, as the smoother has it of these alone, at sixty times of each recording: what a
+/// The last place of what came in `seconds`, as the smoother has it of these alone, at sixty times of each part: what a
 /// window with its models would say while the tag moves.
 #[test]
 #[ignore = "a measurement: cargo test -p kestirim-tests --test all robot_smoothed::causal -- --ignored --nocapture"]
@@ -156,7 +156,6 @@ fn at_ends(setup: &Setup, part: &Part, trace: &Trace, seconds: f64) -> Vec<[f64;
         let cut = Trace {
             epochs: trace.epochs[before..=last].to_vec(),
             ranges: trace.ranges[first_range..ranges].to_vec(),
-            ..Trace::default()
         };
         let events = &part.events[first_event..events];
         let smoothed = smooth(setup, &[Tracked { events, trace: &cut }], false).ok();

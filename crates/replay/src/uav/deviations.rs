@@ -60,12 +60,12 @@ impl Deviations {
     /// By an estimator.
     ///
     /// # Errors
-    /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample, [`Error::BeyondRange`] if fixed
-    /// point does not hold a number.
+    /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample, [`Error::BeyondRange`] if a
+    /// Kalman filter in fixed point does not hold a number.
     pub fn follow(&self, options: &Options) -> Result<Followed, Error> {
         let followed = self.followed(options);
         match options.scalar {
-            ScalarKind::Fixed => followed.map_err(Error::of_fixed_point),
+            ScalarKind::Fixed => followed.map_err(|error| error.of_fixed_point(&self.log)),
             ScalarKind::F32 | ScalarKind::F64 => followed,
         }
     }

@@ -1,6 +1,8 @@
 use kestirim_kalman as kalman;
 use kestirim_uav_estimator as uav;
 
+use super::{Log, Sample};
+
 /// Why a flight is not followed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -28,7 +30,9 @@ pub enum Error {
     #[error("absolute values need a model with a trim")]
     NoTrim,
     /// Something is beyond the range of fixed point.
-    #[error("a number is beyond ±32768 units, as far as Q16.16 goes: f32 and f64 have room")]
+    #[error(
+        "a number does not fit fixed point (Q16.16, below 32768 of the filter's units): use f32 or f64"
+    )]
     BeyondRange,
     /// No such estimator can be built.
     #[error("{0}")]
@@ -44,16 +48,24 @@ pub enum Error {
 }
 
 impl Error {
-    /// The same of an estimator in fixed point: what is read is finite, so what is not does not fit.
-    pub(super) fn of_fixed_point(self) -> Self {
-        match self {
-            Self::Estimator(source) | Self::Sample { source, .. } => match source {
-                uav::Error::NotFinite | uav::Error::Estimate(kalman::Error::NotFinite) => {
-                    Self::BeyondRange
-                }
-                _ => self,
-            },
-            other => other,
+    /// The same of a filter in fixed point: where all that was measured is finite, what is not does not fit.
+    pub(super) fn of_fixed_point(self, log: &Log) -> Self {
+        let is_finite = |sample: &Sample| {
+            let mut numbers = sample.input.iter().chain(sample.measured.iter().flatten());
+            numbers.all(|number| number.is_finite())
+        };
+        let source = match self {
+            Self::Estimator(source) => source,
+            Self::Sample { index, source } if log.samples.get(index).is_some_and(is_finite) => {
+                source
+            }
+            other => return other,
+        };
+        match source {
+            uav::Error::NotFinite | uav::Error::Estimate(kalman::Error::NotFinite) => {
+                Self::BeyondRange
+            }
+            _ => self,
         }
     }
 }

@@ -12,9 +12,9 @@ use crate::kalman_filter::{UNITS, add_inputs, power_of_two};
 const AIRSPEED: usize = 2;
 /// Fixed point holds a variance of so many units squared as well as what is left of it.
 const UNITS_A_SIGMA: f64 = 8.0;
-/// In fixed point the variance of a state beside the four stays about so many times that at the start, …
-const MOST_VARIANCE: f64 = 4.0;
-/// … from which on so much of the state is left after a step.
+/// A state beside the four whose variance is a larger part of what the scalar holds …
+const MOST_VARIANCE: f64 = 1.0 / 32.0;
+/// … has so much left after a step.
 const FADING: f64 = 0.98;
 
 /// A step of an [`AugmentedModel`] in the scalar and the units of an [`AugmentedFilter`].
@@ -203,21 +203,17 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         Ok(())
     }
 
-    /// What is left of each state after a step; of one that is too uncertain less.
+    /// What is left of each state after a step; less of one whose variance hardly fits the scalar.
     ///
-    /// In fixed point roundings pile up in a state that nothing measures, such as a head wind without a speed over ground, until
-    /// its variance fits no more: the next output would be refused, and all after it.
+    /// In fixed point the roundings of every step add to a state that no output measures, such as a head wind without a speed
+    /// over ground. Its variance would overflow, and then every sample would be refused. Floats have room.
     #[inline(always)]
     fn bounded(&self, fading: &[T; N]) -> [T; N] {
         let mut bounded = *fading;
-        // Floats have room.
-        if T::headroom(0) == Some(0) {
-            return bounded;
-        }
+        let most = T::MAX * T::from_f64(MOST_VARIANCE);
         let variances = self.state.covariance.variances();
-        let beside = variances.as_array().iter().zip(self.start.as_array());
-        for (left, (variance, start)) in bounded.iter_mut().zip(beside) {
-            if *variance > *start * T::from_f64(MOST_VARIANCE) {
+        for (left, variance) in bounded.iter_mut().zip(variances.as_array()).skip(UNITS.len()) {
+            if *variance > most {
                 *left *= T::from_f64(FADING);
             }
         }

@@ -2,7 +2,7 @@
 
 mod accuracy;
 
-use kestirim_replay::drone::{EnvironmentKind, Estimate, Misfit, Track, level_step};
+use kestirim_replay::drone::{EnvironmentKind, Estimate, Misfit, Quantity, Track, level_step};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -25,7 +25,7 @@ struct Report {
     /// Root mean square distance from the estimate that the filter expects, m.
     sd_m: f64,
     /// Where the level was not known, what the transmitter sends, dB (received level = this − path loss); over
-    /// open ground, where no frequency is known either, what is received at one metre.
+    /// open ground what is received at one metre.
     level_db: Option<f64>,
     /// How the log was understood.
     import: Vec<String>,
@@ -100,7 +100,8 @@ pub(super) fn account(
             let stops = &track.stops[..=shown.stop];
             let misfit = channel.as_ref().and_then(|it| Misfit::find(stops, shown, it));
             if let Some(misfit) = misfit {
-                account.warn(in_words(&misfit, &settings.choice("environment")));
+                let environment = settings.choice("environment");
+                account.warn(in_words(&misfit, &environment, recorded.flight.quantity));
                 account.doubt(Reason::Innovations);
             }
             account.about = Some(recorded.log.clone());
@@ -124,18 +125,22 @@ pub(super) fn account(
 }
 
 /// What is told of measurements that an environment does not explain.
-pub(super) fn in_words(misfit: &Misfit, environment: &str) -> String {
+pub(super) fn in_words(misfit: &Misfit, environment: &str, quantity: Quantity) -> String {
     let Misfit { found_db, expected_db, is_large, next } = misfit;
     let off = if *is_large {
         format!(
-            "the levels are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB)"
+            "the measurements are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB)"
         )
     } else {
         format!(
-            "the levels are off what {environment} explains in the same way for long (correlation {next:.2})"
+            "the measurements are off what {environment} explains in the same way for long (correlation {next:.2})"
         )
     };
-    format!("{off}: place and deviation are not to be relied upon, --environment open assumes less")
+    let instead = match quantity {
+        Quantity::PathLoss => "--frequency may be another",
+        Quantity::Level => "--environment open assumes less",
+    };
+    format!("{off}: place and deviation are not to be relied upon, {instead}")
 }
 
 /// What is known of a flight whose user and channel are.

@@ -124,6 +124,6 @@ impl Online for Listener {
         let found = self.found.as_ref().zip(channel.as_ref());
         let misfit =
             found.and_then(|(it, channel)| Misfit::find(self.stops.as_slice(), it, channel));
-        misfit.iter().map(|misfit| in_words(misfit, name)).collect()
+        misfit.iter().map(|misfit| in_words(misfit, name, Quantity::PathLoss)).collect()
     }
 }

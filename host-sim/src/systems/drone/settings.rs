@@ -171,7 +171,8 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
     match (recording, name) {
         (_, "step") | (Recording::Flight(_), "environment") => None,
         (Recording::Flight(recorded), "frequency") => {
-            let is_level = recorded.flight.quantity == Quantity::Level;
+            // Among buildings the transmitter's level is told, from which the first metre's loss is taken.
+            let is_level = recorded.flight.quantity == Quantity::Level && built(settings).is_none();
             is_level
                 .then(|| Idle::implied("levels of unknown offset tell the same at any frequency"))
         }

@@ -47,13 +47,9 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
         columns,
         |&(places, [t, h, value], quantity, user), row| {
             flight.quantity = quantity;
-            let is_wanted = user.is_none_or(|user| users.hear(&row.text(user)));
             let t = row.time_us(t)? as f64 * 1e-6;
             let place = places.read(row, &mut flight.origin)?;
             let height = row.number("h", h)?;
-            if !is_wanted {
-                return Ok(());
-            }
             // An empty field means that no measurement came.
             if row.is_empty(value) {
                 flight.unusable += 1;
@@ -63,6 +59,9 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
                 Quantity::PathLoss => row.number("path_loss_db", value)?,
                 Quantity::Level => -row.number("rssi_db", value)?,
             };
+            if user.is_some_and(|user| !users.hear(&row.text(user))) {
+                return Ok(());
+            }
             let stop = Stop { t, place, height, loss };
             if stop.is_usable() {
                 flight.stops.push(stop);

@@ -23,10 +23,10 @@ impl<'a> Users<'a> {
         Self { wanted, heard: BTreeSet::new() }
     }
 
-    /// Keeps a name; whether it is the one that is looked for.
+    /// Keeps a name, if there is one; whether it is the one that is looked for.
     pub(super) fn hear(&mut self, name: &str) -> bool {
         let name = name.trim();
-        if !self.heard.contains(name) {
+        if !(name.is_empty() || self.heard.contains(name)) {
             self.heard.insert(name.to_owned());
         }
         self.wanted.is_none_or(|wanted| wanted == name)
@@ -47,8 +47,7 @@ impl<'a> Users<'a> {
         let refused = |problem| Err(Error::File { path: path.to_path_buf(), problem });
         match self.wanted {
             None if count > 1 => {
-                let first = self.heard.first().map_or_else(String::new, |name| printable(name));
-                refused(format!("expected one transmitter, found {names}: --topic {first}"))
+                refused(format!("expected one transmitter, found {names}: --topic says which"))
             }
             Some(wanted) if !self.heard.contains(wanted) => {
                 let wanted = printable(wanted);
@@ -61,7 +60,7 @@ impl<'a> Users<'a> {
                 })
             }
             Some(wanted) if count > 1 => {
-                Ok(Some(format!("transmitter {}, of {count}: --topic", printable(wanted))))
+                Ok(Some(format!("transmitter {} of {count}, chosen by --topic", printable(wanted))))
             }
             _ => Ok(None),
         }
@@ -92,11 +91,11 @@ mod tests {
         let (losses, told) = read(LOG, Some("b")).unwrap();
         assert_eq!(
             (losses, told),
-            (vec![70.0, 71.0, 72.0], vec!["transmitter \"b\", of 2: --topic".to_owned()])
+            (vec![70.0, 71.0, 72.0], vec!["transmitter \"b\" of 2, chosen by --topic".to_owned()])
         );
         assert_eq!(
             read(LOG, None).unwrap_err(),
-            "log.csv: expected one transmitter, found \"a\", \"b\": --topic \"a\""
+            "log.csv: expected one transmitter, found \"a\", \"b\": --topic says which"
         );
         assert_eq!(
             read(LOG, Some("c")).unwrap_err(),
@@ -108,6 +107,9 @@ mod tests {
     fn the_only_one_needs_no_choice_and_a_choice_needs_a_column() {
         let alone = LOG.replace(",b\n", ",a\n");
         assert_eq!(read(&alone, None).unwrap().0.len(), 6);
+        // Rows in which nothing was heard, and a line that is cut.
+        let silent = format!("{alone}3,9,9,40,,\n4,9,9,40,,\n5,9,9,4");
+        assert_eq!(read(&silent, None).unwrap().0.len(), 6);
         let without = LOG.replace(",user", ",remark");
         let (_, told) = read(&without, None).unwrap();
         assert_eq!(told, ["columns that are not used: \"remark\""]);
