@@ -262,7 +262,7 @@ fn fixed_point_goes_on_after_minutes_without_an_output() {
         let measured = std::array::from_fn(|i| sample.measured[i].filter(|_| i != 4 || !is_silent));
         filter.take(&Sample { measured, ..*sample }).unwrap();
         let sigma = filter.filter().sigma();
-        assert!(sigma[place] < 4.1 * wind.sigma, "{index}: {sigma}");
+        assert!(sigma[place] < 2.1 * wind.sigma, "{index}: {sigma}");
         assert!(sigma.rows(6, 4).max() < 0.1 && sigma.rows(11, 5).max() < 0.1, "{index}: {sigma}");
     }
     let (estimate, truth) = (filter.filter().estimate(), truths[truths.len() - 1]);

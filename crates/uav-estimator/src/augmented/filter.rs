@@ -12,8 +12,8 @@ use crate::kalman_filter::{UNITS, add_inputs, power_of_two};
 const AIRSPEED: usize = 2;
 /// Fixed point holds a variance of so many units squared as well as what is left of it.
 const UNITS_A_SIGMA: f64 = 8.0;
-/// A state beside the four whose variance is a larger part of what the scalar holds …
-const MOST_VARIANCE: f64 = 1.0 / 32.0;
+/// In fixed point a state beside the four whose variance is so many times that at the start …
+const MOST_VARIANCE: f64 = 4.0;
 /// … has so much left after a step.
 const FADING: f64 = 0.98;
 
@@ -210,10 +210,15 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
     #[inline(always)]
     fn bounded(&self, fading: &[T; N]) -> [T; N] {
         let mut bounded = *fading;
-        let most = T::MAX * T::from_f64(MOST_VARIANCE);
+        // Sums in floats have no headroom to count.
+        if T::headroom(0) == Some(0) {
+            return bounded;
+        }
+        let least = T::from_f64(UNITS_A_SIGMA * UNITS_A_SIGMA);
         let variances = self.state.covariance.variances();
-        for (left, variance) in bounded.iter_mut().zip(variances.as_array()).skip(UNITS.len()) {
-            if *variance > most {
+        let beside = variances.as_array().iter().zip(self.start.as_array());
+        for (left, (variance, start)) in bounded.iter_mut().zip(beside).skip(UNITS.len()) {
+            if *variance > start.max(least) * T::from_f64(MOST_VARIANCE) {
                 *left *= T::from_f64(FADING);
             }
         }
