@@ -23,7 +23,7 @@ const TEXTS: [(&str, &str, &str); 4] = [
     (
         "topic",
         "NAME",
-        "Which of several sensors in the file: a topic of ROS or MCAP, the number of an ArduPilot, PX4 or OpenShoe sensor, a transmitter in the column user of a drone's flight [default: the only one, or 0]",
+        "Which of several sensors in the file: a topic of ROS or MCAP, the number of an ArduPilot, PX4 or OpenShoe sensor, a transmitter in the column user of a flight [default: the only one, or 0]",
     ),
 ];
 /// The option without one.
