@@ -9,7 +9,7 @@ use kestirim_import::{
 };
 
 use crate::Error;
-use crate::text::{self, printable};
+use crate::text::{self, listed, printable};
 
 /// Beyond any clock, s: three centuries, within which a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
@@ -260,13 +260,8 @@ impl Header<'_> {
         let is_found = |at: usize| found.iter().any(|(_, column, _)| column.at == at);
         let names = self.heading.names().iter().enumerate();
         let names = names.filter(|(at, name)| !is_found(*at) && !name.trim().is_empty());
-        let mut names: Vec<_> = names.map(|(_, name)| printable(name)).collect();
-        let more = names.len().saturating_sub(MOST_NAMED);
-        names.truncate(MOST_NAMED);
-        if more > 0 {
-            names.push(format!("and {more} more"));
-        }
-        (!names.is_empty()).then(|| format!("columns that are not used: {}", names.join(", ")))
+        let names = listed(names.map(|(_, name)| name.as_str()), MOST_NAMED);
+        (!names.is_empty()).then(|| format!("columns that are not used: {names}"))
     }
 }
 

@@ -151,6 +151,17 @@ pub fn command_line(words: impl IntoIterator<Item = String>) -> String {
     quoted.collect::<Vec<_>>().join(" ")
 }
 
+/// Names from a file, at most so many of them, in a message.
+pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>, most: usize) -> String {
+    let mut names = names.into_iter();
+    let mut told: Vec<_> = names.by_ref().take(most).map(printable).collect();
+    let more = names.count();
+    if more > 0 {
+        told.push(format!("and {more} more"));
+    }
+    told.join(", ")
+}
+
 /// A path as a user would write it, on one line whatever its name holds.
 pub fn printable_path(path: &Path) -> String {
     path.display().to_string().replace(char::is_control, "?")

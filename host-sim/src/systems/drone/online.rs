@@ -1,9 +1,6 @@
 //! A user on the ground, heard by a drone that still flies.
 
-use kestirim_air_to_ground::Channel;
-use kestirim_replay::drone::{
-    Area, EnvironmentKind, Estimate, MOST, Misfit, Quantity, Search, Stop,
-};
+use kestirim_replay::drone::{Area, Estimate, MOST, Misfit, Quantity, Search, Stop};
 use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
@@ -19,12 +16,7 @@ use crate::table::FARTHEST_POSITION;
 #[derive(Debug, Clone)]
 pub(super) struct Listening {
     area: Option<Box<Area>>,
-    environment: Option<EnvironmentKind>,
-    /// As it is called.
-    name: String,
-    /// Its channel; none over open ground.
-    channel: Option<Channel<f64>>,
-    wavelength_m: f64,
+    settings: Settings,
 }
 
 impl Listening {
@@ -34,13 +26,7 @@ impl Listening {
     /// Whatever is wrong with the area.
     pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let area = files.one("area").map(|path| area::read(path, None)).transpose()?;
-        Ok(Self {
-            area,
-            environment: built(settings),
-            name: settings.choice("environment"),
-            channel: channel(settings),
-            wavelength_m: wavelength_m(settings),
-        })
+        Ok(Self { area, settings: settings.clone() })
     }
 }
 
@@ -77,9 +63,9 @@ impl Listener {
         if stops.len() < 3 {
             return None;
         }
-        let Listening { area, environment, wavelength_m, .. } = &self.plan;
+        let Listening { area, settings } = &self.plan;
         let search = Search::new(stops, area.as_deref(), None, 1, false).ok()?;
-        search.at_wavelength(*wavelength_m).find(*environment, Quantity::PathLoss).pop()
+        search.at_wavelength(wavelength_m(settings)).find(built(settings), Quantity::PathLoss).pop()
     }
 }
 
@@ -120,10 +106,11 @@ impl Online for Listener {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let Listening { channel, name, .. } = &self.plan;
-        let found = self.found.as_ref().zip(channel.as_ref());
+        let Listening { settings, .. } = &self.plan;
+        let found = self.found.as_ref().zip(channel(settings));
         let misfit =
-            found.and_then(|(it, channel)| Misfit::find(self.stops.as_slice(), it, channel));
-        misfit.iter().map(|misfit| in_words(misfit, name, Quantity::PathLoss)).collect()
+            found.and_then(|(it, channel)| Misfit::find(self.stops.as_slice(), it, &channel));
+        let name = settings.choice("environment");
+        misfit.iter().map(|misfit| in_words(misfit, &name, Quantity::PathLoss)).collect()
     }
 }

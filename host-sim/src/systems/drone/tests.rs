@@ -20,6 +20,14 @@ fn answer(opened: &dyn Opened, sent: &Value) -> Answer {
     opened.answer(&Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap()).unwrap()
 }
 
+fn given_settings(given: &[(&str, &str)]) -> Settings {
+    let mut settings = Settings::new(settings::table(None));
+    for (name, text) in given {
+        settings.set(name, text).unwrap();
+    }
+    settings
+}
+
 fn points(answer: &Answer, figure: &str, series: &str) -> Vec<(f64, f64)> {
     let figure = answer.figures.iter().find(|found| found.id == figure).unwrap();
     let series = figure.series.iter().find(|found| found.name == series).unwrap();
@@ -141,10 +149,7 @@ fn the_cloud_gathers_where_the_user_is() {
 fn a_replay_of_a_synthetic_user_is_of_the_step_that_is_shown() {
     let opened = open("staying");
     let replay = |given: &[(&str, &str)]| {
-        let mut settings = Settings::new(settings::table(None));
-        for (name, text) in given {
-            settings.set(name, text).unwrap();
-        }
+        let settings = given_settings(given);
         opened.replay(&settings, &Wanted::default())
     };
     let (all, third) = (replay(&[]).unwrap().report, replay(&[("step", "3")]).unwrap().report);
@@ -218,10 +223,7 @@ fn path_losses_are_those_of_a_frequency() {
     let mut files = Files::default();
     files.add("log", &log);
     let found = |given: &[(&'static str, &str)]| {
-        let mut settings = Settings::new(settings::table(None));
-        for (name, text) in given {
-            settings.set(name, text).unwrap();
-        }
+        let settings = given_settings(given);
         let opened = Drone.open(Source::Files(files.clone()), &settings).unwrap();
         let report = opened.replay(&settings, &Wanted::default()).unwrap().report;
         let [x, y] = ["x", "y"].map(|axis| report["estimate"][axis].as_f64().unwrap());
@@ -236,10 +238,7 @@ fn path_losses_are_those_of_a_frequency() {
 #[test]
 fn a_stream_that_contradicts_its_environment_is_told() {
     let heard = |given: &[(&str, &str)]| {
-        let mut settings = Settings::new(settings::table(None));
-        for (name, text) in given {
-            settings.set(name, text).unwrap();
-        }
+        let settings = given_settings(given);
         let plan = <Drone as System>::online(&settings, &Files::default()).unwrap().unwrap();
         let mut listener = plan.build().unwrap();
         for Stop { t, place: [x, y], height, loss } in at_433_mhz() {
@@ -261,10 +260,7 @@ fn a_stream_that_contradicts_its_environment_is_told() {
 #[test]
 fn settings_are_refused_only_where_no_recording_has_them() {
     let refused = |given: &[(&str, &str)]| {
-        let mut settings = Settings::new(settings::table(None));
-        for (name, text) in given {
-            settings.set(name, text).unwrap();
-        }
+        let settings = given_settings(given);
         Drone.refuse_idle(&settings).is_err()
     };
     assert!(!refused(&[("environment", "open"), ("height", "300"), ("noise", "1")]));

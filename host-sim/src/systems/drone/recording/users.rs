@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::Error;
-use crate::text::printable;
+use crate::text::{listed, printable};
 
 /// The transmitters that a log names.
 #[derive(Debug)]
@@ -38,12 +38,7 @@ impl<'a> Users<'a> {
     /// [`Error::File`] if it is not known which of several is looked for, or it is none of them.
     pub(super) fn decided(&self, path: &Path) -> Result<Option<String>, Error> {
         let count = self.heard.len();
-        let mut names: Vec<_> =
-            self.heard.iter().take(MOST_NAMED).map(|name| printable(name)).collect();
-        if count > MOST_NAMED {
-            names.push(format!("and {} more", count - MOST_NAMED));
-        }
-        let names = names.join(", ");
+        let names = listed(self.heard.iter().map(String::as_str), MOST_NAMED);
         let refused = |problem| Err(Error::File { path: path.to_path_buf(), problem });
         match self.wanted {
             None if count > 1 => {
