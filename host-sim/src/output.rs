@@ -1,5 +1,6 @@
 //! Where results go: standard output in one piece, files whole or not at all.
 
+use std::env;
 use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -8,7 +9,8 @@ use std::process;
 use std::sync::Once;
 use std::time::{Duration, Instant};
 
-use comfy_table::{Table, presets::UTF8_FULL_CONDENSED};
+use comfy_table::{ContentArrangement, Table, presets::UTF8_FULL_CONDENSED};
+use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
@@ -61,10 +63,21 @@ pub fn warn_of(path: &Path, warnings: &[String]) {
     }
 }
 
-/// An empty table in the house style.
+/// Columns of a line of standard output: what `COLUMNS` says, or else those of the terminal. None for a file or a pipe,
+/// whose reader looks for whole lines.
+pub fn width() -> Option<u16> {
+    let said = env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let said = said.filter(|&columns| columns > 0);
+    said.or_else(|| Term::stdout().size_checked().map(|(_, columns)| columns))
+}
+
+/// An empty table in the house style, as wide as the terminal at most.
 pub fn table() -> Table {
     let mut table = Table::new();
-    table.load_style(UTF8_FULL_CONDENSED);
+    table.load_style(UTF8_FULL_CONDENSED).set_content_arrangement(ContentArrangement::Dynamic);
+    if let Some(width) = width() {
+        table.set_width(width);
+    }
     table
 }
 
@@ -200,6 +213,19 @@ fn draft_path(path: &Path) -> io::Result<PathBuf> {
 pub fn refuse_unwritable(path: &Path) -> Result<(), Error> {
     let failed = |source| Error::Write { path: path.to_path_buf(), source };
     let draft = draft_path(path).map_err(failed)?;
+    write_new(&draft, |_| Ok(())).and_then(|()| fs::remove_file(&draft)).map_err(failed)
+}
+
+/// Refuses a folder that cannot be made or written into, before what would be written is calculated.
+///
+/// # Errors
+/// [`Error::Write`].
+pub fn refuse_unwritable_folder(folder: &Path) -> Result<(), Error> {
+    let failed = |source| Error::Write { path: folder.to_path_buf(), source };
+    let absolute = path::absolute(folder).map_err(failed)?;
+    // What is missing of the path is made below what is there.
+    let there = absolute.ancestors().find(|folder| folder.exists()).unwrap_or(&absolute);
+    let draft = there.join(format!(".report.{}.tmp", process::id()));
     write_new(&draft, |_| Ok(())).and_then(|()| fs::remove_file(&draft)).map_err(failed)
 }
 

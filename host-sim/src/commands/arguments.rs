@@ -1,5 +1,6 @@
 //! What the commands read from a command line.
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{ArgMatches, FromArgMatches};
 
 use crate::Error;
@@ -27,5 +28,19 @@ pub(super) fn sentence(error: &clap::Error) -> String {
     let rendered = error.render().to_string();
     let complaint = rendered.lines().take_while(|line| !line.trim().is_empty());
     let joined = complaint.map(str::trim).collect::<Vec<_>>().join(" ");
-    format!("{} (see --help)", joined.trim_start_matches("error: "))
+    let complaint = joined.trim_start_matches("error: ");
+    match meant(error) {
+        Some(name) => format!("{complaint}: did you mean {name}? (see --help)"),
+        None => format!("{complaint} (see --help)"),
+    }
+}
+
+/// The command or option that an unknown one resembles. Of a value the complaint names all there are.
+fn meant(error: &clap::Error) -> Option<&str> {
+    let similar = [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg];
+    similar.into_iter().find_map(|kind| match error.get(kind)? {
+        ContextValue::String(name) => Some(name.as_str()),
+        ContextValue::Strings(names) => names.first().map(String::as_str),
+        _ => None,
+    })
 }

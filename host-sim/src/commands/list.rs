@@ -1,7 +1,8 @@
 //! `host-sim list`: the systems, with their recordings.
 
-use std::fmt::Write;
+use comfy_table::presets::NOTHING;
 
+use crate::output;
 use crate::system::AnySystem;
 use crate::systems::ALL;
 
@@ -11,14 +12,18 @@ pub(super) fn list() -> String {
 }
 
 fn describe(system: &dyn AnySystem) -> String {
-    let mut text = format!("{:<12}{}\n", system.name(), system.title());
+    let mut table = output::table();
+    table.load_style(NOTHING);
+    table.add_row([system.name(), system.title()]);
     for (name, label) in system.synthetic() {
-        // Writing to a string never fails.
-        let _ = writeln!(text, "  synthetic {name}: {label}");
+        table.add_row([format!("  synthetic {name}"), (*label).to_owned()]);
     }
     for field in system.files() {
         let optional = if field.required { "" } else { " (optional)" };
-        let _ = writeln!(text, "  --{:<9} {}{optional}", field.name, field.help);
+        table.add_row([format!("  --{}", field.name), format!("{}{optional}", field.help)]);
     }
-    text
+    if let Some(names) = table.column_mut(0) {
+        names.set_padding((0, 1));
+    }
+    format!("{}\n", table.trim_fmt())
 }

@@ -134,7 +134,13 @@ fn completions(matches: &ArgMatches) -> Result<(), Error> {
     let Some(&shell) = matches.get_one::<Shell>("shell") else { return Ok(()) };
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command(&[]), "host-sim", &mut script);
-    output::print(&String::from_utf8_lossy(&script))
+    let mut script = String::from_utf8_lossy(&script).into_owned();
+    if shell == Shell::Bash {
+        // clap_complete writes the hyphen of a program's name in two ways, so that nothing below a command is completed:
+        // https://github.com/clap-rs/clap/issues/6421.
+        script = script.replace("host__subcmd__sim", "host__sim");
+    }
+    output::print(&script)
 }
 
 /// What is wrong with a command line, in one plain sentence.

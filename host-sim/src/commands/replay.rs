@@ -98,7 +98,7 @@ pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Ac
     let mcap = matches.get_one::<PathBuf>("mcap").cloned();
     let wanted = Wanted { tables: tables.collect(), mcap };
     let (settings, files) = named(system, matches)?;
-    refuse_clashes(&wanted, &files)?;
+    check_outputs(&wanted, &files)?;
     open(system, matches, &settings, files)?.replay(&settings, &wanted)
 }
 
@@ -155,11 +155,13 @@ fn show(account: &Account, json: bool) -> Result<(), Error> {
     output::print(&table.to_string())
 }
 
-fn refuse_clashes(wanted: &Wanted, files: &Files) -> Result<(), Error> {
+/// Refuses outputs that would be written twice, over an input, or not at all.
+fn check_outputs(wanted: &Wanted, files: &Files) -> Result<(), Error> {
     let option = |name: &str| format!("--{name}");
     let tables = wanted.tables.iter().map(|(name, path)| (option(name), path));
     let all: Vec<_> = tables.chain(wanted.mcap.iter().map(|path| (option("mcap"), path))).collect();
     let outputs: Vec<_> =
         all.iter().map(|(name, path)| (name.as_str(), Some(path.as_path()))).collect();
-    output::refuse_clashes(&outputs, &files.paths())
+    output::refuse_clashes(&outputs, &files.paths())?;
+    all.iter().try_for_each(|(_, path)| output::refuse_unwritable(path))
 }

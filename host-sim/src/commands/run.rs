@@ -42,6 +42,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 /// Runs every system on its synthetic streams, prints the few numbers that matter most, and writes the
 /// report into `folder`.
 pub(super) fn everything(folder: &Path) -> Result<(), Error> {
+    output::refuse_unwritable_folder(folder)?;
     let mut chapters = Vec::new();
     for system in ALL {
         let (options, cell) = (RunOptions::default(), Settings::new(system.cell()));

@@ -1,11 +1,10 @@
 use std::fmt;
 
-use comfy_table::ContentArrangement;
 use serde::Serialize;
 
 use crate::output;
 
-/// Columns of a terminal; what is longer is wrapped.
+/// Columns where no terminal says its own.
 const WIDTH: u16 = 120;
 
 /// A table of a paper: published, ours, limit.
@@ -72,7 +71,7 @@ impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         let mut table = output::table();
-        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
+        table.set_width(output::width().unwrap_or(WIDTH));
         table.set_header(["", "published", "ours", "limit"]);
         for row in &self.rows {
             table.add_row(row.cells());

@@ -29,12 +29,15 @@ impl Outputs {
         self.csv.is_some() || self.mcap.is_some() || self.report.is_some()
     }
 
-    /// Refuses options that contradict each other.
+    /// Refuses options that contradict each other, and what cannot be written.
     ///
     /// # Errors
-    /// [`Error::Usage`].
+    /// [`Error::Usage`] and [`Error::Write`].
     pub fn check(&self) -> Result<(), Error> {
-        output::refuse_twice(&[("--csv", self.csv.as_deref()), ("--mcap", self.mcap.as_deref())])
+        output::refuse_twice(&[("--csv", self.csv.as_deref()), ("--mcap", self.mcap.as_deref())])?;
+        let mut files = self.csv.iter().chain(&self.mcap);
+        files.try_for_each(|file| output::refuse_unwritable(file))?;
+        self.report.as_deref().map_or(Ok(()), output::refuse_unwritable_folder)
     }
 
     /// Of one study of several, files and folders of its own: `a.csv` is `a-0.csv`.

@@ -7,6 +7,8 @@
 mod calibrate_cli;
 mod check_cli;
 mod cli;
+#[cfg(target_os = "linux")]
+mod completions;
 mod design_cli;
 mod drone_cli;
 mod foreign_flights;
@@ -28,4 +30,5 @@ mod room;
 mod sender;
 mod serve_cli;
 mod station;
+mod terminal;
 mod uav_cli;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::program::{Desk, host_sim, json, refusal, text};
+use crate::program::{Desk, host_sim, json, refusal};
 
 #[test]
 fn a_run_writes_tables_streams_and_a_report() {
@@ -47,13 +47,39 @@ fn two_outputs_are_two_files() {
 }
 
 #[test]
-fn every_shell_is_told_how_to_complete() {
-    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let output = host_sim(&["completions", shell]);
-        assert_eq!(output.status.code(), Some(0));
-        assert!(text(&output.stdout).contains("calibrate"), "{shell}");
+fn what_cannot_be_written_is_refused_before_anything_is_calculated() {
+    let desk = Desk::new();
+    let file = desk.named("file");
+    fs::write(&file, "").expect("a file");
+    let below = format!("{file}/report");
+    // A hundred million trials would take a day.
+    let long = ["run", "drone", "--trials", "100000000"];
+    for output in ["--report", "--csv", "--mcap"] {
+        let sentence = refusal(&[&long[..], &[output, &below]].concat());
+        assert!(sentence.contains("cannot be written"), "{output}: {sentence}");
     }
-    refusal(&["completions", "abacus"]);
+    // Nothing is left where it was tried.
+    let unmade = desk.named("unmade/report");
+    refusal(&["run", "robot", "--report", &unmade, "--csv", &below]);
+    assert!(!desk.path("unmade").exists());
+    let mut everything = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+    let folder = desk.path("folder");
+    fs::create_dir(&folder).expect("a folder");
+    fs::write(folder.join("target"), "").expect("a file in its way");
+    let output = everything.current_dir(&folder).output().expect("the program runs");
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0));
+}
+
+#[test]
+fn a_slip_of_the_finger_is_told_what_was_meant() {
+    for (arguments, meant) in [
+        (&["run", "robit"][..], "robot"),
+        (&["replay", "robot", "--ancors", "a", "--log", "b"], "--anchors"),
+    ] {
+        let sentence = refusal(arguments);
+        assert!(sentence.contains(&format!("did you mean {meant}?")), "{sentence}");
+    }
+    assert!(!refusal(&["run", "abacus"]).contains("did you mean"));
 }
 
 #[test]
