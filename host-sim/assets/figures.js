@@ -106,6 +106,8 @@ const Figures = (() => {
     entry.names = names;
     const done = Plotly.react(entry.plot, figure.data, layout(figure), {
       displaylogo: false, scrollZoom: false,
+      // A page asks nobody but the program: Plotly offers to send figures to its makers, unless told otherwise.
+      showSendToCloud: false,
       modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
     });
     if (first && onZoom) entry.plot.on("plotly_relayout", () => {

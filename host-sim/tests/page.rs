@@ -60,6 +60,15 @@ fn assert_quiet(page: &Page, address: &str) {
     assert_eq!(page.evaluate(wide), true, "the page is wider than its window");
 }
 
+/// Presses every button of every figure, of which none offers to send the figure away.
+fn press_buttons(page: &Page) {
+    let buttons = "[...document.querySelectorAll('.modebar-btn')]";
+    let titles = page.evaluate(&format!("{buttons}.map(b => b.dataset.title).join()"));
+    let titles = titles.as_str().expect("titles");
+    assert!(titles.contains("Zoom") && !titles.contains("Share"), "{titles}");
+    page.evaluate(&format!("{buttons}.forEach(b => b.click())"));
+}
+
 #[test]
 fn every_system_is_explored_at_both_widths() {
     let server = Server::start(&["serve", "--port", "0"]);
@@ -71,6 +80,7 @@ fn every_system_is_explored_at_both_widths() {
             assert_eq!(page.evaluate("document.getElementById('system').value"), system);
             assert_eq!(page.evaluate("document.getElementById('alert').textContent"), "");
             page.screenshot(&format!("explorer-{system}-{width}.png"));
+            press_buttons(&page);
             assert_quiet(&page, server.place());
         }
     }
@@ -226,6 +236,7 @@ fn the_report_opens_from_the_disk() {
         page.evaluate("document.getElementById('theme').click()");
         assert_ne!(page.evaluate(theme), before);
         page.screenshot(&format!("report-robot-dark-{width}.png"));
+        press_buttons(&page);
         assert_quiet(&page, &format!("file://{folder}"));
     }
 }
