@@ -59,54 +59,52 @@ fn script(desk: &Desk, shell: &str) -> String {
     path
 }
 
-fn offered(shell: &str, arguments: &[&str]) -> String {
-    // A shell that waits for what never comes is ended.
-    let output = Command::new("timeout").args(["60", shell]).args(arguments).output().expect(shell);
-    text(&output.stdout).to_owned()
+/// What a shell prints of each line: `arguments` come before its words, from the script and what is to be offered.
+fn assert_offered(
+    shell: &str,
+    arguments: impl for<'a> Fn(&'a str, &'a str) -> Vec<&'a str>,
+    has_offered: impl Fn(&str, &str) -> bool,
+) {
+    if !has(shell) {
+        return;
+    }
+    let desk = Desk::new();
+    let script = script(&desk, shell);
+    for (words, expected) in LINES {
+        // A shell that waits for what never comes is ended.
+        let mut command = Command::new("timeout");
+        command.args(["60", shell]).args(arguments(&script, expected)).args(words);
+        let output = command.output().expect(shell);
+        let offered = text(&output.stdout);
+        assert!(has_offered(offered, expected), "{words:?}: {offered}");
+    }
 }
 
 #[test]
 fn bash_completes_below_a_command() {
-    if !has("bash") {
-        return;
-    }
-    let desk = Desk::new();
-    let script = script(&desk, "bash");
-    for (words, expected) in LINES {
-        let offered = offered("bash", &[&["--norc", "-c", BASH, "bash", &script], words].concat());
-        assert!(offered.lines().any(|word| word == expected), "{words:?}: {offered}");
-    }
+    assert_offered(
+        "bash",
+        |script, _| vec!["--norc", "-c", BASH, "bash", script],
+        |offered, expected| offered.lines().any(|word| word == expected),
+    );
 }
 
 #[test]
 fn zsh_completes_below_a_command() {
-    if !has("zsh") {
-        return;
-    }
-    let desk = Desk::new();
-    let script = script(&desk, "zsh");
-    for (words, expected) in LINES {
-        let offered =
-            offered("zsh", &[&["-f", "-c", ZSH, "zsh", &script, expected], words].concat());
-        assert!(offered.contains(expected), "{words:?}: {offered}");
-    }
+    assert_offered(
+        "zsh",
+        |script, expected| vec!["-f", "-c", ZSH, "zsh", script, expected],
+        |screen, expected| screen.contains(expected),
+    );
 }
 
 #[test]
 fn fish_completes_below_a_command() {
-    if !has("fish") {
-        return;
-    }
-    let desk = Desk::new();
-    let script = script(&desk, "fish");
-    for (words, expected) in LINES {
-        let offered = offered("fish", &[&["--no-config", "-c", FISH, &script], words].concat());
-        let mut lines = offered.lines();
-        assert!(
-            lines.any(|line| line.split('\t').next() == Some(expected)),
-            "{words:?}: {offered}"
-        );
-    }
+    assert_offered(
+        "fish",
+        |script, _| vec!["--no-config", "-c", FISH, script],
+        |offered, expected| offered.lines().any(|line| line.split('\t').next() == Some(expected)),
+    );
 }
 
 #[test]
