@@ -2,14 +2,17 @@
 "use strict";
 
 {
+  const { make } = Controls;
   const element = (id) => document.getElementById(id);
-  const make = (tag, properties = {}, ...children) => {
-    const made = Object.assign(document.createElement(tag), properties);
-    made.append(...children);
-    return made;
-  };
   const places = new Map();
-  let [sources, session, settings, windows] = [[], null, {}, {}];
+  // What the address holds, but for window and cursor, which the clock has. `a` is what is compared with.
+  let state = { system: "", recording: "", settings: {}, a: null, how: "over" };
+  let [sources, controls, disabled, windows] = [[], [], new Map(), {}];
+
+  const clock = new Clock(element("clock"), () => { written(); if (looked !== seen()) ask(); });
+  // The window of the last question.
+  let looked = "null";
+  const seen = () => JSON.stringify(clock.window);
 
   // --- what comes back
 
@@ -20,30 +23,39 @@
     element("findings").replaceChildren(...answer.findings.map(([fault, about, text]) =>
       make("div", { className: fault ? "fault" : "" }, make("dt", { textContent: about }), make("dd", { textContent: text }))));
     element("check").hidden = !answer.findings.length;
-    disable(new Map(answer.disabled));
+    disabled = new Map(answer.disabled);
+    Controls.disable(disabled);
     for (const said of ["command", "firmware"]) element(said).textContent = answer[said];
     element("again").hidden = !answer.command;
-    const known = new Set(answer.figures.map((figure) => figure.id));
-    for (const [id, { place }] of places) {
-      if (known.has(id)) continue;
+    element("changed").hidden = !answer.changed?.length;
+    element("same").hidden = !answer.changed || answer.changed.length + answer.figures.length > 0;
+    element("changed").tBodies[0].replaceChildren(...(answer.changed ?? []).map(([name, a, b]) => make("tr", {},
+      make("th", { scope: "row", textContent: name }), make("td", { textContent: a }), make("td", { textContent: b }))));
+    // A figure of differences is another one than that of what differs.
+    const kind = ({ id, equal, seconds }) => JSON.stringify([id, equal, seconds]);
+    const known = new Set(answer.figures.map(kind));
+    for (const [key, { place }] of places) {
+      if (known.has(key)) continue;
       Figures.forget(place);
       place.remove();
-      places.delete(id);
+      places.delete(key);
     }
+    clock.see(answer.figures);
     // All places first: each is then drawn as wide as it stays.
-    for (const { id, title } of answer.figures) {
-      if (places.has(id)) continue;
-      const place = make("figure", { id: `figure-${id}` }, make("h3", { textContent: title }));
-      places.set(id, { place, caption: make("figcaption"), text: "" });
+    for (const figure of answer.figures) {
+      if (places.has(kind(figure))) continue;
+      const place = make("figure", { id: `figure-${figure.id}` }, make("h3", { textContent: figure.title }));
+      places.set(kind(figure), { place, caption: make("figcaption"), text: "" });
       element("figures").append(place);
     }
     for (const figure of answer.figures) {
       const text = JSON.stringify(figure);
-      const entry = places.get(figure.id);
+      const entry = places.get(kind(figure));
       if (entry.text === text) continue;
       entry.text = text;
-      Figures.draw(entry.place, figure, zoomed);
-      entry.caption.textContent = figure.caption;
+      Figures.draw(entry.place, figure, { clock, zoomed });
+      entry.caption.replaceChildren(figure.caption, ...(sources.length ? ["svg", "csv"] : []).map((ending) =>
+        giver(`figure-${figure.id}.${ending}`, ending.toUpperCase(), `${figure.title} as ${ending.toUpperCase()}`)));
       entry.place.append(entry.caption);
     }
   }
@@ -59,38 +71,45 @@
       part.classList.toggle("asked", is);
       if (is && (!first || (part.dataset.setting && !first.dataset.setting))) first = part;
     }
+    if (first?.dataset.setting) element("settings").open = true;
     first?.scrollIntoView({ block: "nearest" });
   }
 
-  async function post(path, body) {
+  async function request(path, body) {
     try {
       const response = await fetch(path, { method: "POST", body });
-      if (response.ok) return await response.json();
+      if (response.ok) return response;
       complain(await response.text());
-      // Others were opened since, or the program began anew.
-      if (response.status === 410 && element("bundled").value) choose();
     } catch {
       complain("the program no longer answers: is it still running?");
     }
   }
+  const post = async (path, body) => (await request(path, body))?.json();
 
   // --- one request at a time; what happens meanwhile is asked for afterwards
 
+  const question = () => JSON.stringify({
+    settings: state.settings, windows, window: clock.window, a: state.a && { ...state.a, how: state.how },
+  });
+  const of = (what) => `api/${what}/${state.system}/${state.recording}`;
+
   let [asking, again] = [false, false];
   async function ask() {
-    if (session === null) return;
+    if (!state.recording) return;
     if (asking) { again = true; return; }
     complain("");
     asking = true;
     document.body.dataset.asking = "yes";
-    const [began, asked] = [performance.now(), session];
+    const [began, asked, sent] = [performance.now(), of("answer"), state.settings];
+    looked = seen();
     try {
-      const answer = await post(`api/answer/${session}`, JSON.stringify({ settings, windows }));
+      const answer = await post(asked, question());
       // What was opened meanwhile has an answer of its own.
-      if (answer && asked === session) {
+      if (answer && asked === of("answer")) {
         show(answer);
         document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
         document.body.dataset.answers = String(Number(document.body.dataset.answers ?? 0) + 1);
+        if (sent === state.settings) document.body.dataset.settled = JSON.stringify(sent);
       }
     } finally {
       asking = false;
@@ -99,180 +118,255 @@
     if (again) { again = false; ask(); }
   }
 
-  // A figure that is zoomed in gets its points from there.
+  // A figure that is zoomed in and has no time gets its points from there.
   function zoomed(id, range) {
     if (JSON.stringify(windows[id] ?? null) === JSON.stringify(range)) return;
     if (range) windows[id] = range; else delete windows[id];
     ask();
   }
 
+  // --- the address holds all of it
+
+  let writing = null;
+  function written() {
+    clearTimeout(writing);
+    writing = setTimeout(() => history.replaceState(null, "", `#${address()}`), 150);
+  }
+
+  function address() {
+    const query = new URLSearchParams();
+    const say = (name, value) => { if (value) query.set(name, value); };
+    say("recording", state.recording === source(state.system)?.bundled[0][0] ? "" : state.recording);
+    say("settings", Object.keys(state.settings).length && JSON.stringify(state.settings));
+    say("a", state.a && JSON.stringify(state.a));
+    say("how", state.a && state.how);
+    say("window", clock.window?.join());
+    say("cursor", clock.cursor !== null && String(Number(clock.cursor.toPrecision(9))));
+    return query.size ? `${state.system}?${query}` : state.system;
+  }
+
+  // What an address says; what it does not say is at first.
+  function read(hash) {
+    const [system, query] = hash.replace(/^#/, "").split(/\?(.*)/s);
+    const found = source(system) ?? sources[0];
+    const said = new URLSearchParams(query);
+    const json = (name, otherwise) => { try { return JSON.parse(said.get(name)) ?? otherwise; } catch { return otherwise; } };
+    const numbers = (name) => (said.get(name) ?? "").split(",").filter(Boolean).map(Number);
+    const [window, [cursor]] = [numbers("window"), numbers("cursor")];
+    return {
+      system: found.system,
+      recording: said.get("recording") ?? found.bundled[0][0],
+      settings: json("settings", {}),
+      a: json("a", null),
+      how: said.get("how") === "difference" ? "difference" : "over",
+      window: window.length === 2 && window.every(Number.isFinite) ? window : null,
+      cursor: Number.isFinite(cursor) ? cursor : null,
+    };
+  }
+
+  // --- what was before can be had again
+
+  const [past, future] = [[], []];
+  let [turned, when] = ["", 0];
+  // Before something changes. One movement of a control is one change.
+  function remember(what = "") {
+    const now = performance.now();
+    if (!what || what !== turned || now - when > 1000) past.push(JSON.stringify(state));
+    [turned, when] = [what, now];
+    future.length = 0;
+    offerHistory();
+  }
+
+  function offerHistory() {
+    element("undo").disabled = !past.length;
+    element("redo").disabled = !future.length;
+  }
+
+  function travel(from, to) {
+    if (!from.length) return;
+    to.push(JSON.stringify(state));
+    turned = "";
+    restore(JSON.parse(from.pop()));
+    offerHistory();
+  }
+
+  // Shows a state that was.
+  async function restore(wanted) {
+    const same = wanted.system === state.system && wanted.recording === state.recording;
+    if (wanted.system !== state.system) offer(wanted.system);
+    if ("window" in wanted) [clock.window, clock.cursor] = [wanted.window, wanted.cursor];
+    if (same) take(wanted); else await open(`api/open/${wanted.system}/${wanted.recording}`, undefined, wanted);
+  }
+
   // --- controls
 
-  function slider(control) {
-    const log = control.logarithmic;
-    const [inward, outward] = log ? [Math.log10, (v) => 10 ** v] : [Number, Number];
-    const output = make("output");
-    const range = make("input", { type: "range", id: `control-${control.name}`, step: control.step });
-    [range.min, range.max, range.value] = [control.min, control.max, control.value].map((v) => String(inward(v)));
-    const tell = () => {
-      const value = outward(Number(range.value));
-      output.textContent = `${Number(value.toPrecision(3))} ${control.unit}`;
-      range.setAttribute("aria-valuetext", output.textContent);
-      return Math.min(Math.max(value, control.min), control.max);
-    };
-    tell();
-    range.addEventListener("input", () => { settings[control.name] = tell(); ask(); });
-    // A slider need not move to be answered.
-    const take = make("button", { type: "button", className: "take", textContent: "take this value" });
-    take.addEventListener("click", () => range.dispatchEvent(new Event("input")));
-    const parts = [make("label", { htmlFor: `control-${control.name}` }, output, control.label), range, take];
-    if (control.playable) parts.push(player(range));
-    return parts;
+  function change(name, value) {
+    remember(name);
+    const settings = { ...state.settings };
+    if (value === undefined) delete settings[name]; else settings[name] = value;
+    state.settings = settings;
+    written();
+    ask();
   }
 
-  function player(range) {
-    const button = make("button", { type: "button", textContent: "play" });
-    let timer = null;
-    button.addEventListener("click", () => {
-      if (timer) { clearInterval(timer); timer = null; button.textContent = "play"; return; }
-      button.textContent = "pause";
-      // The last step may end below the maximum: the end is where nothing moves any more.
-      const step = () => {
-        const before = range.value;
-        range.stepUp();
-        return range.value !== before;
-      };
-      if (!step()) range.value = range.min;
-      timer = setInterval(() => {
-        if (asking && range.isConnected) return;
-        if (!range.isConnected || !step()) { button.click(); return; }
-        range.dispatchEvent(new Event("input"));
-      }, 120);
-    });
-    return button;
+  // Controls and comparison as a state has them.
+  function take(wanted) {
+    const { system, recording, settings, a, how } = wanted;
+    state = { system, recording, settings, a, how };
+    Controls.build(element("controls"), controls, settings, change, () => asking);
+    // Until the answer comes, as they were.
+    Controls.disable(disabled);
+    for (const id of ["how", "swap", "end"]) element(id).hidden = !a;
+    if (a) element("compare").open = true;
+    element("how").value = how;
+    element("keep").textContent = a ? "keep this as A instead" : "keep what is shown as A";
+    const named = [...element("bundled").options].find(({ value }) => value === a?.recording)?.textContent ?? a?.recording;
+    const given = Object.entries(a?.settings ?? {}).map(([name, value]) => `${name} ${value}`).join(", ");
+    element("kept").textContent = a ? `A: ${named}; ${given || "all as at first"}`
+      : "Keep one as A, then turn a control or choose another recording: both are drawn, and what changed is listed.";
+    written();
+    ask();
   }
 
-  function choice(control) {
-    const select = make("select", { id: `control-${control.name}` }, ...control.options.map(([value, text]) =>
-      make("option", { value, textContent: text, selected: value === control.value })));
-    select.addEventListener("input", () => { settings[control.name] = select.value; ask(); });
-    return [make("label", { htmlFor: `control-${control.name}`, textContent: control.label }), select];
-  }
-
-  function toggle(control) {
-    const box = make("input", { type: "checkbox", id: `control-${control.name}`, checked: control.value });
-    box.addEventListener("input", () => { settings[control.name] = box.checked; ask(); });
-    return [make("label", { className: "switch" }, box, control.label)];
-  }
-
-  function set(control) {
-    const chosen = new Set();
-    const boxes = control.options.map(([value, text]) => {
-      const box = make("input", { type: "checkbox", id: `control-${control.name}-${value}` });
-      box.addEventListener("input", () => {
-        if (box.checked) chosen.add(value); else chosen.delete(value);
-        settings[control.name] = [...chosen];
-        ask();
-      });
-      return make("label", { className: "switch" }, box, text);
-    });
-    return [make("fieldset", { id: `control-${control.name}` }, make("legend", { textContent: control.label }), ...boxes)];
-  }
-
-  function text(control) {
-    const field = make("input", { type: "text", id: `control-${control.name}`, placeholder: control.form });
-    field.addEventListener("change", () => {
-      if (field.value.trim()) settings[control.name] = field.value.trim(); else delete settings[control.name];
-      ask();
-    });
-    return [make("label", { htmlFor: `control-${control.name}`, textContent: control.label }), field];
-  }
-
-  // What has no effect as the others stand cannot be turned, and says why.
-  function disable(reasons) {
-    for (const part of document.querySelectorAll("[data-setting]")) {
-      const reason = reasons.get(part.dataset.setting);
-      part.classList.toggle("disabled", reason !== undefined);
-      part.title = reason ?? "";
-      for (const input of part.querySelectorAll("input, select, button")) input.disabled = reason !== undefined;
-    }
-  }
-
-  function opened(reply) {
-    if (!reply) return;
-    [session, settings, windows] = [reply.session, {}, {}];
+  function opened(reply, wanted) {
     for (const shown of ["facts", "warnings", "findings", "figures"]) element(shown).replaceChildren();
-    element("check").hidden = element("again").hidden = true;
+    for (const hidden of ["check", "again", "give"]) element(hidden).hidden = true;
+    element("changed").hidden = true;
     for (const { place } of places.values()) Figures.forget(place);
     places.clear();
-    const kinds = { slider, choice, switch: toggle, set, text };
-    const part = (control) => {
-      const made = make("div", {}, ...kinds[control.kind](control));
-      made.dataset.setting = control.name;
-      return made;
-    };
-    const reset = make("button", { type: "button", textContent: "all as at first" });
-    reset.addEventListener("click", () => opened(reply));
-    element("controls").replaceChildren(...reply.controls.map(part), reset);
-    ask();
+    windows = {};
+    if (!reply) {
+      state = { ...state, recording: "" };
+      clock.see([]);
+      element("controls").replaceChildren();
+      return;
+    }
+    [controls, disabled] = [reply.controls, new Map()];
+    element("downloads").replaceChildren(...reply.downloads.map((name) => giver(name, name)));
+    element("give").hidden = false;
+    if (reply.files) {
+      const bundled = element("bundled");
+      const known = [...bundled.options].some(({ value }) => value === reply.recording);
+      if (!known) bundled.prepend(make("option", { value: reply.recording, textContent: reply.files }));
+    }
+    element("bundled").value = reply.recording;
+    element("files").hidden = element("upload").hidden = true;
+    // What cannot be set here is left out.
+    const can = ([name, value]) => controls.some((it) => it.name === name && Controls.takes(it, value));
+    const settings = Object.fromEntries(Object.entries(wanted.settings).filter(can));
+    take({ ...wanted, recording: reply.recording, settings });
   }
 
   // --- recordings
 
-  const system = () => sources.find((source) => source.system === element("system").value);
+  const source = (system) => sources.find((source) => source.system === system);
 
-  function offer() {
-    const source = system();
+  // What can be opened of a system.
+  function offer(name) {
+    const { system, bundled, files, reading } = source(name);
+    element("system").value = system;
     element("bundled").replaceChildren(
-      ...source.bundled.map(([value, text]) => make("option", { value, textContent: text })),
+      ...bundled.map(([value, text]) => make("option", { value, textContent: text })),
       make("option", { value: "", textContent: "your own files …" }));
     const option = (name, ...parts) => {
       const made = make("div", {}, ...parts);
       made.dataset.option = name;
       return made;
     };
-    element("files").replaceChildren(...source.files.map((file) => option(file.name,
+    element("files").replaceChildren(...files.map((file) => option(file.name,
       make("label", { htmlFor: `file-${file.name}`, textContent: `${file.label}${file.required ? "" : " (optional)"}` }),
       make("input", { type: "file", id: `file-${file.name}`, name: file.name, required: file.required, multiple: file.several }),
-    )), ...(source.files.some((file) => file.imported) ? source.reading : []).map(([name, help]) => option(name,
+    )), ...(files.some((file) => file.imported) ? reading : []).map(([name, help]) => option(name,
       make("label", { htmlFor: `reading-${name}`, textContent: help }),
       make("input", { type: "text", id: `reading-${name}`, name }),
     )));
-    location.hash = source.system;
-    choose();
-  }
-
-  async function choose() {
-    const own = element("bundled").value === "";
-    element("files").hidden = element("upload").hidden = !own;
-    if (!own) await open(`api/open/${system().system}/${element("bundled").value}`);
   }
 
   // The last that was asked for is opened, however long another takes.
   let openings = 0;
-  async function open(path, body) {
+  async function open(path, body, wanted) {
     const opening = ++openings;
     complain("");
     element("warnings").replaceChildren(make("li", { textContent: "reading …" }));
     const reply = await post(path, body);
     if (opening !== openings) return;
-    if (!reply) element("warnings").replaceChildren();
-    opened(reply);
+    if (!reply) {
+      // Where to choose them again.
+      element("bundled").value = "";
+      element("files").hidden = element("upload").hidden = false;
+    }
+    if (wanted.system !== state.system) state = { ...state, system: wanted.system, settings: {}, a: null };
+    opened(reply, wanted);
   }
 
-  element("system").addEventListener("input", offer);
-  element("bundled").addEventListener("input", choose);
-  element("controls").addEventListener("submit", (event) => event.preventDefault());
-  element("open").addEventListener("submit", async (event) => {
+  const named = (wanted) => open(`api/open/${wanted.system}/${wanted.recording}`, undefined, wanted);
+
+  element("system").addEventListener("input", () => {
+    remember();
+    const system = element("system").value;
+    offer(system);
+    [clock.window, clock.cursor] = [null, null];
+    named({ system, recording: source(system).bundled[0][0], settings: {}, a: null, how: "over" });
+  });
+  element("bundled").addEventListener("input", () => {
+    const recording = element("bundled").value;
+    element("files").hidden = element("upload").hidden = recording !== "";
+    if (!recording) return;
+    remember();
+    clock.window = null;
+    named({ ...state, recording });
+  });
+  element("open").addEventListener("submit", (event) => {
     event.preventDefault();
     const files = new FormData(element("open"));
     for (const [name, file] of [...files]) if (file instanceof File && !file.size && !file.name) files.delete(name);
-    open(`api/open/${system().system}`, files);
+    if (state.recording) remember();
+    clock.window = null;
+    open(`api/open/${state.system}`, files, state);
   });
+
+  // --- undo, comparison, downloads
+
+  element("undo").addEventListener("click", () => travel(past, future));
+  element("redo").addEventListener("click", () => travel(future, past));
+  addEventListener("keydown", (event) => {
+    const typing = event.target.matches?.("input[type=text]");
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || typing) return;
+    event.preventDefault();
+    if (event.shiftKey) travel(future, past); else travel(past, future);
+  });
+  const put = (changed) => { remember(); take({ ...state, ...changed }); };
+  element("reset").addEventListener("click", () => put({ settings: {} }));
+  element("controls").addEventListener("submit", (event) => event.preventDefault());
+  const shown = () => ({ recording: state.recording, settings: state.settings });
+  element("keep").addEventListener("click", () => put({ a: shown() }));
+  element("how").addEventListener("input", () => put({ how: element("how").value }));
+  element("end").addEventListener("click", () => put({ a: null }));
+  element("swap").addEventListener("click", () => { remember(); restore({ ...state, ...state.a, a: shown() }); });
+  for (const button of document.querySelectorAll(".copy")) {
+    button.addEventListener("click", async () => {
+      await navigator.clipboard.writeText(element(button.dataset.of).textContent);
+      button.textContent = "copied";
+    });
+  }
+
+  // A button that gives a file of this session.
+  function giver(file, text, label = text) {
+    const button = make("button", { type: "button", className: "give", textContent: text, ariaLabel: `download ${label}` });
+    button.addEventListener("click", async () => {
+      complain("");
+      const response = await request(`${of("download")}/${file}`, question());
+      if (!response) return;
+      const href = URL.createObjectURL(await response.blob());
+      make("a", { href, download: `${state.system}-${state.recording.slice(0, 16)}-${file}` }).click();
+      setTimeout(() => URL.revokeObjectURL(href), 10_000);
+    });
+    return button;
+  }
 
   function live() {
     const socket = new WebSocket(`ws://${location.host}/live`);
-    document.querySelector(".controls").hidden = true;
+    for (const part of document.querySelectorAll(".controls, #compare")) part.hidden = true;
     // Five times a second would be too much to be read out.
     element("facts").ariaLive = "off";
     document.querySelector(".explorer").style.gridTemplateColumns = "minmax(0, 1fr)";
@@ -280,19 +374,13 @@
     socket.addEventListener("close", () => complain("the stream has ended"));
   }
 
+  if (matchMedia("(max-width: 800px)").matches) element("settings").open = false;
   fetch("api/sources").then((response) => response.json()).then((reply) => {
     if (reply.live) return live();
     sources = reply.sources;
     element("system").replaceChildren(...sources.map((source) =>
       make("option", { value: source.system, textContent: `${source.system}: ${source.title}` })));
-    const wanted = location.hash.slice(1);
-    if (sources.some((source) => source.system === wanted)) element("system").value = wanted;
-    offer();
-    addEventListener("hashchange", () => {
-      const wanted = location.hash.slice(1);
-      if (wanted === element("system").value || !sources.some((source) => source.system === wanted)) return;
-      element("system").value = wanted;
-      offer();
-    });
+    restore(read(location.hash));
+    addEventListener("hashchange", () => { if (location.hash.slice(1) !== address()) { remember(); restore(read(location.hash)); } });
   }).catch(() => complain("the program does not answer: is it still running?"));
 }

@@ -4,9 +4,36 @@
 const Figures = (() => {
   const drawn = new Map();
   const resized = new ResizeObserver((entries) => {
-    for (const { target } of entries) if (target.data) Plotly.Plots.resize(target);
+    for (const { target } of entries) {
+      if (!target.data) continue;
+      const entry = [...drawn.values()].find((it) => it.plot === target);
+      if (entry?.figure.equal) fit(entry);
+      Plotly.Plots.resize(target).then(() => entry?.clock?.mark([entry]));
+    }
   });
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
+
+  // Pixels beside the axes of a map: numbers, labels and the edge.
+  const [BESIDE, BELOW] = [70, 54];
+
+  // A map is as high as what it shows is at its width: no path is a thread in an empty field.
+  function fit({ plot, figure }) {
+    const extent = (axis, along) => {
+      if (axis.range) return axis.range[1] - axis.range[0];
+      const values = figure.data.filter((series) => series.visible !== "legendonly").flatMap((series) => series[along]);
+      let [low, high] = [Infinity, -Infinity];
+      for (const value of values) {
+        if (value === null) continue;
+        [low, high] = [Math.min(low, value), Math.max(high, value)];
+      }
+      return high - low;
+    };
+    const [wide, high] = [extent(figure.layout.xaxis, "x"), extent(figure.layout.yaxis, "y")];
+    const width = plot.clientWidth - BESIDE;
+    const asked = wide > 0 && high > 0 ? (width * high) / wide : width;
+    plot.style.height = `${Math.round(Math.min(Math.max(asked, 110), 560, Math.max(width, 300)) + BELOW)}px`;
+  }
 
   function axis(given, map) {
     const colours = { gridcolor: style("--line"), zerolinecolor: style("--line"), linecolor: style("--line") };
@@ -15,9 +42,12 @@ const Figures = (() => {
     return { ...fit, ...colours, ...structuredClone(given) };
   }
 
-  function layout(figure) {
+  function layout({ figure, clock }) {
+    const range = clock?.axis(figure);
+    // A stretch of time that was chosen elsewhere holds here as well.
+    const shown = range ? { range, autorange: false, uirevision: range.join() } : {};
     return {
-      xaxis: axis(figure.layout.xaxis, figure.equal),
+      xaxis: { ...axis(figure.layout.xaxis, figure.equal), ...shown },
       yaxis: axis(figure.layout.yaxis, figure.equal),
       paper_bgcolor: "rgba(0,0,0,0)",
       plot_bgcolor: "rgba(0,0,0,0)",
@@ -33,27 +63,28 @@ const Figures = (() => {
     };
   }
 
-  // HTML buttons in place of Plotly's legend: they wrap on a phone and take the keyboard.
+  // HTML buttons in place of Plotly's legend: they wrap on a phone and take the keyboard, and tell values at the cursor.
   function legend(entry) {
     const { figure, hidden, buttons } = entry;
+    entry.values = figure.data.map(() => make("output", {}));
     buttons.replaceChildren(...figure.data.map((series, index) => {
-      const button = document.createElement("button");
-      button.type = "button";
-      button.textContent = series.name;
+      const button = make("button", { type: "button", textContent: series.name });
       button.style.setProperty("--series", series.line.color);
       button.setAttribute("aria-pressed", String(!hidden.has(series.name)));
       button.addEventListener("click", () => {
         if (!hidden.delete(series.name)) hidden.add(series.name);
         const shows = !hidden.has(series.name);
         button.setAttribute("aria-pressed", String(shows));
-        Plotly.restyle(entry.plot, { visible: shows ? true : "legendonly" }, [index]);
+        entry.figure.data[index].visible = shows ? true : "legendonly";
+        Plotly.restyle(entry.plot, { visible: shows ? true : "legendonly" }, [index]).then(() => entry.clock?.mark([entry]));
       });
+      if (figure.seconds) button.append(entry.values[index]);
       return button;
     }));
   }
 
-  // + and − zoom, arrows move, 0 shows everything.
-  function keys(event, plot) {
+  // + and − zoom, arrows move, 0 shows everything; comma and full stop move the cursor.
+  function keys(event, { plot, clock }) {
     // The browser's own keys stay its own.
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const { xaxis, yaxis } = plot._fullLayout;
@@ -72,6 +103,7 @@ const Figures = (() => {
       ArrowLeft: () => change(1, [-0.1, 0]), ArrowRight: () => change(1, [0.1, 0]),
       ArrowUp: () => change(1, [0, 0.1]), ArrowDown: () => change(1, [0, -0.1]),
       0: () => Plotly.relayout(plot, { "xaxis.autorange": true, "yaxis.autorange": true }),
+      ",": () => clock?.step(-1), ".": () => clock?.step(1),
     };
     if (actions[event.key]) {
       event.preventDefault();
@@ -79,47 +111,54 @@ const Figures = (() => {
     }
   }
 
-  function prepare(place, figure, onZoom) {
-    const plot = document.createElement("div");
-    const buttons = document.createElement("div");
-    plot.className = figure.equal ? "plot map" : "plot";
+  function prepare(place, figure, { clock, zoomed }) {
+    const [plot, buttons, box] = ["div", "div", "div"].map((tag) => make(tag, {}));
+    [plot.className, buttons.className, box.className] = [figure.equal ? "plot map" : "plot", "legend", "box"];
     plot.tabIndex = 0;
     plot.setAttribute("role", "application");
-    plot.setAttribute("aria-label", `${figure.title}. ${figure.caption} Plus and minus zoom, arrows move, 0 shows everything.`);
-    plot.addEventListener("keydown", (event) => keys(event, plot));
-    buttons.className = "legend";
-    place.append(buttons, plot);
+    const told = figure.seconds ? " Comma and full stop move the cursor." : "";
+    plot.setAttribute("aria-label",
+      `${figure.title}. ${figure.caption} Plus and minus zoom, arrows move, 0 shows everything.${told}`);
+    box.append(plot);
+    place.append(buttons, box);
     resized.observe(plot);
     const hidden = new Set(figure.data.filter((series) => series.visible).map((series) => series.name));
-    const entry = { plot, buttons, hidden, names: "", figure, onZoom };
+    const entry = { plot, buttons, box, hidden, names: "", values: [], figure, clock, zoomed };
+    plot.addEventListener("keydown", (event) => keys(event, entry));
     drawn.set(place, entry);
+    clock?.join(entry);
     return entry;
   }
 
-  function draw(place, figure, onZoom) {
-    const entry = drawn.get(place) ?? prepare(place, figure, onZoom);
+  // `clock` holds the figure's time, `zoomed` is told of stretches of other axes.
+  function draw(place, figure, { clock = null, zoomed = null } = {}) {
+    const entry = drawn.get(place) ?? prepare(place, figure, { clock, zoomed });
     const first = !entry.plot.data;
     entry.figure = figure;
     for (const series of figure.data) series.visible = entry.hidden.has(series.name) ? "legendonly" : true;
     const names = JSON.stringify(figure.data.map((series) => series.name));
     if (names !== entry.names) legend(entry);
     entry.names = names;
-    const done = Plotly.react(entry.plot, figure.data, layout(figure), {
+    if (first && figure.equal) fit(entry);
+    const done = Plotly.react(entry.plot, figure.data, layout(entry), {
       displaylogo: false, scrollZoom: false,
       // A page asks nobody but the program: Plotly offers to send figures to its makers, unless told otherwise.
       showSendToCloud: false,
       modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
     });
-    if (first && onZoom) entry.plot.on("plotly_relayout", () => {
-      const { autorange, range } = entry.plot._fullLayout.xaxis;
-      onZoom(figure.id, autorange ? null : range.map(Number));
-    });
-    return done;
+    if (first) {
+      clock?.listen(entry);
+      if (zoomed && !figure.seconds && !figure.equal) entry.plot.on("plotly_relayout", () => {
+        const { autorange, range } = entry.plot._fullLayout.xaxis;
+        zoomed(figure.id, autorange ? null : range.map(Number));
+      });
+    }
+    return done.then(() => clock?.mark([entry]));
   }
 
   function theme(dark) {
     document.documentElement.dataset.theme = dark ? "dark" : "light";
-    for (const entry of drawn.values()) Plotly.react(entry.plot, entry.figure.data, layout(entry.figure));
+    for (const entry of drawn.values()) Plotly.react(entry.plot, entry.figure.data, layout(entry));
   }
 
   const system = matchMedia("(prefers-color-scheme: dark)");
@@ -129,9 +168,10 @@ const Figures = (() => {
     theme(document.documentElement.dataset.theme !== "dark"));
 
   const forget = (place) => {
-    const { plot } = drawn.get(place);
-    resized.unobserve(plot);
-    Plotly.purge(plot);
+    const entry = drawn.get(place);
+    entry.clock?.leave(entry);
+    resized.unobserve(entry.plot);
+    Plotly.purge(entry.plot);
     drawn.delete(place);
   };
   return { draw, forget };

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
 
 use clap::Arg;
 use host_sim::commands;
@@ -258,7 +259,9 @@ fn the_firmware_literal_compiles() {
             });
             let mut literals: Vec<_> = std::iter::once(Vec::new())
                 .chain(each)
-                .filter_map(|given| Some(opened.answer(&with(&*opened, &given)).ok()?.firmware))
+                .filter_map(|given| {
+                    Some(opened.answer(&with(&*opened, &given)).ok()?.firmware.clone())
+                })
                 .collect();
             literals.sort();
             literals.dedup();
@@ -302,4 +305,15 @@ fn check(source: &str) {
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// A zoom and a comparison ask for the same answer again: then no estimator runs.
+#[test]
+fn what_was_answered_last_is_not_computed_again() {
+    for system in ALL {
+        let opened = open(system, system.synthetic()[0].0);
+        let first = opened.answer(&with(&*opened, &[])).expect("an answer");
+        let again = opened.answer(&with(&*opened, &[])).expect("an answer");
+        assert!(Arc::ptr_eq(&first, &again), "{}", system.name());
+    }
 }

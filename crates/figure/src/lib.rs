@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
+mod compare;
 pub mod csv;
+mod outline;
 pub mod plotly;
 mod series;
 pub mod svg;
@@ -37,6 +39,8 @@ pub struct Axis {
     pub logarithmic: bool,
     /// What is shown at first [default: everything].
     pub range: Option<[f64; 2]>,
+    /// How many seconds one unit is, where the axis is a time.
+    pub seconds: Option<f64>,
 }
 
 impl Figure {
@@ -56,6 +60,22 @@ impl Figure {
     /// With the labels of both axes: quantity and unit.
     pub fn axes(mut self, x: impl Into<String>, y: impl Into<String>) -> Self {
         (self.x.label, self.y.label) = (x.into(), y.into());
+        self
+    }
+
+    /// Over seconds of a clock that the figures of a page have in common; with the label of the vertical axis.
+    pub fn over_seconds(self, y: impl Into<String>) -> Self {
+        self.axes("time, s", y).clock(1.0)
+    }
+
+    /// As [`over_seconds`](Self::over_seconds), in hours.
+    pub fn over_hours(self, y: impl Into<String>) -> Self {
+        self.axes("time, h", y).clock(3600.0)
+    }
+
+    /// The horizontal axis is a time; one unit of it is so many seconds.
+    pub fn clock(mut self, seconds: f64) -> Self {
+        self.x.seconds = Some(seconds);
         self
     }
 

@@ -8,13 +8,12 @@ use crate::{Axis, Colour, Figure, Mark, Series, View, thin};
 ///
 /// Colours of paper, text and grid are left to the page, which knows whether it is dark.
 pub fn figure(figure: &Figure, view: View) -> Value {
-    // A map's points are in the order of time, not from left to right.
-    let window = view.window.filter(|_| !figure.equal);
     // Of a logarithmic axis the page knows the exponents.
+    let exponents = figure.x.logarithmic && !figure.equal;
     let window =
-        if figure.x.logarithmic { window.map(|ends| ends.map(|e| 10_f64.powf(e))) } else { window };
-    let view = View { window, ..view };
-    let data: Vec<_> = figure.series.iter().map(|series| trace(series, view)).collect();
+        view.window.map(|ends| if exponents { ends.map(|e| 10_f64.powf(e)) } else { ends });
+    let kept = thin::of(figure, View { window, ..view });
+    let data: Vec<_> = figure.series.iter().zip(kept).map(|(it, kept)| trace(it, &kept)).collect();
     let mut y = axis(&figure.y);
     if figure.equal {
         y["scaleanchor"] = json!("x");
@@ -24,6 +23,7 @@ pub fn figure(figure: &Figure, view: View) -> Value {
         "title": figure.title,
         "caption": figure.caption,
         "equal": figure.equal,
+        "seconds": figure.x.seconds,
         "data": data,
         "layout": { "xaxis": axis(&figure.x), "yaxis": y },
     })
@@ -41,8 +41,7 @@ fn axis(axis: &Axis) -> Value {
     value
 }
 
-fn trace(series: &Series, view: View) -> Value {
-    let kept = thin::indices(series, view);
+fn trace(series: &Series, kept: &[usize]) -> Value {
     let pick = |values: &[f64]| -> Vec<f64> {
         rounded(kept.iter().map(|&i| values.get(i).copied().unwrap_or(f64::NAN)).collect())
     };
@@ -72,6 +71,12 @@ fn trace(series: &Series, view: View) -> Value {
             kept.iter().map(|&i| labels.get(i).map_or("", String::as_str)).collect();
         trace["text"] = json!(texts);
         trace["textposition"] = json!("top center");
+    }
+    if let Some(times) = &series.times {
+        trace["customdata"] = json!(pick(times));
+    }
+    if series.faint {
+        trace["opacity"] = json!(0.45);
     }
     if series.hidden {
         trace["visible"] = json!("legendonly");

@@ -7,6 +7,9 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates, as many.
     pub y: Vec<f64>,
+    /// When each point was, in seconds of the clock of [`Figure::over_seconds`](crate::Figure::over_seconds): of a map, whose
+    /// axes are no times.
+    pub times: Option<Vec<f64>>,
     /// Half the length of the error bars, where there are any.
     pub error: Option<Vec<f64>>,
     /// What stands beside the points, where anything does.
@@ -17,6 +20,8 @@ pub struct Series {
     pub colour: Colour,
     /// Whether only the legend shows it at first.
     pub hidden: bool,
+    /// Whether it stands back behind the others.
+    pub faint: bool,
 }
 
 /// How a series is drawn.
@@ -84,8 +89,18 @@ impl Series {
         let length = x.len().min(y.len());
         x.truncate(length);
         y.truncate(length);
-        let (error, labels, colour, hidden) = (None, None, Colour::Ours, false);
-        Self { name: name.into(), x, y, error, labels, mark, colour, hidden }
+        Self {
+            name: name.into(),
+            x,
+            y,
+            times: None,
+            error: None,
+            labels: None,
+            mark,
+            colour: Colour::Ours,
+            hidden: false,
+            faint: false,
+        }
     }
 
     /// A line.
@@ -112,6 +127,11 @@ impl Series {
     /// In this colour.
     pub fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
+    }
+
+    /// With the time of each point, s.
+    pub fn timed(self, times: impl IntoIterator<Item = f64>) -> Self {
+        Self { times: Some(times.into_iter().collect()), ..self }
     }
 
     /// With error bars of this half length.

@@ -66,7 +66,11 @@ where
         .light_line_style(WHITE)
         .draw()?;
     for series in figure.series.iter().filter(|series| !series.hidden) {
-        let [r, g, b] = series.colour.rgb();
+        let [r, g, b] = series.colour.rgb().map(|part| {
+            // As on the page, on white.
+            let faint = (0.45 * f64::from(part) + 0.55 * 255.0) as u8;
+            if series.faint { faint } else { part }
+        });
         let colour = RGBColor(r, g, b);
         let points = || series.x.iter().copied().zip(series.y.iter().copied());
         let shown = || points().filter(|(x, y)| x.is_finite() && y.is_finite());

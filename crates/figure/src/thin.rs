@@ -2,20 +2,44 @@
 
 use std::ops::Range;
 
-use crate::Series;
+use crate::{Figure, Series, outline};
 
 /// What a screen shows of a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// How many points of a series it can show, about.
     pub most_points: usize,
-    /// From where to where along the horizontal axis, where it is zoomed in.
+    /// From where to where along the horizontal axis, where it is zoomed in; of a map, from when to when, s.
     pub window: Option<[f64; 2]>,
 }
 
-/// Indices of points that look like all of them in this view: the lowest and the highest of each stretch, so
-/// that no peak is lost.
-pub(crate) fn indices(series: &Series, view: View) -> Vec<usize> {
+/// Indices of points that look like all of them in this view.
+pub(crate) fn of(figure: &Figure, view: View) -> Vec<Vec<usize>> {
+    if !figure.equal {
+        return figure.series.iter().map(|series| indices(series, view)).collect();
+    }
+    let shown: Vec<_> = figure.series.iter().map(|series| then(series, view.window)).collect();
+    let width = outline::width(&figure.series, &shown);
+    // Half a pixel.
+    let most = width / (2 * view.most_points.max(1)) as f64;
+    let thinned = figure.series.iter().zip(shown);
+    thinned.map(|(series, shown)| outline::indices(series, shown, most)).collect()
+}
+
+/// Points of a map that belong to a stretch of time; all where that is not known.
+fn then(series: &Series, window: Option<[f64; 2]>) -> Range<usize> {
+    let all = 0..series.len();
+    let (Some([low, high]), Some(times)) = (window, &series.times) else { return all };
+    let times = &times[..times.len().min(all.end)];
+    if !times.is_sorted() {
+        return all;
+    }
+    let begin = times.partition_point(|&time| time < low);
+    begin..times.partition_point(|&time| time <= high).max(begin)
+}
+
+/// The lowest and the highest of each stretch, so that no peak is lost.
+fn indices(series: &Series, view: View) -> Vec<usize> {
     let seen = seen(series, view.window);
     if seen.len() <= view.most_points {
         return seen.collect();

@@ -27,7 +27,7 @@ pub use value::{Column, Kind, Value};
 pub use work::{Head, Work};
 
 /// Bytes in hexadecimal.
-fn hex(bytes: &[u8]) -> String {
+pub fn hex(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
     bytes.iter().fold(String::new(), |mut text, byte| {
         // A text takes whatever is written to it.

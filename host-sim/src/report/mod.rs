@@ -2,11 +2,14 @@
 
 mod comparison;
 pub mod csv;
+mod document;
 mod folder;
 mod page;
+mod session;
 
 pub use comparison::{Comparison, Row};
 pub use folder::write;
+pub use session::Session;
 
 use crate::figure::Figure;
 use crate::stream::Stream;

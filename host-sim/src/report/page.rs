@@ -1,65 +1,34 @@
 //! The report as one page that needs nothing but itself.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-use serde_json::Value;
+use maud::{Markup, html};
 
+use super::document::{Document, figures};
 use super::{Chapter, Comparison, Content, Item, Row};
-use crate::figure::{View, plotly};
 
-const STYLE: &str = include_str!("../../assets/page.css");
-const PLOTLY: &str = include_str!("../../assets/plotly/plotly-basic.min.js");
-const FIGURES: &str = include_str!("../../assets/figures.js");
-const SCRIPT: &str = include_str!("../../assets/report.js");
-
-/// More than a screen has columns, so that there is something to zoom into.
-const VIEW: View = View { most_points: 3000, window: None };
-
-/// Nothing may be fetched from anywhere.
-const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+const TITLE: &str = "kestirim: published, ours, limit";
 
 /// The page.
 pub(super) fn render(chapters: &[Chapter]) -> String {
-    let figures = chapters.iter().flat_map(Chapter::figures);
-    let drawn: serde_json::Map<String, Value> =
-        figures.map(|figure| (figure.id.clone(), plotly::figure(figure, VIEW))).collect();
-    // `</script>` in a text would end the element.
-    let drawn = Value::from(drawn).to_string().replace("</", "<\\/");
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "kestirim: published, ours, limit" }
-                link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                (header(chapters))
-                main { @for chapter in chapters { (section(chapter)) } }
-                footer {
-                    p.soft {
-                        "Made by host-sim " (env!("CARGO_PKG_VERSION"))
-                        ". Beside this page: every figure as SVG and CSV, every table in results.csv and "
-                        "results.json, and streams for Foxglove, PlotJuggler and Rerun as MCAP. "
-                        "Figures are drawn by Plotly.js (MIT)."
-                    }
-                }
-                script id="figures" type="application/json" { (PreEscaped(drawn)) }
-                script { (PreEscaped(PLOTLY)) }
-                script { (PreEscaped(FIGURES)) }
-                script { (PreEscaped(SCRIPT)) }
+    let body = html! {
+        (header(chapters))
+        main { @for chapter in chapters { (section(chapter)) } }
+        footer {
+            p.soft {
+                "Made by host-sim " (env!("CARGO_PKG_VERSION"))
+                ". Beside this page: every figure as SVG and CSV, every table in results.csv and "
+                "results.json, and streams for Foxglove, PlotJuggler and Rerun as MCAP. "
+                "Figures are drawn by Plotly.js (MIT)."
             }
         }
     };
-    page.into_string()
+    let figures = figures(chapters.iter().flat_map(Chapter::figures));
+    Document { title: TITLE, body, figures }.render()
 }
 
 fn header(chapters: &[Chapter]) -> Markup {
     html! {
         header {
-            h1 { "kestirim: published, ours, limit" }
+            h1 { (TITLE) }
             button #theme type="button" { "light / dark" }
             p {
                 "Every table and figure of the five papers beside what this library makes of the same "
@@ -83,7 +52,7 @@ fn header(chapters: &[Chapter]) -> Markup {
 
 fn section(chapter: &Chapter) -> Markup {
     html! {
-        section id=(chapter.system) {
+        section id=(chapter.system) data-clock {
             h2 { (chapter.title) }
             p.soft { (chapter.paper) }
             p { (chapter.about) }
@@ -131,6 +100,7 @@ mod tests {
     use super::*;
     use crate::figure::{Figure, Series};
     use crate::report::Made;
+    use crate::report::document::tests::assert_fetches_nothing;
 
     #[test]
     fn the_page_shows_everything_and_fetches_nothing() {
@@ -163,9 +133,6 @@ mod tests {
         }
         assert!(page.contains(r#"data-figure="vehicle-plan""#));
         assert!(page.contains(r"Plan <\/script>"));
-        let own = page.replace(PLOTLY, "");
-        for address in ["http:", "https:", "src=\"", "@import", "url("] {
-            assert!(!own.contains(address), "{address}");
-        }
+        assert_fetches_nothing(&page);
     }
 }

@@ -96,6 +96,12 @@ impl Answer {
     pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
         self.facts.push((name.into(), value.into()));
     }
+
+    /// Points of all figures.
+    pub(super) fn points(&self) -> usize {
+        let series = self.figures.iter().flat_map(|figure| &figure.series);
+        series.map(|series| series.x.len()).sum()
+    }
 }
 
 /// Rows of a file that an option asks for.

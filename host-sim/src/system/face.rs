@@ -26,6 +26,8 @@ pub struct OutputField {
     pub name: &'static str,
     /// What stands in it, with its columns.
     pub help: &'static str,
+    /// Endings of a file that say what it is written as, the table's first.
+    pub endings: &'static [&'static str],
 }
 
 /// How much of a track is kept.

@@ -117,6 +117,12 @@ impl Files {
         Ok(files)
     }
 
+    /// The same files, without what was read of them.
+    #[must_use]
+    pub fn without_what_was_read(&self) -> Self {
+        Self { shared: Shared::default(), ..self.clone() }
+    }
+
     /// Adds a file.
     pub fn add(&mut self, field: impl Into<String>, path: impl Into<PathBuf>) {
         self.paths.entry(field.into()).or_default().push(path.into());

@@ -4,6 +4,7 @@
 //! The command line, the page and a live stream are made from that, for any system.
 
 mod account;
+mod answers;
 mod any;
 mod face;
 mod files;

@@ -7,6 +7,7 @@ use kestirim_health::Reason;
 use kestirim_replay::Finding;
 
 use super::account::{Account, Answer, Table};
+use super::answers::Answers;
 use super::face::{Detail, System};
 use super::files::Source;
 use super::idle::{Idle, refuse};
@@ -54,11 +55,14 @@ pub trait Opened: Send + Sync {
     /// [`Error::Usage`] for settings that would change nothing.
     fn check(&self, settings: &Settings) -> Result<Vec<Finding>, Error>;
 
-    /// What the page shows.
+    /// What the page shows, and the settings that have no effect in it.
     ///
     /// # Errors
     /// One sentence, if recording and settings give nothing.
-    fn answer(&self, settings: &Settings) -> Result<Answer, Error>;
+    fn answer(&self, settings: &Settings) -> Result<Arc<Answer>, Error>;
+
+    /// The settings without those that would change nothing.
+    fn effective(&self, settings: &Settings) -> Settings;
 }
 
 /// A recording, and the last track that was made of it.
@@ -66,6 +70,7 @@ struct Open<S: System> {
     recording: S::Recording,
     source: Source,
     last: Mutex<Option<Last<S>>>,
+    answers: Answers,
     findings: Mutex<Option<(Settings, Vec<Finding>)>>,
 }
 
@@ -77,7 +82,8 @@ struct Last<S: System> {
 }
 
 pub(super) fn open<S: System>(recording: S::Recording, source: Source) -> Box<dyn Opened> {
-    Box::new(Open::<S> { recording, source, last: Mutex::new(None), findings: Mutex::new(None) })
+    let (last, answers, findings) = (Mutex::new(None), Answers::default(), Mutex::new(None));
+    Box::new(Open::<S> { recording, source, last, answers, findings })
 }
 
 impl<S: System> Open<S> {
@@ -132,6 +138,13 @@ impl<S: System> Open<S> {
     fn idle(&self, settings: &Settings, name: &str) -> Option<Idle> {
         S::idle(Some(&self.recording), settings, name)
     }
+
+    /// Settings that have no effect as the others are, and why.
+    fn disabled(&self, settings: &Settings) -> Vec<(&'static str, String)> {
+        let table = settings.table().iter();
+        let reason = |name| Some((name, self.idle(settings, name)?.reason().to_owned()));
+        table.filter_map(|setting| reason(setting.name)).collect()
+    }
 }
 
 impl<S: System> Opened for Open<S> {
@@ -171,14 +184,18 @@ impl<S: System> Opened for Open<S> {
         Ok(self.findings(settings))
     }
 
-    fn answer(&self, settings: &Settings) -> Result<Answer, Error> {
-        let disabled = settings.table().iter().filter_map(|setting| {
-            let idle = self.idle(settings, setting.name)?;
-            Some((setting.name, idle.reason().to_owned()))
-        });
-        let disabled: Vec<_> = disabled.collect();
+    fn effective(&self, settings: &Settings) -> Settings {
+        let disabled = self.disabled(settings);
+        settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name))
+    }
+
+    fn answer(&self, settings: &Settings) -> Result<Arc<Answer>, Error> {
+        if let Some(known) = self.answers.of(settings) {
+            return Ok(known);
+        }
+        let (asked, disabled) = (settings, self.disabled(settings));
         // A page that was left with them sends them still, and the command line refuses them.
-        let settings = &settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name));
+        let settings = &self.effective(settings);
         let trace = self.trace(settings, Detail::Every)?;
         let (Account { facts, warnings, .. }, findings) = self.account(settings, &trace)?;
         let command = ["host-sim", "replay", S::NAME].map(str::to_owned).into_iter();
@@ -193,7 +210,7 @@ impl<S: System> Opened for Open<S> {
             findings,
         };
         S::figures(&self.recording, settings, &trace, &mut answer)?;
-        Ok(answer)
+        Ok(self.answers.keep(asked, answer))
     }
 }
 

@@ -98,6 +98,7 @@ impl Page {
             "ArrowRight" => (39, ""),
             "Enter" => (13, "\r"),
             "+" => (187, "+"),
+            "." => (190, "."),
             _ => panic!("no test presses {key}"),
         };
         let down = if text.is_empty() { "rawKeyDown" } else { "keyDown" };

@@ -87,6 +87,7 @@ impl State {
         let stances = stances.map(|(time, sample)| [time, size(sample.force)]);
         Figure::new("live-force", "Specific force of the last 30 s")
             .axes(TIME, "m/s²")
+            .clock(1.0)
             .caption("At rest its size is 1 g, 9.8 m/s².")
             .with_all([0, 1, 2].map(axis))
             .with(line("size", &times, sizes))
@@ -102,6 +103,7 @@ impl State {
         };
         Figure::new("live-rate", "Angular rate of the last 30 s")
             .axes(TIME, "rad/s")
+            .clock(1.0)
             .caption("What the gyroscope shows, in its own axes.")
             .with_all([0, 1, 2].map(axis))
     }
@@ -121,6 +123,7 @@ impl State {
         let refused = refused.map(|(time, (_, range, _))| [time, f64::from(*range)]);
         Figure::new("live-ranges", "Ranges of the last 30 s")
             .axes(TIME, "m")
+            .clock(1.0)
             .caption("Crosses are ranges that the estimator refused.")
             .with_all(anchors.into_iter().take(MOST_ANCHORS).map(taken))
             .with(Series::points("refused", refused).marked(Mark::Crosses).coloured(Colour::Alarm))
@@ -130,6 +133,7 @@ impl State {
         let points = self.losses.iter().map(|(time, loss)| [time, f64::from(*loss)]);
         Figure::new("live-loss", "Path loss of the last 30 s")
             .axes(TIME, "dB")
+            .clock(1.0)
             .caption("The nearer the sender is to what it hears, the smaller.")
             .with(Series::points("path loss", points).marked(Mark::LineAndPoints))
     }
@@ -144,6 +148,7 @@ impl State {
         });
         Figure::new("live-angles", "Angles and pitch rate of the last 30 s")
             .axes(TIME, "rad, rad/s")
+            .clock(1.0)
             .caption("Broken lines are what the sender itself estimates.")
             .with_all(series)
     }
@@ -152,6 +157,7 @@ impl State {
         let senders = of_state(&self.senders_states, "sender's estimate", 2);
         Figure::new("live-airspeed", "Airspeed of the last 30 s")
             .axes(TIME, "m/s")
+            .clock(1.0)
             .caption("The broken line is what the sender itself estimates.")
             .with(of_state(&self.states, "estimate", 2))
             .with(senders.marked(Mark::Dashes).coloured(SENDERS))

@@ -1,25 +1,20 @@
 //! What the page asks.
 
-use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use axum::extract::{Multipart, Path as InPath, State};
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::sessions::Recording;
-use super::{Shared, uploads};
+use super::question::{Asked, Compared, Question, Windows, page};
+use super::sessions::{Recording, Upload};
+use super::uploads::{self, Content};
+use super::{Shared, compare, downloads};
 use crate::Error;
-use crate::figure::{View, plotly};
-use crate::system::{Answer, AnySystem, Files, Opened, Reading, Setting, Settings, Source};
-
-/// As many as a figure of the page has columns of pixels, about.
-const MOST_POINTS: usize = 700;
+use crate::system::{AnySystem, Files, Reading, Setting, Settings, Source};
 
 /// One plain sentence, as on the command line.
 pub(super) struct Refusal(pub(super) StatusCode, pub(super) String);
@@ -27,6 +22,12 @@ pub(super) struct Refusal(pub(super) StatusCode, pub(super) String);
 impl Refusal {
     pub(super) fn of(problem: impl Display) -> Self {
         Self(StatusCode::UNPROCESSABLE_ENTITY, format!("{problem}"))
+    }
+
+    /// For an address that outlived its files.
+    pub(super) fn gone() -> Self {
+        let sentence = "these files are no longer kept here: open them again";
+        Self(StatusCode::GONE, sentence.to_owned())
     }
 }
 
@@ -61,19 +62,15 @@ pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
     reply(&json!({ "live": shared.live.is_some(), "sources": sources }))
 }
 
-/// Opens a synthetic recording.
-pub(super) async fn open_bundled(
+/// Opens a recording that has a name.
+pub(super) async fn open_named(
     State(shared): State<Arc<Shared>>,
     InPath((system, recording)): InPath<(String, String)>,
 ) -> Result<Response, Refusal> {
     let system = find(&shared, &system)?;
-    let settings = Settings::new(system.settings());
-    let opened = beside(move || {
-        let opened = system.open(Source::Synthetic(recording), &settings)?;
-        opened.answer(&Settings::new(opened.settings()))?;
-        Ok(opened)
-    });
-    Ok(keep(&shared, opened.await?, None))
+    let name = recording.clone();
+    let opened = beside(move || shared.sessions.get(system, &recording)).await?;
+    Ok(controls(system, &name, &opened))
 }
 
 /// Opens files that the page uploads.
@@ -87,20 +84,23 @@ pub(super) async fn open_files(
         return Err(Refusal::of("no files are opened here"));
     };
     let (_turn, folder) = uploads.begin()?;
-    let mut files = Files::default();
+    let (mut files, mut content) = (Files::default(), Content::default());
     while let Some(part) = upload.next_field().await.map_err(Refusal::of)? {
         let field = part.name().unwrap_or_default().to_owned();
         if Reading::texts().any(|name| name == field) {
             let text = part.text().await.map_err(Refusal::of)?;
+            content.say(&field);
+            content.say(text.trim());
             files.reading.say(&field, text.trim())?;
             continue;
         }
         if !system.files().iter().any(|known| known.name == field) {
             return Err(Refusal::of(format!("{name} has no file {field:?}")));
         }
-        files.add(field, uploads::write(folder.path(), part).await?);
+        files.add(field, uploads::write(folder.path(), part, &mut content).await?);
     }
-    let place = folder.path().to_path_buf();
+    let folder = Arc::new(folder);
+    let upload = Upload { files: files.without_what_was_read(), folder: Arc::clone(&folder) };
     let settings = Settings::new(system.settings());
     let opened = beside(move || {
         let open = || {
@@ -112,9 +112,24 @@ pub(super) async fn open_files(
                 _ => Ok(opened),
             }
         };
-        open().map_err(|error: Error| error.naming_files_below(folder.path()))
+        open().map_err(|error: Error| error.naming_files_below(folder.path()).into())
     });
-    Ok(keep(&shared, opened.await?, Some(place)))
+    let (opened, name) = (upload.opened(opened.await?), content.name());
+    shared.sessions.keep((system.name(), name.clone()), upload);
+    shared.sessions.add((system.name(), name.clone()), opened.clone());
+    Ok(controls(system, &name, &opened))
+}
+
+/// What an open recording is called, what can be set of it and what can be had of it.
+fn controls(system: &dyn AnySystem, recording: &str, open: &Recording) -> Response {
+    let Recording { opened, files, .. } = open;
+    let controls: Vec<_> = opened.settings().iter().map(Setting::control).collect();
+    reply(&json!({
+        "recording": recording,
+        "files": files,
+        "controls": controls,
+        "downloads": downloads::names(system).collect::<Vec<_>>(),
+    }))
 }
 
 /// Whether a refusal names the option of a setting.
@@ -128,85 +143,44 @@ fn asks_for_a_setting(error: &Error, settings: &[Setting]) -> bool {
     named.any(|name| settings.iter().any(|setting| setting.name == name))
 }
 
-/// How the page stands.
-#[derive(Debug, Deserialize)]
-struct Question {
-    settings: Map<String, Value>,
-    /// Stretches of the horizontal axes of figures that are zoomed in.
-    #[serde(default)]
-    windows: BTreeMap<String, [f64; 2]>,
-}
-
 /// What comes out as the controls stand.
 pub(super) async fn answer(
     State(shared): State<Arc<Shared>>,
-    InPath(session): InPath<u64>,
+    InPath((system, recording)): InPath<(String, String)>,
     body: String,
 ) -> Result<Response, Refusal> {
-    let Some(recording) = shared.sessions.get(session) else {
-        let sentence = "this recording is no longer open: open it again".to_owned();
-        return Err(Refusal(StatusCode::GONE, sentence));
-    };
+    let system = find(&shared, &system)?;
     let question: Question = serde_json::from_str(&body).map_err(Refusal::of)?;
     let answer = beside(move || {
-        let Recording { opened, folder } = recording;
-        let settings = Settings::sent(opened.settings(), &question.settings)?;
-        let mut answer = opened.answer(&settings).map_err(|error| match &folder {
-            Some(folder) => error.naming_files_below(folder),
-            None => error,
-        })?;
-        if let Some(folder) = &folder {
-            answer.command = naming_files_below(&answer.command, folder);
-        }
-        Ok(page(&answer, &question.windows))
+        let windows = Windows { time_s: question.window, others: question.windows };
+        let asked = Asked::new(&shared, system, &recording, &question.settings)?;
+        let mut page = match question.a {
+            None => page(&asked.answer, &asked.answer.figures, &windows),
+            Some(Compared { recording, settings, how }) => {
+                let other = Asked::new(&shared, system, &recording, &settings)?;
+                let figures = compare::figures(&other.answer, &asked.answer, how);
+                let mut page = page(&asked.answer, &figures, &windows);
+                page["changed"] = json!(compare::changed(&other, &asked));
+                page
+            }
+        };
+        page["command"] = json!(asked.command());
+        Ok(page)
     });
     Ok(reply(&answer.await?))
 }
 
-/// An answer as the page takes it.
-pub(super) fn page(answer: &Answer, windows: &BTreeMap<String, [f64; 2]>) -> Value {
-    let drawn = answer.figures.iter().map(|figure| {
-        let view = View { most_points: MOST_POINTS, window: windows.get(&figure.id).copied() };
-        plotly::figure(figure, view)
-    });
-    json!({
-        "facts": answer.facts,
-        "warnings": answer.warnings,
-        "figures": drawn.collect::<Vec<_>>(),
-        "disabled": answer.disabled,
-        "command": answer.command,
-        "firmware": answer.firmware,
-        "findings": answer.findings.iter().map(|it| (it.is_fault(), it.about, it.sentence())).collect::<Vec<_>>(),
-    })
-}
-
-/// A command with uploaded files named as they were on the user's disk.
-fn naming_files_below(command: &str, folder: &Path) -> String {
-    let folder = format!("{}/", folder.display());
-    let mut pieces = command.split(&folder);
-    let first = pieces.next().unwrap_or_default().to_owned();
-    // Each file lies in a folder that is called like its field.
-    let names = pieces.map(|piece| piece.split_once('/').map_or(piece, |(_, name)| name));
-    names.fold(first, |command, name| command + name)
-}
-
-fn find(shared: &Shared, name: &str) -> Result<&'static dyn AnySystem, Refusal> {
+pub(super) fn find(shared: &Shared, name: &str) -> Result<&'static dyn AnySystem, Refusal> {
     let found = shared.systems.iter().copied().find(|system| system.name() == name);
     found.ok_or_else(|| Refusal::of(format!("there is no system {name:?}")))
 }
 
-fn keep(shared: &Shared, opened: Box<dyn Opened>, folder: Option<PathBuf>) -> Response {
-    let controls: Vec<_> = opened.settings().iter().map(Setting::control).collect();
-    let session = shared.sessions.add(Recording { opened: Arc::from(opened), folder });
-    reply(&json!({ "session": session, "controls": controls }))
-}
-
 /// Computes on a thread of its own, so that the page stays answered.
-async fn beside<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, Error> + Send + 'static,
+pub(super) async fn beside<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
-    match tokio::task::spawn_blocking(work).await {
-        Ok(result) => result.map_err(Refusal::from),
-        Err(failure) => Err(Refusal(StatusCode::INTERNAL_SERVER_ERROR, failure.to_string())),
-    }
+    let failed = |failure: tokio::task::JoinError| {
+        Refusal(StatusCode::INTERNAL_SERVER_ERROR, failure.to_string())
+    };
+    tokio::task::spawn_blocking(work).await.map_err(failed)?
 }

@@ -5,9 +5,11 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use axum::routing::get;
 
-const FILES: [(&str, &str, &str); 5] = [
+const FILES: [(&str, &str, &str); 7] = [
     ("/", "text/html; charset=utf-8", include_str!("../../../assets/explorer.html")),
     ("/page.css", "text/css; charset=utf-8", include_str!("../../../assets/page.css")),
+    ("/clock.js", "text/javascript; charset=utf-8", include_str!("../../../assets/clock.js")),
+    ("/controls.js", "text/javascript; charset=utf-8", include_str!("../../../assets/controls.js")),
     ("/figures.js", "text/javascript; charset=utf-8", include_str!("../../../assets/figures.js")),
     ("/explorer.js", "text/javascript; charset=utf-8", include_str!("../../../assets/explorer.js")),
     (

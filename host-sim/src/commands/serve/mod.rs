@@ -4,9 +4,12 @@
 
 mod api;
 mod assets;
+mod compare;
 mod connections;
+mod downloads;
 mod guard;
 mod key;
+mod question;
 mod sessions;
 mod socket;
 mod uploads;
@@ -138,8 +141,9 @@ fn router(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .route("/api/sources", get(api::sources))
         .route("/api/open/{system}", post(api::open_files))
-        .route("/api/open/{system}/{recording}", post(api::open_bundled))
-        .route("/api/answer/{session}", post(api::answer))
+        .route("/api/open/{system}/{recording}", post(api::open_named))
+        .route("/api/answer/{system}/{recording}", post(api::answer))
+        .route("/api/download/{system}/{recording}/{file}", post(downloads::download))
         .route("/live", get(socket::open))
         .layer(DefaultBodyLimit::max(LARGEST))
         .with_state(Arc::new(shared))

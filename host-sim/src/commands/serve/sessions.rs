@@ -1,61 +1,132 @@
-//! Recordings that are open.
+//! Recordings that are open, and files from which they can be opened again.
 
 use std::collections::VecDeque;
-use std::fmt;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::system::Opened;
+use tempfile::TempDir;
+
+use super::api::Refusal;
+use super::uploads::is_hash;
+use crate::Error;
+use crate::system::{AnySystem, Files, Opened, Settings, Source};
 
 /// As many as a person compares; a day of satellites is large.
-const MOST: usize = 8;
+const MOST_OPEN: usize = 8;
+/// Uploads whose files are kept.
+const MOST_KEPT: usize = 24;
 
-/// The last few recordings that were opened.
+/// The last few recordings that were opened, and the last uploads.
 #[derive(Default)]
-pub(super) struct Sessions(Mutex<Open>);
-
-#[derive(Default)]
-struct Open {
-    next: u64,
-    recordings: VecDeque<(u64, Recording)>,
+pub(super) struct Sessions {
+    open: Mutex<VecDeque<(Name, Recording)>>,
+    uploads: Mutex<VecDeque<(Name, Upload)>>,
 }
+
+/// A system, and what the address calls its recording: that of a synthetic one, or the hash of what was uploaded.
+pub(super) type Name = (&'static str, String);
 
 /// A recording that is open.
 #[derive(Clone)]
 pub(super) struct Recording {
     pub(super) opened: Arc<dyn Opened>,
-    /// Where its files lay while they were read: no business of the page's.
-    pub(super) folder: Option<PathBuf>,
+    /// No business of the page's.
+    folder: Option<Arc<TempDir>>,
+    /// Names of its files, for people; none of a synthetic one.
+    pub(super) files: Option<String>,
+}
+
+impl Recording {
+    /// Where its files lie, if it has any.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref().map(TempDir::path)
+    }
+
+    /// An error about its files by the names that they have elsewhere.
+    pub(super) fn naming_files(&self, error: Error) -> Error {
+        match self.folder() {
+            Some(folder) => error.naming_files_below(folder),
+            None => error,
+        }
+    }
+}
+
+/// Files that the page sent.
+#[derive(Clone)]
+pub(super) struct Upload {
+    pub(super) files: Files,
+    pub(super) folder: Arc<TempDir>,
+}
+
+impl Upload {
+    /// The recording of these files.
+    pub(super) fn opened(&self, opened: Box<dyn Opened>) -> Recording {
+        let names = self.files.paths().filter_map(|path| path.file_name());
+        let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
+        let (folder, files) = (Some(Arc::clone(&self.folder)), Some(names.join(", ")));
+        Recording { opened: Arc::from(opened), folder, files }
+    }
 }
 
 impl Sessions {
-    /// Keeps a recording, closes the oldest if there are too many, and says by which number to ask for it.
-    pub(super) fn add(&self, recording: Recording) -> u64 {
-        let mut open = self.lock();
-        let number = open.next;
-        open.next += 1;
-        open.recordings.push_back((number, recording));
-        if open.recordings.len() > MOST {
-            open.recordings.pop_front();
+    /// Keeps a recording, and closes the one that nobody asked for for the longest time if there are too many.
+    pub(super) fn add(&self, name: Name, recording: Recording) {
+        put(&mut lock(&self.open), name, recording, MOST_OPEN);
+    }
+
+    /// Keeps files, so that their recording can be opened again.
+    pub(super) fn keep(&self, name: Name, upload: Upload) {
+        put(&mut lock(&self.uploads), name, upload, MOST_KEPT);
+    }
+
+    /// The recording of that name, opened again if need be.
+    ///
+    /// # Errors
+    /// If there is none of that name, or no longer.
+    pub(super) fn get(
+        &self,
+        system: &'static dyn AnySystem,
+        recording: &str,
+    ) -> Result<Recording, Refusal> {
+        let name = (system.name(), recording.to_owned());
+        if let Some(open) = take(&mut lock(&self.open), &name) {
+            return Ok(open);
         }
-        number
-    }
-
-    /// The recording of that number, if it is still open.
-    pub(super) fn get(&self, number: u64) -> Option<Recording> {
-        let open = self.lock();
-        let found = open.recordings.iter().find(|(known, _)| *known == number);
-        found.map(|(_, recording)| recording.clone())
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Open> {
-        // Nothing is left half done in there.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        let upload = take(&mut lock(&self.uploads), &name);
+        let source = match &upload {
+            Some(upload) => Source::Files(upload.files.clone()),
+            None if is_hash(recording) => return Err(Refusal::gone()),
+            None => Source::Synthetic(recording.to_owned()),
+        };
+        let settings = Settings::new(system.settings());
+        let opened = system.open(source, &settings).map_err(Refusal::of)?;
+        let recording = match upload {
+            Some(upload) => upload.opened(opened),
+            None => Recording { opened: Arc::from(opened), folder: None, files: None },
+        };
+        self.add(name, recording.clone());
+        Ok(recording)
     }
 }
 
-impl fmt::Debug for Sessions {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Sessions").field("open", &self.lock().recordings.len()).finish()
+/// Puts what is asked for latest to the end.
+fn put<T>(all: &mut VecDeque<(Name, T)>, name: Name, value: T, most: usize) {
+    all.retain(|(known, _)| *known != name);
+    all.push_back((name, value));
+    if all.len() > most {
+        all.pop_front();
     }
+}
+
+fn take<T: Clone>(all: &mut VecDeque<(Name, T)>, name: &Name) -> Option<T> {
+    let place = all.iter().position(|(known, _)| known == name)?;
+    let latest = all.remove(place)?;
+    let value = latest.1.clone();
+    all.push_back(latest);
+    Some(value)
+}
+
+fn lock<T>(all: &Mutex<T>) -> MutexGuard<'_, T> {
+    // Nothing is left half done in there.
+    all.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,6 +1,5 @@
 //! A stream, as it comes.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,7 +8,8 @@ use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::response::Response;
 use tokio::time::{MissedTickBehavior, interval};
 
-use super::api::{Refusal, page};
+use super::api::Refusal;
+use super::question::{Windows, page};
 use super::{Shared, View};
 
 /// Between two pictures at least: a person sees no more, and a page draws no faster.
@@ -33,8 +33,10 @@ async fn show(mut socket: WebSocket, live: View) {
     loop {
         beat.tick().await;
         let view = Arc::clone(&live);
-        let drawn =
-            tokio::task::spawn_blocking(move || page(&view(), &BTreeMap::new()).to_string());
+        let drawn = tokio::task::spawn_blocking(move || {
+            let answer = view();
+            page(&answer, &answer.figures, &Windows::default()).to_string()
+        });
         let Ok(text) = drawn.await else { return };
         if socket.send(Message::Text(text.into())).await.is_err() {
             return;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use axum::extract::multipart::Field;
 use axum::http::StatusCode;
+use sha2::{Digest, Sha256};
 use tempfile::TempDir;
 use tokio::sync::{Semaphore, SemaphorePermit};
 
@@ -43,8 +44,36 @@ impl Uploads {
     }
 }
 
+/// What an upload is called: a hash of everything in it.
+#[derive(Default)]
+pub(super) struct Content(Sha256);
+
+impl Content {
+    /// Goes on with a field or a file's name. Where it ends is part of it.
+    pub(super) fn say(&mut self, text: &str) {
+        self.0.update((text.len() as u64).to_le_bytes());
+        self.0.update(text);
+    }
+
+    /// 128 of its bits.
+    pub(super) fn name(self) -> String {
+        let mut hash = kestirim_sweep::hex(&self.0.finalize());
+        hash.truncate(32);
+        hash
+    }
+}
+
+/// Whether a recording's name is that of an upload.
+pub(super) fn is_hash(name: &str) -> bool {
+    name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit())
+}
+
 /// Writes a file as it comes; where it lies.
-pub(super) async fn write(folder: &Path, mut part: Field<'_>) -> Result<PathBuf, Refusal> {
+pub(super) async fn write(
+    folder: &Path,
+    mut part: Field<'_>,
+    content: &mut Content,
+) -> Result<PathBuf, Refusal> {
     let field = part.name().unwrap_or_default().to_owned();
     // The name alone: what a browser sends may hold a path, and it is told apart from others by its field.
     let name = Path::new(part.file_name().unwrap_or_default()).file_name();
@@ -56,7 +85,10 @@ pub(super) async fn write(folder: &Path, mut part: Field<'_>) -> Result<PathBuf,
         File::create(&path)
     };
     let mut file = create().map_err(Refusal::of)?;
+    content.say(&field);
+    content.say(&path.file_name().unwrap_or_default().to_string_lossy());
     while let Some(bytes) = part.chunk().await.map_err(Refusal::of)? {
+        content.0.update(&bytes);
         file.write_all(&bytes).map_err(Refusal::of)?;
     }
     Ok(path)

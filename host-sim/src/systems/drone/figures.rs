@@ -61,11 +61,14 @@ impl Drawing<'_> {
     /// The plane in which the user is, as it is believed to be now.
     fn map(&self, plane_m: Option<f64>) -> Figure {
         let track = self.track;
+        let begin = track.stops.first().map_or(0.0, |stop| stop.t);
         let so_far = &track.estimates[..=self.now];
         let shown = &so_far[self.now];
         let stop = track.stop(shown);
-        let drones = track.stops[..=shown.stop].iter().map(|stop| stop.place);
-        let users = so_far.iter().filter_map(|estimate| track.user(estimate));
+        let stops = &track.stops[..=shown.stop];
+        let flown = Series::path("drone", stops.iter().map(|stop| stop.place));
+        let users = so_far.iter().filter_map(|it| Some((track.seconds(it), track.user(it)?)));
+        let (user_times, users): (Vec<_>, Vec<_>) = users.unzip();
         let plane = plane_m.map(|side_m| [-0.02 * side_m, 1.02 * side_m]);
         let mut figure = Figure::new("map", "Where the user is")
             .axes("x, m", "y, m")
@@ -88,9 +91,14 @@ impl Drawing<'_> {
         let user = track.user(shown).into_iter();
         let estimates = so_far.iter().map(|estimate| estimate.place);
         figure
-            .with(Series::path("drone", drones).coloured(Colour::Other(1)))
-            .with(Series::path("user", users).coloured(Colour::Truth))
-            .with(Series::path("estimates", estimates).coloured(Colour::Ours).hidden())
+            .with(flown.timed(stops.iter().map(|it| it.t - begin)).coloured(Colour::Other(1)))
+            .with(Series::path("user", users).timed(user_times).coloured(Colour::Truth))
+            .with(
+                Series::path("estimates", estimates)
+                    .timed(so_far.iter().map(|it| track.seconds(it)))
+                    .coloured(Colour::Ours)
+                    .hidden(),
+            )
             .with(marked(
                 "drone now",
                 stop.place,
@@ -117,7 +125,7 @@ impl Drawing<'_> {
             Series::line(name, times.clone(), values).coloured(colour)
         });
         Figure::new(id, title)
-            .axes("t, s", label)
+            .over_seconds(label)
             .caption(
                 "The broken line is now. What needs the truth is not shown where nobody knows it.",
             )
@@ -143,7 +151,7 @@ impl Drawing<'_> {
         let at_user = expected("expected at the user", &|it| track.user(it), Colour::Truth);
         let at_estimate = expected("expected at the estimate", &|it| Some(it.place), Colour::Ours);
         Figure::new("path-loss", "Path loss")
-            .axes("t, s", "path loss, or negative level, dB")
+            .over_seconds("path loss, or negative level, dB")
             .caption("What is expected is the channel's mean, with and without a line of sight.")
             .with(Series::new("measured", Mark::Dots, times, losses).coloured(Colour::Other(4)))
             .with_all(at_user)

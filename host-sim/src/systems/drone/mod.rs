@@ -60,6 +60,7 @@ impl System for Drone {
     const OUTPUTS: &'static [OutputField] = &[OutputField {
         name: "track",
         help: "Write t,x,y,sd and health of each measurement to this file",
+        endings: &["csv"],
     }];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Losses];
 

@@ -2,6 +2,7 @@ use kestirim_replay::drone::{EnvironmentKind, Quantity, Stop, wavelength_m};
 use kestirim_telemetry::{Message, PathLoss};
 use std::fmt::Write as _;
 use std::fs;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -16,7 +17,7 @@ fn open(name: &str) -> Box<dyn Opened> {
     Drone.open(Source::Synthetic(name.to_owned()), &settings).unwrap()
 }
 
-fn answer(opened: &dyn Opened, sent: &Value) -> Answer {
+fn answer(opened: &dyn Opened, sent: &Value) -> Arc<Answer> {
     opened.answer(&Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap()).unwrap()
 }
 

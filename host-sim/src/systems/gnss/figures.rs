@@ -81,7 +81,7 @@ pub fn errors<'a>(
     let line = |(filter, followed): (FilterKind, &Followed)| {
         error(filter.title(), followed, truth).coloured(colour(filter))
     };
-    figure.axes("time, h", "3-D error, m").logarithmic().with_all(filters.into_iter().map(line))
+    figure.over_hours("3-D error, m").logarithmic().with_all(filters.into_iter().map(line))
 }
 
 /// The distance from a place over the hours, m.
@@ -98,7 +98,7 @@ pub fn components(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> 
     let after = followed.fixes.first().map(|fix| fix.t + 1800.0);
     let late = followed.fixes.iter().zip(&places).filter(|(fix, _)| Some(fix.t) > after);
     let most = late.flat_map(|(_, place)| place).fold(0.05_f64, |most, it| most.max(it.abs()));
-    figure.axes("time, h", "position, m").showing(None, Some([-1.1 * most, 1.1 * most])).with_all(
+    figure.over_hours("position, m").showing(None, Some([-1.1 * most, 1.1 * most])).with_all(
         ["east", "north", "up"].into_iter().enumerate().map(|(axis, name)| {
             Series::line(name, hours(followed), along(axis)).coloured(Colour::Other(axis))
         }),
@@ -108,7 +108,7 @@ pub fn components(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> 
 /// The standard deviations that the filter reports over the hours, and the error where the truth is known.
 pub fn deviations(figure: Figure, followed: &Followed, truth: Option<&Vector3<f64>>) -> Figure {
     let along = |axis: usize| followed.deviations.iter().map(|it| it[axis]).collect();
-    let figure = figure.axes("time, h", "standard deviation, m").logarithmic().with_all(
+    let figure = figure.over_hours("standard deviation, m").logarithmic().with_all(
         ["east", "north", "up"].into_iter().enumerate().map(|(axis, name)| {
             Series::line(name, hours(followed), along(axis)).coloured(Colour::Other(axis))
         }),
@@ -133,14 +133,11 @@ pub fn left(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
     let (far, near): (Vec<_>, Vec<_>) = used.partition(|[_, value]| value.abs() > FAR);
     let step = near.len().div_ceil(DRAWN_NEAR).max(1);
     let near = near.into_iter().step_by(step);
-    figure
-        .axes("time, h", "residual, σ")
-        .with(Series::points("in use", near).marked(Mark::Dots))
-        .with(
-            Series::points(format!("in use, beyond {FAR} σ"), far)
-                .marked(Mark::Dots)
-                .coloured(Colour::Alarm),
-        )
+    figure.over_hours("residual, σ").with(Series::points("in use", near).marked(Mark::Dots)).with(
+        Series::points(format!("in use, beyond {FAR} σ"), far)
+            .marked(Mark::Dots)
+            .coloured(Colour::Alarm),
+    )
 }
 
 /// Residuals of each satellite over the hours, and those for which observations were rejected.
@@ -163,7 +160,7 @@ pub fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
             .marked(Mark::Dots)
             .coloured(Colour::Other(place))
     });
-    figure.axes("time, h", "residual, σ").with_all(satellites).with(
+    figure.over_hours("residual, σ").with_all(satellites).with(
         Series::points("rejected", rejected).marked(Mark::Crosses).coloured(Colour::Alarm).hidden(),
     )
 }
@@ -194,7 +191,7 @@ pub fn satellites(figure: Figure, followed: &Followed) -> Figure {
         })
     });
     figure
-        .axes("time, h", "satellite (PRN)")
+        .over_hours("satellite (PRN)")
         .with(Series::path("used", used).coloured(Colour::Truth))
         .with(Series::points("code rejected", codes).marked(Mark::Dots).coloured(Colour::Other(1)))
         .with(Series::points("phase rejected", phases).marked(Mark::Dots).coloured(Colour::Alarm))
@@ -205,17 +202,20 @@ pub fn satellites(figure: Figure, followed: &Followed) -> Figure {
 pub fn plan(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
     let begin = followed.fixes.first().map_or(0.0, |fix| fix.t);
     let places = followed.fixes.iter().zip(followed.enu_from(about));
-    let (early, late): (Vec<_>, Vec<_>) = places.partition(|(fix, _)| fix.t < begin + BEGINNING);
-    let points = |places: Vec<(_, [f64; 3])>| places.into_iter().map(|(_, [e, n, _])| [e, n]);
+    let places = places.map(|(fix, [e, n, _])| (fix.t, [e, n]));
+    let (early, late): (Vec<_>, Vec<_>) = places.partition(|(t, _)| *t < begin + BEGINNING);
     // A short recording has nothing else to show.
     let hide = |series: Series| if late.is_empty() { series } else { series.hidden() };
-    let early = Series::points("first hour", points(early)).marked(Mark::Dots);
-    let early = hide(early.coloured(Colour::Other(1)));
+    let dots = |name: &str, places: &[(f64, [f64; 2])]| {
+        let dots = Series::points(name, places.iter().map(|(_, place)| *place)).marked(Mark::Dots);
+        dots.timed(places.iter().map(|(t, _)| *t))
+    };
+    let early = hide(dots("first hour", &early).coloured(Colour::Other(1)));
     figure
         .axes("east, m", "north, m")
         .map()
         .with(early)
-        .with(Series::points("after it", points(late)).marked(Mark::Dots))
+        .with(dots("after it", &late))
         .with(Series::points("origin", [[0.0, 0.0]]).coloured(Colour::Truth))
 }
 

@@ -74,10 +74,12 @@ impl System for Gnss {
             name: "track",
             help: "Write t,x,y,z (s, ECEF m), standard deviations and health of each epoch with a solution to this file; \
                    by its ending .pos (RTKLIB), .nmea, .kml or .gpx instead",
+            endings: &["csv", "pos", "nmea", "kml", "gpx"],
         },
         OutputField {
             name: "residuals",
             help: "Write residuals, weights and reasons of each observation to this file",
+            endings: &["csv"],
         },
     ];
 

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::*;
@@ -9,7 +11,7 @@ fn open(name: &str) -> Box<dyn Opened> {
     Gnss.open(Source::Synthetic(name.to_owned()), &settings).unwrap()
 }
 
-fn answered(opened: &dyn Opened, sent: &Value) -> Answer {
+fn answered(opened: &dyn Opened, sent: &Value) -> Arc<Answer> {
     let sent = sent.as_object().cloned().unwrap_or_default();
     opened.answer(&Settings::sent(opened.settings(), &sent).unwrap()).unwrap()
 }

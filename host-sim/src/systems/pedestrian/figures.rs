@@ -16,7 +16,6 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::STANDARD_GRAVITY;
 use crate::system::Answer;
 
-const TIME: &str = "time, s";
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Of the axes, wherever a colour means nothing else.
 const COLOURS: [Colour; 3] = [Colour::Other(0), Colour::Other(1), Colour::Other(2)];
@@ -84,19 +83,18 @@ impl<'a> Placed<'a> {
     /// The way of the foot.
     pub fn path(&self, name: &str) -> Series {
         let track = self.trace.walk.track.iter();
-        Series::path(name, track.map(|point| self.placement.onto_plan(point.horizontal())))
+        let path = track.map(|point| self.placement.onto_plan(point.horizontal()));
+        Series::path(name, path).timed(self.times())
     }
 
     /// Where the foot stood after each stride.
     pub fn strides(&self, name: &str) -> Series {
-        let strides = self.trace.walk.strides.iter();
-        Series::points(
-            name,
-            strides.map(|stride| {
-                let [x, y, _] = stride.position;
-                self.placement.onto_plan([x, y])
-            }),
-        )
+        let strides = &self.trace.walk.strides;
+        let places = strides.iter().map(|stride| {
+            let [x, y, _] = stride.position;
+            self.placement.onto_plan([x, y])
+        });
+        Series::points(name, places).timed(strides.iter().map(|stride| seconds(stride.time_us)))
     }
 
     /// The velocity along an axis of the plan, counted from 0, over time.
@@ -132,7 +130,7 @@ impl<'a> Placed<'a> {
 /// The accelerometer over time.
 pub fn accelerometer(id: &str, samples: &[Sample]) -> Figure {
     Figure::new(id, "Accelerometer")
-        .axes(TIME, "specific force, g")
+        .over_seconds("specific force, g")
         .caption(
             "The three axes of the sensor as logged; at rest gravity alone, spread over all three.",
         )
@@ -142,7 +140,7 @@ pub fn accelerometer(id: &str, samples: &[Sample]) -> Figure {
 /// The gyroscope over time.
 pub fn gyroscope(id: &str, samples: &[Sample]) -> Figure {
     Figure::new(id, "Gyroscope")
-        .axes(TIME, "angular rate, °/s")
+        .over_seconds("angular rate, °/s")
         .caption("The three axes of the sensor as logged: the foot pitches down, swings through, and lands on its heel.")
         .with_all(triad(samples, |sample| sample.angular_rate.map(f64::to_degrees)))
 }
@@ -155,7 +153,7 @@ pub fn magnitude(id: &str, samples: &[Sample]) -> Figure {
     };
     let magnitudes = samples.iter().map(magnitude).collect();
     Figure::new(id, "Magnitude of the specific force, |a|")
-        .axes(TIME, "|a|, g; 1 = standing, 0 = moving")
+        .over_seconds("|a|, g; 1 = standing, 0 = moving")
         .caption("Gravity is part of |a|: at rest it is 1 g, and in every swing it passes 1 g several times.")
         .with(Series::line("|a|", times(samples), magnitudes).coloured(Colour::Other(5)))
 }
@@ -173,7 +171,7 @@ pub fn threshold(samples: &[Sample], threshold_g: f64) -> Series {
 pub fn velocities(id: &str, placed: &Placed<'_>) -> Figure {
     let axis = |i: usize| placed.velocity(AXES[i], i).coloured(COLOURS[i]);
     Figure::new(id, "Velocity with zero-velocity updates")
-        .axes(TIME, "velocity, m/s")
+        .over_seconds("velocity, m/s")
         .caption("A hump a stride, and zero between; the sign tells the direction.")
         .with_all((0..3).map(axis))
 }
@@ -189,7 +187,7 @@ pub fn velocity(id: &str, with: &Placed<'_>, without: &Placed<'_>) -> Figure {
         if i == 0 { [without, with] } else { [without.hidden(), with.hidden()] }
     };
     Figure::new(id, "Velocity with and without zero-velocity updates")
-        .axes(TIME, "velocity, m/s")
+        .over_seconds("velocity, m/s")
         .caption("Without updates the velocity never comes back to zero when the foot stands; with them it does.")
         .with_all((0..3).flat_map(axis))
 }
@@ -205,7 +203,7 @@ pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
         Series::new(format!("true {}", AXES[i]), mark, times, values).coloured(Colour::Truth)
     });
     Figure::new(id, "Position")
-        .axes(TIME, "position, m")
+        .over_seconds("position, m")
         .caption("Flat in stance, one step a stride; z stays near zero on a flat floor.")
         .with_all(ours)
         .with_all(truth)

@@ -69,6 +69,7 @@ impl System for Pedestrian {
     const OUTPUTS: &'static [OutputField] = &[OutputField {
         name: "track",
         help: "Write t,x,y,z, standard deviations and health of every (averaged) sample to this file",
+        endings: &["csv"],
     }];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Forces, Panel::Rates];
 

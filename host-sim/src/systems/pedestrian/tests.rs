@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use kestirim_replay::pedestrian::{Options, Trace, trace, walk, without_updates};
 use serde_json::{Value, json};
 
@@ -10,7 +12,7 @@ fn open(name: &str) -> Box<dyn Opened> {
     Pedestrian.open(Source::Synthetic(name.to_owned()), &settings).unwrap()
 }
 
-fn answer(opened: &dyn Opened, sent: &Value) -> Answer {
+fn answer(opened: &dyn Opened, sent: &Value) -> Arc<Answer> {
     let sent = sent.as_object().cloned().unwrap_or_default();
     opened.answer(&Settings::sent(opened.settings(), &sent).unwrap()).unwrap()
 }

@@ -13,7 +13,6 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
 use crate::system::Answer;
 
-const TIME: &str = "time, s";
 /// χ² of one degree of freedom, 95 %.
 const CHI_SQUARE_1: f64 = 3.841;
 /// Ellipses along a track.
@@ -104,7 +103,13 @@ impl<'a> Shown<'a> {
             });
             found.chain([[f64::NAN; 2]]).collect::<Vec<_>>()
         };
-        Series::path(name, self.traces.iter().flat_map(positions)).marked(mark)
+        let series = Series::path(name, self.traces.iter().flat_map(positions)).marked(mark);
+        series.timed(self.traces.iter().zip(&self.shifts_s).flat_map(|(trace, shift_s)| {
+            let times = trace.epochs.iter().map(|epoch| epoch.time_us);
+            // The gap after a part.
+            let gap = trace.epochs.last().map_or(0, |epoch| epoch.time_us);
+            times.chain([gap]).map(|time_us| time_us as f64 * 1e-6 + shift_s).collect::<Vec<_>>()
+        }))
     }
 
     /// Where 95 of 100 positions would be if the tracker's covariance were right.
@@ -148,7 +153,7 @@ impl<'a> Shown<'a> {
         };
         let names = &self.recording.anchors.names;
         let mut figure = Figure::new(id, "Ranges")
-            .axes(TIME, "range, m")
+            .over_seconds("range, m")
             .caption("What each anchor measured; a cross is a range that the tracker left out.");
         for (anchor, name) in names.iter().enumerate() {
             let taken = self.over_time(name.clone(), Mark::Dots, of(anchor, true));
@@ -183,7 +188,7 @@ impl<'a> Shown<'a> {
             ends.map(|epoch| (epoch.time_us, CHI_SQUARE_1)).collect()
         };
         Figure::new(id, "Health")
-            .axes(TIME, "NIS of a range; σ of the position, cm")
+            .over_seconds("NIS of a range; σ of the position, cm")
             .logarithmic()
             .showing(None, Some([1e-2, 1e3]))
             .caption("95 % of the NIS are below the line if the model is right; what is left out is far above it.")
@@ -214,7 +219,7 @@ impl<'a> Shown<'a> {
             self.over_time(name, Mark::Dashes, of).coloured(Colour::Truth)
         });
         Figure::new(id, "Position")
-            .axes(TIME, "position, m")
+            .over_seconds("position, m")
             .caption("Coordinates in the room; z is as given unless the tracker estimates it.")
             .with_all(truth)
             .with_all(ours)
@@ -247,7 +252,7 @@ impl<'a> Shown<'a> {
 /// Errors over time of one or more trackers.
 pub fn errors(id: &str, series: impl IntoIterator<Item = Series>) -> Figure {
     Figure::new(id, "Error")
-        .axes(TIME, "horizontal error, cm")
+        .over_seconds("horizontal error, cm")
         .caption("The distance from the true place, where that is known.")
         .with_all(series)
 }

@@ -86,6 +86,7 @@ impl System for Robot {
     const OUTPUTS: &'static [OutputField] = &[OutputField {
         name: "track",
         help: "Write t,x,y,z (point,x,y,z with --points), standard deviations and health of every epoch to this file, with --smooth the smoothed ones",
+        endings: &["csv"],
     }];
     const CHECKED: &'static [&'static str] = &["height", "dim", "calibrated"];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Ranges];

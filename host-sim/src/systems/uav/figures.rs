@@ -107,7 +107,7 @@ fn drawn(state: usize, ours: &Track, estimators: [Option<&Track>; 2]) -> Figure 
     let [luenberger, kalman] = estimators.map(estimated);
     let (x, y) = measured;
     Figure::new(STATE_SLUGS[state], STATE_NAMES[state])
-        .axes("t, s", label)
+        .over_seconds(label)
         .caption(
             "An estimate is of its time before that time's measurement was seen, or after it in a log.",
         )
@@ -128,7 +128,7 @@ fn error(ours: &Track, estimators: [Option<&Track>; 2]) -> Figure {
     };
     let [luenberger, kalman] = estimators.map(of);
     Figure::new("error", "Error")
-        .axes("t, s", "largest |error| / band of the four states")
+        .over_seconds("largest |error| / band of the four states")
         .logarithmic()
         .caption(format!(
             "Bands: {} of {}. Nothing is shown where the truth is not known.",

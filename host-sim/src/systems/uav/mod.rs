@@ -73,6 +73,7 @@ impl System for Uav {
     const OUTPUTS: &'static [OutputField] = &[OutputField {
         name: "track",
         help: "Write t,alpha,q,V,theta, standard deviations and health of each line to this file",
+        endings: &["csv"],
     }];
     const PANELS: &'static [Panel] = &[Panel::Angles, Panel::Airspeed];
 

@@ -1,5 +1,6 @@
 use std::fmt::Write as _;
 use std::fs;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -11,12 +12,12 @@ fn open(name: &str) -> Box<dyn Opened> {
     Uav.open(Source::Synthetic(name.to_owned()), &settings).unwrap()
 }
 
-fn tried(opened: &dyn Opened, sent: &Value) -> Result<Answer, Error> {
+fn tried(opened: &dyn Opened, sent: &Value) -> Result<Arc<Answer>, Error> {
     let sent = sent.as_object().cloned().unwrap_or_default();
     opened.answer(&Settings::sent(opened.settings(), &sent).unwrap())
 }
 
-fn answer(opened: &dyn Opened, sent: &Value) -> Answer {
+fn answer(opened: &dyn Opened, sent: &Value) -> Arc<Answer> {
     tried(opened, sent).unwrap()
 }
 
@@ -32,7 +33,7 @@ fn synthetic_flights_answer_with_the_same_figures_whatever_the_settings() {
         let ids = |sent: Value| -> Vec<String> {
             let answer = answer(&*opened, &sent);
             assert!(answer.warnings.is_empty(), "{:?}", answer.warnings);
-            answer.figures.into_iter().map(|figure| figure.id).collect()
+            answer.figures.iter().map(|figure| figure.id.clone()).collect()
         };
         let first = ids(json!({}));
         assert_eq!(
@@ -144,7 +145,7 @@ fn firmware_says_the_estimator_and_its_scalar() {
             "Estimator::<kestirim_scalar::Q16_16, 2>::constant_gain(",
         ),
     ] {
-        let firmware = answer(&*opened, &sent).firmware;
+        let firmware = answer(&*opened, &sent).firmware.clone();
         assert!(firmware.contains(expected), "{firmware}");
     }
     let settings = Settings::new(settings::table());

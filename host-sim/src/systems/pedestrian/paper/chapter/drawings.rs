@@ -35,7 +35,7 @@ pub(super) fn of_the_velocity(slow: &Typical, fast: &Typical, truth: &Scenario) 
     let ours = placed(fast, &fast.ours);
     let without = Placed { trace: &fast.drifting, placement: ours.placement };
     let with = Figure::new("pedestrian-figure-14", "Fig. 14: velocity with zero-velocity updates")
-        .axes("time, s", "velocity along x, m/s")
+        .over_seconds("velocity along x, m/s")
         .caption("Ours is the true velocity but for its errors; the paper's method stops within every swing.")
         .with(
             placed(fast, &fast.paper)
@@ -88,7 +88,7 @@ fn ideal(id: &str, truth: &Scenario, samples: &[Sample]) -> Figure {
     };
     let velocities = times.iter().map(velocity).collect();
     Figure::new(id, "Fig. 12: velocity as it should be")
-        .axes("time, s", "velocity along x, m/s")
+        .over_seconds("velocity along x, m/s")
         .caption("The true velocity of the synthetic foot: exactly zero from the end of a stride to the next.")
         .with(Series::line("true x", times, velocities).coloured(Colour::Truth))
 }

@@ -175,7 +175,7 @@ fn falling(report: &Report) -> Result<Figure, Error> {
         Kind::Luenberger(FAST),
     ];
     let mut figure = Figure::new("uav-catching-errors", "Largest error in bands, without noise")
-        .axes("t, s", "largest |error| / band of the four states")
+        .over_seconds("largest |error| / band of the four states")
         .caption(
             "All states are caught where a line stays below 1: a gain that knows how wrong its start is \
              hardly needs time, a steady filter is held up by the plant's zeros.",

@@ -60,7 +60,7 @@ fn by_state(
         let name = format!("{id}-{}", STATE_SLUGS[state]);
         let title = format!("{title}: {}", STATE_NAMES[state]);
         let label = format!("{}, {}", STATES[state], STATE_UNITS[state]);
-        let empty = Figure::new(name, title).axes("t, s", label).caption(caption);
+        let empty = Figure::new(name, title).over_seconds(label).caption(caption);
         draw(state, empty)
     })
 }

@@ -1,0 +1,175 @@
+//! Two results over each other, and how they differ.
+
+use crate::{Figure, Mark, Series};
+
+impl Figure {
+    /// Another result of the same figure, behind this one. Series are told apart by `names`: the other's, this one's. What is the
+    /// same in both is drawn once.
+    pub fn before(mut self, other: &Self, names: [&str; 2]) -> Self {
+        let behind = other.series.iter().filter(|series| !is_in(series, &self));
+        let behind: Vec<_> = behind
+            .map(|series| Series {
+                name: format!("{}: {}", names[0], series.name),
+                faint: true,
+                ..series.clone()
+            })
+            .collect();
+        for series in self.series.iter_mut().filter(|series| !is_in(series, other)) {
+            series.name = format!("{}: {}", names[1], series.name);
+        }
+        self.series.splice(0..0, behind);
+        self
+    }
+
+    /// What this result has more than another one, series by series, at the times of this one; on a map, how far the places of
+    /// the same time are apart. None if there is nothing to tell: no time, no other series of the same name, or the same.
+    pub fn less(&self, other: &Self) -> Option<Self> {
+        let differing = self.series.iter().filter(|series| !is_in(series, other));
+        let pairs = differing.filter_map(|series| {
+            let theirs = other.series.iter().find(|theirs| theirs.name == series.name)?;
+            let difference =
+                if self.equal { apart(series, theirs) } else { difference(series, theirs) };
+            difference.map(|(x, y)| Series {
+                hidden: series.hidden,
+                ..Series::new(series.name.clone(), marked(series.mark), x, y)
+                    .coloured(series.colour)
+            })
+        });
+        let series: Vec<_> = pairs.collect();
+        if series.is_empty() || (self.x.seconds.is_none() && !self.equal) {
+            return None;
+        }
+        let figure = Self::new(self.id.clone(), self.title.clone()).with_all(series);
+        Some(if self.equal {
+            figure
+                .over_seconds("distance, m")
+                .caption("How far the places of the same time are apart.")
+        } else {
+            let seconds = self.x.seconds.unwrap_or(1.0);
+            figure
+                .axes(self.x.label.clone(), format!("difference of {}", self.y.label))
+                .clock(seconds)
+                .caption("The later one less the earlier one, at the same time.")
+        })
+    }
+}
+
+/// Whether a figure has the same series.
+fn is_in(series: &Series, figure: &Figure) -> bool {
+    // Gaps are no numbers, and gaps all the same.
+    let same = |a: &[f64], b: &[f64]| {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+    };
+    let mut others = figure.series.iter().filter(|other| other.name == series.name);
+    others.any(|other| same(&series.x, &other.x) && same(&series.y, &other.y))
+}
+
+/// Steps become lines: between two values there is none that was kept.
+fn marked(mark: Mark) -> Mark {
+    match mark {
+        Mark::Steps | Mark::Dashes => Mark::Line,
+        mark => mark,
+    }
+}
+
+type Line = (Vec<f64>, Vec<f64>);
+
+/// None if either is no function of the horizontal axis.
+fn difference(ours: &Series, theirs: &Series) -> Option<Line> {
+    let theirs = Function::new(&theirs.x, &theirs.y)?;
+    Function::new(&ours.x, &ours.y)?;
+    let values = ours.x.iter().zip(&ours.y).map(|(&x, &y)| y - theirs.at(x));
+    Some((ours.x.clone(), values.collect()))
+}
+
+/// None if either does not know its times.
+fn apart(ours: &Series, theirs: &Series) -> Option<Line> {
+    let their_times = theirs.times.as_deref()?;
+    let (x, y) = (Function::new(their_times, &theirs.x)?, Function::new(their_times, &theirs.y)?);
+    let times = ours.times.as_deref()?;
+    let places = times.iter().zip(ours.x.iter().zip(&ours.y));
+    let values = places.map(|(&time, (&ax, &ay))| (ax - x.at(time)).hypot(ay - y.at(time)));
+    Some((times.to_vec(), values.collect()))
+}
+
+/// Values between which one may interpolate.
+struct Function<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl<'a> Function<'a> {
+    /// None without points, and where they do not go from left to right.
+    fn new(x: &'a [f64], y: &'a [f64]) -> Option<Self> {
+        let length = x.len().min(y.len());
+        let (x, y) = (&x[..length], &y[..length]);
+        (length > 0 && x.is_sorted()).then_some(Self { x, y })
+    }
+
+    /// `NaN` beyond the ends and in gaps.
+    fn at(&self, x: f64) -> f64 {
+        let after = self.x.partition_point(|&known| known < x);
+        match (self.x.get(after), after.checked_sub(1)) {
+            (Some(&known), _) if known == x => self.y[after],
+            (Some(&right), Some(before)) => {
+                let part = (x - self.x[before]) / (right - self.x[before]);
+                self.y[before] + part * (self.y[after] - self.y[before])
+            }
+            _ => f64::NAN,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Colour;
+
+    fn over_time(y: [f64; 3]) -> Figure {
+        let ours = Series::line("ours", vec![0.0, 1.0, 2.0], y.to_vec());
+        Figure::new("f", "F").over_seconds("y, m").with(ours)
+    }
+
+    #[test]
+    fn both_are_drawn_the_other_faint_behind() {
+        let level = Series::line("level", vec![0.0, 1.0], vec![1.0, f64::NAN]);
+        let [ours, other] = [1.0, 0.0].map(|y| over_time([y; 3]).with(level.clone()));
+        let both = ours.before(&other, ["A", "B"]);
+        let names: Vec<_> = both.series.iter().map(|it| (it.name.as_str(), it.faint)).collect();
+        assert_eq!(names, [("A: ours", true), ("B: ours", false), ("level", false)]);
+    }
+
+    #[test]
+    fn differences_are_between_equal_times() {
+        let other = Figure::new("f", "F").over_seconds("y, m").with(Series::line(
+            "ours",
+            vec![0.5, 2.0],
+            vec![1.0, 4.0],
+        ));
+        let less = over_time([0.0, 5.0, 6.0]).less(&other).expect("a difference");
+        let [series] = less.series.as_slice() else { panic!("{less:?}") };
+        assert!(series.y[0].is_nan(), "before the other began");
+        assert_eq!(series.y[1..], [3.0, 2.0]);
+        assert_eq!((less.x.seconds, series.colour), (Some(1.0), Colour::Ours));
+        assert!(less.y.label.contains("y, m"));
+    }
+
+    #[test]
+    fn on_a_map_it_is_the_distance() {
+        let map = |y: f64| {
+            let path = Series::path("ours", [[0.0, y], [3.0, y]]).timed([0.0, 1.0]);
+            Figure::new("m", "M").axes("x, m", "y, m").map().with(path)
+        };
+        let less = map(0.0).less(&map(2.0)).expect("a difference");
+        assert_eq!((less.equal, less.series[0].y.as_slice()), (false, &[2.0, 2.0][..]));
+    }
+
+    #[test]
+    fn what_has_no_time_has_no_difference() {
+        let poles = Figure::new("p", "P").with(Series::points("ours", [[0.0, 1.0]]));
+        assert_eq!(poles.less(&poles), None);
+        assert_eq!(over_time([0.0; 3]).less(&over_time([0.0; 3])), None, "the same");
+        let unknown = over_time([0.0; 3]).less(&Figure::new("f", "F"));
+        assert_eq!(unknown, None);
+    }
+}

@@ -1,0 +1,246 @@
+// One time for the figures of a page: a window that all of them show, and a cursor that a bar, a mouse, a finger or a key moves.
+"use strict";
+
+class Clock {
+  // `changed` is told of every new window and cursor.
+  constructor(place, changed = () => {}) {
+    this.members = new Set();
+    this.changed = changed;
+    [this.span, this.window, this.cursor, this.playing] = [null, null, null, null];
+    this.bar = Clock.#bar(this);
+    this.bar.hidden = true;
+    place.append(this.bar);
+  }
+
+  static SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+
+  static #bar(clock) {
+    const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
+    const bar = make("div", { className: "clock" });
+    bar.setAttribute("role", "group");
+    bar.setAttribute("aria-label", "time");
+    clock.play = make("button", { type: "button", textContent: "play", className: "play" });
+    clock.speed = make("select", { className: "speed", ariaLabel: "speed" });
+    clock.speed.append(...Clock.SPEEDS.map((speed) =>
+      make("option", { value: String(speed), textContent: `${speed} ×`, selected: speed === 1 })));
+    clock.slider = make("input", { type: "range", ariaLabel: "time" });
+    clock.told = make("output", {});
+    clock.all = make("button", { type: "button", textContent: "whole time", className: "whole", hidden: true });
+    clock.play.addEventListener("click", () => clock.#toggle());
+    clock.slider.addEventListener("input", () => clock.move(Number(clock.slider.value)));
+    clock.all.addEventListener("click", () => clock.look(null));
+    bar.append(clock.play, clock.speed, clock.slider, clock.told, clock.all);
+    return bar;
+  }
+
+  // All figures that are shown, before they are drawn: from when to when they reach.
+  see(figures) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const { seconds, data } of figures) {
+      if (!seconds) continue;
+      for (const { x } of data) {
+        for (const value of x) {
+          if (value === null) continue;
+          low = Math.min(low, value * seconds);
+          high = Math.max(high, value * seconds);
+        }
+      }
+    }
+    // What is zoomed in comes without what lies outside.
+    if (this.window && this.span) [low, high] = [Math.min(low, this.span[0]), Math.max(high, this.span[1])];
+    this.span = low < high ? [low, high] : null;
+    this.bar.hidden = !this.span;
+    this.#limit();
+  }
+
+  // What is shown, s.
+  range() {
+    return this.window ?? this.span;
+  }
+
+  // What a figure's axis shows; nothing to say if it is no time.
+  axis({ seconds }) {
+    return seconds && this.span ? this.range().map((end) => end / seconds) : null;
+  }
+
+  join(entry) {
+    this.members.add(entry);
+    entry.plot.addEventListener("pointermove", (event) => {
+      if (event.pointerType === "mouse" && !event.buttons && !this.playing) this.#point(entry, event);
+    });
+    // A finger that moves zooms.
+    entry.plot.addEventListener("pointerdown", (event) => {
+      if (event.pointerType !== "mouse") this.#point(entry, event);
+    });
+  }
+
+  // Once it is drawn.
+  listen(entry) {
+    const { plot, figure } = entry;
+    if (figure.seconds) plot.on("plotly_relayout", () => this.#zoomed(entry));
+    else plot.on("plotly_relayout", () => this.mark([entry]));
+    plot.on("plotly_hover", ({ points: [{ customdata }] }) => {
+      if (typeof customdata === "number" && !this.playing) this.move(customdata);
+    });
+  }
+
+  leave(entry) {
+    this.members.delete(entry);
+  }
+
+  #point({ plot, figure }, { clientX }) {
+    const axis = plot._fullLayout?.xaxis;
+    if (!figure.seconds || !axis) return;
+    const pixel = clientX - plot.getBoundingClientRect().left - axis._offset;
+    if (pixel >= 0 && pixel <= axis._length) this.move(axis.p2l(pixel) * figure.seconds);
+  }
+
+  #zoomed({ plot, figure: { seconds } }) {
+    if (!this.span) return;
+    const { autorange, range } = plot._fullLayout.xaxis;
+    const [low, high] = range.map((end) => Number(end) * seconds);
+    const known = this.range();
+    const close = (a, b) => Math.abs(a - b) <= 1e-6 * (known[1] - known[0]);
+    if (close(low, known[0]) && close(high, known[1])) return this.mark();
+    const is_all = autorange || (low <= this.span[0] && high >= this.span[1]);
+    this.look(is_all ? null : [low, high]);
+  }
+
+  // Shows another stretch of time, or all of it.
+  look(window) {
+    // As many digits as an address holds.
+    this.window = window && window.map((end) => Number(end.toPrecision(9)));
+    for (const { plot, figure } of this.members) {
+      const range = this.axis(figure);
+      const shown = plot._fullLayout?.xaxis.range;
+      if (range && shown && range.some((end, i) => end !== shown[i])) Plotly.relayout(plot, { "xaxis.range": range });
+    }
+    this.#limit();
+    this.mark();
+    this.changed(this);
+  }
+
+  // Moves the cursor to a time.
+  move(time) {
+    this.cursor = time;
+    this.mark();
+    this.changed(this);
+  }
+
+  // One step of a key, as far as an arrow of the bar goes.
+  step(by) {
+    const [low, high] = this.range() ?? [0, 0];
+    this.move(Math.min(Math.max((this.cursor ?? low) + (by * (high - low)) / 200, low), high));
+  }
+
+  #limit() {
+    if (!this.span) return;
+    const [low, high] = this.range();
+    [this.slider.min, this.slider.max, this.slider.step] = [low, high, (high - low) / 1000].map(String);
+    this.all.hidden = !this.window;
+    this.slider.value = String(this.cursor ?? low);
+  }
+
+  #toggle() {
+    if (this.playing) {
+      cancelAnimationFrame(this.playing);
+      this.playing = null;
+      this.play.textContent = "play";
+      return;
+    }
+    this.play.textContent = "pause";
+    const [low, high] = this.range();
+    if (this.cursor === null || this.cursor < low || this.cursor >= high) this.move(low);
+    let before = performance.now();
+    const step = (now) => {
+      const [, end] = this.range();
+      this.move(Math.min(this.cursor + ((now - before) / 1000) * Number(this.speed.value), end));
+      before = now;
+      this.playing = requestAnimationFrame(step);
+      if (this.cursor >= end) this.#toggle();
+    };
+    this.playing = requestAnimationFrame(step);
+  }
+
+  static #words(time, [low, high]) {
+    if (high - low < 7200) return `${time.toFixed(high - low < 20 ? 3 : 2)} s`;
+    const whole = Math.floor(time);
+    const two = (value) => String(value).padStart(2, "0");
+    return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)} h`;
+  }
+
+  // Draws the cursor where it is; nobody is asked.
+  mark(entries = this.members) {
+    if (this.cursor !== null && this.span) {
+      // From now on there is room for values.
+      document.body.classList.add("timed");
+      this.slider.value = String(this.cursor);
+      this.told.textContent = Clock.#words(this.cursor, this.span);
+      this.slider.setAttribute("aria-valuetext", this.told.textContent);
+    }
+    for (const entry of entries) {
+      if (entry.figure.seconds) this.#line(entry);
+      else if (entry.figure.data.some((series) => series.customdata)) this.#places(entry);
+    }
+  }
+
+  #line(entry) {
+    const { xaxis, yaxis } = entry.plot._fullLayout ?? {};
+    if (!xaxis || this.cursor === null) return;
+    const time = this.cursor / entry.figure.seconds;
+    const pixel = xaxis.l2p(time);
+    entry.cursor ??= Clock.#mark(entry, "cursor");
+    entry.cursor.hidden = !(pixel >= 0 && pixel <= xaxis._length);
+    entry.cursor.style.height = `${yaxis._length}px`;
+    entry.cursor.style.transform = `translate(${xaxis._offset + pixel}px, ${yaxis._offset}px)`;
+    entry.figure.data.forEach(({ x, y }, index) => {
+      const place = Clock.#at(x, time);
+      const value = place === null ? null : y[place.share < 0.5 ? place.before : place.after];
+      entry.values[index].textContent = value === null ? "" : String(Number(value.toPrecision(4)));
+    });
+  }
+
+  #places(entry) {
+    const { xaxis, yaxis } = entry.plot._fullLayout ?? {};
+    if (!xaxis || this.cursor === null) return;
+    entry.dots ??= new Map();
+    for (const dot of entry.dots.values()) dot.hidden = true;
+    entry.figure.data.forEach(({ name, x, y, customdata, visible, line, mode }) => {
+      const place = customdata && visible === true ? Clock.#at(customdata, this.cursor) : null;
+      if (!place) return;
+      // Between points that no line joins there is nothing.
+      if (!mode.includes("lines")) place.share = 0;
+      const between = (values) => values[place.before] === null || values[place.after] === null ? NaN
+        : values[place.before] + place.share * (values[place.after] - values[place.before]);
+      const [left, top] = [xaxis.l2p(between(x)), yaxis.l2p(between(y))];
+      if (!(left >= 0 && left <= xaxis._length && top >= 0 && top <= yaxis._length)) return;
+      if (!entry.dots.has(name)) entry.dots.set(name, Clock.#mark(entry, "here"));
+      const dot = entry.dots.get(name);
+      dot.hidden = false;
+      dot.style.setProperty("--series", line.color);
+      dot.style.transform = `translate(${xaxis._offset + left}px, ${yaxis._offset + top}px)`;
+    });
+  }
+
+  static #mark(entry, className) {
+    const mark = Object.assign(document.createElement("div"), { className });
+    entry.box.append(mark);
+    return mark;
+  }
+
+  static #sorted = new WeakMap();
+
+  // The neighbours of a time, and how far it is from the first to the second; null beyond the ends.
+  static #at(times, time) {
+    const sorted = Clock.#sorted.get(times) ?? times.every((value, i) => i === 0 || (value !== null && value >= times[i - 1]));
+    Clock.#sorted.set(times, sorted);
+    if (!sorted || !times.length || time < times[0] || time > times[times.length - 1]) return null;
+    let [before, after] = [0, times.length - 1];
+    while (after - before > 1) {
+      const middle = (before + after) >> 1;
+      if (times[middle] <= time) before = middle; else after = middle;
+    }
+    const width = times[after] - times[before];
+    return { before, after, share: width > 0 ? (time - times[before]) / width : 0 };
+  }
+}

@@ -1,0 +1,95 @@
+//! Two answers beside each other.
+
+use serde::{Deserialize, Serialize};
+
+use super::question::Asked;
+use crate::figure::Figure;
+use crate::system::{Answer, Setting, Settings};
+
+/// How they are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum How {
+    /// Both in one figure.
+    Over,
+    /// The later less the earlier.
+    Difference,
+}
+
+/// What they are called.
+const NAMES: [&str; 2] = ["A", "B"];
+
+/// Figures of both: of those that both have.
+pub(super) fn figures(a: &Answer, b: &Answer, how: How) -> Vec<Figure> {
+    let pairs = b.figures.iter().filter_map(|ours| {
+        let theirs = a.figures.iter().find(|theirs| theirs.id == ours.id)?;
+        match how {
+            How::Over => Some(ours.clone().before(theirs, NAMES)),
+            How::Difference => ours.less(theirs),
+        }
+    });
+    pairs.collect()
+}
+
+/// A row of the table of what changed: what it is, and how it stands in both.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub(super) struct Row(String, String, String);
+
+/// Settings and numbers in which they differ.
+pub(super) fn changed(a: &Asked, b: &Asked) -> Vec<Row> {
+    rows((&a.settings, &a.answer), (&b.settings, &b.answer))
+}
+
+fn rows(a: (&Settings, &Answer), b: (&Settings, &Answer)) -> Vec<Row> {
+    let value = |settings: &Settings, setting: &Setting| {
+        let only = settings.without(|name| name != setting.name);
+        let arguments = only.arguments();
+        if arguments.is_empty() { "default".to_owned() } else { arguments.join(" ") }
+    };
+    let settings =
+        b.0.table()
+            .iter()
+            .map(|setting| Row(setting.help.to_owned(), value(a.0, setting), value(b.0, setting)));
+    let fact = |answer: &Answer, name: &str| {
+        let found = answer.facts.iter().find(|(known, _)| known == name);
+        found.map_or_else(|| "–".to_owned(), |(_, value)| value.clone())
+    };
+    let mut names: Vec<_> = b.1.facts.iter().map(|(name, _)| name).collect();
+    let others = a.1.facts.iter().map(|(name, _)| name);
+    names.extend(others.filter(|name| !b.1.facts.iter().any(|(known, _)| known == *name)));
+    let facts = names.into_iter().map(|name| Row(name.clone(), fact(a.1, name), fact(b.1, name)));
+    settings.chain(facts).filter(|Row(_, a, b)| a != b).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_differs_is_told_and_nothing_else() {
+        let table = vec![
+            Setting::number("rate", "rate", "Hz", [1.0, 9.0, 1.0], 5.0),
+            Setting::switch("causal", "look only backwards", false),
+        ];
+        let settings = |sent: serde_json::Value| {
+            Settings::sent(table.clone(), sent.as_object().expect("an object")).expect("settings")
+        };
+        let answer = |facts: &[[&str; 2]]| Answer {
+            facts: facts.iter().map(|[a, b]| ((*a).to_owned(), (*b).to_owned())).collect(),
+            ..Answer::default()
+        };
+        let a = (settings(serde_json::json!({})), answer(&[["error", "5 cm"], ["rows", "9"]]));
+        let b = (
+            settings(serde_json::json!({ "rate": 7, "causal": false })),
+            answer(&[["error", "4 cm"], ["rows", "9"], ["lost", "1"]]),
+        );
+        let rows = rows((&a.0, &a.1), (&b.0, &b.1));
+        let row = |a: &str, b: &str, c: &str| Row(a.to_owned(), b.to_owned(), c.to_owned());
+        let expected = [
+            row("rate", "default", "--rate 7"),
+            row("error", "5 cm", "4 cm"),
+            row("lost", "–", "1"),
+        ];
+        assert_eq!(rows, expected);
+    }
+}

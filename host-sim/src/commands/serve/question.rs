@@ -1,0 +1,114 @@
+//! What the page asks, and what is answered.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+use super::Shared;
+use super::api::Refusal;
+use super::compare::How;
+use super::sessions::Recording;
+use crate::figure::{Figure, View, plotly};
+use crate::system::{Answer, AnySystem, Settings, Wanted};
+
+/// As many as a figure of the page has columns of pixels, about.
+const MOST_POINTS: usize = 700;
+
+/// How the page stands.
+#[derive(Debug, Deserialize)]
+pub(super) struct Question {
+    pub(super) settings: Map<String, Value>,
+    /// The stretch of time that is looked at, s.
+    #[serde(default)]
+    pub(super) window: Option<[f64; 2]>,
+    /// Stretches of the horizontal axes of figures that are zoomed in and have no time.
+    #[serde(default)]
+    pub(super) windows: BTreeMap<String, [f64; 2]>,
+    /// What it is compared with.
+    #[serde(default)]
+    pub(super) a: Option<Compared>,
+}
+
+/// Another recording of the same system, or other settings.
+#[derive(Debug, Deserialize)]
+pub(super) struct Compared {
+    pub(super) recording: String,
+    pub(super) settings: Map<String, Value>,
+    pub(super) how: How,
+}
+
+/// What is looked at of figures.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Windows {
+    pub(super) time_s: Option<[f64; 2]>,
+    pub(super) others: BTreeMap<String, [f64; 2]>,
+}
+
+impl Windows {
+    /// What is looked at of a figure, along its axis.
+    fn of(&self, figure: &Figure) -> Option<[f64; 2]> {
+        match figure.x.seconds {
+            Some(seconds) => self.time_s.map(|ends| ends.map(|end| end / seconds)),
+            None if figure.equal => self.time_s,
+            None => self.others.get(&figure.id).copied(),
+        }
+    }
+}
+
+/// A recording with its settings, and what came of them.
+pub(super) struct Asked {
+    recording: Recording,
+    pub(super) settings: Settings,
+    pub(super) answer: Arc<Answer>,
+}
+
+impl Asked {
+    pub(super) fn new(
+        shared: &Shared,
+        system: &'static dyn AnySystem,
+        recording: &str,
+        settings: &Map<String, Value>,
+    ) -> Result<Self, Refusal> {
+        let recording = shared.sessions.get(system, recording)?;
+        let settings = Settings::sent(recording.opened.settings(), settings)?;
+        let answer = recording.opened.answer(&settings);
+        let answer = answer.map_err(|error| recording.naming_files(error))?;
+        Ok(Self { recording, settings, answer })
+    }
+
+    /// The command that gives the same again, with uploaded files named as they were on the user's disk.
+    pub(super) fn command(&self) -> String {
+        let Some(folder) = self.recording.folder() else { return self.answer.command.clone() };
+        let folder = format!("{}/", folder.display());
+        let mut pieces = self.answer.command.split(&folder);
+        let first = pieces.next().unwrap_or_default().to_owned();
+        // Each file lies in a folder that is called like its field.
+        let names = pieces.map(|piece| piece.split_once('/').map_or(piece, |(_, name)| name));
+        names.fold(first, |command, name| command + name)
+    }
+
+    /// Writes the same files as `host-sim replay`.
+    pub(super) fn write(&self, wanted: &Wanted) -> Result<(), Refusal> {
+        let opened = &self.recording.opened;
+        let written = opened.replay(&opened.effective(&self.settings), wanted);
+        written.map(drop).map_err(|error| self.recording.naming_files(error).into())
+    }
+}
+
+/// An answer as the page takes it, with its figures or those of a comparison.
+pub(super) fn page(answer: &Answer, figures: &[Figure], windows: &Windows) -> Value {
+    let drawn = figures.iter().map(|figure| {
+        plotly::figure(figure, View { most_points: MOST_POINTS, window: windows.of(figure) })
+    });
+    json!({
+        "facts": answer.facts,
+        "warnings": answer.warnings,
+        "figures": drawn.collect::<Vec<_>>(),
+        "disabled": answer.disabled,
+        "command": answer.command,
+        "firmware": answer.firmware,
+        "findings": answer.findings.iter().map(|it| (it.is_fault(), it.about, it.sentence())).collect::<Vec<_>>(),
+    })
+}

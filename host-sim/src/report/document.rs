@@ -1,0 +1,72 @@
+//! A page with figures that needs nothing but itself.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::{Map, Value};
+
+use crate::figure::{Figure, View, plotly};
+
+const STYLE: &str = include_str!("../../assets/page.css");
+const PLOTLY: &str = include_str!("../../assets/plotly/plotly-basic.min.js");
+const CLOCK: &str = include_str!("../../assets/clock.js");
+const FIGURES: &str = include_str!("../../assets/figures.js");
+const SCRIPT: &str = include_str!("../../assets/report.js");
+
+/// More than a screen has columns, so that there is something to zoom into.
+const VIEW: View = View { most_points: 3000, window: None };
+
+/// Nothing may be fetched from anywhere.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+
+/// A page.
+pub(super) struct Document<'a> {
+    pub(super) title: &'a str,
+    pub(super) body: Markup,
+    /// By their ids; drawn where `data-figure` is such an id.
+    pub(super) figures: Map<String, Value>,
+}
+
+/// Figures as the page draws them, by their ids.
+pub(super) fn figures<'a>(figures: impl IntoIterator<Item = &'a Figure>) -> Map<String, Value> {
+    let drawn = figures.into_iter();
+    drawn.map(|figure| (figure.id.clone(), plotly::figure(figure, VIEW))).collect()
+}
+
+impl Document<'_> {
+    pub(super) fn render(self) -> String {
+        let Self { title, body, figures } = self;
+        // `</script>` in a text would end the element.
+        let figures = Value::from(figures).to_string().replace("</", "<\\/");
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta http-equiv="Content-Security-Policy" content=(POLICY);
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { (title) }
+                    link rel="icon" href="data:,";
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    (body)
+                    script id="figures" type="application/json" { (PreEscaped(figures)) }
+                    @for script in [PLOTLY, CLOCK, FIGURES, SCRIPT] { script { (PreEscaped(script)) } }
+                }
+            }
+        };
+        page.into_string()
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::PLOTLY;
+
+    /// Fails if a page asks for anything.
+    pub(in crate::report) fn assert_fetches_nothing(page: &str) {
+        let own = page.replace(PLOTLY, "");
+        for address in ["http:", "https:", "src=\"", "@import", "url("] {
+            assert!(!own.contains(address), "{address}");
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! A recording and what came of it as one page that needs nothing but itself.
+
+use maud::{Markup, html};
+
+use super::document::{Document, figures};
+use crate::system::Answer;
+
+/// What the page of a session shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Session<'a> {
+    /// What the system does.
+    pub title: &'a str,
+    /// The command that gives the same again.
+    pub command: &'a str,
+    /// What came of it.
+    pub answer: &'a Answer,
+    /// The stretch of time that is looked at, s.
+    pub window_s: Option<[f64; 2]>,
+}
+
+impl Session<'_> {
+    /// The page.
+    pub fn page(&self) -> String {
+        let Self { title, command, answer, window_s } = self;
+        let title = format!("kestirim: {title}");
+        let window = window_s.map(|[from, to]| format!("{from},{to}"));
+        let body = html! {
+            header {
+                h1 { (title) }
+                button #theme type="button" { "light / dark" }
+            }
+            main {
+                section data-clock data-window=[window] {
+                    (facts(&answer.facts))
+                    ul.warnings { @for warning in &answer.warnings { li { (warning) } } }
+                    h2 { "The same again" }
+                    p.made { code { (command) } }
+                    div.figures { @for figure in &answer.figures {
+                        figure id=(figure.id) data-figure=(figure.id) {
+                            h3 { (figure.title) }
+                            figcaption { (figure.caption) }
+                        }
+                    } }
+                }
+            }
+        };
+        Document { title: &title, body, figures: figures(&answer.figures) }.render()
+    }
+}
+
+fn facts(facts: &[(String, String)]) -> Markup {
+    html! { dl { @for (name, value) in facts { div { dt { (name) } dd { (value) } } } } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Series};
+    use crate::report::document::tests::assert_fetches_nothing;
+
+    #[test]
+    fn everything_of_the_session_is_in_the_page() {
+        let path = Series::line("ours", vec![0.0, 1.0], vec![0.0, 1.0]);
+        let mut answer = Answer {
+            warnings: vec!["beware of <b>".to_owned()],
+            figures: vec![Figure::new("position", "Position").over_seconds("m").with(path)],
+            ..Answer::default()
+        };
+        answer.fact("length", "5 m");
+        let session = Session {
+            title: "A vehicle",
+            command: "host-sim replay vehicle --log a.csv",
+            answer: &answer,
+            window_s: Some([0.25, 0.5]),
+        };
+        let page = session.page();
+        for text in [
+            "A vehicle",
+            "beware of &lt;b&gt;",
+            "5 m",
+            "--log a.csv",
+            r#"data-figure="position""#,
+            r#"data-window="0.25,0.5""#,
+        ] {
+            assert!(page.contains(text), "{text}");
+        }
+        assert_fetches_nothing(&page);
+    }
+}

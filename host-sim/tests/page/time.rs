@@ -1,0 +1,115 @@
+//! One time for all figures of a page: a window and a cursor.
+
+
+use crate::browser::{Page, Server};
+use crate::{DRAWN, OVER_TIME, SETTLED, SYSTEMS, WIDTHS, assert_quiet};
+
+/// Ranges of the axes of all plots over time, in seconds of the bar.
+fn ranges(page: &Page) -> Vec<[f64; 2]> {
+    let script = format!(
+        "JSON.stringify({OVER_TIME}.map(p => p._fullLayout.xaxis.range.map(v => \
+         p._fullLayout.xaxis.title.text.endsWith(', h') ? 3600 * v : v)))"
+    );
+    let text = page.evaluate(&script);
+    serde_json::from_str(text.as_str().expect("text")).expect("ranges")
+}
+
+/// How many marks of a kind are seen.
+fn seen(page: &Page, class: &str) -> Option<u64> {
+    page.evaluate(&format!("document.querySelectorAll('.{class}:not([hidden])').length")).as_u64()
+}
+
+#[test]
+fn one_window_and_one_cursor_hold_for_all_figures_of_every_system() {
+    let server = Server::start(&["serve", "--port", "0"]);
+    for width in WIDTHS {
+        for system in SYSTEMS {
+            let address = format!("{}#{system}", server.address());
+            let Some(page) = Page::open(&address, width) else { return };
+            page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+            let slider = "document.querySelector('.clock input')";
+            // The bar by keyboard alone.
+            page.evaluate(&format!("{slider}.focus()"));
+            page.press("ArrowRight");
+            let told = "document.querySelector('.clock output').textContent";
+            page.wait_for(&format!("{told} !== ''"));
+            let number = |script: &str| page.evaluate(&format!("Number({script})")).as_f64();
+            let [low, high] =
+                ["min", "max"].map(|end| number(&format!("{slider}.{end}")).expect("a number"));
+            assert!(high > low, "{system}: {low} to {high}");
+            let middle = f64::midpoint(low, high);
+            let to = |time: f64| {
+                format!(
+                    "{{ {slider}.value = {time}; {slider}.dispatchEvent(new Event('input')); }}"
+                )
+            };
+            page.evaluate(&to(middle));
+            let lines = seen(&page, "cursor").expect("a number");
+            assert!(lines >= 2, "{system}: {lines} figures have a cursor");
+            let map = page.evaluate("document.querySelectorAll('.plot.map').length > 0");
+            if map == true && system != "uav" {
+                assert!(
+                    seen(&page, "here").expect("a number") > 0,
+                    "{system}: no place on the map"
+                );
+            }
+            let values = "[...document.querySelectorAll('.legend output')].filter(o => o.textContent).length";
+            assert!(page.evaluate(values).as_u64() > Some(lines), "{system}: values at the cursor");
+            // A window of one figure is that of all, and asked for points once.
+            let before = ranges(&page);
+            assert!(before.iter().all(|range| *range == before[0]), "{system}: {before:?}");
+            let [from, until] = [low + 0.4 * (high - low), low + 0.6 * (high - low)];
+            page.evaluate(&format!(
+                "{{ const p = {OVER_TIME}.at(-1); const s = p._fullLayout.xaxis.title.text.endsWith(', h') ? 3600 : 1; \
+                 Plotly.relayout(p, {{ 'xaxis.range': [{from} / s, {until} / s] }}); }} 0"
+            ));
+            page.wait_for(SETTLED);
+            let after = ranges(&page);
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * (high - low);
+            for [a, b] in &after {
+                assert!(
+                    close(*a, from) && close(*b, until),
+                    "{system}: {after:?}, not {from} to {until}"
+                );
+            }
+            page.screenshot(&format!("time-{system}-{width}.png"));
+            page.evaluate("document.querySelector('.clock .whole').click()");
+            page.wait_for(SETTLED);
+            assert_eq!(ranges(&page), before, "{system}");
+            // Played to the end.
+            page.evaluate(&to(low + 0.998 * (high - low)));
+            page.evaluate("{ const s = document.querySelector('.clock .speed'); s.value = '100'; document.querySelector('.clock .play').click(); }");
+            page.wait_for("document.querySelector('.clock .play').textContent === 'play'");
+            let end = number(&format!("{slider}.value")).expect("a number");
+            assert!(close(end, high), "{system}: ended at {end}, not {high}");
+            assert_quiet(&page, server.place());
+        }
+    }
+}
+
+#[test]
+fn mouse_and_keys_move_the_cursor_in_a_figure() {
+    let server = Server::start(&["serve", "--port", "0"]);
+    let Some(page) = Page::open(server.address(), 1280) else { return };
+    page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+    let told = || page.evaluate("document.querySelector('.clock output').textContent");
+    let point = |kind: &str, event: &str, share: f64| {
+        page.evaluate(&format!(
+            "{{ const p = document.querySelector('#figure-accelerometer .plot'); const a = p._fullLayout.xaxis; \
+             p.dispatchEvent(new PointerEvent('{event}', {{ pointerType: '{kind}', bubbles: true, \
+             clientX: p.getBoundingClientRect().left + a._offset + {share} * a._length }})); }}"
+        ));
+        told()
+    };
+    let places = [
+        point("mouse", "pointermove", 0.25),
+        point("touch", "pointerdown", 0.5),
+        // A finger that moves zooms.
+        point("touch", "pointermove", 0.75),
+    ];
+    assert!(places[0] != "" && places[0] != places[1], "{places:?}");
+    assert_eq!(places[1], places[2]);
+    page.evaluate("document.querySelector('#figure-accelerometer .plot').focus()");
+    page.press(".");
+    assert_ne!(told(), places[2]);
+}
