@@ -49,7 +49,7 @@ class Clock {
     // What is zoomed in comes without what lies outside.
     if (this.window && this.span) [low, high] = [Math.min(low, this.span[0]), Math.max(high, this.span[1])];
     this.span = low < high ? [low, high] : null;
-    this.bar.hidden = !this.span;
+    this.bar.hidden = !this.span || !this.members.size;
     this.#limit();
   }
 
@@ -65,6 +65,7 @@ class Clock {
 
   join(entry) {
     this.members.add(entry);
+    this.bar.hidden = !this.span;
     entry.plot.addEventListener("pointermove", (event) => {
       if (event.pointerType === "mouse" && !event.buttons && !this.playing) this.#point(entry, event);
     });

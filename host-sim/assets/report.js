@@ -22,6 +22,7 @@
   for (const place of document.querySelectorAll("[data-figure]")) seen.observe(place);
   // Paper shows all of them.
   addEventListener("beforeprint", () => {
+    for (const part of document.querySelectorAll("details")) part.open = true;
     for (const place of document.querySelectorAll("[data-figure]")) draw(place);
   });
 }

@@ -2,6 +2,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::value::Value;
 use crate::output;
 
 /// Columns where no terminal says its own.
@@ -18,6 +19,8 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// What explains a difference; may be empty.
     pub note: String,
+    /// The numbers in the rows, and those that the rows leave out, for programs.
+    pub values: Vec<Value>,
 }
 
 /// A quantity, with its unit, and what everyone says of it; an empty cell is unknown.
@@ -27,7 +30,9 @@ pub struct Row {
     pub quantity: String,
     /// As printed.
     pub published: String,
-    /// As measured by this run.
+    /// By the published method, as it is run here.
+    pub theirs: String,
+    /// By this library's own.
     pub ours: String,
     /// What nothing can be better than, or what was asked for.
     pub limit: String,
@@ -35,29 +40,76 @@ pub struct Row {
 
 impl Row {
     /// As it is shown: a dash for what is unknown.
-    pub fn cells(&self) -> [&str; 4] {
-        let Self { quantity, published, ours, limit } = self;
-        [quantity, published, ours, limit].map(|text| if text.is_empty() { "—" } else { text })
+    pub fn cells(&self) -> [&str; 5] {
+        let Self { quantity, published, theirs, ours, limit } = self;
+        [quantity, published, theirs, ours, limit]
+            .map(|text| if text.is_empty() { "—" } else { text })
     }
 }
 
 impl Comparison {
     /// A table without rows.
     pub fn new(id: impl Into<String>, title: impl Into<String>) -> Self {
-        Self { id: id.into(), title: title.into(), rows: Vec::new(), note: String::new() }
+        let (rows, values) = (Vec::new(), Vec::new());
+        Self { id: id.into(), title: title.into(), rows, note: String::new(), values }
     }
 
-    /// With another row.
+    /// With another row, whose number is by this library's own method.
     pub fn row(
-        mut self,
+        self,
         quantity: impl Into<String>,
         published: impl Into<String>,
         ours: impl Into<String>,
         limit: impl Into<String>,
     ) -> Self {
-        let (quantity, published) = (quantity.into(), published.into());
-        self.rows.push(Row { quantity, published, ours: ours.into(), limit: limit.into() });
+        self.beside(quantity, published, "", ours, limit)
+    }
+
+    /// With another row, whose number is by the published method as it is run here.
+    pub fn repeated(
+        self,
+        quantity: impl Into<String>,
+        published: impl Into<String>,
+        theirs: impl Into<String>,
+        limit: impl Into<String>,
+    ) -> Self {
+        self.beside(quantity, published, theirs, "", limit)
+    }
+
+    /// With another row, of both methods.
+    pub fn beside(
+        mut self,
+        quantity: impl Into<String>,
+        published: impl Into<String>,
+        theirs: impl Into<String>,
+        ours: impl Into<String>,
+        limit: impl Into<String>,
+    ) -> Self {
+        self.rows.push(Row {
+            quantity: quantity.into(),
+            published: published.into(),
+            theirs: theirs.into(),
+            ours: ours.into(),
+            limit: limit.into(),
+        });
         self
+    }
+
+    /// With more numbers for programs.
+    pub fn values(mut self, values: impl IntoIterator<Item = Value>) -> Self {
+        self.values.extend(values);
+        self
+    }
+
+    /// Names of the columns that hold anything, after that of the quantities, and whether each column does.
+    pub fn columns(&self) -> [(&'static str, bool); 4] {
+        let any = |of: fn(&Row) -> &String| self.rows.iter().any(|row| !of(row).is_empty());
+        [
+            ("published", any(|row| &row.published)),
+            ("published method, run here", any(|row| &row.theirs)),
+            ("ours", any(|row| &row.ours)),
+            ("limit", any(|row| &row.limit)),
+        ]
     }
 
     /// With a sentence on what explains a difference.
@@ -72,9 +124,13 @@ impl fmt::Display for Comparison {
         writeln!(f, "{}", self.title)?;
         let mut table = output::table();
         table.set_width(output::width().unwrap_or(WIDTH));
-        table.set_header(["", "published", "ours", "limit"]);
+        let columns = self.columns();
+        let names = columns.iter().filter(|(_, is_shown)| *is_shown).map(|(name, _)| *name);
+        table.set_header(std::iter::once("").chain(names));
         for row in &self.rows {
-            table.add_row(row.cells());
+            let [quantity, cells @ ..] = row.cells();
+            let cells = cells.into_iter().zip(columns).filter(|(_, (_, is_shown))| *is_shown);
+            table.add_row(std::iter::once(quantity).chain(cells.map(|(cell, _)| cell)));
         }
         write!(f, "{table}")?;
         if self.note.is_empty() { Ok(()) } else { write!(f, "\n{}", self.note) }

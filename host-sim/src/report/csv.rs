@@ -1,26 +1,55 @@
-//! Comparisons as a table of all their rows.
+//! The numbers of a report as a table.
 
 use std::path::Path;
 
-use super::{Chapter, Row};
+use super::{Chapter, Value};
 use crate::{Error, output};
 
-/// Writes `system,table,quantity,published,ours,limit`: all rows of all comparisons but the summaries, which are
-/// among them.
+const HEADER: [&str; 12] = [
+    "system",
+    "table",
+    "quantity",
+    "condition",
+    "method",
+    "value",
+    "unit",
+    "standard_error",
+    "n",
+    "published",
+    "limit",
+    "command",
+];
+
+/// Writes all numbers of all comparisons, a row each: what is unknown is empty. Published ones stand beside the method that was
+/// published, and are repeated where several are compared with them.
 ///
 /// # Errors
 /// [`Error::Write`].
 pub fn write(path: &Path, chapters: &[Chapter]) -> Result<(), Error> {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     output::write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
-        table.write_record(["system", "table", "quantity", "published", "ours", "limit"])?;
+        table.write_record(HEADER)?;
         for chapter in chapters {
-            for comparison in chapter.comparisons() {
-                for Row { quantity, published, ours, limit } in &comparison.rows {
-                    let cells = [quantity, published, ours, limit].map(String::as_str);
-                    table.write_field(chapter.system)?;
-                    table.write_field(&comparison.id)?;
-                    table.write_record(cells)?;
+            for (comparison, made) in chapter.tables() {
+                for it @ Value { quantity, condition, method, unit, .. } in &comparison.values {
+                    let n = it.n.map_or_else(String::new, |n| n.to_string());
+                    let [value, error] = [it.value, it.standard_error].map(number);
+                    let [published, limit] = [it.published, it.limit].map(number);
+                    table.write_record([
+                        chapter.system,
+                        &comparison.id,
+                        quantity,
+                        condition,
+                        method,
+                        &value,
+                        unit,
+                        &error,
+                        &n,
+                        &published,
+                        &limit,
+                        &made.command,
+                    ])?;
                 }
             }
         }
@@ -34,24 +63,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_of_every_comparison_is_there() -> Result<(), Box<dyn std::error::Error>> {
-        let made = Made { command: String::new(), seed: 0, trials: String::new() };
-        let table = |id: &str| Comparison::new(id, "T").row("error, cm", "2.6", "1.9", "");
+    fn every_number_of_every_comparison_is_there() -> Result<(), Box<dyn std::error::Error>> {
+        let made =
+            Made { command: "host-sim run vehicle".to_owned(), seed: 0, trials: String::new() };
+        let table = |id: &str| {
+            let value = Value::new("error", "cm").under("at noon").is(1.9).of(7, 0.25);
+            Comparison::new(id, "T")
+                .row("error, cm", "2.6", "1.9", "")
+                .values([value.clone().published(2.6), value.by("published filter").is(None)])
+        };
         let chapter = Chapter {
-            system: "vehicle",
-            title: "",
-            paper: "",
-            about: String::new(),
             summary: table("summary"),
-            items: vec![made.item(table("vehicle-table-1")), made.item(table("vehicle-table-2"))],
-            streams: Vec::new(),
+            items: vec![made.item(table("vehicle-table-1"))],
+            ..Chapter::of("vehicle")
         };
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("comparisons.csv");
         write(&path, &[chapter])?;
-        let expected = "system,table,quantity,published,ours,limit\n\
-                        vehicle,vehicle-table-1,\"error, cm\",2.6,1.9,\n\
-                        vehicle,vehicle-table-2,\"error, cm\",2.6,1.9,\n";
+        let expected = "system,table,quantity,condition,method,value,unit,standard_error,n,published,limit,command\n\
+                        vehicle,vehicle-table-1,error,at noon,default,1.9,cm,0.25,7,2.6,,host-sim run vehicle\n\
+                        vehicle,vehicle-table-1,error,at noon,published filter,,cm,0.25,7,,,host-sim run vehicle\n";
         assert_eq!(std::fs::read_to_string(path)?, expected);
         Ok(())
     }

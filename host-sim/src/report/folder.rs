@@ -42,6 +42,7 @@ fn results(chapters: &[Chapter]) -> serde_json::Value {
         json!({
             "system": chapter.system,
             "paper": chapter.paper,
+            "headlines": chapter.headlines,
             "summary": chapter.summary,
             "tables": tables.collect::<Vec<_>>(),
         })

@@ -6,10 +6,14 @@ mod document;
 mod folder;
 mod page;
 mod session;
+mod value;
 
 pub use comparison::{Comparison, Row};
 pub use folder::write;
 pub use session::Session;
+pub use value::{Value, printed};
+
+use serde::Serialize;
 
 use crate::figure::Figure;
 use crate::stream::Stream;
@@ -31,6 +35,27 @@ pub struct Chapter {
     pub items: Vec<Item>,
     /// What can be looked at in other programs.
     pub streams: Vec<Stream>,
+    /// What the first page says of it.
+    pub headlines: Vec<Headline>,
+    /// The figure that the first page shows; nothing if it is not there.
+    pub picture: &'static str,
+}
+
+/// A row of the report's first table: one quantity, by everyone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Headline {
+    /// What is measured, on what.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// As printed.
+    pub published: Option<f64>,
+    /// By the published method, as it is run here.
+    pub theirs: Option<f64>,
+    /// By this library's own.
+    pub ours: Option<f64>,
+    /// What nothing can be better than.
+    pub limit: Option<f64>,
 }
 
 /// A table or figure of a chapter.
@@ -52,7 +77,7 @@ pub enum Content {
 }
 
 /// How numbers were made: enough to make them again.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Made {
     /// What to type.
     pub command: String,
@@ -60,6 +85,39 @@ pub struct Made {
     pub seed: u64,
     /// How many repetitions of what: `20 × 7 walks`.
     pub trials: String,
+}
+
+#[cfg(test)]
+impl Chapter {
+    /// Without anything in it.
+    fn of(system: &'static str) -> Self {
+        Self {
+            system,
+            title: "",
+            paper: "",
+            about: String::new(),
+            summary: Comparison::new("summary", ""),
+            items: Vec::new(),
+            streams: Vec::new(),
+            headlines: Vec::new(),
+            picture: "",
+        }
+    }
+
+    /// Fails if a table has no number for programs, or the first page nothing to say.
+    pub(crate) fn assert_complete(&self) {
+        for table in self.comparisons() {
+            assert!(!table.values.is_empty(), "{} has no numbers", table.id);
+            for it in &table.values {
+                assert!(
+                    it.value.or(it.published).is_some() || table.id == "uav-catching",
+                    "{it:?}"
+                );
+            }
+        }
+        assert!(self.figures().any(|figure| figure.id == self.picture), "{}", self.picture);
+        assert!(!self.headlines.is_empty());
+    }
 }
 
 impl Chapter {

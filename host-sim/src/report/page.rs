@@ -1,9 +1,10 @@
 //! The report as one page that needs nothing but itself.
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::document::{Document, figures};
-use super::{Chapter, Comparison, Content, Item, Row};
+use super::{Chapter, Comparison, Content, Headline, Item, Row};
+use crate::figure::svg;
 
 const TITLE: &str = "kestirim: published, ours, limit";
 
@@ -11,7 +12,11 @@ const TITLE: &str = "kestirim: published, ours, limit";
 pub(super) fn render(chapters: &[Chapter]) -> String {
     let body = html! {
         (header(chapters))
-        main { @for chapter in chapters { (section(chapter)) } }
+        main {
+            (headlines(chapters))
+            (pictures(chapters))
+            @for chapter in chapters { (section(chapter)) }
+        }
         footer {
             p.soft {
                 "Made by host-sim " (env!("CARGO_PKG_VERSION"))
@@ -27,7 +32,7 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
 
 fn header(chapters: &[Chapter]) -> Markup {
     html! {
-        header {
+        header #top {
             h1 { (TITLE) }
             button #theme type="button" { "light / dark" }
             p {
@@ -39,7 +44,7 @@ fn header(chapters: &[Chapter]) -> Markup {
                 "Drag in a figure to zoom, click twice to see everything; or focus it and use "
                 "+, −, the arrows and 0. The buttons above a figure show and hide its series."
             }
-            nav aria-label="systems" {
+            nav aria-label="contents" {
                 ul {
                     @for chapter in chapters {
                         li { a href={ "#" (chapter.system) } { (chapter.title) } }
@@ -51,13 +56,87 @@ fn header(chapters: &[Chapter]) -> Markup {
 }
 
 fn section(chapter: &Chapter) -> Markup {
+    let (of_the_paper, beyond): (Vec<_>, Vec<_>) =
+        chapter.items.iter().partition(|item| is_of_the_paper(item));
     html! {
         section id=(chapter.system) data-clock {
             h2 { (chapter.title) }
-            p.soft { (chapter.paper) }
+            p.soft { (chapter.paper) " · " a href="#top" { "back to all systems" } }
             p { (chapter.about) }
             (table(&chapter.summary))
-            @for item in &chapter.items { (shown(item)) }
+            @for (name, items) in [("The paper's tables and figures", of_the_paper), ("Beyond the paper", beyond)] {
+                @if !items.is_empty() {
+                    details {
+                        summary { (name) " (" (items.len()) ")" }
+                        @for item in items { (shown(item)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether it is numbered as a table or figure of the paper is.
+fn is_of_the_paper(item: &Item) -> bool {
+    let title = match &item.content {
+        Content::Comparison(comparison) => &comparison.title,
+        Content::Figure(figure) => &figure.title,
+    };
+    ["Table ", "Fig", "Chapter ", "Section"].iter().any(|begin| title.starts_with(begin))
+}
+
+/// The first table: a few quantities of every system, by everyone.
+fn headlines(chapters: &[Chapter]) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label="all systems" {
+            table #all {
+                caption { "All systems at a glance" }
+                thead { tr {
+                    th scope="col" {} th scope="col" { "published" } th scope="col" { "published method, run here" }
+                    th scope="col" { "ours" } th scope="col" { "limit" }
+                } }
+                @for chapter in chapters {
+                    tbody {
+                        tr { th.system colspan="5" scope="rowgroup" { a href={ "#" (chapter.system) } { (chapter.title) } } }
+                        @for line in &chapter.headlines { (headline(line)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn headline(line: &Headline) -> Markup {
+    let Headline { quantity, unit, published, theirs, ours, limit } = line;
+    let cell = |value: &Option<f64>| value.map_or_else(|| "—".to_owned(), rounded);
+    html! {
+        tr {
+            th scope="row" { (quantity) ", " (unit) }
+            td { (cell(published)) } td { (cell(theirs)) } td.ours { (cell(ours)) } td { (cell(limit)) }
+        }
+    }
+}
+
+/// Three digits that count.
+fn rounded(value: f64) -> String {
+    let before = value.abs().max(1e-9).log10().floor() as i32 + 1;
+    let decimals = usize::try_from(3 - before).unwrap_or_default();
+    format!("{value:.decimals$}")
+}
+
+/// A picture of each system, which leads to its chapter.
+fn pictures(chapters: &[Chapter]) -> Markup {
+    html! {
+        div.pictures {
+            @for chapter in chapters {
+                @if let Some(figure) = chapter.figures().find(|figure| figure.id == chapter.picture) {
+                    a href={ "#" (chapter.system) } aria-label=(chapter.title) {
+                        // Within a page it needs no name space.
+                        (PreEscaped(svg::draw(figure).replace(r#" xmlns="http://www.w3.org/2000/svg""#, "")))
+                        span { (figure.title) }
+                    }
+                }
+            }
         }
     }
 }
@@ -79,14 +158,22 @@ fn shown(item: &Item) -> Markup {
 }
 
 fn table(comparison: &Comparison) -> Markup {
+    let columns = comparison.columns().into_iter().zip(0..);
+    let columns: Vec<_> = columns
+        .filter(|((_, is_shown), _)| *is_shown)
+        .map(|((name, _), place)| (name, place))
+        .collect();
     html! {
         div.scroll id=(comparison.id) tabindex="0" role="region" aria-label=(comparison.title) {
             table {
                 caption { (comparison.title) }
-                thead { tr { th scope="col" {} th scope="col" { "published" } th scope="col" { "ours" } th scope="col" { "limit" } } }
+                thead { tr { th scope="col" {} @for (name, _) in &columns { th scope="col" { (name) } } } }
                 tbody {
-                    @for [quantity, published, ours, limit] in comparison.rows.iter().map(Row::cells) {
-                        tr { th scope="row" { (quantity) } td { (published) } td { (ours) } td { (limit) } }
+                    @for [quantity, cells @ ..] in comparison.rows.iter().map(Row::cells) {
+                        tr {
+                            th scope="row" { (quantity) }
+                            @for (name, place) in &columns { td.ours[*name == "ours"] { (cells[*place]) } }
+                        }
                     }
                 }
             }
@@ -124,11 +211,26 @@ mod tests {
             summary: Comparison::new("vehicle-summary", "In short"),
             items: vec![made.item(table), made.item(figure)],
             streams: vec![],
+            headlines: vec![Headline {
+                quantity: "mean error".to_owned(),
+                unit: "cm",
+                published: Some(2.52),
+                theirs: Some(13.013),
+                ours: Some(0.0447),
+                limit: None,
+            }],
+            picture: "vehicle-plan",
         };
         let page = render(&[chapter]);
-        for text in
-            ["Table 1 &lt;b&gt;", "2.52", "13.0", "seed 7", "200 days", "host-sim run vehicle"]
-        {
+        for text in [
+            "Table 1 &lt;b&gt;",
+            "2.52",
+            "13.0",
+            "0.0447",
+            "seed 7",
+            "200 days",
+            "host-sim run vehicle",
+        ] {
             assert!(page.contains(text), "{text}");
         }
         assert!(page.contains(r#"data-figure="vehicle-plan""#));

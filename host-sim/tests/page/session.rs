@@ -16,7 +16,7 @@ const SLIDER: &str =
 fn turn_by(page: &Page, steps: i32) {
     let command = text_of(page, "command");
     page.evaluate(&format!(
-        "{{ const r = {SLIDER}; const b = r.value; r.stepUp({steps}); if (r.value === b) r.stepDown({steps}); \
+        "{{ const r = {SLIDER}; const b = r.value; if ({steps} > 0) r.stepUp({steps}); else r.stepDown(-({steps})); if (r.value === b) r.stepUp({steps}); \
          r.dispatchEvent(new Event('input')); }}"
     ));
     page.wait_for(&format!(
@@ -98,13 +98,15 @@ fn two_settings_are_compared_over_each_other_and_as_a_difference_for_every_syste
         let alone = page.evaluate("document.querySelectorAll('.legend button').length");
         press(&page, "keep");
         page.wait_for(SETTLED);
-        turn_by(&page, 5);
+        turn_by(&page, -5);
         let names = "[...document.querySelectorAll('.legend button')].map(b => b.firstChild.data)";
         for letter in ["A", "B"] {
             assert_eq!(
                 page.evaluate(&format!("{names}.some(n => n.startsWith('{letter}: '))")),
                 true,
-                "{system}"
+                "{system}, {}: {}",
+                text_of(&page, "command"),
+                page.evaluate(&format!("{names}.join()"))
             );
         }
         assert!(page.evaluate(&format!("{names}.length")).as_u64() > alone.as_u64(), "{system}");

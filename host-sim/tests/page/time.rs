@@ -1,6 +1,5 @@
 //! One time for all figures of a page: a window and a cursor.
 
-
 use crate::browser::{Page, Server};
 use crate::{DRAWN, OVER_TIME, SETTLED, SYSTEMS, WIDTHS, assert_quiet};
 

@@ -32,6 +32,8 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
                 exact posterior's mean on the same measurements."
             .to_owned(),
         summary: summary::summary(report),
+        headlines: summary::headlines(report),
+        picture: "drone-fig-3-6-circling",
         items,
         streams: walks.streams(),
     })

@@ -171,15 +171,17 @@ fn energy(report: &Report) -> Vec<Item> {
             );
     }
     let mut comparison = Comparison::new("drone-fig-3-4-table", "Fig. 3.4: energy, kJ").note(
-        "Ours: as eqs 2.12 to 2.17 and the printed constants say. The published ones come out of three other \
+        "Here: as eqs 2.12 to 2.17 and the printed constants say. The published ones come out of three other \
          numbers, which are printed nowhere.",
     );
     for row in rows {
         let kilojoules =
             |joules: Option<f64>| joules.map_or_else(String::new, |j| format!("{:.1}", j / 1e3));
         let refitted = row.note.clone().unwrap_or_default();
-        let ours = format!("{} ({refitted})", kilojoules(row.energy_j));
-        comparison = comparison.row(row.cell.clone(), kilojoules(row.published), ours, "");
+        let here = format!("{} ({refitted})", kilojoules(row.energy_j));
+        comparison = comparison
+            .repeated(row.cell.clone(), kilojoules(row.published), here, "")
+            .values(tables::values(row));
     }
     vec![once.item(figure), once.item(comparison)]
 }

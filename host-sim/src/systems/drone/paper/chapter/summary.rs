@@ -1,7 +1,7 @@
 //! The few numbers that matter most.
 
 use super::cells::{mean, whole};
-use crate::report::Comparison;
+use crate::report::{Comparison, Headline};
 use crate::systems::drone::paper::report::{Report, Row};
 
 /// Cells of Table 3.2 and Fig. 3.2: table, name, and what it is for people.
@@ -28,20 +28,27 @@ pub(super) fn summary(report: &Report) -> Comparison {
             rows.find(|row| row.table == source && row.cell == name && row.filter == filter)
         };
         let (Some(paper), Some(best)) = (of("published"), of("best")) else { continue };
-        let ours = format!("{}; thesis' filter: {}", mean(best), mean(paper));
         let limit = best.limit_m.map_or_else(String::new, |limit| format!("{limit:.1}"));
         let quantity = format!("{words} ({source})");
-        table = table.row(quantity, whole(paper.published), ours, limit);
+        table = table.beside(quantity, whole(paper.published), mean(paper), mean(best), limit);
     }
     for (name, words) in WALKS {
         if let Some(row) = report.rows.iter().find(|row| row.cell == name) {
-            table = table.row(words, "", walked(row), "");
+            table = if words.ends_with("(thesis)") {
+                table.repeated(words, "", walked(row), "")
+            } else {
+                table.row(words, "", walked(row), "")
+            };
         }
     }
     if table.rows.is_empty() {
         for row in &report.rows {
             let limit = row.limit_m.map_or_else(String::new, |limit| format!("{limit:.1}"));
-            table = table.row(row.cell.clone(), whole(row.published), mean(row), limit);
+            let (cell, published) = (row.cell.clone(), whole(row.published));
+            table = match row.filter {
+                "published" => table.repeated(cell, published, mean(row), limit),
+                _ => table.row(cell, published, mean(row), limit),
+            };
         }
     }
     let worst = report.rows.iter().filter_map(|row| row.published_z);
@@ -51,6 +58,32 @@ pub(super) fn summary(report: &Report) -> Comparison {
          Figs 3.5 and 3.1 (c), made in another way, should be far from the thesis' filter here; the farthest \
          of all is {worst:.1} of its own standard errors off."
     ))
+}
+
+/// What the first page says: a user who stays, and one who walks.
+pub(super) fn headlines(report: &Report) -> Vec<Headline> {
+    let find = |is: &dyn Fn(&Row) -> bool| report.rows.iter().find(|row| is(row));
+    let (source, cell, words) = CELLS[0];
+    let staying =
+        |filter: &str| find(&|row| row.table == source && row.cell == cell && row.filter == filter);
+    let [hovering, circling] = [0, 1].map(|i| find(&|row| row.cell == WALKS[i].0));
+    let line = |quantity: String, theirs: Option<&Row>, ours: Option<&Row>| Headline {
+        quantity,
+        unit: "m",
+        published: theirs.and_then(|row| row.published),
+        theirs: theirs.and_then(|row| row.mean_m),
+        ours: ours.and_then(|row| row.mean_m),
+        limit: ours.and_then(|row| row.limit_m),
+    };
+    let lines = [
+        line(
+            format!("mean error of a user's place, {words}"),
+            staying("published"),
+            staying("best"),
+        ),
+        line("the same of a user who walks".to_owned(), hovering, circling),
+    ];
+    lines.into_iter().filter(|line| line.ours.is_some()).collect()
 }
 
 fn walked(row: &Row) -> String {

@@ -2,7 +2,7 @@
 
 use super::cells::{mean, whole};
 use super::made;
-use crate::report::{Comparison, Item};
+use crate::report::{Comparison, Item, Value};
 use crate::systems::drone::paper::report::{Report, Row};
 
 /// The table of some rows, one row a cell, and how many trials it is of; none without rows.
@@ -16,7 +16,13 @@ pub(super) fn of(
     for cell in rows.chunk_by(|a, b| a.cell == b.cell) {
         let (published, limit) = (cell.iter().find_map(|row| row.published), cell[0].limit_m);
         let limit = limit.map_or_else(String::new, |limit| format!("{limit:.1}"));
-        comparison = comparison.row(cell[0].cell.clone(), whole(published), words(cell), limit);
+        let of = |is_published: bool| {
+            let rows = cell.iter().filter(|row| (row.filter == "published") == is_published);
+            rows.map(|row| words(row)).collect::<Vec<_>>().join("; ")
+        };
+        comparison = comparison
+            .beside(cell[0].cell.clone(), whole(published), of(true), of(false), limit)
+            .values(cell.iter().flat_map(|row| values(row)));
     }
     let fewest = rows.iter().map(|row| row.trials).min()?;
     let most = rows.iter().map(|row| row.trials).max()?;
@@ -28,22 +34,33 @@ pub(super) fn of(
     Some(made(report, trials).item(comparison))
 }
 
-/// What both filters make of a cell.
-fn words(cell: &[&Row]) -> String {
-    let one = |row: &&Row| {
-        let energy = row.energy_j.filter(|_| row.lost_percent.is_some());
-        let energy =
-            energy.map_or_else(String::new, |joules| format!(" m, {:.0} kJ", joules / 1e3));
-        let lost = row.lost_percent.map_or_else(String::new, |lost| format!(", {lost:.0} % lost"));
-        let words = format!("{}{energy}{lost}", mean(row));
-        if row.filter == "published" {
-            let z = row.published_z.map_or_else(String::new, |z| format!(", z = {z:.1}"));
-            return format!("thesis' filter: {words}{z}");
-        }
-        words
+/// What a filter makes of a cell.
+fn words(row: &Row) -> String {
+    let energy = row.energy_j.filter(|_| row.lost_percent.is_some());
+    let energy = energy.map_or_else(String::new, |joules| format!(" m, {:.0} kJ", joules / 1e3));
+    let lost = row.lost_percent.map_or_else(String::new, |lost| format!(", {lost:.0} % lost"));
+    let z = row.published_z.map_or_else(String::new, |z| format!(", z = {z:.1}"));
+    format!("{}{energy}{lost}{z}", mean(row))
+}
+
+/// The numbers of a row.
+pub(super) fn values(row: &Row) -> Vec<Value> {
+    let method = match row.filter {
+        "published" => "published method",
+        "best" => "default",
+        other => other,
     };
-    // Ours first.
-    cell.iter().rev().map(one).collect::<Vec<_>>().join("; ")
+    let of = |quantity: &str, unit| {
+        Value::new(quantity, unit).under(format!("{}: {}", row.table, row.cell)).by(method)
+    };
+    // Of the formulas of Fig. 3.4 it is the energy that is published.
+    let published = row.published.filter(|_| row.mean_m.is_some());
+    let error = of("error of the position", "m").published(published).limited(row.limit_m);
+    let error = error.is(row.mean_m).of(row.trials, row.se_m);
+    let energy = of("energy of the flight", "J").is(row.energy_j);
+    let energy = energy.published(row.published.filter(|_| row.mean_m.is_none()));
+    let lost = of("lost flights", "%").is(row.lost_percent).of(row.trials, None);
+    [error, energy, lost].into_iter().filter(|value| value.value.is_some()).collect()
 }
 
 /// What no table of the thesis has.

@@ -44,6 +44,7 @@ fn every_table_and_figure_of_the_thesis_is_there_once_and_has_lines() {
         }
     }
     assert_eq!(chapter.summary.rows.len(), 8);
+    chapter.assert_complete();
     let table = chapter.comparisons().find(|table| table.id == "drone-table-3-2").unwrap();
     assert_eq!(table.rows.len(), 21);
     assert!(table.rows.iter().all(|row| !row.published.is_empty() && !row.limit.is_empty()));

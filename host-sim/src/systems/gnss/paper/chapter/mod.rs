@@ -41,6 +41,8 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
                 flow chart) and 2 (a map of the stations) have nothing to compare."
             .to_owned(),
         summary: tables::summary(report),
+        headlines: tables::headlines(report),
+        picture: "gnss-figure-4-1",
         items,
         streams: days.streams(),
     })
@@ -67,9 +69,10 @@ mod tests {
             assert!(figure.series.iter().any(|series| !series.x.is_empty()), "{}", figure.id);
         }
         assert!(chapter.summary.rows.len() <= 10);
-        assert!(
-            chapter.comparisons().all(|table| table.rows.iter().all(|row| !row.ours.is_empty()))
-        );
+        chapter.assert_complete();
+        assert!(chapter.comparisons().all(|table| {
+            table.rows.iter().all(|row| !(row.ours.is_empty() && row.theirs.is_empty()))
+        }));
     }
 
     /// What figure 3 shows in the paper: outliers are left in the plain filter's codes, not in the default's.

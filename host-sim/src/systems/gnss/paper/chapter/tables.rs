@@ -2,7 +2,7 @@
 
 use kestirim_replay::gnss::FilterKind;
 
-use crate::report::Comparison;
+use crate::report::{Comparison, Headline, Value};
 use crate::systems::gnss::paper::experiment::{CLEAN, KINEMATIC, Report, Row, STATIC, four};
 use crate::systems::gnss::paper::published::PppErrors;
 
@@ -54,12 +54,12 @@ pub(super) fn without_faults(report: &Report) -> Comparison {
     );
     let rows = report.rows.iter().filter(|row| row.table == CLEAN);
     rows.fold(table, |table, row| {
-        table.row(format!("{}: RMS N E U 3-D, mm", row.filter), "", four(row.ours.rms_mm), "").row(
-            format!("{}: RMS 3-D of the worst day, mm", row.filter),
-            "",
-            format!("{:.1}", row.worst_rms_mm),
-            "",
-        )
+        let (rms, worst) = (four(row.ours.rms_mm), format!("{:.1}", row.worst_rms_mm));
+        let worst_day = Value::new("RMS 3-D of the worst day", "mm").is(row.worst_rms_mm);
+        let table = add(table, row, format!("{}: RMS N E U 3-D, mm", row.filter), ["", &rms, ""])
+            .values(numbers(row, "RMS", row.ours.rms_mm, [None; 2]));
+        let name = format!("{}: RMS 3-D of the worst day, mm", row.filter);
+        add(table, row, name, ["", &worst, ""]).values([by(row, worst_day)])
     })
 }
 
@@ -80,7 +80,8 @@ pub(super) fn summary(report: &Report) -> Comparison {
         let rms = |errors: &PppErrors| format!("{:.1} mm", errors.rms_mm[3]);
         let published = row.published.as_ref().map_or(String::new(), rms);
         let limit = limit.map_or(String::new(), rms);
-        table = table.row(format!("{}, {mode}", row.filter), published, rms(&row.ours), limit);
+        let name = format!("{}, {mode}", row.filter);
+        table = add(table, row, name, [&published, &rms(&row.ours), &limit]);
     }
     table.note("limit: the plain filter on the same days without faults")
 }
@@ -106,14 +107,90 @@ fn with_rows(
         };
         let last = cell(|errors| four(errors.final_mm));
         let rms = cell(|errors| four(errors.rms_mm));
-        let (published, _, limit) = cell(minutes);
-        table
-            .row(format!("{filter}: error N E U 3-D, mm"), last.0, last.1, last.2)
-            .row(format!("{filter}: RMS N E U 3-D, mm"), rms.0, rms.1, rms.2)
-            .row(format!("{filter}: converged after, min"), published, row.converged(), limit)
+        let shown = cell(minutes_in_words);
+        let others = |of: fn(&PppErrors) -> [f64; 4]| [published.as_ref().map(of), limit.map(of)];
+        let minutes = Value::new("convergence", "min").is(ours.convergence_min);
+        let minutes = by(row, minutes)
+            .published(published.as_ref().and_then(|errors| errors.convergence_min))
+            .limited(limit.and_then(|errors| errors.convergence_min));
+        let table =
+            add(table, row, format!("{filter}: error N E U 3-D, mm"), [&last.0, &last.1, &last.2]);
+        let table =
+            add(table, row, format!("{filter}: RMS N E U 3-D, mm"), [&rms.0, &rms.1, &rms.2]);
+        let here = row.converged();
+        let converged = [&shown.0, &here, &shown.2].map(String::as_str);
+        add(table, row, format!("{filter}: converged after, min"), converged)
+            .values(numbers(row, "final error", ours.final_mm, others(|errors| errors.final_mm)))
+            .values(numbers(row, "RMS", ours.rms_mm, others(|errors| errors.rms_mm)))
+            .values([minutes])
     })
 }
 
-fn minutes(errors: &PppErrors) -> String {
+/// A row of the paper's filters, or of ours: published, as it came out here, limit.
+fn add(
+    table: Comparison,
+    row: &Row,
+    quantity: String,
+    [published, here, limit]: [&str; 3],
+) -> Comparison {
+    if is_ours(row) {
+        table.row(quantity, published, here, limit)
+    } else {
+        table.repeated(quantity, published, here, limit)
+    }
+}
+
+/// Whether a row is of the default filter, whatever is said of how it moves.
+fn is_ours(row: &Row) -> bool {
+    row.filter.starts_with(FilterKind::Default.title())
+}
+
+/// By the filter of a row, on its days.
+fn by(row: &Row, value: Value) -> Value {
+    let method = match row.filter {
+        _ if is_ours(row) => "default".to_owned(),
+        filter => format!("published {filter}"),
+    };
+    value.under(row.table).by(method).of(row.days.len(), None)
+}
+
+/// The numbers of north, east, up and all three, with published ones and limits.
+fn numbers(
+    row: &Row,
+    quantity: &str,
+    values: [f64; 4],
+    [published, limit]: [Option<[f64; 4]>; 2],
+) -> [Value; 4] {
+    let mut axes = 0..4;
+    Value::each(quantity, ["north", "east", "up", "3-D"], ["mm"; 4], values).map(|value| {
+        let axis = axes.next().unwrap_or_default();
+        by(row, value).published(published.map(|it| it[axis])).limited(limit.map(|it| it[axis]))
+    })
+}
+
+/// What matters most: where it stands, and where it may move.
+pub(super) fn headlines(report: &Report) -> Vec<Headline> {
+    let line = |table: &str, filter: FilterKind, place: usize, quantity: &str| {
+        let find = |filter: &str| {
+            report.rows.iter().find(|row| row.table == table && row.filter == filter)
+        };
+        let rms = |errors: &PppErrors| errors.rms_mm[3];
+        let (theirs, ours) = (find(filter.title()), find(FilterKind::Default.title()));
+        Headline {
+            quantity: quantity.to_owned(),
+            unit: "mm",
+            published: theirs.and_then(|row| row.published.as_ref()).map(rms),
+            theirs: theirs.map(|row| rms(&row.ours)),
+            ours: ours.map(|row| rms(&row.ours)),
+            limit: plain(report, place).map(rms),
+        }
+    };
+    vec![
+        line(STATIC, FilterKind::Adaptive, 0, "RMS 3-D after the first hour, the receiver stands"),
+        line(KINEMATIC, FilterKind::Adaptive, 2, "the same, the receiver may move"),
+    ]
+}
+
+fn minutes_in_words(errors: &PppErrors) -> String {
     errors.convergence_min.map_or(String::new(), |minutes| format!("{minutes:.1}"))
 }

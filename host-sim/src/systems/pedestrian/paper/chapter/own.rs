@@ -7,7 +7,7 @@ use super::super::experiment::{Report, error_percent, refused};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::mean;
-use crate::report::Comparison;
+use crate::report::{Comparison, Value};
 use crate::system::ScalarKind;
 use crate::systems::pedestrian::recording::{Recording, Walked};
 
@@ -83,7 +83,12 @@ pub(super) fn methods(report: &Report) -> Result<Comparison, Error> {
         for (i, (name, _)) in methods.iter().enumerate() {
             let of_method: Vec<_> = errors.iter().map(|walk| walk[i]).collect();
             let ours = format!("{:.2}", mean(&of_method));
-            table = table.row(format!("{} Hz, {name}", row.rate_hz), "", ours, "");
+            let value = Value::new("mean relative error of the length", "%")
+                .under(format!("{} Hz", row.rate_hz))
+                .by(*name)
+                .is(mean(&of_method))
+                .of(of_method.len(), None);
+            table = table.row(format!("{} Hz, {name}", row.rate_hz), "", ours, "").values([value]);
         }
     }
     Ok(table)

@@ -58,6 +58,8 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
                 nothing can be better than stand beside it."
             .to_owned(),
         summary: summary(report),
+        headlines: tables::headlines(report),
+        picture: "robot-round",
         items,
         streams: streams(&round.recording, &round.calibrated),
     })
@@ -103,6 +105,7 @@ mod tests {
             }
         }
         assert!(chapter.summary.rows.len() <= 10);
+        chapter.assert_complete();
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use kestirim_replay::robot::Trace;
 
 use super::day::Day;
-use crate::report::Comparison;
+use crate::report::{Comparison, Headline, Value};
 use crate::systems::robot::account::accuracy::Accuracy;
 use crate::systems::robot::paper::experiment::{Report, Row};
 use crate::systems::robot::paper::published::PositionErrors;
@@ -27,16 +27,19 @@ fn rows(report: &Report) -> impl Iterator<Item = (String, &Row)> {
 pub(super) fn table_1(report: &Report) -> Comparison {
     let table = Comparison::new(
         "robot-table-1",
-        "Table 1: error of the mean of 50 positions, cm: trilateration / EKF / AEKF; ours from an honest start, \
-         then our default",
+        "Table 1: error of the mean of 50 positions, cm: trilateration / EKF / AEKF from an honest start; ours: the \
+         default",
     );
     let add = |table: Comparison, (name, row): (String, &Row)| {
-        let honest = three(&row.honest_start);
-        let ours =
-            format!("{honest}; {:.2}, calibrated {:.2}", row.ours_cm, row.ours_calibrated_cm);
-        table.row(name, three(&row.published), ours, limits(row))
+        let ours = format!("{:.2}, calibrated {:.2}", row.ours_cm, row.ours_calibrated_cm);
+        let theirs = three(&row.honest_start);
+        table
+            .beside(&name, three(&row.published), theirs, ours, limits(row))
+            .values(own(&name, row))
     };
-    rows(report).fold(table, add).note(
+    let values =
+        |(name, row): (String, &Row)| repeated(&name, "honest start", row, &row.honest_start);
+    rows(report).fold(table, add).values(rows(report).flat_map(values)).note(
         "Filters begin at the first trilateration, as on a robot that does not know where it is. The paper does not \
          say where its points were. The limit is the Cramér–Rao bound without reflections.",
     )
@@ -49,9 +52,12 @@ pub(super) fn table_1_from_the_truth(report: &Report) -> Comparison {
         "Table 1 by the paper's protocol, its filters started at the surveyed point, cm: trilateration / EKF / AEKF",
     );
     let add = |table: Comparison, (name, row): (String, &Row)| {
-        table.row(name, three(&row.published), three(&row.from_the_truth), limits(row))
+        table.repeated(name, three(&row.published), three(&row.from_the_truth), limits(row))
     };
-    rows(report).fold(table, add).note(
+    let values = |(name, row): (String, &Row)| {
+        repeated(&name, "started at the truth", row, &row.from_the_truth)
+    };
+    rows(report).fold(table, add).values(rows(report).flat_map(values)).note(
         "The filters are below the limit because the answer was given: a small P₀ holds the filter at its start while eq. 18 \
          inflates R. Nothing here is our tracker.",
     )
@@ -64,14 +70,18 @@ pub(super) fn starts(report: &Report) -> Comparison {
     let cm = |value: f64| format!("{value:.2} cm");
     let limit = cm(row.limit_cm);
     Comparison::new("robot-starts", "Table 1, means: what the start is worth")
-        .row("trilateration", cm(published.unfiltered_cm), cm(honest_start.unfiltered_cm), &limit)
-        .row("EKF, started at the truth", cm(published.ekf_cm), cm(from_the_truth.ekf_cm), &limit)
-        .row("EKF, honest start", "", cm(honest_start.ekf_cm), &limit)
-        .row("AEKF, started at the truth", cm(published.aekf_cm), cm(from_the_truth.aekf_cm), &limit)
-        .row("AEKF, started 10 cm beside it", "", cm(row.aekf_from_10_cm_beside_cm), &limit)
-        .row("AEKF, honest start", "", cm(honest_start.aekf_cm), &limit)
+        .repeated("trilateration", cm(published.unfiltered_cm), cm(honest_start.unfiltered_cm), &limit)
+        .repeated("EKF, started at the truth", cm(published.ekf_cm), cm(from_the_truth.ekf_cm), &limit)
+        .repeated("EKF, honest start", "", cm(honest_start.ekf_cm), &limit)
+        .repeated("AEKF, started at the truth", cm(published.aekf_cm), cm(from_the_truth.aekf_cm), &limit)
+        .repeated("AEKF, started 10 cm beside it", "", cm(row.aekf_from_10_cm_beside_cm), &limit)
+        .repeated("AEKF, honest start", "", cm(honest_start.aekf_cm), &limit)
         .row("our default", "", cm(row.ours_cm), &limit)
         .row("our default, anchors calibrated", "", cm(row.ours_calibrated_cm), cm(row.limit_calibrated_cm))
+        .values([error("mean, started 10 cm beside the truth", "published AEKF")
+            .is(row.aekf_from_10_cm_beside_cm)
+            .of(report.trials, None)
+            .limited(row.limit_cm)])
         .note(
             "The published numbers can only have come about by a start at the surveyed point; they stand in those rows. \
              Ten centimetres beside it, the same filter stays where it was put.",
@@ -83,26 +93,116 @@ pub(super) fn line(report: &Report) -> Comparison {
     let line = &report.line;
     let cm = |value: f64| format!("{value:.1} cm");
     Comparison::new("robot-line", "Figs 8 to 10: RMSE along the straight line")
-        .row("trilateration", "", cm(line.unfiltered_cm), "")
-        .row("the paper's EKF, honest start", "", cm(line.ekf_cm), "")
-        .row("the paper's AEKF, honest start", "", cm(line.aekf_cm), "")
+        .repeated("trilateration", "", cm(line.unfiltered_cm), "")
+        .repeated("the paper's EKF, honest start", "", cm(line.ekf_cm), "")
+        .repeated("the paper's AEKF, honest start", "", cm(line.aekf_cm), "")
         .row("our default", "", cm(line.ours_cm), "")
         .row("our default, anchors calibrated", "", cm(line.ours_calibrated_cm), "")
+        .values(
+            [
+                ("published trilateration", line.unfiltered_cm),
+                ("published EKF", line.ekf_cm),
+                ("published AEKF", line.aekf_cm),
+                ("default", line.ours_cm),
+                ("default, anchors calibrated", line.ours_calibrated_cm),
+            ]
+            .map(|(method, cm)| {
+                rmse_along("the straight line", method, cm).of(report.trials, None)
+            }),
+        )
         .note("The paper prints no numbers of its line, only drawings.")
 }
 
 /// The round among people.
 pub(super) fn round(day: &Day) -> Comparison {
     let rmse = |traces: &[Trace]| {
-        let accuracy = Accuracy::of_recording(&day.recording, traces);
-        accuracy.map_or_else(String::new, |accuracy| format!("{:.1} cm", 100.0 * accuracy.rmse_m))
+        Accuracy::of_recording(&day.recording, traces).map(|accuracy| 100.0 * accuracy.rmse_m)
     };
+    let text = |cm: Option<f64>| cm.map_or_else(String::new, |cm| format!("{cm:.1} cm"));
     let [ekf, aekf] = &day.honest;
-    Comparison::new("robot-round-rmse", "A round with somebody before each anchor in turn: RMSE")
-        .row("trilateration", "", rmse(&day.unfiltered), "")
-        .row("the paper's EKF, honest start", "", rmse(ekf), "")
-        .row("the paper's AEKF, honest start", "", rmse(aekf), "")
-        .row("our default", "", rmse(&day.ours), "")
-        .row("our default, anchors calibrated", "", rmse(&day.calibrated.traces), "")
-        .note("One day; not in the paper.")
+    let title = "A round with somebody before each anchor in turn: RMSE";
+    let table = Comparison::new("robot-round-rmse", title).note("One day; not in the paper.");
+    let published = [
+        ("trilateration", "published trilateration", rmse(&day.unfiltered)),
+        ("the paper's EKF, honest start", "published EKF", rmse(ekf)),
+        ("the paper's AEKF, honest start", "published AEKF", rmse(aekf)),
+    ];
+    let table = published.into_iter().fold(table, |table, (name, method, cm)| {
+        let value = rmse_along("the round among people", method, cm);
+        table.repeated(name, "", text(cm), "").values([value])
+    });
+    let ours = [
+        ("our default", "default", rmse(&day.ours)),
+        (
+            "our default, anchors calibrated",
+            "default, anchors calibrated",
+            rmse(&day.calibrated.traces),
+        ),
+    ];
+    ours.into_iter().fold(table, |table, (name, method, cm)| {
+        let value = rmse_along("the round among people", method, cm);
+        table.row(name, "", text(cm), "").values([value])
+    })
+}
+
+fn rmse_along(way: &str, method: &str, cm: impl Into<Option<f64>>) -> Value {
+    Value::new("RMSE of the position", "cm").under(way).by(method).is(cm)
+}
+
+fn error(condition: impl Into<String>, method: &str) -> Value {
+    Value::new("error of the mean of 50 positions", "cm").under(condition).by(method)
+}
+
+/// The paper's own methods at a point, of the numbers of which there is one a start.
+fn repeated(point: &str, start: &str, row: &Row, here: &PositionErrors) -> [Value; 3] {
+    let of = |method: &str, number: fn(&PositionErrors) -> f64| {
+        let value = error(format!("{point}, {start}"), method).is(number(here));
+        value.published(number(&row.published)).limited(row.limit_cm)
+    };
+    [
+        of("published trilateration", |it| it.unfiltered_cm),
+        of("published EKF", |it| it.ekf_cm),
+        of("published AEKF", |it| it.aekf_cm),
+    ]
+}
+
+/// The default at a point.
+fn own(point: &str, row: &Row) -> [Value; 2] {
+    [
+        error(point, "default").is(row.ours_cm).limited(row.limit_cm),
+        error(point, "default, anchors calibrated")
+            .is(row.ours_calibrated_cm)
+            .limited(row.limit_calibrated_cm),
+    ]
+}
+
+/// What matters most.
+pub(super) fn headlines(report: &Report) -> Vec<Headline> {
+    let row = &report.mean;
+    let line = |quantity: &str| Headline {
+        quantity: quantity.to_owned(),
+        unit: "cm",
+        published: None,
+        theirs: None,
+        ours: None,
+        limit: Some(row.limit_cm),
+    };
+    vec![
+        Headline {
+            published: Some(row.published.aekf_cm),
+            theirs: Some(row.from_the_truth.aekf_cm),
+            limit: None,
+            ..line("error of the mean of 50 positions, filter started at the true point")
+        },
+        Headline {
+            theirs: Some(row.honest_start.aekf_cm),
+            ours: Some(row.ours_cm),
+            ..line("the same, the true point not told")
+        },
+        Headline {
+            ours: Some(row.ours_calibrated_cm),
+            limit: Some(row.limit_calibrated_cm),
+            ..line("the same, anchors calibrated")
+        },
+    ]
 }

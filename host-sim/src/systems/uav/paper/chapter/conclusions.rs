@@ -5,14 +5,14 @@ use kestirim_replay::uav::{MIDDLE, Noise, Plant, faster};
 use super::made;
 use crate::Error;
 use crate::figure::{Colour, Figure, Series};
-use crate::report::{Comparison, Item};
+use crate::report::{Comparison, Item, Value};
 use crate::system::ScalarKind;
 use crate::systems::uav::account::states::{caught, shown};
 use crate::systems::uav::paper::accuracy::{Cell, Window};
 use crate::systems::uav::paper::catching::{Chase, THESIS_LUENBERGER};
 use crate::systems::uav::paper::report::{Report, alike, four};
-use crate::systems::uav::simulate::design::Kind;
-use crate::systems::uav::simulate::plant::{Outputs, STATES};
+use crate::systems::uav::simulate::design::{Family, Kind};
+use crate::systems::uav::simulate::plant::{Outputs, STATE_UNITS, STATES};
 use crate::systems::uav::simulate::scenario::Inputs;
 
 /// Claims, accuracies, limits.
@@ -31,13 +31,23 @@ pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {
 fn claims(report: &Report) -> Comparison {
     let empty = Comparison::new(
         "uav-claims",
-        "Chapter 7: what the thesis concludes (ours: α, q, V, θ by the Kalman filter; limit: by the best observer)",
+        "Chapter 7: what the thesis concludes (here: α, q, V, θ by the Kalman filter; limit: by the best observer)",
     );
     report.claims.iter().fold(empty, |table, claim| {
         let quantity = format!("{}: {}", claim.claim, claim.setting);
         let verdict = if claim.holds { "true" } else { "false" };
-        let ours = format!("{verdict}: {}", shown(claim.kalman));
-        table.row(quantity, "true", ours, shown(claim.luenberger))
+        let here = format!("{verdict}: {}", shown(claim.kalman));
+        let by = |method: &str, numbers| {
+            let what = if claim.claim.contains("faster") { "time to catch" } else { "RMSE" };
+            let unit = if what == "RMSE" { STATE_UNITS } else { ["s"; 4] };
+            Value::each(what, STATES, unit, numbers)
+                .map(|value| value.under(quantity.clone()).by(method))
+        };
+        let values =
+            [by("Kalman filter", claim.kalman), by("best Luenberger observer", claim.luenberger)];
+        table
+            .repeated(quantity.clone(), "true", here, shown(claim.luenberger))
+            .values(values.concat())
     })
 }
 
@@ -60,7 +70,21 @@ fn accuracy(report: &Report) -> Comparison {
                 "{plant}, {outputs}, noise {noise}, {inputs} inputs, {window}: {}",
                 row.estimator
             );
-            table.row(quantity, "", four(row.rmse), four(row.predicted))
+            let values = Value::each("RMSE", STATES, STATE_UNITS, row.rmse);
+            let values = values.into_iter().zip(row.predicted).map(|(value, limit)| {
+                let value = value.under(quantity.clone()).by(row.estimator.clone());
+                value.of(report.trials, None).limited(limit)
+            });
+            let values: Vec<_> = values.collect();
+            // The filter for the noise there is is ours, the rest is as the thesis has it.
+            let (rmse, limit) = (four(row.rmse), four(row.predicted));
+            let is_ours = row.family != Family::Luenberger && !row.estimator.contains("Q/R");
+            let table = if is_ours {
+                table.row(quantity, "", rmse, limit)
+            } else {
+                table.repeated(quantity, "", rmse, limit)
+            };
+            table.values(values)
         })
         .note("The thesis prints no error: the published column is empty.")
 }
@@ -75,7 +99,13 @@ fn slowest(report: &Report) -> Comparison {
         .iter()
         .fold(empty, |table, row| {
             let poles = row.poles.map(|pole| format!("{pole:.3}")).join(" ");
-            table.row(format!("Q/R = {:e}", row.ratio), "", poles, "")
+            let condition = format!("Q/R = {:e}", row.ratio);
+            let values = ["slowest", "second slowest"].into_iter().zip(row.poles);
+            let values = values.map(|(which, pole)| {
+                Value::new(format!("{which} pole"), "1/s").under(condition.clone()).is(pole)
+            });
+            let values: Vec<_> = values.collect();
+            table.row(condition, "", poles, "").values(values)
         })
         .note("They go to the plant's zeros and no further, however little the filter trusts its model.")
 }
@@ -89,7 +119,9 @@ fn independence(report: &Report) -> Comparison {
         .independence
         .iter()
         .fold(empty, |table, row| {
-            table.row(row.estimator.clone(), "", four(row.difference), "0 exactly")
+            let values = Value::each("difference of errors", STATES, STATE_UNITS, row.difference);
+            let values = values.map(|value| value.by(row.estimator.clone()).limited(0.0));
+            table.row(row.estimator.clone(), "", four(row.difference), "0 exactly").values(values)
         })
         .note(format!(
             "e⁺ = (A − L C) e has no u in it, so sine inputs are no experiment: {}.",

@@ -5,7 +5,7 @@ use kestirim_replay::uav::{FAST, Noise, Plant, SLOW};
 use super::{by_state, made};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
-use crate::report::{Comparison, Item};
+use crate::report::{Comparison, Item, Value, printed};
 use crate::systems::uav::account::states::{BANDS, times};
 use crate::systems::uav::paper::catching::{Chase, Row, THESIS, THESIS_LUENBERGER, THESIS_SINE};
 use crate::systems::uav::paper::report::Report;
@@ -156,7 +156,18 @@ fn caught(report: &Report) -> Comparison {
             row.estimator,
             row.inputs.name()
         );
-        table.row(quantity, published, times(row.ours_s), times(row.limit_s))
+        let values: Vec<_> = (0..4)
+            .map(|state| {
+                let of = |times: Option<[Option<f64>; 4]>| times.and_then(|times| times[state]);
+                Value::new(format!("time to catch {}", STATES[state]), "s")
+                    .under(quantity.clone())
+                    .by("published method")
+                    .is(of(row.ours_s))
+                    .published(row.published.and_then(|texts| printed(texts[state])))
+                    .limited(of(row.limit_s))
+            })
+            .collect();
+        table.repeated(quantity, published, times(row.ours_s), times(row.limit_s)).values(values)
     })
     .note(format!(
         "Caught: within {} of {} for good. The thesis prints no gains; these are the ones whose times are its \

@@ -31,6 +31,8 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
                 conclusion is measured, on the truth of simulated flights."
             .to_owned(),
         summary: summary::summary(report),
+        headlines: summary::headlines(report),
+        picture: "uav-fig-6-1-alpha",
         items,
         streams: streams::streams(report)?,
     })

@@ -4,7 +4,7 @@ use kestirim_replay::uav::{Model, Plant};
 
 use super::{by_state, made};
 use crate::figure::{Colour, Figure, Series};
-use crate::report::{Comparison, Item};
+use crate::report::{Comparison, Item, Value, printed};
 use crate::systems::uav::paper::published::{RANK, SETTLING_S, TRIM};
 use crate::systems::uav::paper::report::{Report, said_of_constant_inputs};
 use crate::systems::uav::paper::responses::{Bode, Responses};
@@ -54,8 +54,13 @@ fn trim() -> Comparison {
     ];
     let empty =
         Comparison::new("uav-table-3-1", "Table 3.1: steady flight (ours: P1, the Aerosonde)");
+    let shown = [state[0].to_degrees(), state[1], state[2], state[3].to_degrees()];
+    let values = Value::each("trim", STATES, ["°", "rad/s", "m/s", "°"], shown);
+    let values = values.into_iter().zip(TRIM);
+    let values = values.map(|(value, text)| value.under("P1").by("model").published(printed(text)));
     let rows = STATES.into_iter().zip(TRIM).zip(ours);
     rows.fold(empty, |table, ((name, published), ours)| table.row(name, published, ours, ""))
+        .values(values)
         .note(
             "No documented aircraft has this trim and settles in 600 s. The thesis' own simulations start \
              at θ = 0.53 rad, not at 12°.",
@@ -78,9 +83,14 @@ fn visibility(report: &Report) -> Comparison {
                 format!("{:.1e}", row.controllability),
                 "",
             );
+            let least = |of: String, value: f64| {
+                Value::new("least singular value", "").under(of).by("model").is(value)
+            };
+            let table = table.values([least(format!("{name}: moved"), row.controllability)]);
             row.observability.iter().fold(table, |table, seen| {
                 let name = format!("{name}: seen in {}", seen.outputs.name());
-                table.row(name, RANK, format!("{:.1e}", seen.least), "")
+                let value = least(name.clone(), seen.least);
+                table.row(name, RANK, format!("{:.1e}", seen.least), "").values([value])
             })
         })
         .note(
@@ -117,8 +127,12 @@ fn settling(report: &Report) -> Comparison {
                 Plant::P2 => format!("≈ {SETTLING_S}"),
                 _ => String::new(),
             };
-            let ours = seconds.map(|s| format!("{s:.0}")).join(" ");
-            table.row(format!("{}, {input}", row.plant.name()), published, ours, "")
+            let here = seconds.map(|s| format!("{s:.0}")).join(" ");
+            let condition = format!("{}, {input}", row.plant.name());
+            let said = (row.plant == Plant::P2).then_some(SETTLING_S);
+            let values = Value::each("time in which a step settles", STATES, ["s"; 4], seconds);
+            let values = values.map(|value| value.under(&condition).by("model").published(said));
+            table.repeated(condition, published, here, "").values(values)
         })
     })
 }
@@ -208,9 +222,17 @@ fn constant_inputs(plant: &Responses) -> [Figure; 4] {
 fn said(report: &Report) -> Comparison {
     let empty =
         Comparison::new("uav-constant-inputs", "Figs 5.5–5.8: what the thesis says of them");
-    said_of_constant_inputs(&report.plants)
-        .into_iter()
-        .fold(empty, |table, [quantity, published, ours]| table.row(quantity, published, ours, ""))
+    said_of_constant_inputs(&report.plants).into_iter().fold(
+        empty,
+        |table, [quantity, published, here]| {
+            // The unit stands in the name, behind the comma, where there is one.
+            let unit =
+                ["rad", "m/s"].into_iter().find(|unit| quantity.contains(&format!(", {unit}")));
+            let value = Value::new(quantity.clone(), unit.unwrap_or("s")).by("model");
+            let value = value.is(printed(&here)).published(printed(&published));
+            table.repeated(quantity, published, here, "").values([value])
+        },
+    )
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ fn every_figure_of_the_thesis_is_there_once_and_has_lines() {
         }
     }
     assert!(chapter.summary.rows.len() <= 10, "{}", chapter.summary);
+    chapter.assert_complete();
     for stream in &chapter.streams {
         assert!(stream.rows.iter().all(|(_, values)| values.len() == stream.columns.len()));
     }

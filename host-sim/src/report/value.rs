@@ -1,0 +1,130 @@
+//! Numbers of the report, for programs.
+
+use serde::Serialize;
+
+/// A number, what it is of, and what others say of the same.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Value {
+    /// What is measured.
+    pub quantity: String,
+    /// Where, of what, under which circumstances; may be empty.
+    pub condition: String,
+    /// What gave the number: `default` is this library's, `published …` the paper's own method as it is run here.
+    pub method: String,
+    /// The number; none where there is only a published one.
+    pub value: Option<f64>,
+    /// Its unit; empty for a bare number.
+    pub unit: &'static str,
+    /// Its standard error, if it is a mean whose standard error is known.
+    pub standard_error: Option<f64>,
+    /// Of how many repetitions it is.
+    pub n: Option<usize>,
+    /// As printed.
+    pub published: Option<f64>,
+    /// What nothing can be better than.
+    pub limit: Option<f64>,
+}
+
+impl Value {
+    /// A quantity in a unit, of which nothing is known yet.
+    pub fn new(quantity: impl Into<String>, unit: &'static str) -> Self {
+        Self {
+            quantity: quantity.into(),
+            condition: String::new(),
+            method: "default".to_owned(),
+            value: None,
+            unit,
+            standard_error: None,
+            n: None,
+            published: None,
+            limit: None,
+        }
+    }
+
+    /// Under these circumstances.
+    pub fn under(mut self, condition: impl Into<String>) -> Self {
+        self.condition = condition.into();
+        self
+    }
+
+    /// By another method than the default.
+    pub fn by(mut self, method: impl Into<String>) -> Self {
+        self.method = method.into();
+        self
+    }
+
+    /// With the number that came out. What is no number is none.
+    pub fn is(mut self, value: impl Into<Option<f64>>) -> Self {
+        self.value = finite(value);
+        self
+    }
+
+    /// As the mean of so many, with its standard error where that is known.
+    pub fn of(mut self, n: usize, standard_error: impl Into<Option<f64>>) -> Self {
+        (self.n, self.standard_error) = (Some(n), finite(standard_error));
+        self
+    }
+
+    /// With what is printed.
+    pub fn published(mut self, value: impl Into<Option<f64>>) -> Self {
+        self.published = finite(value);
+        self
+    }
+
+    /// With what nothing can be better than.
+    pub fn limited(mut self, value: impl Into<Option<f64>>) -> Self {
+        self.limit = finite(value);
+        self
+    }
+
+    /// Values of the same quantity with names of their own, such as those of axes or states: `quantity` is followed by each.
+    pub fn each<const N: usize>(
+        quantity: &str,
+        names: [&'static str; N],
+        units: [&'static str; N],
+        values: [f64; N],
+    ) -> [Self; N] {
+        std::array::from_fn(|i| {
+            Self::new(format!("{quantity} {}", names[i]), units[i]).is(values[i])
+        })
+    }
+}
+
+fn finite(value: impl Into<Option<f64>>) -> Option<f64> {
+    value.into().filter(|value| value.is_finite())
+}
+
+/// The number in a printed text: of `≈ 1.5` 1.5, of `−0.17` its negative. None if there are several or none.
+pub fn printed(text: &str) -> Option<f64> {
+    let text = text.replace('−', "-");
+    let is_of_number = |letter: char| letter.is_ascii_digit() || letter == '.' || letter == '-';
+    let mut numbers = text.split(|letter| !is_of_number(letter)).filter(|part| !part.is_empty());
+    let number = numbers.next()?.parse().ok()?;
+    numbers.next().is_none().then_some(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_found_in_what_is_printed() {
+        for (text, number) in [
+            ("≈ 1.5", Some(1.5)),
+            ("about −0.17", Some(-0.17)),
+            ("12°", Some(12.0)),
+            ("3.5–6.5", None),
+            ("invisible", None),
+            ("", None),
+        ] {
+            assert_eq!(printed(text), number, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_none() {
+        let value = Value::new("error", "m").is(f64::NAN).of(7, f64::INFINITY).published(2.0);
+        assert_eq!((value.value, value.standard_error, value.n), (None, None, Some(7)));
+        assert_eq!((value.published, value.method.as_str()), (Some(2.0), "default"));
+    }
+}
