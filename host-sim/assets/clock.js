@@ -2,35 +2,41 @@
 "use strict";
 
 class Clock {
-  // `changed` is told of every new window and cursor.
-  constructor(place, changed = () => {}) {
-    this.members = new Set();
-    this.changed = changed;
-    [this.span, this.window, this.cursor, this.playing] = [null, null, null, null];
-    this.bar = Clock.#bar(this);
-    this.bar.hidden = true;
-    place.append(this.bar);
-  }
-
   static SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
-  static #bar(clock) {
+  // What the figures cover, what of it is shown, where the cursor is, all in seconds; and the frame of a play that is on.
+  /** @type {[number, number] | null} */
+  span = null;
+  /** @type {number[] | null} */
+  window = null;
+  /** @type {number | null} */
+  cursor = null;
+  /** @type {number | null} */
+  playing = null;
+  /** @type {Set<any>} */
+  members = new Set();
+
+  // `changed` is told of every new window and cursor.
+  /** @param {Element} place @param {(clock: Clock) => void} changed */
+  constructor(place, changed = () => {}) {
     const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
-    const bar = make("div", { className: "clock" });
-    bar.setAttribute("role", "group");
-    bar.setAttribute("aria-label", "time");
-    clock.play = make("button", { type: "button", textContent: "play", className: "play" });
-    clock.speed = make("select", { className: "speed", ariaLabel: "speed" });
-    clock.speed.append(...Clock.SPEEDS.map((speed) =>
+    this.changed = changed;
+    this.bar = make("div", { className: "clock", hidden: true });
+    this.bar.setAttribute("role", "group");
+    this.bar.setAttribute("aria-label", "time");
+    this.play = make("button", { type: "button", textContent: "play", className: "play" });
+    this.speed = make("select", { className: "speed", ariaLabel: "speed" });
+    this.speed.append(...Clock.SPEEDS.map((speed) =>
       make("option", { value: String(speed), textContent: `${speed} ×`, selected: speed === 1 })));
-    clock.slider = make("input", { type: "range", ariaLabel: "time" });
-    clock.told = make("output", {});
-    clock.all = make("button", { type: "button", textContent: "whole time", className: "whole", hidden: true });
-    clock.play.addEventListener("click", () => clock.#toggle());
-    clock.slider.addEventListener("input", () => clock.move(Number(clock.slider.value)));
-    clock.all.addEventListener("click", () => clock.look(null));
-    bar.append(clock.play, clock.speed, clock.slider, clock.told, clock.all);
-    return bar;
+    this.slider = make("input", { type: "range", ariaLabel: "time" });
+    // The bar itself tells it: nobody wants sixty times a second read out.
+    this.told = make("span", { className: "told", ariaHidden: "true" });
+    this.all = make("button", { type: "button", textContent: "whole time", className: "whole", hidden: true });
+    this.play.addEventListener("click", () => this.#toggle());
+    this.slider.addEventListener("input", () => this.move(Number(this.slider.value)));
+    this.all.addEventListener("click", () => this.look(null));
+    this.bar.append(this.play, this.speed, this.slider, this.told, this.all);
+    place.append(this.bar);
   }
 
   // All figures that are shown, before they are drawn: from when to when they reach.
@@ -59,8 +65,10 @@ class Clock {
   }
 
   // What a figure's axis shows; nothing to say if it is no time.
-  axis({ seconds }) {
-    return seconds && this.span ? this.range().map((end) => end / seconds) : null;
+  axis({ seconds, layout }) {
+    // What a figure itself shows at first holds until somebody looks elsewhere.
+    if (!seconds || !this.span || (!this.window && layout.xaxis.range)) return null;
+    return this.range().map((end) => end / seconds);
   }
 
   join(entry) {
@@ -97,10 +105,10 @@ class Clock {
   }
 
   #zoomed({ plot, figure: { seconds } }) {
-    if (!this.span) return;
+    const known = this.range();
+    if (!known || !this.span) return;
     const { autorange, range } = plot._fullLayout.xaxis;
     const [low, high] = range.map((end) => Number(end) * seconds);
-    const known = this.range();
     const close = (a, b) => Math.abs(a - b) <= 1e-6 * (known[1] - known[0]);
     if (close(low, known[0]) && close(high, known[1])) return this.mark();
     const is_all = autorange || (low <= this.span[0] && high >= this.span[1]);
@@ -109,10 +117,10 @@ class Clock {
 
   // Shows another stretch of time, or all of it.
   look(window) {
-    // As many digits as an address holds.
-    this.window = window && window.map((end) => Number(end.toPrecision(9)));
+    // As many digits as an address holds: microseconds.
+    this.window = window && window.map((end) => Number(end.toFixed(6)));
     for (const { plot, figure } of this.members) {
-      const range = this.axis(figure);
+      const range = this.axis(figure) ?? (figure.seconds && figure.layout.xaxis.range);
       const shown = plot._fullLayout?.xaxis.range;
       if (range && shown && range.some((end, i) => end !== shown[i])) Plotly.relayout(plot, { "xaxis.range": range });
     }
@@ -130,7 +138,8 @@ class Clock {
 
   // One step of a key, as far as an arrow of the bar goes.
   step(by) {
-    const [low, high] = this.range() ?? [0, 0];
+    if (!this.range()) return;
+    const [low, high] = this.range();
     this.move(Math.min(Math.max((this.cursor ?? low) + (by * (high - low)) / 200, low), high));
   }
 
@@ -154,6 +163,8 @@ class Clock {
     if (this.cursor === null || this.cursor < low || this.cursor >= high) this.move(low);
     let before = performance.now();
     const step = (now) => {
+      // What was played may be gone.
+      if (!this.range()) return this.#toggle();
       const [, end] = this.range();
       this.move(Math.min(this.cursor + ((now - before) / 1000) * Number(this.speed.value), end));
       before = now;
@@ -163,20 +174,22 @@ class Clock {
     this.playing = requestAnimationFrame(step);
   }
 
-  static #words(time, [low, high]) {
-    if (high - low < 7200) return `${time.toFixed(high - low < 20 ? 3 : 2)} s`;
+  // The longer the span, the coarser.
+  static #words(time, length) {
+    if (length < 7200) return `${time.toFixed(length < 20 ? 3 : 2)} s`;
     const whole = Math.floor(time);
     const two = (value) => String(value).padStart(2, "0");
     return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)} h`;
   }
 
   // Draws the cursor where it is; nobody is asked.
+  /** @param {Iterable<any>} entries */
   mark(entries = this.members) {
     if (this.cursor !== null && this.span) {
       // From now on there is room for values.
       document.body.classList.add("timed");
       this.slider.value = String(this.cursor);
-      this.told.textContent = Clock.#words(this.cursor, this.span);
+      this.told.textContent = Clock.#words(this.cursor, this.span[1] - this.span[0]);
       this.slider.setAttribute("aria-valuetext", this.told.textContent);
     }
     for (const entry of entries) {

@@ -8,6 +8,10 @@ const Controls = (() => {
     return made;
   };
 
+  // Elements, of whatever kind.
+  /** @type {(selector: string, within?: Document | Element) => any[]} */
+  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+
   // Whether a value of another recording can be set here as well.
   function takes(control, value) {
     const offers = (value) => control.options.some(([name]) => name === value);
@@ -23,7 +27,8 @@ const Controls = (() => {
 
   function slider(control, given, change, busy) {
     const log = control.logarithmic;
-    const [inward, outward] = log ? [Math.log10, (v) => 10 ** v] : [Number, Number];
+    // No more digits than are told.
+    const [inward, outward] = log ? [Math.log10, (v) => Number((10 ** v).toPrecision(3))] : [Number, Number];
     const output = make("output");
     const range = make("input", { type: "range", id: `control-${control.name}`, step: control.step });
     [range.min, range.max, range.value] =
@@ -113,13 +118,13 @@ const Controls = (() => {
 
   // What has no effect as the others stand cannot be turned, and says why.
   function disable(reasons) {
-    for (const part of document.querySelectorAll("[data-setting]")) {
+    for (const part of all("[data-setting]")) {
       const reason = reasons.get(part.dataset.setting);
       part.classList.toggle("disabled", reason !== undefined);
       part.title = reason ?? "";
-      for (const input of part.querySelectorAll("input, select, button")) input.disabled = reason !== undefined;
+      for (const input of all("input, select, button", part)) input.disabled = reason !== undefined;
     }
   }
 
-  return { build, disable, make, takes };
+  return { all, build, disable, make, takes };
 })();

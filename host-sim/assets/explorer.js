@@ -2,7 +2,8 @@
 "use strict";
 
 {
-  const { make } = Controls;
+  const { all, make } = Controls;
+  /** @type {(id: string) => any} */
   const element = (id) => document.getElementById(id);
   const places = new Map();
   // What the address holds, but for window and cursor, which the clock has. `a` is what is compared with.
@@ -27,12 +28,14 @@
     Controls.disable(disabled);
     for (const said of ["command", "firmware"]) element(said).textContent = answer[said];
     element("again").hidden = !answer.command;
-    element("changed").hidden = !answer.changed?.length;
-    element("same").hidden = !answer.changed || answer.changed.length + answer.figures.length > 0;
+    element("differences").hidden = !answer.changed?.length;
+    const differs = answer.figures.some(({ data }) => state.how === "difference" || data.some(({ name }) => name.startsWith("A: ")));
+    element("same").hidden = !answer.changed || differs;
     element("changed").tBodies[0].replaceChildren(...(answer.changed ?? []).map(([name, a, b]) => make("tr", {},
       make("th", { scope: "row", textContent: name }), make("td", { textContent: a }), make("td", { textContent: b }))));
     // A figure of differences is another one than that of what differs.
-    const kind = ({ id, equal, seconds }) => JSON.stringify([id, equal, seconds]);
+    const how = answer.changed ? state.how : "alone";
+    const kind = ({ id, equal, seconds }) => JSON.stringify([id, equal, seconds, how === "difference"]);
     const known = new Set(answer.figures.map(kind));
     for (const [key, { place }] of places) {
       if (known.has(key)) continue;
@@ -66,7 +69,7 @@
     const asked = new Set([...sentence.matchAll(/--([a-z][a-z-]*)/g)].map(([, name]) => name));
     let first = null;
     // A control answers at once, a field of the files when they are opened again.
-    for (const part of document.querySelectorAll("[data-option], [data-setting]")) {
+    for (const part of all("[data-option], [data-setting]")) {
       const is = asked.has(part.dataset.setting ?? part.dataset.option) && !part.classList.contains("disabled");
       part.classList.toggle("asked", is);
       if (is && (!first || (part.dataset.setting && !first.dataset.setting))) first = part;
@@ -75,23 +78,25 @@
     first?.scrollIntoView({ block: "nearest" });
   }
 
-  async function request(path, body) {
+  async function request(path, body, read) {
     try {
       const response = await fetch(path, { method: "POST", body });
-      if (response.ok) return response;
-      complain(await response.text());
+      if (response.ok) return await read(response);
+      complain((await response.text()) || `${path}: ${response.status}`);
     } catch {
       complain("the program no longer answers: is it still running?");
     }
+    return null;
   }
-  const post = async (path, body) => (await request(path, body))?.json();
+  const post = (path, body) => request(path, body, (response) => response.json());
 
   // --- one request at a time; what happens meanwhile is asked for afterwards
 
   const question = () => JSON.stringify({
     settings: state.settings, windows, window: clock.window, a: state.a && { ...state.a, how: state.how },
   });
-  const of = (what) => `api/${what}/${state.system}/${state.recording}`;
+  const path = (what, { system, recording }) => `api/${what}/${system}/${encodeURIComponent(recording)}`;
+  const of = (what) => path(what, state);
 
   let [asking, again] = [false, false];
   async function ask() {
@@ -114,8 +119,8 @@
     } finally {
       asking = false;
       delete document.body.dataset.asking;
+      if (again) { again = false; ask(); }
     }
-    if (again) { again = false; ask(); }
   }
 
   // A figure that is zoomed in and has no time gets its points from there.
@@ -136,13 +141,14 @@
   function address() {
     const query = new URLSearchParams();
     const say = (name, value) => { if (value) query.set(name, value); };
+    if (!state.recording) return state.system;
     say("recording", state.recording === source(state.system)?.bundled[0][0] ? "" : state.recording);
     say("settings", Object.keys(state.settings).length && JSON.stringify(state.settings));
     say("a", state.a && JSON.stringify(state.a));
     say("how", state.a && state.how);
     say("window", clock.window?.join());
-    say("cursor", clock.cursor !== null && String(Number(clock.cursor.toPrecision(9))));
-    return query.size ? `${state.system}?${query}` : state.system;
+    say("cursor", clock.cursor !== null && String(Number(clock.cursor.toFixed(6))));
+    return String(query) ? `${state.system}?${query}` : state.system;
   }
 
   // What an address says; what it does not say is at first.
@@ -170,8 +176,9 @@
   let [turned, when] = ["", 0];
   // Before something changes. One movement of a control is one change.
   function remember(what = "") {
-    const now = performance.now();
-    if (!what || what !== turned || now - when > 1000) past.push(JSON.stringify(state));
+    if (!state.recording) return;
+    const [now, before] = [performance.now(), JSON.stringify(state)];
+    if (past[past.length - 1] !== before && (!what || what !== turned || now - when > 1000)) past.push(before);
     [turned, when] = [what, now];
     future.length = 0;
     offerHistory();
@@ -183,24 +190,27 @@
   }
 
   function travel(from, to) {
-    if (!from.length) return;
-    to.push(JSON.stringify(state));
+    if (!from.length || opening) return;
+    if (state.recording) to.push(JSON.stringify(state));
     turned = "";
     restore(JSON.parse(from.pop()));
     offerHistory();
   }
 
   // Shows a state that was.
-  async function restore(wanted) {
+  function restore(wanted) {
     const same = wanted.system === state.system && wanted.recording === state.recording;
     if (wanted.system !== state.system) offer(wanted.system);
-    if ("window" in wanted) [clock.window, clock.cursor] = [wanted.window, wanted.cursor];
-    if (same) take(wanted); else await open(`api/open/${wanted.system}/${wanted.recording}`, undefined, wanted);
+    if (!same) { named(wanted); return; }
+    take(wanted);
+    if ("window" in wanted) clock.look(wanted.window);
+    if ("window" in wanted && wanted.cursor !== null) clock.move(wanted.cursor);
   }
 
   // --- controls
 
   function change(name, value) {
+    if (opening) return;
     remember(name);
     const settings = { ...state.settings };
     if (value === undefined) delete settings[name]; else settings[name] = value;
@@ -210,20 +220,24 @@
   }
 
   // Controls and comparison as a state has them.
-  function take(wanted) {
-    const { system, recording, settings, a, how } = wanted;
+  function take({ system, recording, settings: given, a, how }) {
+    // What cannot be set here is left out.
+    const can = ([name, value]) => controls.some((it) => it.name === name && Controls.takes(it, value));
+    const settings = Object.fromEntries(Object.entries(given).filter(can));
+    const focused = document.activeElement?.id;
     state = { system, recording, settings, a, how };
     Controls.build(element("controls"), controls, settings, change, () => asking);
     // Until the answer comes, as they were.
     Controls.disable(disabled);
+    if (focused?.startsWith("control-")) element(focused)?.focus();
     for (const id of ["how", "swap", "end"]) element(id).hidden = !a;
     if (a) element("compare").open = true;
     element("how").value = how;
-    element("keep").textContent = a ? "keep this as A instead" : "keep what is shown as A";
+    element("keep").textContent = a ? "store this as A instead" : "store this as A";
     const named = [...element("bundled").options].find(({ value }) => value === a?.recording)?.textContent ?? a?.recording;
-    const given = Object.entries(a?.settings ?? {}).map(([name, value]) => `${name} ${value}`).join(", ");
-    element("kept").textContent = a ? `A: ${named}; ${given || "all as at first"}`
-      : "Keep one as A, then turn a control or choose another recording: both are drawn, and what changed is listed.";
+    const ofA = Object.entries(a?.settings ?? {}).map(([name, value]) => `${name} ${value}`).join(", ");
+    element("kept").textContent = a ? `A: ${named}; ${ofA || "all as at first"}`
+      : "Store one as A, then turn a control or choose another recording: both are drawn, and what changed is listed.";
     written();
     ask();
   }
@@ -231,14 +245,18 @@
   function opened(reply, wanted) {
     for (const shown of ["facts", "warnings", "findings", "figures"]) element(shown).replaceChildren();
     for (const hidden of ["check", "again", "give"]) element(hidden).hidden = true;
-    element("changed").hidden = true;
+    element("differences").hidden = true;
     for (const { place } of places.values()) Figures.forget(place);
     places.clear();
     windows = {};
+    // Another recording has another time, unless an address says which.
+    [clock.span, clock.window, clock.cursor] = [null, wanted.window ?? null, wanted.cursor ?? null];
     if (!reply) {
-      state = { ...state, recording: "" };
+      state = { ...state, recording: "", a: null };
+      controls = [];
       clock.see([]);
       element("controls").replaceChildren();
+      written();
       return;
     }
     [controls, disabled] = [reply.controls, new Map()];
@@ -251,10 +269,7 @@
     }
     element("bundled").value = reply.recording;
     element("files").hidden = element("upload").hidden = true;
-    // What cannot be set here is left out.
-    const can = ([name, value]) => controls.some((it) => it.name === name && Controls.takes(it, value));
-    const settings = Object.fromEntries(Object.entries(wanted.settings).filter(can));
-    take({ ...wanted, recording: reply.recording, settings });
+    take({ ...wanted, recording: reply.recording });
   }
 
   // --- recordings
@@ -283,13 +298,16 @@
   }
 
   // The last that was asked for is opened, however long another takes.
-  let openings = 0;
+  // Until it is there nothing else can be changed.
+  let [openings, opening] = [0, false];
   async function open(path, body, wanted) {
-    const opening = ++openings;
+    const number = ++openings;
+    opening = true;
     complain("");
     element("warnings").replaceChildren(make("li", { textContent: "reading …" }));
     const reply = await post(path, body);
-    if (opening !== openings) return;
+    if (number !== openings) return;
+    opening = false;
     if (!reply) {
       // Where to choose them again.
       element("bundled").value = "";
@@ -299,13 +317,12 @@
     opened(reply, wanted);
   }
 
-  const named = (wanted) => open(`api/open/${wanted.system}/${wanted.recording}`, undefined, wanted);
+  const named = (wanted) => open(path("open", wanted), undefined, wanted);
 
   element("system").addEventListener("input", () => {
     remember();
     const system = element("system").value;
     offer(system);
-    [clock.window, clock.cursor] = [null, null];
     named({ system, recording: source(system).bundled[0][0], settings: {}, a: null, how: "over" });
   });
   element("bundled").addEventListener("input", () => {
@@ -313,15 +330,14 @@
     element("files").hidden = element("upload").hidden = recording !== "";
     if (!recording) return;
     remember();
-    clock.window = null;
     named({ ...state, recording });
   });
   element("open").addEventListener("submit", (event) => {
     event.preventDefault();
     const files = new FormData(element("open"));
     for (const [name, file] of [...files]) if (file instanceof File && !file.size && !file.name) files.delete(name);
-    if (state.recording) remember();
-    clock.window = null;
+    if (opening) return;
+    remember();
     open(`api/open/${state.system}`, files, state);
   });
 
@@ -330,20 +346,28 @@
   element("undo").addEventListener("click", () => travel(past, future));
   element("redo").addEventListener("click", () => travel(future, past));
   addEventListener("keydown", (event) => {
-    const typing = event.target.matches?.("input[type=text]");
+    const typing = event.target instanceof Element && event.target.matches("input[type=text]");
     if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || typing) return;
     event.preventDefault();
     if (event.shiftKey) travel(future, past); else travel(past, future);
   });
-  const put = (changed) => { remember(); take({ ...state, ...changed }); };
+  const put = (changed) => {
+    if (opening || !state.recording) return;
+    remember();
+    take({ ...state, ...changed });
+  };
   element("reset").addEventListener("click", () => put({ settings: {} }));
   element("controls").addEventListener("submit", (event) => event.preventDefault());
   const shown = () => ({ recording: state.recording, settings: state.settings });
   element("keep").addEventListener("click", () => put({ a: shown() }));
   element("how").addEventListener("input", () => put({ how: element("how").value }));
   element("end").addEventListener("click", () => put({ a: null }));
-  element("swap").addEventListener("click", () => { remember(); restore({ ...state, ...state.a, a: shown() }); });
-  for (const button of document.querySelectorAll(".copy")) {
+  element("swap").addEventListener("click", () => {
+    if (opening || !state.a) return;
+    remember();
+    restore({ ...state, ...state.a, a: shown() });
+  });
+  for (const button of all(".copy")) {
     button.addEventListener("click", async () => {
       await navigator.clipboard.writeText(element(button.dataset.of).textContent);
       button.textContent = "copied";
@@ -355,9 +379,9 @@
     const button = make("button", { type: "button", className: "give", textContent: text, ariaLabel: `download ${label}` });
     button.addEventListener("click", async () => {
       complain("");
-      const response = await request(`${of("download")}/${file}`, question());
-      if (!response) return;
-      const href = URL.createObjectURL(await response.blob());
+      const blob = await request(`${of("download")}/${file}`, question(), (response) => response.blob());
+      if (!blob) return;
+      const href = URL.createObjectURL(blob);
       make("a", { href, download: `${state.system}-${state.recording.slice(0, 16)}-${file}` }).click();
       setTimeout(() => URL.revokeObjectURL(href), 10_000);
     });
@@ -366,10 +390,10 @@
 
   function live() {
     const socket = new WebSocket(`ws://${location.host}/live`);
-    for (const part of document.querySelectorAll(".controls, #compare")) part.hidden = true;
+    for (const part of all(".controls, #compare")) part.hidden = true;
     // Five times a second would be too much to be read out.
     element("facts").ariaLive = "off";
-    document.querySelector(".explorer").style.gridTemplateColumns = "minmax(0, 1fr)";
+    all(".explorer")[0].style.gridTemplateColumns = "minmax(0, 1fr)";
     socket.addEventListener("message", ({ data }) => { show(JSON.parse(data)); socket.send("next"); });
     socket.addEventListener("close", () => complain("the stream has ended"));
   }
@@ -381,6 +405,6 @@
     element("system").replaceChildren(...sources.map((source) =>
       make("option", { value: source.system, textContent: `${source.system}: ${source.title}` })));
     restore(read(location.hash));
-    addEventListener("hashchange", () => { if (location.hash.slice(1) !== address()) { remember(); restore(read(location.hash)); } });
-  }).catch(() => complain("the program does not answer: is it still running?"));
+    addEventListener("hashchange", () => { if (location.hash.slice(1) !== address() && !opening) { remember(); restore(read(location.hash)); } });
+  }).catch((error) => complain(`the program does not answer (${error}): is it still running?`));
 }

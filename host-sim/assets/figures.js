@@ -5,10 +5,11 @@ const Figures = (() => {
   const drawn = new Map();
   const resized = new ResizeObserver((entries) => {
     for (const { target } of entries) {
-      if (!target.data) continue;
       const entry = [...drawn.values()].find((it) => it.plot === target);
-      if (entry?.figure.equal) fit(entry);
-      Plotly.Plots.resize(target).then(() => entry?.clock?.mark([entry]));
+      // What is folded away has no size.
+      if (!entry?.plot.data || !entry.plot.offsetParent) continue;
+      if (entry.figure.equal) fit(entry);
+      Plotly.Plots.resize(target).then(() => entry.clock?.mark([entry]));
     }
   });
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -66,7 +67,7 @@ const Figures = (() => {
   // HTML buttons in place of Plotly's legend: they wrap on a phone and take the keyboard, and tell values at the cursor.
   function legend(entry) {
     const { figure, hidden, buttons } = entry;
-    entry.values = figure.data.map(() => make("output", {}));
+    entry.values = figure.data.map(() => make("span", { className: "value", ariaHidden: "true" }));
     buttons.replaceChildren(...figure.data.map((series, index) => {
       const button = make("button", { type: "button", textContent: series.name });
       button.style.setProperty("--series", series.line.color);
@@ -116,14 +117,13 @@ const Figures = (() => {
     [plot.className, buttons.className, box.className] = [figure.equal ? "plot map" : "plot", "legend", "box"];
     plot.tabIndex = 0;
     plot.setAttribute("role", "application");
-    const told = figure.seconds ? " Comma and full stop move the cursor." : "";
+    const told = clock ? " Comma and full stop move the cursor." : "";
     plot.setAttribute("aria-label",
       `${figure.title}. ${figure.caption} Plus and minus zoom, arrows move, 0 shows everything.${told}`);
     box.append(plot);
     place.append(buttons, box);
     resized.observe(plot);
-    const hidden = new Set(figure.data.filter((series) => series.visible).map((series) => series.name));
-    const entry = { plot, buttons, box, hidden, names: "", values: [], figure, clock, zoomed };
+    const entry = { plot, buttons, box, hidden: new Set(), known: new Set(), names: "", values: [], figure, clock, zoomed };
     plot.addEventListener("keydown", (event) => keys(event, entry));
     drawn.set(place, entry);
     clock?.join(entry);
@@ -135,7 +135,16 @@ const Figures = (() => {
     const entry = drawn.get(place) ?? prepare(place, figure, { clock, zoomed });
     const first = !entry.plot.data;
     entry.figure = figure;
-    for (const series of figure.data) series.visible = entry.hidden.has(series.name) ? "legendonly" : true;
+    for (const series of figure.data) {
+      // A new name is hidden if the program says so; one of a comparison, if what it is of was hidden here.
+      if (!entry.known.has(series.name)) {
+        const of = series.name.replace(/^[AB]: /, "");
+        const hides = entry.known.has(of) ? entry.hidden.has(of) : series.visible === "legendonly";
+        if (hides) entry.hidden.add(series.name);
+        entry.known.add(series.name);
+      }
+      series.visible = entry.hidden.has(series.name) ? "legendonly" : true;
+    }
     const names = JSON.stringify(figure.data.map((series) => series.name));
     if (names !== entry.names) legend(entry);
     entry.names = names;

@@ -3,15 +3,36 @@
 
 {
   const figures = JSON.parse(document.getElementById("figures").textContent);
+  /** @type {(selector: string, within?: Document | Element) => any[]} */
+  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  // From when to when a figure reaches, to three digits: those of one recording have one time, and a bar behind the last of them.
+  const reach = ({ seconds, data }) => {
+    let [low, high] = [Infinity, -Infinity];
+    for (const { x, customdata } of data) {
+      for (const value of (seconds ? x : customdata) ?? []) {
+        if (value === null) continue;
+        [low, high] = [Math.min(low, value * (seconds ?? 1)), Math.max(high, value * (seconds ?? 1))];
+      }
+    }
+    return low < high ? [low, high].map((end) => Number(end.toPrecision(3))).join() : null;
+  };
   const clocks = new Map();
-  for (const section of document.querySelectorAll("[data-clock]")) {
-    const clock = new Clock(section);
-    const places = [...section.querySelectorAll("[data-figure]")];
-    clock.see(places.map((place) => figures[place.dataset.figure]));
-    if (section.dataset.window) clock.look(section.dataset.window.split(",").map(Number));
-    for (const place of places) clocks.set(place, clock);
+  for (const section of all("[data-clock]")) {
+    const groups = new Map();
+    for (const place of all("[data-figure]", section)) {
+      const of = section.dataset.clock === "one" ? "one" : reach(figures[place.dataset.figure]);
+      if (of) groups.set(of, [...(groups.get(of) ?? []), place]);
+    }
+    for (const places of groups.values()) {
+      const drawn = places.map((place) => figures[place.dataset.figure]);
+      if (!drawn.some((figure) => figure.seconds)) continue;
+      const clock = new Clock(section.dataset.clock === "one" ? section : places[places.length - 1]);
+      clock.see(drawn);
+      if (section.dataset.window) clock.look(section.dataset.window.split(",").map(Number));
+      for (const place of places) clocks.set(place, clock);
+    }
   }
-  const draw = (place) => Figures.draw(place, figures[place.dataset.figure], { clock: clocks.get(place) });
+  const draw = (place) => Figures.draw(place, figures[place.dataset.figure], { clock: clocks.get(place) ?? null });
   const seen = new IntersectionObserver((entries) => {
     for (const { isIntersecting, target } of entries) {
       if (!isIntersecting) continue;
@@ -19,10 +40,10 @@
       draw(target);
     }
   }, { rootMargin: "600px" });
-  for (const place of document.querySelectorAll("[data-figure]")) seen.observe(place);
+  for (const place of all("[data-figure]")) seen.observe(place);
   // Paper shows all of them.
   addEventListener("beforeprint", () => {
-    for (const part of document.querySelectorAll("details")) part.open = true;
-    for (const place of document.querySelectorAll("[data-figure]")) draw(place);
+    for (const part of all("details")) part.open = true;
+    for (const place of all("[data-figure]")) draw(place);
   });
 }

@@ -6,27 +6,29 @@ impl Figure {
     /// Another result of the same figure, behind this one. Series are told apart by `names`: the other's, this one's. What is the
     /// same in both is drawn once.
     pub fn before(mut self, other: &Self, names: [&str; 2]) -> Self {
-        let behind = other.series.iter().filter(|series| !is_in(series, &self));
-        let behind: Vec<_> = behind
-            .map(|series| Series {
-                name: format!("{}: {}", names[0], series.name),
-                faint: true,
-                ..series.clone()
-            })
-            .collect();
-        for series in self.series.iter_mut().filter(|series| !is_in(series, other)) {
-            series.name = format!("{}: {}", names[1], series.name);
+        let differing = |these: &Self, those: &Self| -> Vec<bool> {
+            (0..these.series.len()).map(|place| !same(these, place, those)).collect()
+        };
+        let [theirs, ours] = [differing(other, &self), differing(&self, other)];
+        let named = |name: &str, series: &Series| format!("{name}: {}", series.name);
+        for (series, _) in self.series.iter_mut().zip(ours).filter(|(_, differs)| *differs) {
+            series.name = named(names[1], series);
         }
-        self.series.splice(0..0, behind);
+        let behind = other.series.iter().zip(theirs).filter(|(_, differs)| *differs);
+        let behind = behind.map(|(series, _)| {
+            let name = named(names[0], series);
+            Series { name, faint: true, ..series.clone() }
+        });
+        self.series.splice(0..0, behind.collect::<Vec<_>>());
         self
     }
 
     /// What this result has more than another one, series by series, at the times of this one; on a map, how far the places of
     /// the same time are apart. None if there is nothing to tell: no time, no other series of the same name, or the same.
     pub fn less(&self, other: &Self) -> Option<Self> {
-        let differing = self.series.iter().filter(|series| !is_in(series, other));
-        let pairs = differing.filter_map(|series| {
-            let theirs = other.series.iter().find(|theirs| theirs.name == series.name)?;
+        let differing = (0..self.series.len()).filter(|&place| !same(self, place, other));
+        let pairs = differing.filter_map(|place| {
+            let (series, theirs) = (&self.series[place], twin(self, place, other)?);
             let difference =
                 if self.equal { apart(series, theirs) } else { difference(series, theirs) };
             difference.map(|(x, y)| Series {
@@ -54,17 +56,34 @@ impl Figure {
     }
 }
 
-/// Whether a figure has the same series.
-fn is_in(series: &Series, figure: &Figure) -> bool {
-    // Gaps are no numbers, and gaps all the same.
-    let same = |a: &[f64], b: &[f64]| {
-        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
-    };
-    let mut others = figure.series.iter().filter(|other| other.name == series.name);
-    others.any(|other| same(&series.x, &other.x) && same(&series.y, &other.y))
+/// The series of another figure that has the same name: of several the one at the same place among them.
+fn twin<'a>(figure: &Figure, place: usize, other: &'a Figure) -> Option<&'a Series> {
+    let name = &figure.series.get(place)?.name;
+    let before = figure.series[..place].iter().filter(|series| series.name == *name).count();
+    other.series.iter().filter(|series| series.name == *name).nth(before)
 }
 
-/// Steps become lines: between two values there is none that was kept.
+/// Whether another figure has the same series.
+fn same(figure: &Figure, place: usize, other: &Figure) -> bool {
+    // Gaps are no numbers, and gaps all the same.
+    let equal = |a: &[f64], b: &[f64]| {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+    };
+    let both = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| match (a, b) {
+        (Some(a), Some(b)) => equal(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    let ours = &figure.series[place];
+    twin(figure, place, other).is_some_and(|theirs| {
+        equal(&ours.x, &theirs.x)
+            && equal(&ours.y, &theirs.y)
+            && both(&ours.error, &theirs.error)
+            && both(&ours.times, &theirs.times)
+            && ours.labels == theirs.labels
+    })
+}
+
+/// How a difference is drawn: as a line where the series was one of any kind.
 fn marked(mark: Mark) -> Mark {
     match mark {
         Mark::Steps | Mark::Dashes => Mark::Line,
@@ -76,9 +95,11 @@ type Line = (Vec<f64>, Vec<f64>);
 
 /// None if either is no function of the horizontal axis.
 fn difference(ours: &Series, theirs: &Series) -> Option<Line> {
+    let is_held = theirs.mark == Mark::Steps;
     let theirs = Function::new(&theirs.x, &theirs.y)?;
     Function::new(&ours.x, &ours.y)?;
-    let values = ours.x.iter().zip(&ours.y).map(|(&x, &y)| y - theirs.at(x));
+    let at = |x| if is_held { theirs.held(x) } else { theirs.at(x) };
+    let values = ours.x.iter().zip(&ours.y).map(|(&x, &y)| y - at(x));
     Some((ours.x.clone(), values.collect()))
 }
 
@@ -104,6 +125,15 @@ impl<'a> Function<'a> {
         let length = x.len().min(y.len());
         let (x, y) = (&x[..length], &y[..length]);
         (length > 0 && x.is_sorted()).then_some(Self { x, y })
+    }
+
+    /// The value of the last point that is not later; `NaN` before the first and behind the last.
+    fn held(&self, x: f64) -> f64 {
+        let after = self.x.partition_point(|&known| known <= x);
+        match after.checked_sub(1) {
+            Some(last) if after < self.x.len() || self.x[last] == x => self.y[last],
+            _ => f64::NAN,
+        }
     }
 
     /// `NaN` beyond the ends and in gaps.
@@ -152,6 +182,20 @@ mod tests {
         assert_eq!(series.y[1..], [3.0, 2.0]);
         assert_eq!((less.x.seconds, series.colour), (Some(1.0), Colour::Ours));
         assert!(less.y.label.contains("y, m"));
+    }
+
+    #[test]
+    fn steps_are_held_and_series_of_one_name_are_told_apart_by_their_order() {
+        let steps = |y: [f64; 3], z: f64| {
+            let steps = Series::new("on", Mark::Steps, vec![0.0, 1.0, 2.0], y.to_vec());
+            let again = Series::line("on", vec![0.0, 0.5], vec![z; 2]);
+            Figure::new("f", "F").over_seconds("y").with(steps).with(again)
+        };
+        let mut ours = steps([0.0, 1.0, 1.0], 5.0);
+        ours.series[0].x[1] = 0.5;
+        let less = ours.less(&steps([0.0, 1.0, 1.0], 4.0)).expect("a difference");
+        assert_eq!(less.series[0].y, [0.0, 1.0, 0.0], "between 0 and 1 the other is 0");
+        assert_eq!(less.series[1].y, [1.0, 1.0]);
     }
 
     #[test]

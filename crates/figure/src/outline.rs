@@ -3,76 +3,116 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::{Mark, Series};
+use crate::{Axis, Figure, Mark, Series};
 
-/// The longer side of what these series cover.
-pub(crate) fn width(series: &[Series], shown: &[Range<usize>]) -> f64 {
-    let extent = |values: fn(&Series) -> &[f64]| {
-        let of = series.iter().zip(shown);
-        let all = of.flat_map(|(series, shown)| &values(series)[shown.clone()]).copied();
+/// The longer side of what is seen of a map at first: its axes where they are said, else what is not hidden.
+pub(crate) fn width(figure: &Figure, shown: &[Range<usize>]) -> f64 {
+    let seen = figure.series.iter().zip(shown).filter(|(series, _)| !series.hidden);
+    let extent = |axis: &Axis, values: fn(&Series) -> &[f64]| {
+        if let Some([low, high]) = axis.range {
+            return high - low;
+        }
+        let all = seen.clone().flat_map(|(series, shown)| &values(series)[shown.clone()]).copied();
         let (low, high) = all
             .filter(|value| value.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), value| (l.min(value), h.max(value)));
         if low <= high { high - low } else { 0.0 }
     };
-    extent(|series| &series.x).max(extent(|series| &series.y))
+    extent(&figure.x, |series| &series.x).max(extent(&figure.y, |series| &series.y))
 }
 
-/// Indices of the points that are drawn: of a line, those that keep it within `most` of the whole one; of points, one of those
-/// that would be drawn over each other. A gap stays one.
+/// Indices of the points that are drawn: of a line, those that keep it within `most` of the whole one, at each time where times
+/// are known; of points, one of those that would be drawn over each other at about the same time. A gap stays one.
 pub(crate) fn indices(series: &Series, shown: Range<usize>, most: f64) -> Vec<usize> {
-    if most <= 0.0 || series.labels.is_some() || series.error.is_some() {
+    // Marks along a line are what it is about.
+    let is_marked = series.mark == Mark::LineAndPoints;
+    if most <= 0.0 || is_marked || series.labels.is_some() || series.error.is_some() {
         return shown.collect();
     }
+    let times = series.times.as_deref().filter(|times| times.len() >= shown.end);
     let place = |i: usize| [series.x[i], series.y[i]];
     let is_gap = |i: usize| !place(i).iter().all(|value| value.is_finite());
     if matches!(series.mark, Mark::Points | Mark::Dots | Mark::Crosses) {
         let mut seen = HashSet::new();
-        let cell = |i: usize| place(i).map(|value| (value / most) as i64);
+        let length = times.filter(|_| !shown.is_empty());
+        let length = length.map_or(0.0, |times| times[shown.end - 1] - times[shown.start]);
+        let stretch = (length / STRETCHES).max(f64::MIN_POSITIVE);
+        let when = |i: usize| times.map_or(0, |times| (times[i] / stretch) as i64);
+        let cell = |i: usize| (place(i).map(|value| (value / most) as i64), when(i));
         return shown.filter(|&i| is_gap(i) || seen.insert(cell(i))).collect();
     }
     let mut kept = Vec::new();
     let mut begin = shown.start;
     while begin < shown.end {
         let end = (begin..shown.end).find(|&i| is_gap(i)).unwrap_or(shown.end);
-        straightened(&distant(begin..end, most / 2.0, place), most / 2.0, place, &mut kept);
+        let line = Line { series, times, most: most / 2.0 };
+        line.straightened(&line.distant(begin..end), &mut kept);
         kept.extend((end < shown.end).then_some(end));
         begin = end + 1;
     }
     kept
 }
 
-/// Points farther than `most` from the one that was kept before, and the last.
-fn distant(points: Range<usize>, most: f64, place: impl Fn(usize) -> [f64; 2]) -> Vec<usize> {
-    let mut kept: Vec<usize> = Vec::new();
-    for i in points.clone() {
-        let is_far = kept.last().is_none_or(|&last| distance(place(i), place(last)) > most);
-        if is_far || i + 1 == points.end {
-            kept.push(i);
-        }
-    }
-    kept
+/// Stretches of time in each of which a spot is drawn once.
+const STRETCHES: f64 = 500.0;
+
+/// A line without gaps, and how far it may be moved.
+struct Line<'a> {
+    series: &'a Series,
+    times: Option<&'a [f64]>,
+    most: f64,
 }
 
-/// Points without which a line would move by more than `most`: Douglas and Peucker, 1973.
-fn straightened(
-    points: &[usize],
-    most: f64,
-    place: impl Fn(usize) -> [f64; 2],
-    kept: &mut Vec<usize>,
-) {
-    let (Some(&first), Some(last)) = (points.first(), points.len().checked_sub(1)) else { return };
-    kept.push(first);
-    // Stretches that are still to be looked at, the earliest on top; each begins where the last one ended.
-    let mut stretches = vec![(0, last)];
-    while let Some((from, to)) = stretches.pop() {
-        let ends = [from, to].map(|end| place(points[end]));
-        let off = |&i: &usize| from_segment(place(points[i]), ends);
-        let farthest = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
-        match farthest.filter(|i| off(i) > most) {
-            Some(middle) => stretches.extend([(middle, to), (from, middle)]),
-            None => kept.extend((to > from).then(|| points[to])),
+impl Line<'_> {
+    fn place(&self, i: usize) -> [f64; 2] {
+        [self.series.x[i], self.series.y[i]]
+    }
+
+    /// Where it leaves the neighbourhood of what was kept before: the last point within, and the first beyond. Who stands is
+    /// then seen to stand.
+    fn distant(&self, points: Range<usize>) -> Vec<usize> {
+        let mut kept: Vec<usize> = Vec::new();
+        for i in points.clone() {
+            let Some(&last) = kept.last() else {
+                kept.push(i);
+                continue;
+            };
+            if distance(self.place(i), self.place(last)) > self.most {
+                kept.extend((i - 1 > last).then_some(i - 1));
+                kept.push(i);
+            }
         }
+        let end = points.end.saturating_sub(1);
+        kept.extend(kept.last().is_some_and(|&last| last < end).then_some(end));
+        kept
+    }
+
+    /// Points without which it would move too far: Douglas and Peucker, 1973.
+    fn straightened(&self, points: &[usize], kept: &mut Vec<usize>) {
+        let (Some(&first), Some(last)) = (points.first(), points.len().checked_sub(1)) else {
+            return;
+        };
+        kept.push(first);
+        // Stretches that are still to be looked at, the earliest on top; each begins where the last one ended.
+        let mut stretches = vec![(0, last)];
+        while let Some((from, to)) = stretches.pop() {
+            let off = |&i: &usize| self.off(points[i], [points[from], points[to]]);
+            let farthest = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
+            match farthest.filter(|i| off(i) > self.most) {
+                Some(middle) => stretches.extend([(middle, to), (from, middle)]),
+                None => kept.extend((to > from).then(|| points[to])),
+            }
+        }
+    }
+
+    /// How far a point is from the straight line between two others: from where that is at the same time, if times are known.
+    fn off(&self, i: usize, ends: [usize; 2]) -> f64 {
+        let [a, b] = ends.map(|end| self.place(end));
+        let Some(times) = self.times else { return from_segment(self.place(i), [a, b]) };
+        let length = times[ends[1]] - times[ends[0]];
+        let share = if length > 0.0 { (times[i] - times[ends[0]]) / length } else { 0.0 };
+        let between = |a: f64, b: f64| a + share * (b - a);
+        distance(self.place(i), [between(a[0], b[0]), between(a[1], b[1])])
     }
 }
 
@@ -134,10 +174,34 @@ mod tests {
     }
 
     #[test]
-    fn the_width_is_of_what_is_shown() {
+    fn who_stands_on_the_way_is_seen_to_stand() {
+        // Ten metres in ten seconds, a minute's rest, ten metres more.
+        let at = |i: u32| f64::from(i.min(100)) * 0.1 + f64::from(i.saturating_sub(700)) * 0.1;
+        let series = Series::path("", (0..800).map(|i| [at(i), 0.0]));
+        let series = series.timed((0..800).map(|i| f64::from(i) * 0.1));
+        let kept = indices(&series, 0..800, 0.1);
+        assert!(kept.len() < 20, "{kept:?}");
+        let times = series.times.as_deref().unwrap();
+        let between = |time: f64| {
+            let after = kept.partition_point(|&i| times[i] < time).clamp(1, kept.len() - 1);
+            let [a, b] = [kept[after - 1], kept[after]];
+            let share = (time - times[a]) / (times[b] - times[a]);
+            series.x[a] + share * (series.x[b] - series.x[a])
+        };
+        for i in 0..800 {
+            let off = (between(times[i]) - series.x[i]).abs();
+            assert!(off <= 0.1, "{off} m off after {} s", times[i]);
+        }
+    }
+
+    #[test]
+    fn the_width_is_of_what_is_seen() {
         let series = Series::path("", [[0.0, f64::NAN], [1.0, 5.0], [9.0, 7.0]]);
-        let both = [series.clone(), series];
-        assert_eq!(width(&both, &[0..3, 0..1]), 9.0);
-        assert_eq!(width(&both, &[1..2, 1..1]), 0.0);
+        let far = Series::path("", [[0.0, 0.0], [1e3, 0.0]]).hidden();
+        let mut figure = Figure::new("f", "F").map().with(series).with(far);
+        assert_eq!(width(&figure, &[0..3, 0..2]), 9.0);
+        assert_eq!(width(&figure, &[1..2, 0..2]), 0.0);
+        (figure.x.range, figure.y.range) = (Some([0.0, 3.0]), Some([0.0, 4.0]));
+        assert_eq!(width(&figure, &[0..3, 0..2]), 4.0);
     }
 }

@@ -19,11 +19,16 @@ pub(crate) fn of(figure: &Figure, view: View) -> Vec<Vec<usize>> {
         return figure.series.iter().map(|series| indices(series, view)).collect();
     }
     let shown: Vec<_> = figure.series.iter().map(|series| then(series, view.window)).collect();
-    let width = outline::width(&figure.series, &shown);
+    let width = outline::width(figure, &shown);
     // Half a pixel.
     let most = width / (2 * view.most_points.max(1)) as f64;
     let thinned = figure.series.iter().zip(shown);
-    thinned.map(|(series, shown)| outline::indices(series, shown, most)).collect()
+    thinned
+        .map(|(series, shown)| {
+            let are_few = shown.len() <= view.most_points;
+            if are_few { shown.collect() } else { outline::indices(series, shown, most) }
+        })
+        .collect()
 }
 
 /// Points of a map that belong to a stretch of time; all where that is not known.

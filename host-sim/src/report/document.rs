@@ -11,9 +11,6 @@ const CLOCK: &str = include_str!("../../assets/clock.js");
 const FIGURES: &str = include_str!("../../assets/figures.js");
 const SCRIPT: &str = include_str!("../../assets/report.js");
 
-/// More than a screen has columns, so that there is something to zoom into.
-const VIEW: View = View { most_points: 3000, window: None };
-
 /// Nothing may be fetched from anywhere.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
 
@@ -26,16 +23,19 @@ pub(super) struct Document<'a> {
 }
 
 /// Figures as the page draws them, by their ids.
-pub(super) fn figures<'a>(figures: impl IntoIterator<Item = &'a Figure>) -> Map<String, Value> {
+pub(super) fn figures<'a>(
+    figures: impl IntoIterator<Item = &'a Figure>,
+    view: View,
+) -> Map<String, Value> {
     let drawn = figures.into_iter();
-    drawn.map(|figure| (figure.id.clone(), plotly::figure(figure, VIEW))).collect()
+    drawn.map(|figure| (figure.id.clone(), plotly::figure(figure, view))).collect()
 }
 
 impl Document<'_> {
     pub(super) fn render(self) -> String {
         let Self { title, body, figures } = self;
-        // `</script>` in a text would end the element.
-        let figures = Value::from(figures).to_string().replace("</", "<\\/");
+        // In a text `</script>` would end the element, and `<!--` change how it ends.
+        let figures = Value::from(figures).to_string().replace('<', "\\u003c");
         let page = html! {
             (DOCTYPE)
             html lang="en" {

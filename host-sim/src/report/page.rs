@@ -4,8 +4,10 @@ use maud::{Markup, PreEscaped, html};
 
 use super::document::{Document, figures};
 use super::{Chapter, Comparison, Content, Headline, Item, Row};
-use crate::figure::svg;
+use crate::figure::{View, svg};
 
+/// More than a screen has columns, so that there is something to zoom into.
+const VIEW: View = View { most_points: 3000, window: None };
 const TITLE: &str = "kestirim: published, ours, limit";
 
 /// The page.
@@ -26,7 +28,7 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
             }
         }
     };
-    let figures = figures(chapters.iter().flat_map(Chapter::figures));
+    let figures = figures(chapters.iter().flat_map(Chapter::figures), VIEW);
     Document { title: TITLE, body, figures }.render()
 }
 
@@ -119,6 +121,9 @@ fn headline(line: &Headline) -> Markup {
 
 /// Three digits that count.
 fn rounded(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let before = value.abs().max(1e-9).log10().floor() as i32 + 1;
     let decimals = usize::try_from(3 - before).unwrap_or_default();
     format!("{value:.decimals$}")
@@ -234,7 +239,7 @@ mod tests {
             assert!(page.contains(text), "{text}");
         }
         assert!(page.contains(r#"data-figure="vehicle-plan""#));
-        assert!(page.contains(r"Plan <\/script>"));
+        assert!(page.contains(r"Plan \u003c/script>"));
         assert_fetches_nothing(&page);
     }
 }

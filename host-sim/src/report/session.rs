@@ -3,7 +3,11 @@
 use maud::{Markup, html};
 
 use super::document::{Document, figures};
+use crate::figure::{Figure, View};
 use crate::system::Answer;
+
+/// As many as leave something to see in a tenth of the time.
+const VIEW: View = View { most_points: 20_000, window: None };
 
 /// What the page of a session shows.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +18,8 @@ pub struct Session<'a> {
     pub command: &'a str,
     /// What came of it.
     pub answer: &'a Answer,
+    /// Its figures, or those of a comparison.
+    pub figures: &'a [Figure],
     /// The stretch of time that is looked at, s.
     pub window_s: Option<[f64; 2]>,
 }
@@ -21,7 +27,7 @@ pub struct Session<'a> {
 impl Session<'_> {
     /// The page.
     pub fn page(&self) -> String {
-        let Self { title, command, answer, window_s } = self;
+        let Self { title, command, answer, figures: shown, window_s } = self;
         let title = format!("kestirim: {title}");
         let window = window_s.map(|[from, to]| format!("{from},{to}"));
         let body = html! {
@@ -30,12 +36,12 @@ impl Session<'_> {
                 button #theme type="button" { "light / dark" }
             }
             main {
-                section data-clock data-window=[window] {
+                section data-clock="one" data-window=[window] {
                     (facts(&answer.facts))
                     ul.warnings { @for warning in &answer.warnings { li { (warning) } } }
                     h2 { "The same again" }
                     p.made { code { (command) } }
-                    div.figures { @for figure in &answer.figures {
+                    div.figures { @for figure in *shown {
                         figure id=(figure.id) data-figure=(figure.id) {
                             h3 { (figure.title) }
                             figcaption { (figure.caption) }
@@ -44,7 +50,7 @@ impl Session<'_> {
                 }
             }
         };
-        Document { title: &title, body, figures: figures(&answer.figures) }.render()
+        Document { title: &title, body, figures: figures(*shown, VIEW) }.render()
     }
 }
 
@@ -55,19 +61,17 @@ fn facts(facts: &[(String, String)]) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Series};
+    use crate::figure::Series;
     use crate::report::document::tests::assert_fetches_nothing;
 
     #[test]
     fn everything_of_the_session_is_in_the_page() {
         let path = Series::line("ours", vec![0.0, 1.0], vec![0.0, 1.0]);
-        let mut answer = Answer {
-            warnings: vec!["beware of <b>".to_owned()],
-            figures: vec![Figure::new("position", "Position").over_seconds("m").with(path)],
-            ..Answer::default()
-        };
+        let mut answer = Answer { warnings: vec!["beware of <b>".to_owned()], ..Answer::default() };
         answer.fact("length", "5 m");
+        let figures = [Figure::new("position", "Position").over_seconds("m").with(path)];
         let session = Session {
+            figures: &figures,
             title: "A vehicle",
             command: "host-sim replay vehicle --log a.csv",
             answer: &answer,

@@ -94,8 +94,11 @@ fn finite(value: impl Into<Option<f64>>) -> Option<f64> {
     value.into().filter(|value| value.is_finite())
 }
 
-/// The number in a printed text: of `≈ 1.5` 1.5, of `−0.17` its negative. None if there are several or none.
+/// The number in a printed text: of `≈ 1.5` 1.5, of `−0.17` its negative. None if there are several or none, or only a bound.
 pub fn printed(text: &str) -> Option<f64> {
+    if ["<", ">", "above", "below"].iter().any(|bound| text.contains(bound)) {
+        return None;
+    }
     let text = text.replace('−', "-");
     let is_of_number = |letter: char| letter.is_ascii_digit() || letter == '.' || letter == '-';
     let mut numbers = text.split(|letter| !is_of_number(letter)).filter(|part| !part.is_empty());
@@ -115,6 +118,7 @@ mod tests {
             ("12°", Some(12.0)),
             ("3.5–6.5", None),
             ("invisible", None),
+            ("< 1", None),
             ("", None),
         ] {
             assert_eq!(printed(text), number, "{text}");

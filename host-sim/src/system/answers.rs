@@ -8,8 +8,8 @@ use super::settings::Settings;
 
 /// As many as are compared.
 const MOST: usize = 2;
-/// Points of all that are kept while another is found, some 300 MB.
-const MOST_POINTS: usize = 20_000_000;
+/// Points of an answer that is kept while something else is looked at: some 80 MB.
+const MOST_POINTS: usize = 5_000_000;
 
 /// The latest at the end.
 #[derive(Debug, Default)]
@@ -20,7 +20,8 @@ impl Answers {
     pub(super) fn of(&self, settings: &Settings) -> Option<Arc<Answer>> {
         let mut answers = self.lock();
         let Some(place) = answers.iter().position(|(known, _)| known == settings) else {
-            answers.retain(|(_, answer)| answer.points() <= MOST_POINTS / 2);
+            drop(answers);
+            self.forget_large();
             return None;
         };
         let latest = answers.remove(place)?;
@@ -29,10 +30,16 @@ impl Answers {
         Some(answer)
     }
 
+    /// Lets go of what takes much memory: it can be found again.
+    pub(super) fn forget_large(&self) {
+        self.lock().retain(|(_, answer)| answer.points() <= MOST_POINTS);
+    }
+
     /// Keeps an answer, and gives it back.
     pub(super) fn keep(&self, settings: &Settings, answer: Answer) -> Arc<Answer> {
         let answer = Arc::new(answer);
         let mut answers = self.lock();
+        answers.retain(|(known, _)| known != settings);
         answers.push_back((settings.clone(), Arc::clone(&answer)));
         if answers.len() > MOST {
             answers.pop_front();

@@ -63,6 +63,9 @@ pub trait Opened: Send + Sync {
 
     /// The settings without those that would change nothing.
     fn effective(&self, settings: &Settings) -> Settings;
+
+    /// Lets go of answers that take much memory.
+    fn forget_large(&self);
 }
 
 /// A recording, and the last track that was made of it.
@@ -182,6 +185,10 @@ impl<S: System> Opened for Open<S> {
     fn check(&self, settings: &Settings) -> Result<Vec<Finding>, Error> {
         refuse(settings, |name| self.idle(settings, name))?;
         Ok(self.findings(settings))
+    }
+
+    fn forget_large(&self) {
+        self.answers.forget_large();
     }
 
     fn effective(&self, settings: &Settings) -> Settings {

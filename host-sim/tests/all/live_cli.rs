@@ -11,7 +11,7 @@ use kestirim_telemetry::{Health, Imu, Message};
 use serde_json::Value;
 
 /// The program while it listens, and the line in which it says to what.
-fn listening(arguments: &[&str]) -> (Child, String) {
+pub(crate) fn listening(arguments: &[&str]) -> (Child, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
         .args(["live", "--headless"])
         .args(arguments)
@@ -29,12 +29,12 @@ fn listening(arguments: &[&str]) -> (Child, String) {
     (child, line)
 }
 
-fn address(line: &str) -> std::net::SocketAddr {
+pub(crate) fn address(line: &str) -> std::net::SocketAddr {
     let found = line.split([' ', ',']).find_map(|word| word.parse().ok());
     found.unwrap_or_else(|| panic!("no address in {line}"))
 }
 
-fn report(mut child: Child) -> Value {
+pub(crate) fn report(mut child: Child) -> Value {
     let mut text = String::new();
     child.stdout.take().expect("a pipe").read_to_string(&mut text).expect("UTF-8");
     assert!(child.wait().expect("it ends").success());

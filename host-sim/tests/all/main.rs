@@ -14,6 +14,7 @@ mod drone_cli;
 mod foreign_flights;
 mod foreign_logs;
 mod foreign_messages;
+mod foreign_senders;
 mod gnss_cli;
 mod gnss_recorded_cli;
 mod gnss_refusals_cli;
@@ -26,6 +27,7 @@ mod program;
 mod radio_cli;
 mod robot_cli;
 mod room;
+mod scripts;
 #[path = "../sender/mod.rs"]
 mod sender;
 mod serve_cli;

@@ -32,7 +32,7 @@ fn press(page: &Page, id: &str) {
 /// What a person sees of a session: command, window, cursor, facts.
 fn picture(page: &Page) -> [String; 4] {
     let window = "[document.querySelector('.clock input').min, document.querySelector('.clock input').max].join()";
-    let cursor = "document.querySelector('.clock output').textContent";
+    let cursor = "document.querySelector('.clock .told').textContent";
     let [window, cursor] =
         [window, cursor].map(|script| page.evaluate(script).as_str().expect("text").to_owned());
     [text_of(page, "command"), window, cursor, text_of(page, "facts")]

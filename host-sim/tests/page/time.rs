@@ -30,7 +30,7 @@ fn one_window_and_one_cursor_hold_for_all_figures_of_every_system() {
             // The bar by keyboard alone.
             page.evaluate(&format!("{slider}.focus()"));
             page.press("ArrowRight");
-            let told = "document.querySelector('.clock output').textContent";
+            let told = "document.querySelector('.clock .told').textContent";
             page.wait_for(&format!("{told} !== ''"));
             let number = |script: &str| page.evaluate(&format!("Number({script})")).as_f64();
             let [low, high] =
@@ -52,7 +52,7 @@ fn one_window_and_one_cursor_hold_for_all_figures_of_every_system() {
                     "{system}: no place on the map"
                 );
             }
-            let values = "[...document.querySelectorAll('.legend output')].filter(o => o.textContent).length";
+            let values = "[...document.querySelectorAll('.legend .value')].filter(o => o.textContent).length";
             assert!(page.evaluate(values).as_u64() > Some(lines), "{system}: values at the cursor");
             // A window of one figure is that of all, and asked for points once.
             let before = ranges(&page);
@@ -91,7 +91,7 @@ fn mouse_and_keys_move_the_cursor_in_a_figure() {
     let server = Server::start(&["serve", "--port", "0"]);
     let Some(page) = Page::open(server.address(), 1280) else { return };
     page.wait_for(&format!("{DRAWN} && {SETTLED}"));
-    let told = || page.evaluate("document.querySelector('.clock output').textContent");
+    let told = || page.evaluate("document.querySelector('.clock .told').textContent");
     let point = |kind: &str, event: &str, share: f64| {
         page.evaluate(&format!(
             "{{ const p = document.querySelector('#figure-accelerometer .plot'); const a = p._fullLayout.xaxis; \

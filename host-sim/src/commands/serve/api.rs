@@ -9,7 +9,7 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use serde_json::{Value, json};
 
-use super::question::{Asked, Compared, Question, Windows, page};
+use super::question::{Asked, Question, page};
 use super::sessions::{Recording, Upload};
 use super::uploads::{self, Content};
 use super::{Shared, compare, downloads};
@@ -152,12 +152,11 @@ pub(super) async fn answer(
     let system = find(&shared, &system)?;
     let question: Question = serde_json::from_str(&body).map_err(Refusal::of)?;
     let answer = beside(move || {
-        let windows = Windows { time_s: question.window, others: question.windows };
+        let windows = question.windows();
         let asked = Asked::new(&shared, system, &recording, &question.settings)?;
-        let mut page = match question.a {
+        let mut page = match question.other(&shared, system)? {
             None => page(&asked.answer, &asked.answer.figures, &windows),
-            Some(Compared { recording, settings, how }) => {
-                let other = Asked::new(&shared, system, &recording, &settings)?;
+            Some((other, how)) => {
                 let figures = compare::figures(&other.answer, &asked.answer, how);
                 let mut page = page(&asked.answer, &figures, &windows);
                 page["changed"] = json!(compare::changed(&other, &asked));

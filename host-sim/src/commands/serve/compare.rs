@@ -50,14 +50,24 @@ fn rows(a: (&Settings, &Answer), b: (&Settings, &Answer)) -> Vec<Row> {
         b.0.table()
             .iter()
             .map(|setting| Row(setting.help.to_owned(), value(a.0, setting), value(b.0, setting)));
-    let fact = |answer: &Answer, name: &str| {
-        let found = answer.facts.iter().find(|(known, _)| known == name);
+    // Several facts may have one name: each is told apart by how many there were before it.
+    let numbered = |answer: &Answer| -> Vec<((String, usize), String)> {
+        let before = |place: usize, name: &str| {
+            answer.facts[..place].iter().filter(|(known, _)| known == name).count()
+        };
+        let facts = answer.facts.iter().enumerate();
+        facts
+            .map(|(place, (name, value))| ((name.clone(), before(place, name)), value.clone()))
+            .collect()
+    };
+    let [of_a, of_b] = [numbered(a.1), numbered(b.1)];
+    let fact = |facts: &[((String, usize), String)], name: &(String, usize)| {
+        let found = facts.iter().find(|(known, _)| known == name);
         found.map_or_else(|| "–".to_owned(), |(_, value)| value.clone())
     };
-    let mut names: Vec<_> = b.1.facts.iter().map(|(name, _)| name).collect();
-    let others = a.1.facts.iter().map(|(name, _)| name);
-    names.extend(others.filter(|name| !b.1.facts.iter().any(|(known, _)| known == *name)));
-    let facts = names.into_iter().map(|name| Row(name.clone(), fact(a.1, name), fact(b.1, name)));
+    let only_a = of_a.iter().filter(|(name, _)| !of_b.iter().any(|(known, _)| known == name));
+    let names = of_b.iter().chain(only_a).map(|(name, _)| name);
+    let facts = names.map(|name| Row(name.0.clone(), fact(&of_a, name), fact(&of_b, name)));
     settings.chain(facts).filter(|Row(_, a, b)| a != b).collect()
 }
 

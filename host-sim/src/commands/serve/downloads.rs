@@ -10,7 +10,7 @@ use axum::response::{IntoResponse, Response};
 use super::Shared;
 use super::api::{Refusal, beside, find};
 use super::question::{Asked, Question};
-use crate::figure::{csv, svg};
+use crate::figure::{Figure, csv, svg};
 use crate::report;
 use crate::system::{AnySystem, Wanted};
 
@@ -36,39 +36,52 @@ pub(super) async fn download(
     let question: Question = serde_json::from_str(&body).map_err(Refusal::of)?;
     let bytes = beside(move || {
         let asked = Asked::new(&shared, system, &recording, &question.settings)?;
-        content(system, &asked, &file, &question)
+        let figures = question.figures(&shared, system, &asked)?;
+        content(&shared, system, &file, &Shown { asked, figures, window_s: question.window })
     });
     Ok(([(CONTENT_TYPE, "application/octet-stream")], bytes.await?).into_response())
 }
 
+/// What the page shows.
+struct Shown {
+    asked: Asked,
+    /// Its figures, or those of a comparison.
+    figures: Vec<Figure>,
+    window_s: Option<[f64; 2]>,
+}
+
 fn content(
+    shared: &Shared,
     system: &dyn AnySystem,
-    asked: &Asked,
     file: &str,
-    question: &Question,
+    Shown { asked, figures, window_s }: &Shown,
 ) -> Result<Vec<u8>, Refusal> {
     if file == SESSION {
         let session = report::Session {
             title: system.title(),
             command: &asked.command(),
             answer: &asked.answer,
-            window_s: question.window,
+            figures,
+            window_s: *window_s,
         };
         return Ok(session.page().into_bytes());
     }
     let (name, ending) = file.rsplit_once('.').unwrap_or((file, ""));
     let output = system.outputs().iter().find(|output| output.name == name);
-    if let Some(output) = output.filter(|output| output.endings.contains(&ending)) {
-        return written(file, |path| {
-            asked.write(&Wanted { tables: vec![(output.name, path)], mcap: None })
-        });
+    let output = output.filter(|output| output.endings.contains(&ending));
+    if output.is_some() || file == STREAMS {
+        let Some(uploads) = &shared.uploads else {
+            return Err(Refusal::of("no files are made here"));
+        };
+        let folder = uploads.folder()?;
+        let path = folder.path().join(file);
+        let mcap = output.is_none().then(|| path.clone());
+        let tables = output.map(|output| (output.name, path.clone())).into_iter().collect();
+        asked.write(&Wanted { tables, mcap })?;
+        return fs::read(path).map_err(Refusal::of);
     }
-    if file == STREAMS {
-        return written(file, |path| asked.write(&Wanted { tables: vec![], mcap: Some(path) }));
-    }
-    let figure = name
-        .strip_prefix("figure-")
-        .and_then(|id| asked.answer.figures.iter().find(|figure| figure.id == id));
+    let figure = name.strip_prefix("figure-");
+    let figure = figure.and_then(|id| figures.iter().find(|figure| figure.id == id));
     match (figure, ending) {
         (Some(figure), "svg") => Ok(svg::draw(figure).into_bytes()),
         (Some(figure), "csv") => {
@@ -78,15 +91,4 @@ fn content(
         }
         _ => Err(Refusal::of(format!("there is no {file:?} of this recording"))),
     }
-}
-
-/// What is written to a file of that name.
-fn written(
-    name: &str,
-    write: impl FnOnce(std::path::PathBuf) -> Result<(), Refusal>,
-) -> Result<Vec<u8>, Refusal> {
-    let folder = tempfile::tempdir().map_err(Refusal::of)?;
-    let path = folder.path().join(name);
-    write(path.clone())?;
-    fs::read(path).map_err(Refusal::of)
 }

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::Shared;
 use super::api::Refusal;
-use super::compare::How;
+use super::compare::{self, How};
 use super::sessions::Recording;
 use crate::figure::{Figure, View, plotly};
 use crate::system::{Answer, AnySystem, Settings, Wanted};
@@ -25,25 +25,63 @@ pub(super) struct Question {
     pub(super) window: Option<[f64; 2]>,
     /// Stretches of the horizontal axes of figures that are zoomed in and have no time.
     #[serde(default)]
-    pub(super) windows: BTreeMap<String, [f64; 2]>,
+    windows: BTreeMap<String, [f64; 2]>,
     /// What it is compared with.
     #[serde(default)]
-    pub(super) a: Option<Compared>,
+    a: Option<Compared>,
 }
 
 /// Another recording of the same system, or other settings.
 #[derive(Debug, Deserialize)]
-pub(super) struct Compared {
-    pub(super) recording: String,
-    pub(super) settings: Map<String, Value>,
-    pub(super) how: How,
+struct Compared {
+    recording: String,
+    settings: Map<String, Value>,
+    how: How,
+}
+
+impl Question {
+    /// What it is compared with, if it is.
+    ///
+    /// # Errors
+    /// As [`Asked::new`], of the other one.
+    pub(super) fn other(
+        &self,
+        shared: &Shared,
+        system: &'static dyn AnySystem,
+    ) -> Result<Option<(Asked, How)>, Refusal> {
+        let Some(Compared { recording, settings, how }) = &self.a else { return Ok(None) };
+        let other = Asked::new(shared, system, recording, settings);
+        let other = other.map_err(|Refusal(code, text)| Refusal(code, format!("A: {text}")))?;
+        Ok(Some((other, *how)))
+    }
+
+    /// The figures of an answer, or of its comparison.
+    ///
+    /// # Errors
+    /// As [`other`](Self::other).
+    pub(super) fn figures(
+        &self,
+        shared: &Shared,
+        system: &'static dyn AnySystem,
+        asked: &Asked,
+    ) -> Result<Vec<Figure>, Refusal> {
+        Ok(match self.other(shared, system)? {
+            Some((other, how)) => compare::figures(&other.answer, &asked.answer, how),
+            None => asked.answer.figures.clone(),
+        })
+    }
+
+    /// What is looked at.
+    pub(super) fn windows(&self) -> Windows {
+        Windows { time_s: self.window, others: self.windows.clone() }
+    }
 }
 
 /// What is looked at of figures.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Windows {
-    pub(super) time_s: Option<[f64; 2]>,
-    pub(super) others: BTreeMap<String, [f64; 2]>,
+    time_s: Option<[f64; 2]>,
+    others: BTreeMap<String, [f64; 2]>,
 }
 
 impl Windows {

@@ -14,7 +14,7 @@ use crate::system::{AnySystem, Files, Opened, Settings, Source};
 /// As many as a person compares; a day of satellites is large.
 const MOST_OPEN: usize = 8;
 /// Uploads whose files are kept.
-const MOST_KEPT: usize = 24;
+const MOST_KEPT: usize = 8;
 
 /// The last few recordings that were opened, and the last uploads.
 #[derive(Default)]
@@ -89,17 +89,27 @@ impl Sessions {
         recording: &str,
     ) -> Result<Recording, Refusal> {
         let name = (system.name(), recording.to_owned());
-        if let Some(open) = take(&mut lock(&self.open), &name) {
+        let upload = take(&mut lock(&self.uploads), &name);
+        let open = take(&mut lock(&self.open), &name);
+        // Of the others none stays large.
+        let others = lock(&self.open).clone();
+        others
+            .iter()
+            .filter(|(other, _)| *other != name)
+            .for_each(|(_, other)| other.opened.forget_large());
+        if let Some(open) = open {
             return Ok(open);
         }
-        let upload = take(&mut lock(&self.uploads), &name);
         let source = match &upload {
             Some(upload) => Source::Files(upload.files.clone()),
             None if is_hash(recording) => return Err(Refusal::gone()),
             None => Source::Synthetic(recording.to_owned()),
         };
         let settings = Settings::new(system.settings());
-        let opened = system.open(source, &settings).map_err(Refusal::of)?;
+        let opened = system.open(source, &settings).map_err(|error| match &upload {
+            Some(upload) => error.naming_files_below(upload.folder.path()),
+            None => error,
+        })?;
         let recording = match upload {
             Some(upload) => upload.opened(opened),
             None => Recording { opened: Arc::from(opened), folder: None, files: None },

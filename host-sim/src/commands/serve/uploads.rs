@@ -31,6 +31,14 @@ impl Uploads {
         Self { folder: folder.to_path_buf(), permits: Semaphore::new(AT_ONCE) }
     }
 
+    /// A folder that ends with the program at the latest.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub(super) fn folder(&self) -> Result<TempDir, Refusal> {
+        TempDir::new_in(&self.folder).map_err(Refusal::of)
+    }
+
     /// A turn to send files.
     ///
     /// # Errors
@@ -40,7 +48,7 @@ impl Uploads {
             let sentence = "two uploads are being read already: try again in a moment";
             return Err(Refusal(StatusCode::SERVICE_UNAVAILABLE, sentence.to_owned()));
         };
-        Ok((permit, TempDir::new_in(&self.folder).map_err(Refusal::of)?))
+        Ok((permit, self.folder()?))
     }
 }
 
@@ -49,7 +57,7 @@ impl Uploads {
 pub(super) struct Content(Sha256);
 
 impl Content {
-    /// Goes on with a field or a file's name. Where it ends is part of it.
+    /// Goes on with a field, a file's name or what somebody typed. Where it ends is part of it.
     pub(super) fn say(&mut self, text: &str) {
         self.0.update((text.len() as u64).to_le_bytes());
         self.0.update(text);
@@ -87,9 +95,12 @@ pub(super) async fn write(
     let mut file = create().map_err(Refusal::of)?;
     content.say(&field);
     content.say(&path.file_name().unwrap_or_default().to_string_lossy());
+    let mut length = 0;
     while let Some(bytes) = part.chunk().await.map_err(Refusal::of)? {
+        length += bytes.len() as u64;
         content.0.update(&bytes);
         file.write_all(&bytes).map_err(Refusal::of)?;
     }
+    content.0.update(length.to_le_bytes());
     Ok(path)
 }

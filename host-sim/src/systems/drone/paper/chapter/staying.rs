@@ -23,7 +23,7 @@ pub(super) fn items(report: &Report) -> Vec<Item> {
     items.extend(trajectories(report));
     items.extend(tables::of(report, "Fig. 3.1 c", (
         "drone-equal-energy",
-        "T = 16 with the same energy: circle and small grid, mean error, m",
+        "Fig. 3.1 (c), T = 16 with the same energy: circle and small grid, mean error, m",
         "One measurement a point at h = 800 m. With one, nobody can come as close as is published.",
     )));
     items

@@ -81,7 +81,7 @@ pub(super) fn headlines(report: &Report) -> Vec<Headline> {
             staying("published"),
             staying("best"),
         ),
-        line("the same of a user who walks".to_owned(), hovering, circling),
+        line("mean error of a user's place, walks on a circle".to_owned(), hovering, circling),
     ];
     lines.into_iter().filter(|line| line.ours.is_some()).collect()
 }

@@ -55,7 +55,11 @@ pub(super) fn values(row: &Row) -> Vec<Value> {
     };
     // Of the formulas of Fig. 3.4 it is the energy that is published.
     let published = row.published.filter(|_| row.mean_m.is_some());
-    let error = of("error of the position", "m").published(published).limited(row.limit_m);
+    let quantity = match row.table {
+        table if table.contains("maximum") => "expected largest of 100 errors of the position",
+        _ => "mean error of the position",
+    };
+    let error = of(quantity, "m").published(published).limited(row.limit_m);
     let error = error.is(row.mean_m).of(row.trials, row.se_m);
     let energy = of("energy of the flight", "J").is(row.energy_j);
     let energy = energy.published(row.published.filter(|_| row.mean_m.is_none()));

@@ -111,6 +111,7 @@ fn with_rows(
         let others = |of: fn(&PppErrors) -> [f64; 4]| [published.as_ref().map(of), limit.map(of)];
         let minutes = Value::new("convergence", "min").is(ours.convergence_min);
         let minutes = by(row, minutes)
+            .of(row.days.len().saturating_sub(row.unconverged), None)
             .published(published.as_ref().and_then(|errors| errors.convergence_min))
             .limited(limit.and_then(|errors| errors.convergence_min));
         let table =
@@ -147,11 +148,20 @@ fn is_ours(row: &Row) -> bool {
 
 /// By the filter of a row, on its days.
 fn by(row: &Row, value: Value) -> Value {
-    let method = match row.filter {
+    // What is said of how it moves is no part of the filter's name.
+    let (filter, moves) = row.filter.split_once(", ").unwrap_or((row.filter, ""));
+    let method = match filter {
         _ if is_ours(row) => "default".to_owned(),
+        filter if row.is_published() => {
+            format!("published {}", filter.replace(" as published", ""))
+        }
+        filter if ["RKF", "IKF", "UKF"].iter().any(|name| filter.contains(name)) => {
+            format!("{filter}, scale repaired")
+        }
         filter => format!("published {filter}"),
     };
-    value.under(row.table).by(method).of(row.days.len(), None)
+    let condition = [row.table, moves].join(", ");
+    value.under(condition.trim_end_matches(", ")).by(method).of(row.days.len(), None)
 }
 
 /// The numbers of north, east, up and all three, with published ones and limits.
@@ -170,24 +180,37 @@ fn numbers(
 
 /// What matters most: where it stands, and where it may move.
 pub(super) fn headlines(report: &Report) -> Vec<Headline> {
-    let line = |table: &str, filter: FilterKind, place: usize, quantity: &str| {
+    let line = |table: &str, paper: FilterKind, filter: &str, place: usize, quantity: &str| {
         let find = |filter: &str| {
             report.rows.iter().find(|row| row.table == table && row.filter == filter)
         };
         let rms = |errors: &PppErrors| errors.rms_mm[3];
-        let (theirs, ours) = (find(filter.title()), find(FilterKind::Default.title()));
+        let (theirs, ours) = (find(filter), find(FilterKind::Default.title()));
+        let paper = find(paper.title());
         Headline {
             quantity: quantity.to_owned(),
             unit: "mm",
-            published: theirs.and_then(|row| row.published.as_ref()).map(rms),
+            published: paper.and_then(|row| row.published.as_ref()).map(rms),
             theirs: theirs.map(|row| rms(&row.ours)),
             ours: ours.map(|row| rms(&row.ours)),
             limit: plain(report, place).map(rms),
         }
     };
     vec![
-        line(STATIC, FilterKind::Adaptive, 0, "RMS 3-D after the first hour, the receiver stands"),
-        line(KINEMATIC, FilterKind::Adaptive, 2, "the same, the receiver may move"),
+        line(
+            STATIC,
+            FilterKind::Ikf,
+            "IKF as published",
+            0,
+            "RMS 3-D after the first hour, the receiver stands",
+        ),
+        line(
+            KINEMATIC,
+            FilterKind::Adaptive,
+            "UKF as published",
+            2,
+            "RMS 3-D after the first hour, the receiver may move",
+        ),
     ]
 }
 

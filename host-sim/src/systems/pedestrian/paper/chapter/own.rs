@@ -85,7 +85,7 @@ pub(super) fn methods(report: &Report) -> Result<Comparison, Error> {
             let ours = format!("{:.2}", mean(&of_method));
             let value = Value::new("mean relative error of the length", "%")
                 .under(format!("{} Hz", row.rate_hz))
-                .by(*name)
+                .by(if i == 0 { "default" } else { name })
                 .is(mean(&of_method))
                 .of(of_method.len(), None);
             table = table.row(format!("{} Hz, {name}", row.rate_hz), "", ours, "").values([value]);

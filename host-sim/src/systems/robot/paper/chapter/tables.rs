@@ -33,12 +33,15 @@ pub(super) fn table_1(report: &Report) -> Comparison {
     let add = |table: Comparison, (name, row): (String, &Row)| {
         let ours = format!("{:.2}, calibrated {:.2}", row.ours_cm, row.ours_calibrated_cm);
         let theirs = three(&row.honest_start);
-        table
-            .beside(&name, three(&row.published), theirs, ours, limits(row))
-            .values(own(&name, row))
+        table.beside(&name, three(&row.published), theirs, ours, limits(row)).values(own(
+            &name,
+            row,
+            report.trials,
+        ))
     };
-    let values =
-        |(name, row): (String, &Row)| repeated(&name, "honest start", row, &row.honest_start);
+    let values = |named: (String, &Row)| {
+        repeated(&named, "honest start", &named.1.honest_start, report.trials)
+    };
     rows(report).fold(table, add).values(rows(report).flat_map(values)).note(
         "Filters begin at the first trilateration, as on a robot that does not know where it is. The paper does not \
          say where its points were. The limit is the Cramér–Rao bound without reflections.",
@@ -54,8 +57,8 @@ pub(super) fn table_1_from_the_truth(report: &Report) -> Comparison {
     let add = |table: Comparison, (name, row): (String, &Row)| {
         table.repeated(name, three(&row.published), three(&row.from_the_truth), limits(row))
     };
-    let values = |(name, row): (String, &Row)| {
-        repeated(&name, "started at the truth", row, &row.from_the_truth)
+    let values = |named: (String, &Row)| {
+        repeated(&named, "started at the truth", &named.1.from_the_truth, report.trials)
     };
     rows(report).fold(table, add).values(rows(report).flat_map(values)).note(
         "The filters are below the limit because the answer was given: a small P₀ holds the filter at its start while eq. 18 \
@@ -154,10 +157,15 @@ fn error(condition: impl Into<String>, method: &str) -> Value {
 }
 
 /// The paper's own methods at a point, of the numbers of which there is one a start.
-fn repeated(point: &str, start: &str, row: &Row, here: &PositionErrors) -> [Value; 3] {
+fn repeated(
+    (point, row): &(String, &Row),
+    start: &str,
+    here: &PositionErrors,
+    trials: usize,
+) -> [Value; 3] {
     let of = |method: &str, number: fn(&PositionErrors) -> f64| {
         let value = error(format!("{point}, {start}"), method).is(number(here));
-        value.published(number(&row.published)).limited(row.limit_cm)
+        value.published(number(&row.published)).limited(row.limit_cm).of(trials, None)
     };
     [
         of("published trilateration", |it| it.unfiltered_cm),
@@ -167,13 +175,14 @@ fn repeated(point: &str, start: &str, row: &Row, here: &PositionErrors) -> [Valu
 }
 
 /// The default at a point.
-fn own(point: &str, row: &Row) -> [Value; 2] {
+fn own(point: &str, row: &Row, trials: usize) -> [Value; 2] {
     [
         error(point, "default").is(row.ours_cm).limited(row.limit_cm),
         error(point, "default, anchors calibrated")
             .is(row.ours_calibrated_cm)
             .limited(row.limit_calibrated_cm),
     ]
+    .map(|value| value.of(trials, None))
 }
 
 /// What matters most.
@@ -197,12 +206,12 @@ pub(super) fn headlines(report: &Report) -> Vec<Headline> {
         Headline {
             theirs: Some(row.honest_start.aekf_cm),
             ours: Some(row.ours_cm),
-            ..line("the same, the true point not told")
+            ..line("error of the mean of 50 positions, the true point not told")
         },
         Headline {
             ours: Some(row.ours_calibrated_cm),
             limit: Some(row.limit_calibrated_cm),
-            ..line("the same, anchors calibrated")
+            ..line("error of the mean of 50 positions, anchors calibrated")
         },
     ]
 }

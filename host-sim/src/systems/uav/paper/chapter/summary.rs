@@ -1,13 +1,14 @@
 //! The few numbers that matter most.
 
-use kestirim_replay::uav::{MIDDLE, Noise, Plant};
+use kestirim_replay::uav::{Noise, Plant};
 
 use crate::report::{Comparison, Headline, printed};
 use crate::systems::uav::account::states::{shown, times};
 use crate::systems::uav::paper::accuracy::{self, Window};
+use crate::systems::uav::paper::catching::THESIS_LUENBERGER;
 use crate::systems::uav::paper::published::SETTLING_S;
 use crate::systems::uav::paper::report::Report;
-use crate::systems::uav::simulate::design::{Family, Kind};
+use crate::systems::uav::simulate::design::Family;
 use crate::systems::uav::simulate::plant::Outputs;
 
 /// What the first page says: how soon, and how well.
@@ -31,7 +32,7 @@ pub(super) fn headlines(report: &Report) -> Vec<Headline> {
         })
     };
     let kalman = settled(&|row| row.family == Family::Kalman);
-    let observer = settled(&|row| row.estimator == Kind::Luenberger(MIDDLE).name());
+    let observer = settled(&|row| row.estimator == THESIS_LUENBERGER.kind.name());
     let milliradians = |row: &accuracy::Row| 1e3 * row.rmse[0];
     let error = Headline {
         quantity: "RMSE of α with noisy sensors, settled: the thesis' observer, our filter"

@@ -1,0 +1,2 @@
+// What the page's scripts use of others, for `tsc --checkJs`.
+declare const Plotly: any;
