@@ -107,13 +107,8 @@ impl Chapter {
     /// Fails if a table has no number for programs, or the first page nothing to say.
     pub(crate) fn assert_complete(&self) {
         for table in self.comparisons() {
-            assert!(!table.values.is_empty(), "{} has no numbers", table.id);
-            for it in &table.values {
-                assert!(
-                    it.value.or(it.published).is_some() || table.id == "uav-catching",
-                    "{it:?}"
-                );
-            }
+            let mut values = table.values.iter();
+            assert!(values.any(|it| it.value.is_some()), "{} has no numbers", table.id);
         }
         assert!(self.figures().any(|figure| figure.id == self.picture), "{}", self.picture);
         assert!(!self.headlines.is_empty());
