@@ -26,7 +26,9 @@
     for (const places of groups.values()) {
       const drawn = places.map((place) => figures[place.dataset.figure]);
       if (!drawn.some((figure) => figure.seconds)) continue;
-      const clock = new Clock(section.dataset.clock === "one" ? section : places[places.length - 1]);
+      const behind = document.createElement("div");
+      places[places.length - 1].after(behind);
+      const clock = new Clock(section.dataset.clock === "one" ? section : behind);
       clock.see(drawn);
       if (section.dataset.window) clock.look(section.dataset.window.split(",").map(Number));
       for (const place of places) clocks.set(place, clock);
