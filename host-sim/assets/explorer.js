@@ -105,7 +105,7 @@
     complain("");
     asking = true;
     document.body.dataset.asking = "yes";
-    const [began, asked, sent] = [performance.now(), of("answer"), state.settings];
+    const [began, asked] = [performance.now(), of("answer")];
     looked = seen();
     try {
       const answer = await post(asked, question());
@@ -114,7 +114,6 @@
         show(answer);
         document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
         document.body.dataset.answers = String(Number(document.body.dataset.answers ?? 0) + 1);
-        if (sent === state.settings) document.body.dataset.settled = JSON.stringify(sent);
       }
     } finally {
       asking = false;
