@@ -80,8 +80,15 @@ impl Line<'_> {
         let mut door = Door::OPEN;
         for i in points.clone().skip(1) {
             if !door.takes(self.seen(i, from)) {
-                from = i - 1;
-                kept.push(from);
+                if i - 1 > from {
+                    from = i - 1;
+                    kept.push(from);
+                }
+                // Elsewhere at the same time: a jump, of which both ends are kept.
+                if !Door::OPEN.takes(self.seen(i, from)) {
+                    from = i;
+                    kept.push(from);
+                }
                 door = Door::OPEN;
             }
             door.close(self.seen(i, from), self.most);
@@ -173,6 +180,13 @@ mod tests {
     fn points_on_the_same_spot_are_drawn_once() {
         let series = Series::points("", [[1.0, 1.0], [1.001, 1.0], [2.0, 1.0], [1.0, 1.0]]);
         assert_eq!(indices(&series, 0..4, 0.1), [0, 2]);
+    }
+
+    #[test]
+    fn both_ends_of_a_jump_are_kept_once() {
+        let series = Series::path("", (0..9).map(|i| [f64::from(i / 5) * 10.0, 0.0]));
+        let times = [0.0, 1.0, 2.0, 3.0, 4.0, 4.0, 5.0, 6.0, 7.0];
+        assert_eq!(indices(&series.timed(times), 0..9, 0.1), [0, 4, 5, 8]);
     }
 
     #[test]
