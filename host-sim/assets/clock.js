@@ -39,19 +39,24 @@ class Clock {
     place.append(this.bar);
   }
 
-  // All figures that are shown, before they are drawn: from when to when they reach.
-  see(figures) {
+  // From when to when a figure reaches, s: over time, or as a map whose points know when they were; null without times.
+  static reach({ seconds, data }) {
     let [low, high] = [Infinity, -Infinity];
-    for (const { seconds, data } of figures) {
-      if (!seconds) continue;
-      for (const { x } of data) {
-        for (const value of x) {
-          if (value === null) continue;
-          low = Math.min(low, value * seconds);
-          high = Math.max(high, value * seconds);
-        }
+    for (const { x, customdata } of data) {
+      for (const value of (seconds ? x : customdata) ?? []) {
+        if (value === null) continue;
+        low = Math.min(low, value * (seconds ?? 1));
+        high = Math.max(high, value * (seconds ?? 1));
       }
     }
+    return low < high ? [low, high] : null;
+  }
+
+  // All figures that are shown, before they are drawn.
+  see(figures) {
+    const reaches = figures.filter((figure) => figure.seconds).map(Clock.reach).filter(Boolean);
+    let low = Math.min(...reaches.map(([low]) => low));
+    let high = Math.max(...reaches.map(([, high]) => high));
     // What is zoomed in comes without what lies outside.
     if (this.window && this.span) [low, high] = [Math.min(low, this.span[0]), Math.max(high, this.span[1])];
     this.span = low < high ? [low, high] : null;

@@ -5,17 +5,8 @@
   const figures = JSON.parse(document.getElementById("figures").textContent);
   /** @type {(selector: string, within?: Document | Element) => any[]} */
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
-  // From when to when a figure reaches, to three digits: those of one recording have one time, and a bar behind the last of them.
-  const reach = ({ seconds, data }) => {
-    let [low, high] = [Infinity, -Infinity];
-    for (const { x, customdata } of data) {
-      for (const value of (seconds ? x : customdata) ?? []) {
-        if (value === null) continue;
-        [low, high] = [Math.min(low, value * (seconds ?? 1)), Math.max(high, value * (seconds ?? 1))];
-      }
-    }
-    return low < high ? [low, high].map((end) => Number(end.toPrecision(3))).join() : null;
-  };
+  // Figures that reach as far, to three digits, are of one recording: they have one time, and a bar behind the last of them.
+  const reach = (figure) => Clock.reach(figure)?.map((end) => Number(end.toPrecision(3))).join();
   const clocks = new Map();
   for (const section of all("[data-clock]")) {
     const groups = new Map();
