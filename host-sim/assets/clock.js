@@ -19,7 +19,7 @@ class Clock {
   // `changed` is told of every new window and cursor.
   /** @param {Element} place @param {(clock: Clock) => void} changed */
   constructor(place, changed = () => {}) {
-    const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
+    const { make } = Elements;
     this.changed = changed;
     this.bar = make("div", { className: "clock", hidden: true });
     this.bar.setAttribute("role", "group");
@@ -242,7 +242,7 @@ class Clock {
   }
 
   static #mark(entry, className) {
-    const mark = Object.assign(document.createElement("div"), { className });
+    const mark = Elements.make("div", { className });
     entry.box.append(mark);
     return mark;
   }

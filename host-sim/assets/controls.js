@@ -2,15 +2,7 @@
 "use strict";
 
 const Controls = (() => {
-  const make = (tag, properties = {}, ...children) => {
-    const made = Object.assign(document.createElement(tag), properties);
-    made.append(...children);
-    return made;
-  };
-
-  // Elements, of whatever kind.
-  /** @type {(selector: string, within?: Document | Element) => any[]} */
-  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  const { all, make } = Elements;
 
   // Whether a value of another recording can be set here as well.
   function takes(control, value) {
@@ -126,5 +118,5 @@ const Controls = (() => {
     }
   }
 
-  return { all, build, disable, make, takes };
+  return { build, disable, takes };
 })();

@@ -2,7 +2,7 @@
 "use strict";
 
 {
-  const { all, make } = Controls;
+  const { all, make } = Elements;
   /** @type {(id: string) => any} */
   const element = (id) => document.getElementById(id);
   const places = new Map();

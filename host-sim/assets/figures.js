@@ -13,7 +13,7 @@ const Figures = (() => {
     }
   });
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
+  const { make } = Elements;
 
   // Pixels beside the axes of a map: numbers, labels and the edge.
   const [BESIDE, BELOW] = [70, 54];
@@ -113,7 +113,7 @@ const Figures = (() => {
   }
 
   function prepare(place, figure, { clock, zoomed }) {
-    const [plot, buttons, box] = ["div", "div", "div"].map((tag) => make(tag, {}));
+    const [plot, buttons, box] = ["div", "div", "div"].map((tag) => make(tag));
     [plot.className, buttons.className, box.className] = [figure.equal ? "plot map" : "plot", "legend", "box"];
     plot.tabIndex = 0;
     plot.setAttribute("role", "application");

@@ -1,10 +1,9 @@
-// The report: figures are drawn when they come into view; those of a section have one time.
+// The report: figures are drawn when they come into view; those of one recording have one time.
 "use strict";
 
 {
   const figures = JSON.parse(document.getElementById("figures").textContent);
-  /** @type {(selector: string, within?: Document | Element) => any[]} */
-  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  const { all, make } = Elements;
   // Figures that reach as far, to three digits, are of one recording: they have one time, and a bar behind the last of them.
   const reach = (figure) => Clock.reach(figure)?.map((end) => Number(end.toPrecision(3))).join();
   const clocks = new Map();
@@ -17,7 +16,7 @@
     for (const places of groups.values()) {
       const drawn = places.map((place) => figures[place.dataset.figure]);
       if (!drawn.some((figure) => figure.seconds)) continue;
-      const behind = document.createElement("div");
+      const behind = make("div");
       places[places.length - 1].after(behind);
       const clock = new Clock(section.dataset.clock === "one" ? section : behind);
       clock.see(drawn);

@@ -43,6 +43,15 @@ pub struct Axis {
     pub seconds: Option<f64>,
 }
 
+/// The least and the greatest of the numbers that are finite; none if there is none.
+fn extent(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let finite = values.filter(|value| value.is_finite());
+    let ends = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    });
+    (ends[0] <= ends[1]).then_some(ends)
+}
+
 impl Figure {
     /// A figure without series and axes.
     pub fn new(id: impl Into<String>, title: impl Into<String>) -> Self {

@@ -3,22 +3,16 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use crate::{Axis, Figure, Mark, Series};
+use crate::{Axis, Figure, Mark, Series, extent};
 
 /// The longer side of what is seen of a map at first: its axes where they are said, else what is not hidden.
 pub(crate) fn width(figure: &Figure, shown: &[Range<usize>]) -> f64 {
     let seen = figure.series.iter().zip(shown).filter(|(series, _)| !series.hidden);
-    let extent = |axis: &Axis, values: fn(&Series) -> &[f64]| {
-        if let Some([low, high]) = axis.range {
-            return high - low;
-        }
+    let length = |axis: &Axis, values: fn(&Series) -> &[f64]| {
         let all = seen.clone().flat_map(|(series, shown)| &values(series)[shown.clone()]).copied();
-        let (low, high) = all
-            .filter(|value| value.is_finite())
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), value| (l.min(value), h.max(value)));
-        if low <= high { high - low } else { 0.0 }
+        axis.range.or_else(|| extent(all)).map_or(0.0, |[low, high]| high - low)
     };
-    extent(&figure.x, |series| &series.x).max(extent(&figure.y, |series| &series.y))
+    length(&figure.x, |series| &series.x).max(length(&figure.y, |series| &series.y))
 }
 
 /// Indices of the points that are drawn: of a line, those that keep it within `most` of the whole one, at each time where times

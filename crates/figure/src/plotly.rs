@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::{Axis, Colour, Figure, Mark, Series, View, thin};
+use crate::{Axis, Colour, Figure, Mark, Series, View, extent, thin};
 
 /// The figure for the page: its words, and `data` and `layout` of `Plotly.react`.
 ///
@@ -110,10 +110,7 @@ fn css(colour: Colour) -> String {
 
 /// To a millionth of their span: more is neither seen nor worth sending.
 fn rounded(mut values: Vec<f64>) -> Vec<f64> {
-    let finite = || values.iter().copied().filter(|value| value.is_finite());
-    let low = finite().fold(f64::INFINITY, f64::min);
-    let high = finite().fold(f64::NEG_INFINITY, f64::max);
-    let span = high - low;
+    let span = extent(values.iter().copied()).map_or(0.0, |[low, high]| high - low);
     if span.is_finite() && span > 0.0 {
         // A power of ten divides to the shortest digits.
         let scale = 10_f64.powi((6.0 - span.log10()).ceil() as i32);

@@ -6,7 +6,7 @@ use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
-use crate::{Axis, Figure, Mark, Series};
+use crate::{Axis, Figure, Mark, Series, extent};
 
 /// Width and height, px; text is sized for half a page.
 const SIZE: (u32, u32) = (720, 430);
@@ -135,12 +135,10 @@ fn bounds(figure: &Figure, axis: &Axis, of: fn(&Series) -> &Vec<f64>) -> Range<f
         return low..high;
     }
     let shown = figure.series.iter().filter(|series| !series.hidden).flat_map(of).copied();
-    let usable = shown.filter(|v| v.is_finite() && (!axis.logarithmic || *v > 0.0));
-    let (low, high) =
-        usable.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    if low > high {
+    let usable = shown.filter(|value| !axis.logarithmic || *value > 0.0);
+    let Some([low, high]) = extent(usable) else {
         return if axis.logarithmic { 0.1..10.0 } else { 0.0..1.0 };
-    }
+    };
     if axis.logarithmic {
         return low / 1.2..high * 1.2;
     }

@@ -7,6 +7,7 @@ use crate::figure::{Figure, View, plotly};
 
 const STYLE: &str = include_str!("../../assets/page.css");
 const PLOTLY: &str = include_str!("../../assets/plotly/plotly-basic.min.js");
+const ELEMENTS: &str = include_str!("../../assets/elements.js");
 const CLOCK: &str = include_str!("../../assets/clock.js");
 const FIGURES: &str = include_str!("../../assets/figures.js");
 const SCRIPT: &str = include_str!("../../assets/report.js");
@@ -50,7 +51,7 @@ impl Document<'_> {
                 body {
                     (body)
                     script id="figures" type="application/json" { (PreEscaped(figures)) }
-                    @for script in [PLOTLY, CLOCK, FIGURES, SCRIPT] { script { (PreEscaped(script)) } }
+                    @for script in [PLOTLY, ELEMENTS, CLOCK, FIGURES, SCRIPT] { script { (PreEscaped(script)) } }
                 }
             }
         };

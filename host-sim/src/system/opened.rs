@@ -192,8 +192,7 @@ impl<S: System> Opened for Open<S> {
     }
 
     fn effective(&self, settings: &Settings) -> Settings {
-        let disabled = self.disabled(settings);
-        settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name))
+        without(settings, &self.disabled(settings))
     }
 
     fn answer(&self, settings: &Settings) -> Result<Arc<Answer>, Error> {
@@ -202,7 +201,7 @@ impl<S: System> Opened for Open<S> {
         }
         let (asked, disabled) = (settings, self.disabled(settings));
         // A page that was left with them sends them still, and the command line refuses them.
-        let settings = &self.effective(settings);
+        let settings = &without(settings, &disabled);
         let trace = self.trace(settings, Detail::Every)?;
         let (Account { facts, warnings, .. }, findings) = self.account(settings, &trace)?;
         let command = ["host-sim", "replay", S::NAME].map(str::to_owned).into_iter();
@@ -219,6 +218,11 @@ impl<S: System> Opened for Open<S> {
         S::figures(&self.recording, settings, &trace, &mut answer)?;
         Ok(self.answers.keep(asked, answer))
     }
+}
+
+/// Settings without those that are disabled.
+fn without(settings: &Settings, disabled: &[(&'static str, String)]) -> Settings {
+    settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name))
 }
 
 fn write(path: &std::path::Path, Table { header, rows, .. }: &Table) -> Result<(), Error> {

@@ -2,11 +2,10 @@
 //!
 //! Where a shell is missing its test says SKIPPED, unless `KESTIRIM_REQUIRE_SHELLS` is set.
 
-use std::env;
 use std::fs;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use crate::program::{Desk, host_sim, refusal, text};
+use crate::program::{Desk, host_sim, is_missing, refusal, text};
 
 /// Prints what bash offers for the last of the words.
 const BASH: &str = r#"
@@ -42,12 +41,7 @@ const LINES: [(&[&str], &str); 4] = [
 
 /// Whether the shell is there.
 fn has(shell: &str) -> bool {
-    let there = Command::new(shell).arg("--version").stdout(Stdio::null()).status().is_ok();
-    assert!(there || env::var_os("KESTIRIM_REQUIRE_SHELLS").is_none(), "{shell} is missing");
-    if !there {
-        println!("SKIPPED: {shell} is missing");
-    }
-    there
+    !is_missing(shell, "KESTIRIM_REQUIRE_SHELLS")
 }
 
 /// A file with the script for a shell.

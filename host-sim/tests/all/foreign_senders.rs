@@ -1,6 +1,5 @@
 //! Senders in other languages, of `contrib/senders`: what they send arrives as it was meant.
 
-use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,7 +7,7 @@ use std::process::Command;
 use kestirim_telemetry::{Imu, Message, Range};
 
 use crate::live_cli::{address, listening, report};
-use crate::program::Desk;
+use crate::program::{Desk, is_missing};
 use crate::sender::decoded;
 
 /// What both senders send.
@@ -60,16 +59,6 @@ fn receive(command: &mut Command) {
     for (number, message) in (0..).zip(&messages) {
         assert!(agree(message, &sent(number)), "{message:?}, not {:?}", sent(number));
     }
-}
-
-/// Says that a program is missing, unless it must be there.
-fn is_missing(program: &str, required: &str) -> bool {
-    let is_missing = Command::new(program).arg("--version").output().is_err();
-    if is_missing {
-        assert!(env::var_os(required).is_none(), "{program} is required");
-        eprintln!("SKIPPED: no {program} on this machine");
-    }
-    is_missing
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! The page's scripts: few, and checked as far as their types are known.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs};
+
+use crate::program::is_missing;
 
 /// Lines of JavaScript that are written here, at most.
 const MOST_LINES: usize = 1200;
@@ -23,10 +25,8 @@ fn there_is_little_of_it() {
 
 #[test]
 fn types_names_and_results_are_right() {
-    let required = env::var_os("KESTIRIM_REQUIRE_BROWSER").is_some();
-    if Command::new("tsc").arg("--version").output().is_err() {
-        assert!(!required, "tsc is required: Debian has it as node-typescript");
-        eprintln!("SKIPPED: no tsc on this machine");
+    // Debian has it as node-typescript.
+    if is_missing("tsc", "KESTIRIM_REQUIRE_BROWSER") {
         return;
     }
     let known = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/page.d.ts");

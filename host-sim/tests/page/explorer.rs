@@ -6,16 +6,16 @@ use host_sim::systems::pedestrian::simulate::sensor::razor_text;
 
 use crate::browser::{Page, Server};
 use crate::program::{self, Desk, host_sim};
-use crate::{DRAWN, SYSTEMS, WIDTHS, assert_quiet, path, press_buttons, turn, walk};
+use crate::{
+    DRAWN, SYSTEMS, WIDTHS, assert_quiet, explore, own_files, path, press_buttons, turn, walk,
+};
 
 #[test]
 fn every_system_is_explored_at_both_widths() {
     let server = Server::start(&["serve", "--port", "0"]);
     for width in WIDTHS {
         for system in SYSTEMS {
-            let address = format!("{}#{system}", server.address());
-            let Some(page) = Page::open(&address, width) else { return };
-            page.wait_for(DRAWN);
+            let Some(page) = explore(&server, system, width) else { return };
             assert_eq!(page.evaluate("document.getElementById('system').value"), system);
             assert_eq!(page.evaluate("document.getElementById('alert').textContent"), "");
             let top = page
@@ -81,9 +81,7 @@ fn a_razors_log_is_opened_damage_told_and_a_broken_one_refused_with_a_sentence()
         page.evaluate("document.getElementById('upload').click()");
     };
     page.wait_for(DRAWN);
-    page.evaluate(
-        "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",
-    );
+    own_files(&page);
     open(&good);
     // The log holds no truth: nothing is said of errors.
     page.wait_for(&format!(
@@ -130,9 +128,7 @@ fn what_a_refusal_asks_for_is_said_on_the_page() {
         let address = format!("{}#robot", server.address());
         let Some(page) = Page::open(&address, width) else { return };
         page.wait_for(DRAWN);
-        page.evaluate(
-            "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",
-        );
+        own_files(&page);
         page.choose_file("#file-anchors", &anchors);
         page.choose_file("#file-log", &log);
         page.evaluate("document.getElementById('upload').click()");

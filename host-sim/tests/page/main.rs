@@ -15,7 +15,7 @@ mod session;
 mod speed;
 mod time;
 
-use browser::Page;
+use browser::{Page, Server};
 use host_sim::random::stream;
 use host_sim::systems::pedestrian::Sample;
 use host_sim::systems::pedestrian::simulate::scenario::Scenario;
@@ -84,4 +84,18 @@ const OVER_TIME: &str =
 fn text_of(page: &Page, id: &str) -> String {
     let text = page.evaluate(&format!("document.getElementById('{id}').textContent"));
     text.as_str().expect("text").to_owned()
+}
+
+/// The explorer with a system, everything drawn; none without a browser.
+fn explore(server: &Server, system: &str, width: u32) -> Option<Page> {
+    let page = Page::open(&format!("{}#{system}", server.address()), width)?;
+    page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+    Some(page)
+}
+
+/// Chooses to open files of one's own.
+fn own_files(page: &Page) {
+    page.evaluate(
+        "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",
+    );
 }

@@ -6,7 +6,7 @@ use host_sim::systems::pedestrian::simulate::sensor::razor_text;
 
 use crate::browser::{Page, Server};
 use crate::program::Desk;
-use crate::{DRAWN, SETTLED, SYSTEMS, assert_quiet, text_of, walk};
+use crate::{DRAWN, SETTLED, SYSTEMS, assert_quiet, explore, own_files, text_of, walk};
 
 /// The control that a test turns: the first slider that has an effect.
 const SLIDER: &str =
@@ -48,10 +48,7 @@ fn address(page: &Page) -> String {
 fn an_address_shows_the_same_picture_and_undo_goes_back_for_every_system() {
     let server = Server::start(&["serve", "--port", "0"]);
     for system in SYSTEMS {
-        let Some(page) = Page::open(&format!("{}#{system}", server.address()), 1280) else {
-            return;
-        };
-        page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+        let Some(page) = explore(&server, system, 1280) else { return };
         let first = picture(&page);
         turn_by(&page, 3);
         page.evaluate(
@@ -91,10 +88,7 @@ fn an_address_shows_the_same_picture_and_undo_goes_back_for_every_system() {
 fn two_settings_are_compared_over_each_other_and_as_a_difference_for_every_system() {
     let server = Server::start(&["serve", "--port", "0"]);
     for system in SYSTEMS {
-        let Some(page) = Page::open(&format!("{}#{system}", server.address()), 1280) else {
-            return;
-        };
-        page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+        let Some(page) = explore(&server, system, 1280) else { return };
         let alone = page.evaluate("document.querySelectorAll('.legend button').length");
         press(&page, "keep");
         page.wait_for(SETTLED);
@@ -141,10 +135,7 @@ fn every_download_of_every_system_is_what_it_is_called() {
     let desk = Desk::new();
     let server = Server::start(&["serve", "--port", "0"]);
     for system in SYSTEMS {
-        let Some(page) = Page::open(&format!("{}#{system}", server.address()), 1280) else {
-            return;
-        };
-        page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+        let Some(page) = explore(&server, system, 1280) else { return };
         // What the buttons give is looked at instead of being saved.
         page.evaluate(
             "window.given = {}; let last; URL.createObjectURL = blob => { last = blob; return '#'; }; \
@@ -197,7 +188,7 @@ fn uploaded_files_are_found_again_by_their_address_and_a_failed_upload_clears_wh
     let Some(page) = Page::open(server.address(), 1280) else { return };
     page.wait_for(&format!("{DRAWN} && {SETTLED}"));
     let choose = |file: &str| {
-        page.evaluate("{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }");
+        own_files(&page);
         page.choose_file("#file-log", file);
         press(&page, "upload");
     };

@@ -9,7 +9,7 @@ use host_sim::systems::pedestrian::simulate::sensor::{measure, razor_text};
 
 use crate::browser::{Page, Server};
 use crate::program::Desk;
-use crate::{DRAWN, turn};
+use crate::{DRAWN, own_files, turn};
 
 /// How long a slider takes from its movement until everything is drawn, on a log of two minutes at 200 Hz.
 #[test]
@@ -84,9 +84,7 @@ fn two_hours_are_looked_at() {
     let server = Server::start(&["serve", "--port", "0"]);
     let Some(page) = Page::open(server.address(), 1280) else { return };
     page.wait_for(DRAWN);
-    page.evaluate(
-        "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",
-    );
+    own_files(&page);
     page.choose_file("#file-log", &log);
     let begun = Instant::now();
     page.evaluate("document.getElementById('upload').click()");

@@ -1,7 +1,7 @@
 //! One time for all figures of a page: a window and a cursor.
 
 use crate::browser::{Page, Server};
-use crate::{DRAWN, OVER_TIME, SETTLED, SYSTEMS, WIDTHS, assert_quiet};
+use crate::{DRAWN, OVER_TIME, SETTLED, SYSTEMS, WIDTHS, assert_quiet, explore};
 
 /// Ranges of the axes of all plots over time, in seconds of the bar.
 fn ranges(page: &Page) -> Vec<[f64; 2]> {
@@ -23,9 +23,7 @@ fn one_window_and_one_cursor_hold_for_all_figures_of_every_system() {
     let server = Server::start(&["serve", "--port", "0"]);
     for width in WIDTHS {
         for system in SYSTEMS {
-            let address = format!("{}#{system}", server.address());
-            let Some(page) = Page::open(&address, width) else { return };
-            page.wait_for(&format!("{DRAWN} && {SETTLED}"));
+            let Some(page) = explore(&server, system, width) else { return };
             let slider = "document.querySelector('.clock input')";
             // The bar by keyboard alone.
             page.evaluate(&format!("{slider}.focus()"));

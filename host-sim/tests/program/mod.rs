@@ -15,6 +15,16 @@ pub(crate) fn host_sim<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().expect("the program runs")
 }
 
+/// Whether a program is missing, which is said; it may be unless the environment says `required`.
+pub(crate) fn is_missing(program: &str, required: &str) -> bool {
+    let is_missing = Command::new(program).arg("--version").output().is_err();
+    if is_missing {
+        assert!(std::env::var_os(required).is_none(), "{program} is missing");
+        println!("SKIPPED: {program} is missing");
+    }
+    is_missing
+}
+
 pub(crate) fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).expect("the program speaks UTF-8")
 }

@@ -10,7 +10,7 @@ use axum::response::{IntoResponse, Response};
 use super::Shared;
 use super::api::{Refusal, beside, find};
 use super::question::{Asked, Question};
-use crate::figure::{Figure, csv, svg};
+use crate::figure::{csv, svg};
 use crate::report;
 use crate::system::{AnySystem, Wanted};
 
@@ -34,38 +34,18 @@ pub(super) async fn download(
 ) -> Result<Response, Refusal> {
     let system = find(&shared, &system)?;
     let question: Question = serde_json::from_str(&body).map_err(Refusal::of)?;
-    let bytes = beside(move || {
-        let asked = Asked::new(&shared, system, &recording, &question.settings)?;
-        let figures = question.figures(&shared, system, &asked)?;
-        content(&shared, system, &file, &Shown { asked, figures, window_s: question.window })
-    });
+    let bytes = beside(move || content(&shared, system, &recording, &file, &question));
     Ok(([(CONTENT_TYPE, "application/octet-stream")], bytes.await?).into_response())
-}
-
-/// What the page shows.
-struct Shown {
-    asked: Asked,
-    /// Its figures, or those of a comparison.
-    figures: Vec<Figure>,
-    window_s: Option<[f64; 2]>,
 }
 
 fn content(
     shared: &Shared,
-    system: &dyn AnySystem,
+    system: &'static dyn AnySystem,
+    recording: &str,
     file: &str,
-    Shown { asked, figures, window_s }: &Shown,
+    question: &Question,
 ) -> Result<Vec<u8>, Refusal> {
-    if file == SESSION {
-        let session = report::Session {
-            title: system.title(),
-            command: &asked.command(),
-            answer: &asked.answer,
-            figures,
-            window_s: *window_s,
-        };
-        return Ok(session.page().into_bytes());
-    }
+    let asked = Asked::new(shared, system, recording, &question.settings)?;
     let (name, ending) = file.rsplit_once('.').unwrap_or((file, ""));
     let output = system.outputs().iter().find(|output| output.name == name);
     let output = output.filter(|output| output.endings.contains(&ending));
@@ -79,6 +59,17 @@ fn content(
         let tables = output.map(|output| (output.name, path.clone())).into_iter().collect();
         asked.write(&Wanted { tables, mcap })?;
         return fs::read(path).map_err(Refusal::of);
+    }
+    let figures = question.figures(shared, system, &asked)?;
+    if file == SESSION {
+        let session = report::Session {
+            title: system.title(),
+            command: &asked.command(),
+            answer: &asked.answer,
+            figures: &figures,
+            window_s: question.window,
+        };
+        return Ok(session.page().into_bytes());
     }
     let figure = name.strip_prefix("figure-");
     let figure = figure.and_then(|id| figures.iter().find(|figure| figure.id == id));

@@ -1,5 +1,6 @@
 //! What the page asks, and what is answered.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -59,15 +60,15 @@ impl Question {
     ///
     /// # Errors
     /// As [`other`](Self::other).
-    pub(super) fn figures(
+    pub(super) fn figures<'a>(
         &self,
         shared: &Shared,
         system: &'static dyn AnySystem,
-        asked: &Asked,
-    ) -> Result<Vec<Figure>, Refusal> {
+        asked: &'a Asked,
+    ) -> Result<Cow<'a, [Figure]>, Refusal> {
         Ok(match self.other(shared, system)? {
-            Some((other, how)) => compare::figures(&other.answer, &asked.answer, how),
-            None => asked.answer.figures.clone(),
+            Some((other, how)) => compare::figures(&other.answer, &asked.answer, how).into(),
+            None => asked.answer.figures.as_slice().into(),
         })
     }
 

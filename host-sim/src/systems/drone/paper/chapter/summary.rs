@@ -34,21 +34,14 @@ pub(super) fn summary(report: &Report) -> Comparison {
     }
     for (name, words) in WALKS {
         if let Some(row) = report.rows.iter().find(|row| row.cell == name) {
-            table = if words.ends_with("(thesis)") {
-                table.repeated(words, "", walked(row), "")
-            } else {
-                table.row(words, "", walked(row), "")
-            };
+            table = add(table, row, words, String::new(), walked(row), String::new());
         }
     }
     if table.rows.is_empty() {
         for row in &report.rows {
             let limit = row.limit_m.map_or_else(String::new, |limit| format!("{limit:.1}"));
             let (cell, published) = (row.cell.clone(), whole(row.published));
-            table = match row.filter {
-                "published" => table.repeated(cell, published, mean(row), limit),
-                _ => table.row(cell, published, mean(row), limit),
-            };
+            table = add(table, row, &cell, published, mean(row), limit);
         }
     }
     let worst = report.rows.iter().filter_map(|row| row.published_z);
@@ -58,6 +51,21 @@ pub(super) fn summary(report: &Report) -> Comparison {
          Figs 3.5 and 3.1 (c), made in another way, should be far from the thesis' filter here; the farthest \
          of all is {worst:.1} of its own standard errors off."
     ))
+}
+
+/// A row of the thesis' filter, or of ours.
+fn add(
+    table: Comparison,
+    row: &Row,
+    quantity: &str,
+    published: String,
+    here: String,
+    limit: String,
+) -> Comparison {
+    match row.filter {
+        "published" => table.repeated(quantity, published, here, limit),
+        _ => table.row(quantity, published, here, limit),
+    }
 }
 
 /// What the first page says: a user who stays, and one who walks.

@@ -171,10 +171,10 @@ fn numbers(
     values: [f64; 4],
     [published, limit]: [Option<[f64; 4]>; 2],
 ) -> [Value; 4] {
-    let mut axes = 0..4;
-    Value::each(quantity, ["north", "east", "up", "3-D"], ["mm"; 4], values).map(|value| {
-        let axis = axes.next().unwrap_or_default();
-        by(row, value).published(published.map(|it| it[axis])).limited(limit.map(|it| it[axis]))
+    let each = Value::each(quantity, ["north", "east", "up", "3-D"], ["mm"; 4], values);
+    std::array::from_fn(|axis| {
+        let of = |all: Option<[f64; 4]>| all.map(|all| all[axis]);
+        by(row, each[axis].clone()).published(of(published)).limited(of(limit))
     })
 }
 
