@@ -21,9 +21,7 @@
     element("facts").replaceChildren(...answer.facts.map(([name, value]) =>
       make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
     element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
-    element("findings").replaceChildren(...answer.findings.map(([fault, about, text]) =>
-      make("div", { className: fault ? "fault" : "" }, make("dt", { textContent: about }), make("dd", { textContent: text }))));
-    element("check").hidden = !answer.findings.length;
+    showFindings(answer.findings);
     disabled = new Map(answer.disabled);
     Controls.disable(disabled);
     for (const said of ["command", "firmware"]) element(said).textContent = answer[said];
@@ -61,6 +59,22 @@
         giver(`figure-${figure.id}.${ending}`, ending.toUpperCase(), `${figure.title} as ${ending.toUpperCase()}`)));
       entry.place.append(entry.caption);
     }
+  }
+
+  function showFindings(findings) {
+    element("findings").replaceChildren(...findings.map(([fault, about, text]) =>
+      make("div", { className: fault ? "fault" : "" }, make("dt", { textContent: about }), make("dd", { textContent: text }))));
+    element("check").hidden = !findings.length && !element("taken").children.length;
+  }
+
+  // What files that were dropped were taken for.
+  function showTaken({ taken = [], left = [], others = [] }) {
+    const told = taken.map(([name, field]) => [name, field]);
+    if (left.length) told.push(["not used", left.join(", ")]);
+    if (others.length) told.push(["could be of", `${others.join(", ")} as well: choose the system first`]);
+    element("taken").replaceChildren(...told.map(([name, what]) =>
+      make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: what }))));
+    if (taken.length) element("check").open = true;
   }
 
   // What a refusal asks for by the name of an option is where the page asks for it, and is shown there.
@@ -242,7 +256,7 @@
   }
 
   function opened(reply, wanted) {
-    for (const shown of ["facts", "warnings", "findings", "figures"]) element(shown).replaceChildren();
+    for (const shown of ["facts", "warnings", "findings", "taken", "figures"]) element(shown).replaceChildren();
     for (const hidden of ["check", "again", "give"]) element(hidden).hidden = true;
     element("differences").hidden = true;
     for (const { place } of places.values()) Figures.forget(place);
@@ -261,17 +275,23 @@
     [controls, disabled] = [reply.controls, new Map()];
     element("downloads").replaceChildren(...reply.downloads.map((name) => giver(name, name)));
     element("give").hidden = false;
+    showTaken(reply);
+    showFindings(reply.findings);
     if (reply.files) {
       const bundled = element("bundled");
       const known = [...bundled.options].some(({ value }) => value === reply.recording);
       if (!known) bundled.prepend(make("option", { value: reply.recording, textContent: reply.files }));
     }
     element("bundled").value = reply.recording;
-    element("files").hidden = element("upload").hidden = true;
+    askForFiles(false);
     take({ ...wanted, recording: reply.recording });
   }
 
   // --- recordings
+
+  function askForFiles(does) {
+    for (const id of ["any", "files", "upload"]) element(id).hidden = !does;
+  }
 
   const source = (system) => sources.find((source) => source.system === system);
 
@@ -310,9 +330,14 @@
     if (!reply) {
       // Where to choose them again.
       element("bundled").value = "";
-      element("files").hidden = element("upload").hidden = false;
+      askForFiles(true);
     }
-    if (wanted.system !== state.system) state = { ...state, system: wanted.system, settings: {}, a: null };
+    const system = reply?.system ?? wanted.system;
+    if (system !== wanted.system) {
+      offer(system);
+      wanted = { ...wanted, system, settings: {}, a: null };
+    }
+    if (system !== state.system) state = { ...state, system, settings: {}, a: null };
     opened(reply, wanted);
   }
 
@@ -326,7 +351,7 @@
   });
   element("bundled").addEventListener("input", () => {
     const recording = element("bundled").value;
-    element("files").hidden = element("upload").hidden = recording !== "";
+    askForFiles(recording === "");
     if (!recording) return;
     remember();
     named({ ...state, recording });
@@ -339,6 +364,23 @@
     remember();
     open(`api/open/${state.system}`, files, state);
   });
+
+  // Files of which nobody says what they are; those that a recording still lacks are added to them.
+  let dropped = [];
+  async function drop(files) {
+    if (opening || !files.length) return;
+    remember();
+    const isAnew = (old) => !files.some(({ name, size }) => name === old.name && size === old.size);
+    dropped = [...dropped.filter(isAnew), ...files];
+    const body = new FormData();
+    for (const file of dropped) body.append("file", file);
+    await open(`api/drop/${element("system").value}`, body, state);
+    if (state.recording) dropped = [];
+  }
+  Drop.listen(drop);
+  for (const id of ["any-files", "any-folder"]) {
+    element(id).addEventListener("change", ({ target }) => { drop([...target.files].filter(({ name }) => !name.startsWith("."))); target.value = ""; });
+  }
 
   // --- undo, comparison, downloads
 
@@ -387,19 +429,51 @@
     return button;
   }
 
-  function live() {
+  // A stream: one picture at a time, of now or of what was, as the controls stand.
+  function live({ controls: offered, settings }) {
     const socket = new WebSocket(`ws://${location.host}/live`);
-    for (const part of all(".controls, #compare")) part.hidden = true;
+    const [after, pause] = [element("after"), element("pause")];
+    let [paused, busy, due, asked] = [false, true, false, null];
+    state.settings = settings;
+    for (const part of all(offered.length ? "#open, #compare, #settings .buttons" : ".controls, #compare")) part.hidden = true;
+    element("back").hidden = false;
     // Five times a second would be too much to be read out.
     element("facts").ariaLive = "off";
-    all(".explorer")[0].style.gridTemplateColumns = "minmax(0, 1fr)";
-    socket.addEventListener("message", ({ data }) => { show(JSON.parse(data)); socket.send("next"); });
+    if (!offered.length) all(".explorer")[0].style.gridTemplateColumns = "minmax(0, 1fr)";
+    const want = () => {
+      due = busy;
+      if (busy) return;
+      busy = true;
+      asked = paused ? Number(after.value) : null;
+      socket.send(JSON.stringify({ settings: state.settings, after: asked }));
+    };
+    const stop = (does) => { paused = does; pause.textContent = does ? "go on" : "pause"; want(); };
+    Controls.build(element("controls"), offered, settings, (name, value) => {
+      const { [name]: _, ...others } = state.settings;
+      state.settings = value === undefined ? others : { ...others, [name]: value };
+      want();
+    }, () => busy);
+    socket.addEventListener("open", () => { busy = false; want(); });
+    socket.addEventListener("message", ({ data }) => {
+      const answer = JSON.parse(data);
+      busy = false;
+      complain(answer.refused ?? "");
+      if (!answer.refused) {
+        show(answer);
+        after.max = String(answer.bytes);
+        if (!paused) after.value = after.max;
+        element("of").textContent = `${Math.round((100 * (asked ?? answer.bytes)) / Math.max(answer.bytes, 1))} %`;
+      }
+      if (due || !paused) want();
+    });
     socket.addEventListener("close", () => complain("the stream has ended"));
+    pause.addEventListener("click", () => stop(!paused));
+    after.addEventListener("input", () => stop(true));
   }
 
   if (matchMedia("(max-width: 800px)").matches) element("settings").open = false;
   fetch("api/sources").then((response) => response.json()).then((reply) => {
-    if (reply.live) return live();
+    if (reply.live) return live(reply.live);
     sources = reply.sources;
     element("system").replaceChildren(...sources.map((source) =>
       make("option", { value: source.system, textContent: `${source.system}: ${source.title}` })));

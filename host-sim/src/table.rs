@@ -55,6 +55,11 @@ pub fn read<T>(
     read_log(path, &table, columns, row).map(drop)
 }
 
+/// Whether a file is a table with these columns.
+pub fn has<const N: usize>(path: &Path, names: [&str; N]) -> bool {
+    read(path, "a table", |header| header.require(names), |_, _| Ok(())).is_ok()
+}
+
 /// Reads a log: as [`read`], but up to a hundredth of its lines, which `row` refuses without having changed anything, are
 /// skipped and counted.
 ///

@@ -36,6 +36,11 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
+/// Whether a file begins as gzip files do.
+pub(crate) fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
+
 /// Unpacks what is packed.
 ///
 /// # Errors
@@ -43,7 +48,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
 pub(crate) fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     let error = |problem: String| Error::File { path: path.to_path_buf(), problem };
     let refused = match &*bytes {
-        [0x1f, 0x8b, ..] => return gunzip(&bytes).map_err(error),
+        _ if is_packed(&bytes) => return gunzip(&bytes).map_err(error),
         [0x1f, 0x9d, ..] => "compress (.Z): unpack it with gzip -d first",
         [b'P', b'K', 3, 4, ..] => "zip: unpack it first",
         [b'B', b'Z', b'h', ..] => "bzip2: unpack it first",
@@ -58,7 +63,7 @@ pub(crate) fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
 fn gunzip(packed: &[u8]) -> Result<Vec<u8>, String> {
     let mut rest = packed;
     let mut unpacked = Vec::with_capacity(packed.len().saturating_mul(5).min(LARGEST));
-    while rest.starts_with(&[0x1f, 0x8b]) {
+    while is_packed(rest) {
         let left = (LARGEST - unpacked.len()) as u64;
         let mut decoder = GzDecoder::new(&mut rest);
         let read = decoder.by_ref().take(left + 1).read_to_end(&mut unpacked);

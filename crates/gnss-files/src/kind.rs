@@ -1,29 +1,149 @@
 //! Formats told apart by their first line.
 
-use crate::error::quoted;
+use std::fmt;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use flate2::bufread::GzDecoder;
+
+use crate::error::{Error, quoted};
+use crate::{crinex, gzip};
+
+/// Enough for the first line, packed or not, bytes.
+const BEGINNING: u64 = 4096;
+
+/// What a file holds, as its first line says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// What a receiver observed: RINEX or Compact RINEX.
+    Observations,
+    /// Orbits that the satellites themselves broadcast: RINEX.
+    Navigation,
+    /// Weather at a station: RINEX.
+    Meteorology,
+    /// Clocks of satellites: RINEX.
+    Clocks,
+    /// RINEX of another type.
+    OtherRinex,
+    /// Antenna patterns: ANTEX.
+    Antennas,
+    /// A map of the ionosphere: IONEX.
+    Ionosphere,
+    /// Orbits: SP3.
+    Orbits,
+    /// Biases of codes and phases: Bias-SINEX.
+    Biases,
+    /// Ocean loading of stations: BLQ.
+    OceanLoading,
+}
+
+impl Kind {
+    /// Of a file, plain or packed with gzip; none if its first line is of no format that this crate knows.
+    ///
+    /// # Errors
+    /// [`Error::Read`] if the file cannot be read.
+    pub fn of_file(path: impl AsRef<Path>) -> Result<Option<Self>, Error> {
+        let path = path.as_ref();
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(BEGINNING).read_to_end(&mut bytes))
+            .map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+        if !gzip::is_packed(&bytes) {
+            return Ok(Self::of(&bytes));
+        }
+        let mut unpacked = Vec::new();
+        // What was read ends within the file: what could be unpacked of it is its beginning.
+        let _ = GzDecoder::new(&*bytes).take(BEGINNING).read_to_end(&mut unpacked);
+        Ok(Self::of(&unpacked))
+    }
+
+    /// Of a text.
+    fn of(bytes: &[u8]) -> Option<Self> {
+        let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+        let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
+        if named(b"RINEX VERSION / TYPE") {
+            let letter = first.get(20).filter(|byte| **byte != b' ').or(first.get(21));
+            return Some(match letter {
+                Some(b'O') => Self::Observations,
+                Some(b'N' | b'G' | b'E' | b'H' | b'L') => Self::Navigation,
+                Some(b'M') => Self::Meteorology,
+                Some(b'C') => Self::Clocks,
+                _ => Self::OtherRinex,
+            });
+        }
+        match first {
+            _ if crinex::is_compressed(first) => Some(Self::Observations),
+            _ if named(b"ANTEX VERSION") => Some(Self::Antennas),
+            _ if named(b"IONEX VERSION") => Some(Self::Ionosphere),
+            [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Orbits),
+            _ if first.starts_with(b"%=BIA") => Some(Self::Biases),
+            _ if first.trim_ascii_start().starts_with(b"$$") => Some(Self::OceanLoading),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Observations => "observations (RINEX)",
+            Self::Navigation => "a navigation file (RINEX)",
+            Self::Meteorology => "a meteorological file (RINEX)",
+            Self::Clocks => "satellite clocks (RINEX)",
+            Self::OtherRinex => "a RINEX file of another type",
+            Self::Antennas => "antenna patterns (ANTEX)",
+            Self::Ionosphere => "an ionosphere map (IONEX)",
+            Self::Orbits => "orbits (SP3)",
+            Self::Biases => "biases (Bias-SINEX)",
+            Self::OceanLoading => "ocean loading (BLQ)",
+        })
+    }
+}
 
 /// The format of a text in words, by its first line.
-pub(crate) fn kind(bytes: &[u8]) -> String {
-    const RINEX: &[u8] = b"RINEX VERSION / TYPE";
+pub(crate) fn in_words(bytes: &[u8]) -> String {
     let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let start = first.trim_ascii_start();
-    let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
-    let name = match first {
-        [] if bytes.is_empty() => "an empty file",
-        _ if named(RINEX) => match first.get(20).filter(|byte| **byte != b' ').or(first.get(21)) {
-            Some(b'O') => "observations (RINEX)",
-            Some(b'N' | b'G' | b'E' | b'H' | b'L') => "a navigation file (RINEX)",
-            Some(b'M') => "a meteorological file (RINEX)",
-            Some(b'C') => "satellite clocks (RINEX)",
-            _ => "a RINEX file of another type",
-        },
-        _ if named(b"ANTEX VERSION") => "antenna patterns (ANTEX)",
-        _ if named(b"IONEX VERSION") => "an ionosphere map (IONEX)",
-        [b'#', b'a'..=b'd', b'P' | b'V', ..] => "orbits (SP3)",
-        _ if first.starts_with(b"%=BIA") => "biases (Bias-SINEX)",
-        _ if start.starts_with(b"$$") => "ocean loading (BLQ)",
-        _ if start.starts_with(b"<") => "a web page: the download did not work",
-        _ => return quoted(first),
-    };
-    name.to_owned()
+    match Kind::of(bytes) {
+        Some(kind) => kind.to_string(),
+        None if bytes.is_empty() => "an empty file".to_owned(),
+        None if first.trim_ascii_start().starts_with(b"<") => {
+            "a web page: the download did not work".to_owned()
+        }
+        None => quoted(first),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+
+    use super::*;
+
+    #[test]
+    fn a_file_tells_its_kind_packed_or_not() -> Result<(), Box<dyn std::error::Error>> {
+        let orbits = format!("#dP2020  6 25  0  0  0.00000000\n{}", "## 1\n".repeat(100_000));
+        let cases: [(&[u8], Option<Kind>); 4] = [
+            (orbits.as_bytes(), Some(Kind::Orbits)),
+            (b"%=BIA 1.00 COD\n", Some(Kind::Biases)),
+            (b"t,x,y\n0,1,2\n", None),
+            (b"", None),
+        ];
+        let folder = tempfile::tempdir()?;
+        let path = folder.path().join("file");
+        for (text, kind) in cases {
+            std::fs::write(&path, text)?;
+            assert_eq!(Kind::of_file(&path)?, kind);
+            let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+            encoder.write_all(text)?;
+            std::fs::write(&path, encoder.finish()?)?;
+            assert_eq!(Kind::of_file(&path)?, kind);
+        }
+        assert!(Kind::of_file(folder.path().join("none")).is_err());
+        Ok(())
+    }
 }

@@ -26,6 +26,7 @@ pub use biases::Biases;
 pub use clocks::{ClockSample, Clocks};
 pub use error::{Error, Warning};
 pub use fields::satellite_name;
+pub use kind::Kind;
 pub use observations::{Carriers, Epoch, Observations, Observed, Signal, Signals};
 pub use ocean_loading::{OceanLoading, StationLoading};
 pub use orbits::{OrbitSample, Orbits};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Warning, quoted};
 use crate::fields::{decimal, integer};
-use crate::kind::kind;
+use crate::kind::in_words;
 use crate::time::GpsTime;
 
 /// A file's unpacked text in memory, with the file's name.
@@ -47,7 +47,7 @@ impl Text {
 
     /// The error that this is of another format than `expected`.
     pub(crate) fn wrong_kind(&self, expected: &str) -> Error {
-        self.error(format!("expected {expected}, found {}", kind(&self.bytes)))
+        self.error(format!("expected {expected}, found {}", in_words(&self.bytes)))
     }
 }
 

@@ -1,5 +1,7 @@
 //! A system of which the commands know no more than its face.
 
+use std::fmt;
+use std::path::Path;
 use std::sync::Arc;
 
 use kestirim_sweep::{Block, Samples};
@@ -52,6 +54,9 @@ pub trait AnySystem: Sync {
     /// [`System::identification`].
     fn identification(&self) -> Option<Box<dyn Calibration>>;
 
+    /// [`System::fits`].
+    fn fits(&self, field: &str, path: &Path, files: &Files) -> bool;
+
     /// Reads a recording, or makes a synthetic one.
     ///
     /// # Errors
@@ -87,6 +92,12 @@ pub trait AnySystem: Sync {
     /// # Errors
     /// As there.
     fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error>;
+}
+
+impl fmt::Debug for dyn AnySystem {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
 }
 
 impl<S: System> AnySystem for S {
@@ -131,6 +142,10 @@ impl<S: System> AnySystem for S {
 
     fn identification(&self) -> Option<Box<dyn Calibration>> {
         S::identification()
+    }
+
+    fn fits(&self, field: &str, path: &Path, files: &Files) -> bool {
+        S::fits(field, path, files)
     }
 
     fn open(&self, source: Source, settings: &Settings) -> Result<Box<dyn Opened>, Error> {

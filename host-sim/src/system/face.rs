@@ -91,6 +91,10 @@ pub trait System: Sync + 'static {
     /// The file, the line, and what was expected there.
     fn read(files: &Files, settings: &Settings) -> Result<Self::Recording, Error>;
 
+    /// Whether a file can be what a field of the [`FILES`](Self::FILES) holds: it is read as that, beside the `files` that
+    /// are known already.
+    fn fits(field: &str, path: &Path, files: &Files) -> bool;
+
     /// A synthetic recording by name.
     ///
     /// # Errors

@@ -132,6 +132,11 @@ impl Settings {
         names.filter(|name| self.given.contains_key(name))
     }
 
+    /// What is given, by name, as [`Self::sent`] takes it.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::to_value(&self.given).unwrap_or_default()
+    }
+
     /// Whether it is given.
     pub fn is_given(&self, name: &str) -> bool {
         self.given.contains_key(name)

@@ -6,6 +6,8 @@
 #[path = "../browser/mod.rs"]
 mod browser;
 mod explorer;
+mod files;
+mod live;
 #[path = "../program/mod.rs"]
 mod program;
 mod report;

@@ -1,11 +1,8 @@
-//! The report, and the page of a stream.
+//! The report.
 
-use kestirim_telemetry::Imu;
-
-use crate::browser::{Page, Server};
+use crate::browser::Page;
 use crate::program::{self, Desk, host_sim};
-use crate::sender::{self, frames, send};
-use crate::{DRAWN, WIDTHS, assert_quiet, press_buttons, walk};
+use crate::{WIDTHS, assert_quiet, press_buttons};
 
 #[test]
 fn the_report_opens_from_the_disk() {
@@ -33,38 +30,4 @@ fn the_report_opens_from_the_disk() {
         press_buttons(&page);
         assert_quiet(&page, &format!("file://{folder}"));
     }
-}
-
-#[test]
-fn a_stream_is_shown_while_it_comes() {
-    let desk = Desk::new();
-    let record = desk.named("walk.frames");
-    let server = Server::start(&[
-        "live",
-        "--udp",
-        "127.0.0.1:0",
-        "--system",
-        "pedestrian",
-        "--record",
-        &record,
-        "--port",
-        "0",
-    ]);
-    let Some(page) = Page::open(server.address(), 1280) else { return };
-    let walk = walk();
-    let imu = walk.iter().map(|sample| Imu {
-        time_us: sample.time_us,
-        specific_force: sample.specific_force.map(|axis| axis as f32),
-        angular_rate: sample.angular_rate.map(|axis| axis as f32),
-    });
-    let bytes = frames(imu);
-    let recorded = || sender::length(desk.path("walk.frames").as_path());
-    send(server.datagrams(), bytes.chunks(1200), recorded);
-    page.wait_for(&format!(
-        "document.getElementById('facts').textContent.includes('{}')",
-        walk.len()
-    ));
-    page.wait_for(DRAWN);
-    page.screenshot("live-1280.png");
-    assert_quiet(&page, server.place());
 }

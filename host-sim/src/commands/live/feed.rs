@@ -83,7 +83,7 @@ mod tests {
         ALL.iter().filter_map(|system| following(*system))
     }
 
-    fn following(system: &dyn AnySystem) -> Option<Following> {
+    fn following(system: &'static dyn AnySystem) -> Option<Following> {
         Following::of(system, &Settings::new(system.settings()), &Files::default()).ok()
     }
 

@@ -9,6 +9,7 @@
 //! for an [answer](Live::answer) holds up the second thread at most.
 
 mod clock;
+mod decoder;
 mod feed;
 mod follower;
 mod listener;
@@ -17,18 +18,20 @@ mod order;
 mod picture;
 mod recorder;
 mod report;
+mod rewound;
 mod senders;
 mod source;
 mod state;
 mod tape;
 mod thinned;
+mod viewed;
 mod window;
 
 use std::net::SocketAddr;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -43,7 +46,8 @@ pub use self::report::{Counts, Report};
 use self::source::Source;
 use self::state::State;
 use self::tape::{Reel, Tape};
-use super::serve::{Page, View};
+use self::viewed::Viewed;
+use super::serve::{Page, Show};
 use crate::system::{Answer, Plan};
 use crate::text::printable_path;
 use crate::{Error, output};
@@ -87,6 +91,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 #[derive(Debug)]
 pub struct Live {
     state: Arc<Mutex<State>>,
+    following: Following,
     stop: Stopper,
     listener: Option<JoinHandle<Result<(), Error>>>,
     follower: Option<JoinHandle<Result<(), Error>>>,
@@ -130,6 +135,7 @@ impl Live {
         let ignored = Arc::clone(&state.ignored);
         let mut live = Self {
             state: Arc::new(Mutex::new(state)),
+            following: following.clone(),
             stop: stop.clone(),
             listener: None,
             follower: None,
@@ -209,19 +215,22 @@ impl Live {
 
     /// What there is to see now.
     pub fn answer(&self) -> Answer {
-        (self.view())()
+        self.viewed().now()
     }
 
-    /// What gives the [answer](Self::answer), from any thread and even when this is finished.
-    pub fn view(&self) -> View {
-        let state = Arc::clone(&self.state);
-        let (source, recording) = (self.source.clone(), printable_path(&self.recording));
-        Arc::new(move || {
-            let mut answer = state.lock().unwrap_or_else(PoisonError::into_inner).answer();
-            answer.fact("source", &*source);
-            answer.fact("recording", &*recording);
-            answer
-        })
+    /// What a page shows, from any thread and even when this is finished.
+    pub fn view(&self) -> Arc<dyn Show> {
+        Arc::new(self.viewed())
+    }
+
+    fn viewed(&self) -> Viewed {
+        Viewed {
+            state: Arc::clone(&self.state),
+            following: self.following.clone(),
+            source: self.source.clone(),
+            recording: self.recording.clone(),
+            rewinder: OnceLock::new(),
+        }
     }
 
     /// What became of everything so far.

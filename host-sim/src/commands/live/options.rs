@@ -75,22 +75,52 @@ pub struct Following {
     pub panels: &'static [Panel],
     /// What makes its estimator.
     pub plan: Option<Arc<dyn Plan>>,
+    /// Of what it is made.
+    origin: Option<Origin>,
+}
+
+/// A system with its settings and files.
+#[derive(Debug, Clone)]
+struct Origin {
+    system: &'static dyn AnySystem,
+    settings: Settings,
+    files: Files,
 }
 
 impl Following {
     /// Nobody's estimator.
-    pub const NONE: Self = Self { name: NONE, panels: &Panel::ALL, plan: None };
+    pub const NONE: Self = Self { name: NONE, panels: &Panel::ALL, plan: None, origin: None };
 
     /// A system's.
     ///
     /// # Errors
     /// Whatever is wrong with files and settings; [`Error::Usage`] for a system that follows no stream.
-    pub fn of(system: &dyn AnySystem, settings: &Settings, files: &Files) -> Result<Self, Error> {
+    pub fn of(
+        system: &'static dyn AnySystem,
+        settings: &Settings,
+        files: &Files,
+    ) -> Result<Self, Error> {
         let plan = system.online(settings, files)?;
         let name = system.name();
         let plan =
             plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream (--system)")))?;
-        Ok(Self { name, panels: system.panels(), plan: Some(plan) })
+        let origin = Origin { system, settings: settings.clone(), files: files.clone() };
+        Ok(Self { name, panels: system.panels(), plan: Some(plan), origin: Some(origin) })
+    }
+
+    /// What can be set, and what is.
+    pub(super) fn settings(&self) -> Settings {
+        self.origin.as_ref().map_or_else(|| Settings::new([]), |origin| origin.settings.clone())
+    }
+
+    /// The same with other settings.
+    ///
+    /// # Errors
+    /// As [`Self::of`]; [`Error::Usage`] for settings that would change nothing.
+    pub(super) fn with(&self, settings: &Settings) -> Result<Self, Error> {
+        let Some(Origin { system, files, .. }) = &self.origin else { return Ok(self.clone()) };
+        system.refuse_idle(settings)?;
+        Self::of(*system, settings, files)
     }
 }
 
@@ -167,7 +197,7 @@ pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
         output::refuse_overwriting("--calibrate", Some(to), stream.file.as_ref())?;
         let (name, panels) = (system.name(), system.panels());
         let plan = system.calibration().and_then(|it| it.watch(to));
-        return Ok((stream, Following { name, panels, plan }));
+        return Ok((stream, Following { name, panels, plan, origin: None }));
     }
     Ok((stream, Following::of(system, &settings, &files)?))
 }

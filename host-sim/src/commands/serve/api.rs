@@ -8,11 +8,12 @@ use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 use super::question::{Asked, Question, page};
 use super::sessions::{Recording, Upload};
 use super::uploads::{self, Content};
-use super::{Shared, compare, downloads};
+use super::{Shared, compare, downloads, question};
 use crate::Error;
 use crate::system::{AnySystem, Files, Reading, Setting, Settings, Source};
 
@@ -43,7 +44,7 @@ impl From<Error> for Refusal {
     }
 }
 
-fn reply(value: &Value) -> Response {
+pub(super) fn reply(value: &Value) -> Response {
     ([(CONTENT_TYPE, "application/json")], value.to_string()).into_response()
 }
 
@@ -59,7 +60,12 @@ pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
         })
     };
     let sources: Vec<_> = shared.systems.iter().map(source).collect();
-    reply(&json!({ "live": shared.live.is_some(), "sources": sources }))
+    let live = shared.live.as_ref().map(|live| {
+        let settings = live.settings();
+        let controls: Vec<_> = settings.table().iter().map(Setting::control).collect();
+        json!({ "controls": controls, "settings": settings.to_json() })
+    });
+    reply(&json!({ "live": live, "sources": sources }))
 }
 
 /// Opens a recording that has a name.
@@ -70,7 +76,7 @@ pub(super) async fn open_named(
     let system = find(&shared, &system)?;
     let name = recording.clone();
     let opened = beside(move || shared.sessions.get(system, &recording)).await?;
-    Ok(controls(system, &name, &opened))
+    Ok(reply(&controls(system, &name, &opened)))
 }
 
 /// Opens files that the page uploads.
@@ -97,16 +103,30 @@ pub(super) async fn open_files(
         if !system.files().iter().any(|known| known.name == field) {
             return Err(Refusal::of(format!("{name} has no file {field:?}")));
         }
-        files.add(field, uploads::write(folder.path(), part, &mut content).await?);
+        let path = uploads::write(folder.path(), &field, part, &mut content).await?;
+        files.add(field, path);
     }
+    Ok(reply(&open_kept(&shared, system, files, folder, content).await?))
+}
+
+/// Opens files that lie in a folder, and keeps them.
+///
+/// # Errors
+/// What cannot be used is refused when it is opened, not when a control is moved; but what a control can say is asked for
+/// beside the controls.
+pub(super) async fn open_kept(
+    shared: &Shared,
+    system: &'static dyn AnySystem,
+    files: Files,
+    folder: TempDir,
+    content: Content,
+) -> Result<Value, Refusal> {
     let folder = Arc::new(folder);
     let upload = Upload { files: files.without_what_was_read(), folder: Arc::clone(&folder) };
     let settings = Settings::new(system.settings());
     let opened = beside(move || {
         let open = || {
             let opened = system.open(Source::Files(files), &settings)?;
-            // What cannot be used is refused when it is opened, not when a control is moved; but what a control can say is
-            // asked for beside the controls.
             match opened.answer(&Settings::new(opened.settings())) {
                 Err(error) if !asks_for_a_setting(&error, &opened.settings()) => Err(error),
                 _ => Ok(opened),
@@ -121,15 +141,19 @@ pub(super) async fn open_files(
 }
 
 /// What an open recording is called, what can be set of it and what can be had of it.
-fn controls(system: &dyn AnySystem, recording: &str, open: &Recording) -> Response {
+fn controls(system: &dyn AnySystem, recording: &str, open: &Recording) -> Value {
     let Recording { opened, files, .. } = open;
     let controls: Vec<_> = opened.settings().iter().map(Setting::control).collect();
-    reply(&json!({
+    // What is wrong with the settings the answer says.
+    let findings = opened.check(&Settings::new(opened.settings())).unwrap_or_default();
+    json!({
+        "system": system.name(),
         "recording": recording,
         "files": files,
         "controls": controls,
+        "findings": question::findings(&findings),
         "downloads": downloads::names(system).collect::<Vec<_>>(),
-    }))
+    })
 }
 
 /// Whether a refusal names the option of a setting.

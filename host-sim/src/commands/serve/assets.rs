@@ -5,12 +5,13 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use axum::routing::get;
 
-const FILES: [(&str, &str, &str); 8] = [
+const FILES: [(&str, &str, &str); 9] = [
     ("/", "text/html; charset=utf-8", include_str!("../../../assets/explorer.html")),
     ("/page.css", "text/css; charset=utf-8", include_str!("../../../assets/page.css")),
     ("/elements.js", "text/javascript; charset=utf-8", include_str!("../../../assets/elements.js")),
     ("/clock.js", "text/javascript; charset=utf-8", include_str!("../../../assets/clock.js")),
     ("/controls.js", "text/javascript; charset=utf-8", include_str!("../../../assets/controls.js")),
+    ("/drop.js", "text/javascript; charset=utf-8", include_str!("../../../assets/drop.js")),
     ("/figures.js", "text/javascript; charset=utf-8", include_str!("../../../assets/figures.js")),
     ("/explorer.js", "text/javascript; charset=utf-8", include_str!("../../../assets/explorer.js")),
     (

@@ -7,12 +7,14 @@ mod assets;
 mod compare;
 mod connections;
 mod downloads;
+mod dropped;
 mod guard;
 mod key;
 mod question;
 mod sessions;
 mod socket;
 mod uploads;
+mod zipped;
 
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -28,12 +30,33 @@ use self::guard::Guard;
 use self::key::Key;
 use self::sessions::Sessions;
 use self::uploads::{LARGEST, Uploads};
-use crate::system::{Answer, AnySystem};
+use crate::system::{Answer, AnySystem, Settings};
 use crate::systems::ALL;
 use crate::{Error, output};
 
-/// What gives an answer whenever it is asked.
-pub type View = Arc<dyn Fn() -> Answer + Send + Sync>;
+/// A stream that is shown while it comes.
+pub trait Show: Send + Sync {
+    /// What can be set, and what is.
+    fn settings(&self) -> Settings;
+
+    /// How much of it there is.
+    fn bytes(&self) -> u64;
+
+    /// What there is to see of it at a moment, with these settings.
+    ///
+    /// # Errors
+    /// One sentence, if the settings give nothing.
+    fn answer(&self, settings: &Settings, moment: Moment) -> Result<Answer, Error>;
+}
+
+/// When a stream is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Moment {
+    /// As it is.
+    Now,
+    /// As it was after so many bytes.
+    After(u64),
+}
 
 /// The page's port unless told otherwise.
 pub const PORT: u16 = 8017;
@@ -96,7 +119,7 @@ impl Page {
     }
 
     /// Shows what `live` says.
-    pub fn show(&mut self, live: View) {
+    pub fn show(&mut self, live: Arc<dyn Show>) {
         let Some(listener) = self.listener.take() else { return };
         let (systems, sessions) = (&[], Sessions::default());
         let shared = Shared { systems, sessions, live: Some(live), uploads: None };
@@ -114,7 +137,7 @@ struct Shared {
     systems: &'static [&'static dyn AnySystem],
     sessions: Sessions,
     /// Where there is a stream to show.
-    live: Option<View>,
+    live: Option<Arc<dyn Show>>,
     /// Where files can be opened.
     uploads: Option<Uploads>,
 }
@@ -141,6 +164,7 @@ fn router(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .route("/api/sources", get(api::sources))
         .route("/api/open/{system}", post(api::open_files))
+        .route("/api/drop/{system}", post(dropped::open))
         .route("/api/open/{system}/{recording}", post(api::open_named))
         .route("/api/answer/{system}/{recording}", post(api::answer))
         .route("/api/download/{system}/{recording}/{file}", post(downloads::download))

@@ -12,7 +12,7 @@ use super::api::Refusal;
 use super::compare::{self, How};
 use super::sessions::Recording;
 use crate::figure::{Figure, View, plotly};
-use crate::system::{Answer, AnySystem, Settings, Wanted};
+use crate::system::{Answer, AnySystem, Finding, Settings, Wanted};
 
 /// As many as a figure of the page has columns of pixels, about.
 const MOST_POINTS: usize = 700;
@@ -148,6 +148,11 @@ pub(super) fn page(answer: &Answer, figures: &[Figure], windows: &Windows) -> Va
         "disabled": answer.disabled,
         "command": answer.command,
         "firmware": answer.firmware,
-        "findings": answer.findings.iter().map(|it| (it.is_fault(), it.about, it.sentence())).collect::<Vec<_>>(),
+        "findings": findings(&answer.findings),
     })
+}
+
+/// Findings as the page takes them: whether it is a fault, what it is about, and the sentence.
+pub(super) fn findings(findings: &[Finding]) -> Vec<(bool, &'static str, String)> {
+    findings.iter().map(|it| (it.is_fault(), it.about, it.sentence())).collect()
 }

@@ -6,11 +6,14 @@ use std::time::Duration;
 use axum::extract::State;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::response::Response;
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
 use tokio::time::{MissedTickBehavior, interval};
 
 use super::api::Refusal;
 use super::question::{Windows, page};
-use super::{Shared, View};
+use super::{Moment, Shared, Show};
+use crate::system::Settings;
 
 /// Between two pictures at least: a person sees no more, and a page draws no faster.
 const BEAT: Duration = Duration::from_millis(200);
@@ -26,24 +29,42 @@ pub(super) async fn open(
     Ok(socket.on_upgrade(|socket| show(socket, live)))
 }
 
-/// Sends a picture, waits until the page has drawn it, and sends the next.
-async fn show(mut socket: WebSocket, live: View) {
+/// What the page wants to see.
+#[derive(Debug, Default, Deserialize)]
+struct Wanted {
+    settings: Map<String, Value>,
+    /// After how many bytes of the stream; none for now.
+    after: Option<u64>,
+}
+
+/// Waits until the page wants a picture, and sends it.
+async fn show(mut socket: WebSocket, live: Arc<dyn Show>) {
     let mut beat = interval(BEAT);
     beat.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
+        let wanted = match socket.recv().await {
+            Some(Ok(Message::Text(text))) => text,
+            Some(Ok(Message::Close(_)) | Err(_)) | None => return,
+            Some(Ok(_)) => continue,
+        };
         beat.tick().await;
-        let view = Arc::clone(&live);
+        let live = Arc::clone(&live);
         let drawn = tokio::task::spawn_blocking(move || {
-            let answer = view();
-            page(&answer, &answer.figures, &Windows::default()).to_string()
+            let drawn = draw(live.as_ref(), &wanted);
+            drawn.unwrap_or_else(|Refusal(_, refused)| json!({ "refused": refused }))
         });
-        let Ok(text) = drawn.await else { return };
-        if socket.send(Message::Text(text.into())).await.is_err() {
+        let Ok(drawn) = drawn.await else { return };
+        if socket.send(Message::Text(drawn.to_string().into())).await.is_err() {
             return;
         }
-        match socket.recv().await {
-            Some(Ok(Message::Close(_)) | Err(_)) | None => return,
-            Some(Ok(_)) => {}
-        }
     }
+}
+
+fn draw(live: &dyn Show, wanted: &str) -> Result<Value, Refusal> {
+    let wanted: Wanted = serde_json::from_str(wanted).map_err(Refusal::of)?;
+    let settings = Settings::sent(live.settings().table(), &wanted.settings)?;
+    let answer = live.answer(&settings, wanted.after.map_or(Moment::Now, Moment::After))?;
+    let mut page = page(&answer, &answer.figures, &Windows::default());
+    page["bytes"] = json!(live.bytes());
+    Ok(page)
 }

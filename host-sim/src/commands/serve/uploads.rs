@@ -76,24 +76,25 @@ pub(super) fn is_hash(name: &str) -> bool {
     name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
 
-/// Writes a file as it comes; where it lies.
+/// Writes a file as it comes, into a folder of its own `within` another; where it lies.
 pub(super) async fn write(
     folder: &Path,
+    within: &str,
     mut part: Field<'_>,
     content: &mut Content,
 ) -> Result<PathBuf, Refusal> {
-    let field = part.name().unwrap_or_default().to_owned();
-    // The name alone: what a browser sends may hold a path, and it is told apart from others by its field.
+    // The name alone: what a browser sends may hold a path, and it is told apart from others by its folder.
     let name = Path::new(part.file_name().unwrap_or_default()).file_name();
-    let name = name.map_or_else(|| field.clone().into(), ToOwned::to_owned);
-    let within = folder.join(&field);
+    let name = name.map_or_else(|| within.into(), ToOwned::to_owned);
+    let field = within;
+    let within = folder.join(within);
     let path = within.join(name);
     let create = || -> io::Result<File> {
         fs::create_dir_all(&within)?;
         File::create(&path)
     };
     let mut file = create().map_err(Refusal::of)?;
-    content.say(&field);
+    content.say(field);
     content.say(&path.file_name().unwrap_or_default().to_string_lossy());
     let mut length = 0;
     while let Some(bytes) = part.chunk().await.map_err(Refusal::of)? {

@@ -13,6 +13,7 @@ pub mod settings;
 pub mod track;
 
 pub use kestirim_simulate::drone as simulate;
+use std::path::Path;
 use std::sync::Arc;
 
 use self::paper::{experiment, report::Report};
@@ -78,6 +79,17 @@ impl System for Drone {
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
         Recording::read(files)
+    }
+
+    fn fits(field: &str, path: &Path, files: &Files) -> bool {
+        match field {
+            "log" => {
+                let options = files.reading.tables();
+                options.is_ok_and(|options| recording::flight::read(path, options).is_ok())
+            }
+            "truth" => recording::flight::read_truth(path, None).is_ok(),
+            _ => recording::area::read(path, None).is_ok(),
+        }
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {

@@ -11,6 +11,9 @@ pub mod recording;
 pub mod settings;
 pub mod track;
 
+use std::path::Path;
+
+use kestirim_gnss_files::Kind;
 use kestirim_replay::gnss::{self, Recording};
 pub use kestirim_simulate::gnss as simulate;
 use kestirim_sweep::{Block, Samples};
@@ -112,6 +115,19 @@ impl System for Gnss {
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
         recording::read(files)
+    }
+
+    fn fits(field: &str, path: &Path, _: &Files) -> bool {
+        let kind = Kind::of_file(path).ok().flatten();
+        match field {
+            "obs" => kind == Some(Kind::Observations),
+            "sp3" => kind == Some(Kind::Orbits),
+            "clk" => kind == Some(Kind::Clocks),
+            "antex" => kind == Some(Kind::Antennas),
+            "bias" => kind == Some(Kind::Biases),
+            "blq" => kind == Some(Kind::OceanLoading),
+            _ => kind.is_none() && recording::truth::read(path).is_ok(),
+        }
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {

@@ -16,6 +16,7 @@ pub mod settings;
 pub mod track;
 
 pub use kestirim_simulate::pedestrian as simulate;
+use std::path::Path;
 use std::sync::Arc;
 
 use kestirim_replay::pedestrian;
@@ -35,6 +36,7 @@ use crate::system::{
     Account, Answer, Calibration, Detail, FileField, Files, Finding, Idle, OutputField, Panel,
     Plan, RunOptions, Setting, Settings, System, Table,
 };
+use crate::table;
 
 /// The system.
 #[derive(Debug, Clone, Copy)]
@@ -93,6 +95,14 @@ impl System for Pedestrian {
             Some(calibration) => recording.calibrated(calibration),
             None => recording,
         })
+    }
+
+    fn fits(field: &str, path: &Path, files: &Files) -> bool {
+        match field {
+            "log" => recording::log::read(path, files.reading.options()).is_ok(),
+            "truth" => table::has(path, ["t", "x", "y"]),
+            _ => calibration::read(path).is_ok(),
+        }
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {

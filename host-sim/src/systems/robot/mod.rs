@@ -17,6 +17,7 @@ mod survey;
 pub mod track;
 
 pub use kestirim_simulate::robot as simulate;
+use std::path::Path;
 use std::sync::Arc;
 
 use kestirim_replay::robot;
@@ -105,6 +106,10 @@ impl System for Robot {
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
         Recording::read(files)
+    }
+
+    fn fits(field: &str, path: &Path, files: &Files) -> bool {
+        Recording::fits(field, path, files)
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {

@@ -17,7 +17,7 @@ use super::simulate::scenario::{self, EPOCH_US, EPOCHS, Office, office_anchors};
 use crate::Error;
 use crate::random::stream;
 use crate::system::Files;
-use crate::table::Found;
+use crate::table::{self, Found};
 
 /// What was recorded.
 #[derive(Debug, Clone, Default)]
@@ -130,6 +130,27 @@ impl Recording {
             None => recording.read_moving(log, files)?,
         }
         Ok(recording)
+    }
+
+    /// Whether a file can be what a field holds.
+    pub fn fits(field: &str, path: &Path, files: &Files) -> bool {
+        match field {
+            "anchors" => anchors::read(path).is_ok(),
+            "log" => {
+                let anchors = files.one("anchors").map(anchors::read);
+                let anchors = anchors.and_then(Result::ok).unwrap_or_default();
+                files.reading.tables().is_ok_and(|options| {
+                    ranges::read_moving(path, &anchors, options).is_ok()
+                        || ranges::read_static(path, &anchors, options).is_ok()
+                })
+            }
+            "truth" => table::has(path, ["t", "x", "y"]),
+            "points" => table::has(path, ["point", "x", "y", "z"]),
+            "imu" => ["qw", "gx", "ax", "lax"].iter().any(|name| table::has(path, ["t", name])),
+            "odom" => table::has(path, ["t", "v_left", "v_right", "track"]),
+            "calibration" => table::has(path, ["anchor", "bias"]),
+            _ => table::has(path, ["t", "z"]) || table::has(path, ["point", "z"]),
+        }
     }
 
     fn read_moving(&mut self, log: &Path, files: &Files) -> Result<(), Error> {

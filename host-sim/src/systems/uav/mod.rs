@@ -21,9 +21,10 @@ pub mod track;
 
 pub use kestirim_simulate::uav as simulate;
 use kestirim_sweep::{Block, Samples};
+use std::path::Path;
 use std::sync::Arc;
 
-use kestirim_replay::uav;
+use kestirim_replay::uav::{self, STATE_COLUMNS};
 
 use self::figures::streams;
 use self::paper::{experiment, report};
@@ -91,6 +92,14 @@ impl System for Uav {
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
         Recording::read(files)
+    }
+
+    fn fits(field: &str, path: &Path, files: &Files) -> bool {
+        match field {
+            "log" => recording::log::read(path, &STATE_COLUMNS, files.reading.options()).is_ok(),
+            "model" => recording::model::read(path).is_ok(),
+            _ => recording::log::read_truth(path).is_ok(),
+        }
     }
 
     fn synthetic(name: &str) -> Result<Recording, Error> {

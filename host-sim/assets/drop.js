@@ -1,0 +1,35 @@
+// Files that somebody drops on the page or chooses together: one, several, whole folders.
+"use strict";
+
+const Drop = (() => {
+  // All files of a folder, without hidden ones.
+  async function within(entry) {
+    if (entry.isFile) return [await new Promise((done, fail) => entry.file(done, fail))];
+    const [reader, found] = [entry.createReader(), []];
+    for (;;) {
+      // A folder gives a hundred at a time.
+      const some = await new Promise((done, fail) => reader.readEntries(done, fail));
+      if (!some.length) return found;
+      for (const it of some) if (!it.name.startsWith(".")) found.push(...await within(it));
+    }
+  }
+
+  // `take` is told of files.
+  function listen(take) {
+    const root = document.documentElement;
+    const over = (is) => { root.classList.toggle("dropping", is); };
+    addEventListener("dragover", (event) => { event.preventDefault(); over(true); });
+    addEventListener("dragleave", (event) => { if (!event.relatedTarget) over(false); });
+    addEventListener("drop", async (event) => {
+      event.preventDefault();
+      over(false);
+      // What is not asked for at once is gone.
+      const items = [...(event.dataTransfer?.items ?? [])].filter(({ kind }) => kind === "file");
+      const parts = items.map((item) => ({ entry: item.webkitGetAsEntry(), file: item.getAsFile() }));
+      const files = await Promise.all(parts.map(({ entry, file }) => (entry ? within(entry) : [file])));
+      take(files.flat());
+    });
+  }
+
+  return { listen };
+})();

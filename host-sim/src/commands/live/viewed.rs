@@ -1,0 +1,56 @@
+//! What a page shows of a stream: as it is now, as it was, or as other settings see it.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use super::options::Following;
+use super::rewound::Rewinder;
+use super::state::State;
+use crate::Error;
+use crate::commands::serve::{Moment, Show};
+use crate::system::{Answer, Settings};
+use crate::text::printable_path;
+
+/// A stream, for whoever looks on.
+pub(super) struct Viewed {
+    pub(super) state: Arc<Mutex<State>>,
+    pub(super) following: Following,
+    pub(super) source: String,
+    pub(super) recording: PathBuf,
+    /// Who decodes it anew.
+    pub(super) rewinder: OnceLock<Rewinder>,
+}
+
+impl Viewed {
+    /// What there is to see now.
+    pub(super) fn now(&self) -> Answer {
+        self.with_names(self.state.lock().unwrap_or_else(PoisonError::into_inner).answer())
+    }
+
+    fn with_names(&self, mut answer: Answer) -> Answer {
+        answer.fact("source", &*self.source);
+        answer.fact("recording", printable_path(&self.recording));
+        answer
+    }
+}
+
+impl Show for Viewed {
+    fn settings(&self) -> Settings {
+        self.following.settings()
+    }
+
+    fn bytes(&self) -> u64 {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).counts.bytes
+    }
+
+    fn answer(&self, settings: &Settings, moment: Moment) -> Result<Answer, Error> {
+        let bytes = match moment {
+            Moment::Now if *settings == self.following.settings() => return Ok(self.now()),
+            Moment::Now => self.bytes(),
+            Moment::After(bytes) => bytes.min(self.bytes()),
+        };
+        let begin = || Rewinder::begin(self.recording.clone(), self.following.clone());
+        let answer = self.rewinder.get_or_init(begin).answer(settings, bytes)?;
+        Ok(self.with_names(answer))
+    }
+}

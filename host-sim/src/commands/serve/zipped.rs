@@ -1,0 +1,61 @@
+//! Files in a zip file.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+/// As much is unpacked, bytes.
+const LARGEST: u64 = 1 << 30;
+/// As many files are unpacked.
+const MOST: usize = 500;
+
+/// Whether a file begins as zip files do.
+pub(super) fn is_zip(path: &Path) -> bool {
+    let mut start = [0; 4];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == *b"PK\x03\x04"
+}
+
+/// Unpacks all files, each into a folder of its own below `folder`; where they lie. Hidden files, and those that macOS adds,
+/// are left out.
+///
+/// # Errors
+/// One sentence, if it is damaged or too large.
+pub(super) fn unpack(path: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let damaged =
+        |error: ZipError| format!("{name}: expected a whole zip file, found one with {error}");
+    // Its own folder is called after its number.
+    let own = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+    let file = File::open(path).map_err(|error| format!("{name}: {error}"))?;
+    let mut archive = ZipArchive::new(file).map_err(damaged)?;
+    if archive.len() > MOST {
+        return Err(format!("{name}: expected at most {MOST} files, found {}", archive.len()));
+    }
+    let (mut paths, mut left) = (Vec::new(), LARGEST);
+    for index in 0..archive.len() {
+        let mut file = archive.by_index(index).map_err(damaged)?;
+        let Some(inner) = file.enclosed_name().filter(|inner| file.is_file() && is_real(inner))
+        else {
+            continue;
+        };
+        let within = folder.join(format!("{own}-{index}"));
+        let to = within.join(inner.file_name().unwrap_or_default());
+        let written = fs::create_dir(&within)
+            .and_then(|()| File::create(&to))
+            .and_then(|mut out| io::copy(&mut (&mut file).take(left + 1), &mut out));
+        let length = written.map_err(|error| format!("{name}: {error}"))?;
+        left = left.checked_sub(length).ok_or_else(|| {
+            format!("{name}: it unpacks to more than 1 GiB, which no recording does")
+        })?;
+        paths.push(to);
+    }
+    Ok(paths)
+}
+
+fn is_real(inner: &Path) -> bool {
+    !inner.iter().any(|part| part == "__MACOSX" || part.to_string_lossy().starts_with('.'))
+}

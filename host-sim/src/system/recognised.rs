@@ -1,0 +1,160 @@
+//! Which files of which system some files are, by what is in them.
+
+use std::path::{Path, PathBuf};
+
+use super::any::AnySystem;
+use super::files::{FileField, Files, Source};
+use super::settings::Settings;
+use crate::Error;
+use crate::text::{listed, printable};
+
+/// So many files are named in a complaint.
+const MOST_NAMED: usize = 4;
+
+/// Files of a recording, and what each was taken for.
+#[derive(Debug)]
+pub(crate) struct Recognised {
+    /// Whose recording it is.
+    pub system: &'static dyn AnySystem,
+    /// What can be opened.
+    pub files: Files,
+    /// Files, and the fields that they fill.
+    pub taken: Vec<(PathBuf, &'static FileField)>,
+    /// Files that are not used: those of another recording, too.
+    pub left: Vec<PathBuf>,
+    /// Other systems whose recording it could be as well.
+    pub others: Vec<&'static str>,
+}
+
+impl Recognised {
+    /// Looks which system's recording files are. Where they could be of several it is that with the most files, among those
+    /// `preferred`, where nothing else decides.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the files that are missing, or if no system reads any.
+    pub(crate) fn of(
+        systems: &[&'static dyn AnySystem],
+        preferred: &str,
+        paths: &[PathBuf],
+        files: &Files,
+    ) -> Result<Self, Error> {
+        let mut found: Vec<_> =
+            systems.iter().map(|system| Self::of_system(*system, paths, files)).collect();
+        let rank =
+            |it: &Self| (it.missing().is_empty(), it.taken.len(), it.system.name() == preferred);
+        // The first of equals stays the first.
+        found.sort_by_key(|it| std::cmp::Reverse(rank(it)));
+        let mut found = found.into_iter().filter(|it| !it.taken.is_empty());
+        let Some(mut best) = found.next() else {
+            return Err(nothing_found(systems, preferred, paths, files));
+        };
+        let missing = best.missing();
+        if !missing.is_empty() {
+            let known = best.taken.iter().take(MOST_NAMED);
+            let known: Vec<_> =
+                known.map(|(path, field)| format!("{} (--{})", name(path), field.name)).collect();
+            return Err(Error::Usage(format!(
+                "{} has {}; needed as well: --{}",
+                best.system.name(),
+                known.join(", "),
+                missing.join(", --")
+            )));
+        }
+        let equals = |it: &Self| it.missing().is_empty() && it.taken.len() == best.taken.len();
+        best.others = found.filter(equals).map(|it| it.system.name()).collect();
+        Ok(best)
+    }
+
+    /// What of the files a system takes, the fields without which there is no recording first.
+    fn of_system(system: &'static dyn AnySystem, paths: &[PathBuf], files: &Files) -> Self {
+        let mut recognised = Self {
+            system,
+            files: files.clone(),
+            taken: Vec::new(),
+            left: paths.to_vec(),
+            others: Vec::new(),
+        };
+        let fields = system.files();
+        let required = fields.iter().filter(|field| field.required);
+        for field in required.chain(fields.iter().filter(|field| !field.required)) {
+            recognised.fill(field);
+        }
+        recognised
+    }
+
+    /// Fills a field with the file that fits it best, or with all that fit if there may be several.
+    fn fill(&mut self, field: &'static FileField) {
+        let fits = |path: &PathBuf| {
+            self.system.fits(field.name, path, &self.files)
+                && !self.is_another_recording(path, field)
+        };
+        let mut fitting: Vec<_> = self.left.iter().filter(|path| fits(path)).cloned().collect();
+        // Of files that are read alike the names tell which is which.
+        fitting.sort_by_key(|path| {
+            let is_of_another =
+                self.system.files().iter().any(|it| it.name != field.name && says(path, it));
+            (is_of_another, !says(path, field), !self.is_beside(path))
+        });
+        if !field.several {
+            fitting.truncate(1);
+        }
+        for path in fitting {
+            self.left.retain(|left| *left != path);
+            self.files.add(field.name, &path);
+            self.taken.push((path, field));
+        }
+    }
+
+    /// Whether a file could be the log itself, and is not called what else it could be.
+    fn is_another_recording(&self, path: &Path, field: &FileField) -> bool {
+        let mut single = self.system.files().iter().filter(|it| it.required && !it.several);
+        !field.required
+            && !says(path, field)
+            && single.any(|it| self.system.fits(it.name, path, &self.files))
+    }
+
+    /// Whether its name begins as that of a file that was taken.
+    fn is_beside(&self, path: &Path) -> bool {
+        let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let own = stem(path).unwrap_or_default();
+        self.taken.iter().filter_map(|(path, _)| stem(path)).any(|stem| own.starts_with(&stem))
+    }
+
+    /// Fields without which there is no recording.
+    fn missing(&self) -> Vec<&'static str> {
+        let fields = self.system.files().iter();
+        let missing = fields.filter(|field| field.required && self.files.one(field.name).is_none());
+        missing.map(|field| field.name).collect()
+    }
+}
+
+/// Whether a file is called after a field.
+fn says(path: &Path, field: &FileField) -> bool {
+    path.file_stem().is_some_and(|stem| stem.to_string_lossy().to_lowercase().contains(field.name))
+}
+
+fn name(path: &Path) -> String {
+    printable(&path.file_name().unwrap_or_default().to_string_lossy())
+}
+
+/// A complaint that no system reads any of these files; of a single one in the words of the preferred system's reader.
+fn nothing_found(
+    systems: &[&'static dyn AnySystem],
+    preferred: &str,
+    paths: &[PathBuf],
+    files: &Files,
+) -> Error {
+    let system = systems.iter().find(|system| system.name() == preferred);
+    let field = system.and_then(|system| system.files().iter().find(|field| field.imported));
+    if let (Some(system), Some(field), [path]) = (system, field, paths) {
+        let mut files = files.clone();
+        files.add(field.name, path);
+        let opened = system.open(Source::Files(files), &Settings::new(system.settings()));
+        if let Some(error @ (Error::File { .. } | Error::Line { .. })) = opened.err() {
+            return error;
+        }
+    }
+    let names: Vec<_> = paths.iter().map(|path| name(path)).collect();
+    let names = listed(names.iter().map(String::as_str), MOST_NAMED);
+    Error::Usage(format!("no system reads {names}"))
+}
