@@ -15,6 +15,8 @@ class Clock {
   playing = null;
   /** @type {Set<any>} */
   members = new Set();
+  /** @type {Set<any>} */
+  tables = new Set();
 
   // `changed` is told of every new window and cursor.
   /** @param {Element} place @param {(clock: Clock) => void} changed */
@@ -100,6 +102,24 @@ class Clock {
 
   leave(entry) {
     this.members.delete(entry);
+  }
+
+  // A table whose rows know when they were: a click or Enter moves the cursor to one, arrows lead from one to the next.
+  /** @param {any} table */
+  follow(table) {
+    const rows = Elements.all("[data-time]", table);
+    rows.forEach((row, place) => { row.tabIndex = place ? -1 : 0; });
+    const go = ({ target }) => { if (target.closest("[data-time]")) this.move(Number(target.closest("[data-time]").dataset.time)); };
+    table.addEventListener("click", go);
+    table.addEventListener("keydown", (event) => {
+      const next = { ArrowUp: "previousElementSibling", ArrowDown: "nextElementSibling" }[event.key];
+      if (event.key === "Enter") go(event);
+      if (!next) return;
+      event.preventDefault();
+      event.target[next]?.focus();
+    });
+    this.tables.add({ table, rows, times: rows.map((row) => Number(row.dataset.time)) });
+    this.mark([]);
   }
 
   #point({ plot, figure }, { clientX }) {
@@ -197,6 +217,7 @@ class Clock {
       this.told.textContent = Clock.#words(this.cursor, this.span[1] - this.span[0]);
       this.slider.setAttribute("aria-valuetext", this.told.textContent);
     }
+    for (const entry of this.tables) this.#row(entry);
     for (const entry of entries) {
       if (entry.figure.seconds) this.#line(entry);
       else if (entry.figure.data.some((series) => series.customdata)) this.#places(entry);
@@ -217,6 +238,20 @@ class Clock {
       const value = place === null ? null : y[place.share < 0.5 ? place.before : place.after];
       entry.values[index].textContent = value === null ? "" : String(Number(value.toPrecision(4)));
     });
+  }
+
+  // The row at the cursor is marked, and in sight within its box.
+  #row(entry) {
+    if (!entry.table.isConnected) return void this.tables.delete(entry);
+    const place = this.cursor === null ? null : Clock.#at(entry.times, this.cursor);
+    const now = place && entry.rows[place.share < 0.5 ? place.before : place.after];
+    if (now === entry.now) return;
+    entry.now?.removeAttribute("aria-current");
+    entry.now = now;
+    if (!now) return;
+    now.setAttribute("aria-current", "true");
+    const [box, top] = [entry.table.parentElement, now.offsetTop - entry.table.parentElement.scrollTop];
+    if (top < 2 * now.offsetHeight || top + now.offsetHeight > box.clientHeight) box.scrollTop += top - box.clientHeight / 2;
   }
 
   #places(entry) {

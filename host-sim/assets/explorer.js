@@ -18,8 +18,7 @@
   // --- what comes back
 
   function show(answer) {
-    element("facts").replaceChildren(...answer.facts.map(([name, value]) =>
-      make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
+    tell("facts", answer.facts);
     element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
     showFindings(answer.findings);
     disabled = new Map(answer.disabled);
@@ -42,6 +41,7 @@
       places.delete(key);
     }
     clock.see(answer.figures);
+    for (const table of answer.tables) tabulate(table, answer.changed ? ", of B" : "");
     // All places first: each is then drawn as wide as it stays.
     for (const figure of answer.figures) {
       if (places.has(kind(figure))) continue;
@@ -61,20 +61,44 @@
     }
   }
 
+  // Names, and what is told of each.
+  const tell = (id, told) => element(id).replaceChildren(...told.map(([name, text, className = ""]) =>
+    make("div", { className }, make("dt", { textContent: name }), make("dd", { textContent: text }))));
+
   function showFindings(findings) {
-    element("findings").replaceChildren(...findings.map(([fault, about, text]) =>
-      make("div", { className: fault ? "fault" : "" }, make("dt", { textContent: about }), make("dd", { textContent: text }))));
+    tell("findings", findings.map(([fault, about, text]) => [about, text, fault ? "fault" : ""]));
     element("check").hidden = !findings.length && !element("taken").children.length;
   }
 
   // What files that were dropped were taken for.
   function showTaken({ taken = [], left = [], others = [] }) {
-    const told = taken.map(([name, field]) => [name, field]);
-    if (left.length) told.push(["not used", left.join(", ")]);
-    if (others.length) told.push(["could be of", `${others.join(", ")} as well: choose the system first`]);
-    element("taken").replaceChildren(...told.map(([name, what]) =>
-      make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: what }))));
+    const unused = left.length ? [["not used", left.join(", ")]] : [];
+    const also = others.length ? [["could be of", `${others.join(", ")} as well: choose the system first`]] : [];
+    tell("taken", [...taken, ...unused, ...also]);
     if (taken.length) element("check").open = true;
+  }
+
+  // Rows are made for who looks at them.
+  function tabulate(table, whose) {
+    const id = `table-${table.id}`;
+    if (!element(id)) {
+      const box = make("div", { className: "scroll rows", tabIndex: 0, role: "region", ariaLabel: table.title });
+      element("tables").append(make("details", { id }, make("summary"), make("p", { className: "soft" }), box));
+      element(id).addEventListener("toggle", () => element(id).fill());
+    }
+    const [summary, caption, box] = element(id).children;
+    [summary.textContent, caption.textContent] = [table.title + whose, table.caption];
+    const text = JSON.stringify(table);
+    element(id).fill = () => {
+      if (!element(id).open || box.text === text) return;
+      box.text = text;
+      const row = (tag, cells) => make("tr", {}, ...cells.map((textContent) => make(tag, { textContent })));
+      const rows = table.rows.map((cells) => row("td", cells));
+      table.times?.forEach((time, place) => { rows[place].dataset.time = time; });
+      box.replaceChildren(make("table", {}, make("thead", {}, row("th", table.header)), make("tbody", {}, ...rows)));
+      clock.follow(box.firstChild);
+    };
+    element(id).fill();
   }
 
   // What a refusal asks for by the name of an option is where the page asks for it, and is shown there.
@@ -256,7 +280,7 @@
   }
 
   function opened(reply, wanted) {
-    for (const shown of ["facts", "warnings", "findings", "taken", "figures"]) element(shown).replaceChildren();
+    for (const shown of ["facts", "warnings", "findings", "taken", "figures", "tables"]) element(shown).replaceChildren();
     for (const hidden of ["check", "again", "give"]) element(hidden).hidden = true;
     element("differences").hidden = true;
     for (const { place } of places.values()) Figures.forget(place);

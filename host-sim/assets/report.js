@@ -22,6 +22,7 @@
       clock.see(drawn);
       if (section.dataset.window) clock.look(section.dataset.window.split(",").map(Number));
       for (const place of places) clocks.set(place, clock);
+      if (section.dataset.clock === "one") for (const table of all(".rows table", section)) clock.follow(table);
     }
   }
   const draw = (place) => Figures.draw(place, figures[place.dataset.figure], { clock: clocks.get(place) ?? null });

@@ -4,10 +4,12 @@ use maud::{Markup, html};
 
 use super::document::{Document, figures};
 use crate::figure::{Figure, View};
-use crate::system::Answer;
+use crate::system::{Answer, Sheet};
 
 /// As many as leave something to see in a tenth of the time.
 const VIEW: View = View { most_points: 20_000, window: None };
+/// Rows of a table: some hours of what comes every few seconds.
+const MOST_ROWS: usize = 5000;
 
 /// What the page of a session shows.
 #[derive(Debug, Clone, Copy)]
@@ -47,6 +49,7 @@ impl Session<'_> {
                             figcaption { (figure.caption) }
                         }
                     } }
+                    @for sheet in &answer.tables { (table(sheet)) }
                 }
             }
         };
@@ -56,6 +59,25 @@ impl Session<'_> {
 
 fn facts(facts: &[(String, String)]) -> Markup {
     html! { dl { @for (name, value) in facts { div { dt { (name) } dd { (value) } } } } }
+}
+
+fn table(sheet: &Sheet) -> Markup {
+    let shown = sheet.excerpt(None, MOST_ROWS);
+    let time = |row: usize| shown.times_s.and_then(|times| times.get(row)).copied();
+    html! {
+        details id={ "table-" (sheet.id) } {
+            summary { (sheet.title) }
+            p.soft { (shown.caption()) }
+            div.scroll.rows tabindex="0" role="region" aria-label=(sheet.title) {
+                table {
+                    thead { tr { @for name in &sheet.header { th scope="col" { (name) } } } }
+                    tbody { @for (number, row) in shown.rows.iter().enumerate() {
+                        tr data-time=[time(number)] { @for cell in row { td { (cell) } } }
+                    } }
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -69,6 +91,9 @@ mod tests {
         let path = Series::line("ours", vec![0.0, 1.0], vec![0.0, 1.0]);
         let mut answer = Answer { warnings: vec!["beware of <b>".to_owned()], ..Answer::default() };
         answer.fact("length", "5 m");
+        let rows = [vec!["1".to_owned(), "<i>".to_owned()]];
+        answer.tables =
+            vec![Sheet::new("stops", "Stops", &["number", "of"]).with(rows).timed([0.5])];
         let figures = [Figure::new("position", "Position").over_seconds("m").with(path)];
         let session = Session {
             figures: &figures,
@@ -85,6 +110,7 @@ mod tests {
             "--log a.csv",
             r#"data-figure="position""#,
             r#"data-window="0.25,0.5""#,
+            r#"<tr data-time="0.5"><td>1</td><td>&lt;i&gt;</td></tr>"#,
         ] {
             assert!(page.contains(text), "{text}");
         }

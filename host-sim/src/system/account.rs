@@ -7,6 +7,7 @@ use kestirim_replay::Finding;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::sheet::Sheet;
 use crate::Error;
 use crate::figure::Figure;
 
@@ -81,6 +82,8 @@ pub struct Answer {
     pub warnings: Vec<String>,
     /// Always the same ones in the same order for a recording, whatever the settings.
     pub figures: Vec<Figure>,
+    /// Always the same ones in the same order for a recording, whatever the settings.
+    pub tables: Vec<Sheet>,
     /// Settings that have no effect as the others are, and why.
     pub disabled: Vec<(&'static str, String)>,
     /// The command that gives the same again.
@@ -97,10 +100,11 @@ impl Answer {
         self.facts.push((name.into(), value.into()));
     }
 
-    /// Points of all figures.
+    /// Points of all figures, and cells of all tables.
     pub(super) fn points(&self) -> usize {
         let series = self.figures.iter().flat_map(|figure| &figure.series);
-        series.map(|series| series.x.len()).sum()
+        let cells = self.tables.iter().map(|table| table.rows.len() * table.header.len());
+        series.map(|series| series.x.len()).chain(cells).sum()
     }
 }
 

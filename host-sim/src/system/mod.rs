@@ -19,6 +19,7 @@ mod recognised;
 mod run;
 mod setting;
 mod settings;
+mod sheet;
 mod shown;
 
 pub use account::{Account, Answer, Table};
@@ -38,3 +39,4 @@ pub(crate) use recognised::Recognised;
 pub use run::{RunOptions, choose_scalar};
 pub use setting::{Given, Setting, Shorthand};
 pub use settings::Settings;
+pub use sheet::{Excerpt, Sheet};

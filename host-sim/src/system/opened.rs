@@ -210,6 +210,7 @@ impl<S: System> Opened for Open<S> {
             facts,
             warnings,
             figures: Vec::new(),
+            tables: Vec::new(),
             disabled,
             command: text::command_line(command),
             firmware: S::firmware(Some(&self.recording), settings),

@@ -16,6 +16,8 @@ use crate::system::{Answer, AnySystem, Finding, Settings, Wanted};
 
 /// As many as a figure of the page has columns of pixels, about.
 const MOST_POINTS: usize = 700;
+/// Rows of a table of the page: more would be drawn slowly, and nobody reads them.
+const MOST_ROWS: usize = 500;
 
 /// How the page stands.
 #[derive(Debug, Deserialize)]
@@ -136,15 +138,17 @@ impl Asked {
     }
 }
 
-/// An answer as the page takes it, with its figures or those of a comparison.
+/// An answer as the page takes it, with its figures or those of a comparison, and its own tables.
 pub(super) fn page(answer: &Answer, figures: &[Figure], windows: &Windows) -> Value {
     let drawn = figures.iter().map(|figure| {
         plotly::figure(figure, View { most_points: MOST_POINTS, window: windows.of(figure) })
     });
+    let tables = answer.tables.iter().map(|it| it.excerpt(windows.time_s, MOST_ROWS).to_json());
     json!({
         "facts": answer.facts,
         "warnings": answer.warnings,
         "figures": drawn.collect::<Vec<_>>(),
+        "tables": tables.collect::<Vec<_>>(),
         "disabled": answer.disabled,
         "command": answer.command,
         "firmware": answer.firmware,
