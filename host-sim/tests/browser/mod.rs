@@ -96,6 +96,7 @@ impl Page {
     pub(crate) fn press(&self, key: &str) {
         let (code, text) = match key {
             "ArrowRight" => (39, ""),
+            "ArrowDown" => (40, ""),
             "Enter" => (13, "\r"),
             "+" => (187, "+"),
             "." => (190, "."),

@@ -15,6 +15,7 @@ mod report;
 mod sender;
 mod session;
 mod speed;
+mod tables;
 mod time;
 
 use browser::{Page, Server};

@@ -154,6 +154,7 @@ fn every_download_of_every_system_is_what_it_is_called() {
             let content = content.as_str().expect("text");
             let begins = match name.rsplit_once('.').expect("an ending").1 {
                 "csv" if name.contains("-figure-") => "series,x,y,error",
+                "csv" if name.ends_with("-strides.csv") => "stride,t,",
                 "csv" => "t,",
                 "pos" => "%",
                 "nmea" => "$G",

@@ -1,15 +1,21 @@
 //! What a walk looks like: the diagrams of the paper.
 
+mod attitude;
+mod events;
 pub mod placement;
+mod space;
 pub mod streams;
+mod uncertainty;
 
 use kestirim_replay::pedestrian::{
     self, Moment, Options, Trace, TrackPoint, trace, without_updates,
 };
 
+use self::attitude::Foot;
 use self::placement::Placement;
 use super::Sample;
 use super::recording::Recording;
+use super::strides;
 use super::track::refused;
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
@@ -51,14 +57,23 @@ pub(super) fn draw(
         .with(threshold(samples, threshold_g))
         .with(by_paper.stance("within the threshold").coloured(Colour::Published).hidden())
         .with(with.stance("standing, as detected").coloured(Colour::Ours));
+    let foot = Foot::of(ours);
+    let caption = "The walked path from above, each stride marked; where the truth is known, tracks are turned onto it. \
+                   Ellipses are one standard deviation, marks where the heading turns by more than 45° within four strides, or \
+                   where the foot stands for more than 1.5 s.";
     answer.figures = vec![
-        path("path", &truth, &with, others),
+        path("path", &truth, &with, others).with_all(events::on_plan(&with)).caption(caption),
+        space::draw(&with, &foot, &truth),
+        attitude::draw(&foot),
+        uncertainty::draw(&with, &truth),
+        uncertainty::height(&with, &truth),
         accelerometer("accelerometer", samples),
         gyroscope("gyroscope", samples),
         magnitude,
         velocity("velocity", &with, &without),
         position("position", &with, &truth),
     ];
+    answer.tables = vec![strides::sheet(&ours.walk)];
     answer.fact("stance", options.detector.in_words());
     let length = format!("{:.2} m", published_trace.walk.path_length_m);
     answer.fact("path by the published method", length);
@@ -78,6 +93,12 @@ impl<'a> Placed<'a> {
     /// A walk laid onto the truth, or as it is if that is unknown.
     pub fn new(trace: &'a Trace, truth: &[TrackPoint]) -> Self {
         Self { trace, placement: Placement::of(&trace.walk.track, truth) }
+    }
+
+    /// A place of the track above the plan.
+    fn in_room(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let [x, y] = self.placement.onto_plan([x, y]);
+        [x, y, z]
     }
 
     /// The way of the foot.

@@ -13,6 +13,7 @@ mod online;
 pub mod paper;
 pub mod recording;
 pub mod settings;
+pub mod strides;
 pub mod track;
 
 pub use kestirim_simulate::pedestrian as simulate;
@@ -68,11 +69,19 @@ impl System for Pedestrian {
         ("route-100", "The paper's route of 12.60 m, 100 Hz"),
         ("two-minutes", "Two minutes through the same flat, 200 Hz"),
     ];
-    const OUTPUTS: &'static [OutputField] = &[OutputField {
-        name: "track",
-        help: "Write t,x,y,z, standard deviations and health of every (averaged) sample to this file",
-        endings: &["csv"],
-    }];
+    const OUTPUTS: &'static [OutputField] = &[
+        OutputField {
+            name: "track",
+            help: "Write t,x,y,z, standard deviations and health of every (averaged) sample to this file",
+            endings: &["csv"],
+        },
+        OutputField {
+            name: "strides",
+            help: "Write number, time (s), length, height change (m), duration (s), speed (m/s) and heading (°, anticlockwise \
+                   from how the foot pointed at the start) of every stride to this file",
+            endings: &["csv"],
+        },
+    ];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Forces, Panel::Rates];
 
     type Recording = Recording;
@@ -138,8 +147,11 @@ impl System for Pedestrian {
         figures::draw(recording, &options, &track.trace, answer)
     }
 
-    fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
-        account::table(&track.trace.walk)
+    fn table(output: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
+        match output {
+            "strides" => strides::table(&track.trace.walk),
+            _ => account::table(&track.trace.walk),
+        }
     }
 
     fn streams(recording: &Recording, _: &Settings, track: &Track) -> Vec<Stream> {

@@ -30,8 +30,22 @@ fn every_synthetic_walk_opens_with_the_same_figures_and_is_walked_well() {
     for (name, _) in Pedestrian::SYNTHETIC {
         let answer = answer(&*open(name), &json!({}));
         let ids: Vec<_> = answer.figures.iter().map(|figure| figure.id.as_str()).collect();
-        let expected = ["path", "accelerometer", "gyroscope", "magnitude", "velocity", "position"];
+        let expected = [
+            "path",
+            "space",
+            "attitude",
+            "uncertainty",
+            "height",
+            "accelerometer",
+            "gyroscope",
+            "magnitude",
+            "velocity",
+            "position",
+        ];
         assert_eq!(ids, expected, "{name}");
+        let [strides] = answer.tables.as_slice() else { panic!("{name}: {:?}", answer.tables) };
+        assert_eq!(strides.rows.len().to_string(), fact(&answer, "strides"), "{name}");
+        assert_eq!(strides.times_s.as_ref().map(Vec::len), Some(strides.rows.len()), "{name}");
         let rmse: f64 = fact(&answer, "RMSE").trim_end_matches(" m").parse().unwrap();
         assert!(rmse < 1.0, "{name}: {rmse} m");
         assert!(answer.warnings.is_empty(), "{name}: {:?}", answer.warnings);
@@ -44,7 +58,7 @@ fn the_threshold_moves_its_lines_and_the_path() {
     let at =
         |threshold| answer(&*opened, &json!({ "detector": "magnitude", "threshold": threshold }));
     let (low, high) = (at(0.1), at(0.4));
-    for id in ["path", "magnitude", "velocity", "position"] {
+    for id in ["path", "space", "attitude", "height", "magnitude", "velocity", "position"] {
         assert_ne!(figure(&low, id), figure(&high, id), "{id}");
     }
     for id in ["accelerometer", "gyroscope"] {
@@ -101,4 +115,106 @@ fn without_updates_the_foot_never_stands_again_and_the_velocity_drifts() {
     };
     assert!(last_speed(&drifting) > 0.2, "{}", last_speed(&drifting));
     assert!(last_speed(&trace(&log.samples, &options).unwrap()) < 0.05);
+}
+
+/// The paper's route: strides of 1.26 m on average, east, north, east, north and west.
+fn route() -> (Recording, Trace) {
+    let recording = Recording::synthetic(Walked::Route, 100.0, 3, 0).unwrap();
+    let trace = trace(&recording.log.samples, &Options::default()).unwrap();
+    (recording, trace)
+}
+
+#[test]
+fn strides_are_as_long_and_lead_where_the_foot_went() {
+    let (recording, trace) = route();
+    let lines = strides::lines(&trace.walk);
+    assert_eq!(lines.len() + 1, recording.footprints.len());
+    let headings = [0, 0, 0, 90, 0, 0, 90, 180, 180, 180].map(f64::from);
+    for ((line, pair), heading) in lines.iter().zip(recording.footprints.windows(2)).zip(headings) {
+        let true_length = crate::metrics::distance(pair[0].position, pair[1].position);
+        let length = line.stride.length_m;
+        assert!((length - true_length).abs() < 0.05, "{length} m instead of {true_length} m");
+        assert!(line.height_change_m().abs() < 0.05, "{line:?}");
+        // The stance of the last goes on to the end of the log.
+        let usual = if line.stride == *trace.walk.strides.last().unwrap() { 0.3 } else { 0.7 };
+        assert!((usual..1.5).contains(&line.speed_m_s().unwrap()), "{line:?}");
+        // The sensor sits askew on the foot: headings are counted from the first.
+        let turned = line.heading_rad() - lines[0].heading_rad() - heading.to_radians();
+        assert!(turned.sin().abs() < 0.06 && turned.cos() > 0.0, "{turned} rad from {heading}°");
+    }
+    let table = strides::table(&trace.walk);
+    assert_eq!((table.rows.len(), table.header.len()), (10, 7));
+    assert!(table.rows.iter().all(|row| row.len() == 7), "{table:?}");
+}
+
+#[test]
+fn right_angles_are_turns_and_what_is_straight_is_none() {
+    let (recording, trace) = route();
+    let turns = strides::turns(&trace.walk);
+    let angles: Vec<_> = turns.iter().map(|turn| turn.angle_rad.to_degrees()).collect();
+    // The last two corners are a stride apart, to the same side.
+    assert_eq!(angles.len(), 3, "{angles:?}");
+    for (angle, expected) in angles.into_iter().zip([90.0, -90.0, 180.0]) {
+        assert!((angle - expected).abs() < 8.0, "{angle}° instead of {expected}°");
+    }
+    let [x, y, _] = turns[0].position;
+    let placement = figures::placement::Placement::of(&trace.walk.track, &recording.truth());
+    let corner =
+        crate::metrics::distance(placement.onto_plan([x, y]), recording.footprints[3].position);
+    assert!(corner < 0.1, "{corner} m from the corner");
+    assert_eq!(strides::stops(&trace), []);
+}
+
+#[test]
+fn standing_for_long_on_the_way_is_a_stop() {
+    let (recording, before) = route();
+    let mut samples = recording.log.samples.clone();
+    // As it stood before the walk, for two seconds, in the middle of the fifth stance.
+    let [from, to] = strides::stances(&before)[5];
+    let place = usize::midpoint(from, to);
+    let still: Vec<_> = samples[..200].to_vec();
+    samples.splice(place..place, still);
+    for (number, sample) in (1_u64..).zip(&mut samples) {
+        sample.time_us = 10_000 * number;
+    }
+    let after = trace(&samples, &Options::default()).unwrap();
+    let stops = strides::stops(&after);
+    let [stop] = stops.as_slice() else { panic!("{stops:?}") };
+    let expected = 2.0 + 0.01 * (to - from) as f64;
+    assert!((stop.duration_s - expected).abs() < 0.2, "{stop:?} instead of {expected} s");
+    let there = before.walk.strides[4].position;
+    assert!((stop.position[0] - there[0]).hypot(stop.position[1] - there[1]) < 0.15, "{stop:?}");
+}
+
+#[test]
+fn the_foot_is_level_where_it_stands_and_turned_as_it_walks() {
+    let answer = answer(&*open("route-100"), &json!({}));
+    let attitude = figure(&answer, "attitude");
+    let angles = |name: &str| {
+        let found = attitude.series.iter().find(|series| series.name == name).unwrap();
+        (found.y.first().copied().unwrap(), found.y.last().copied().unwrap(), found)
+    };
+    let (_, roll, _) = angles("roll");
+    let (_, pitch, pitches) = angles("pitch");
+    let (begin, yaw, _) = angles("yaw");
+    // The sensor is mounted with a tilt of 25°, of which the foot knows nothing.
+    assert!(roll.abs() < 5.0 && pitch.abs() < 5.0, "roll {roll}°, pitch {pitch}°");
+    let turned = yaw.to_radians();
+    assert!(begin.abs() < 2.0 && turned.cos() < -0.98, "yaw from {begin}° to {yaw}°");
+    // Toes down when they leave the floor, up when the heel strikes: simulated with −60° and 25°.
+    let [low, high] = [f64::min, f64::max].map(|of| pitches.y.iter().copied().fold(0.0, of));
+    assert!((-75.0..-45.0).contains(&low) && (15.0..40.0).contains(&high), "{low}° to {high}°");
+}
+
+#[test]
+fn the_uncertainty_grows_and_stands_beside_the_error() {
+    let answer = answer(&*open("two-minutes"), &json!({}));
+    let of = |name: &str| {
+        let figure = figure(&answer, "uncertainty");
+        &figure.series.iter().find(|series| series.name == name).unwrap().y
+    };
+    let (sigma, error) = (of("horizontal"), of("error, horizontal"));
+    assert!(sigma.last() > sigma.first(), "{sigma:?}");
+    let final_error = format!("{:.3} m", error.last().unwrap());
+    assert_eq!(fact(&answer, "error at the end"), final_error);
 }
