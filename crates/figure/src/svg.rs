@@ -13,6 +13,9 @@ const SIZE: (u32, u32) = (720, 430);
 /// A map that is to keep its proportions.
 const MAP: (u32, u32) = (720, 620);
 
+/// Names of more series would hide the figure, and there are not as many colours: the legend is left out.
+const MOST_NAMES: usize = 20;
+
 /// What the drawing of a figure ends with.
 type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
 
@@ -120,12 +123,13 @@ where
             )?;
         }
     }
-    let background = WHITE.mix(0.85);
-    chart
-        .configure_series_labels()
-        .background_style(background)
-        .border_style(BLACK.mix(0.3))
-        .draw()?;
+    if figure.series.iter().filter(|series| !series.hidden).count() <= MOST_NAMES {
+        chart
+            .configure_series_labels()
+            .background_style(WHITE.mix(0.85))
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
+    }
     area.present()
 }
 
@@ -217,6 +221,16 @@ mod tests {
         assert!(draw(&Figure::new("none", "None")).contains("None"));
         let odd = Series::line("odd", vec![0.0, f64::INFINITY], vec![f64::NAN, 1.0]);
         assert!(draw(&Figure::new("odd", "Odd").logarithmic().with(odd)).contains("Odd"));
+    }
+
+    #[test]
+    fn names_never_hide_a_figure() {
+        let lines = |count: usize| {
+            let line = |i| Series::path(format!("line {i}"), [[0.0, 0.0], [1.0, 1.0]]);
+            draw(&Figure::new("many", "Many").with_all((1..=count).map(line)))
+        };
+        assert!(lines(MOST_NAMES).contains("line 20"));
+        assert!(!lines(MOST_NAMES + 1).contains("line 20"));
     }
 
     #[test]
