@@ -4,6 +4,7 @@
 //! ECEF, m; times s since the midnight before the first epoch.
 
 mod accuracy;
+mod calendar;
 mod check;
 mod choices;
 mod coverage;

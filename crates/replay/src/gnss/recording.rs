@@ -7,6 +7,7 @@ use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading
 use kestirim_health::{Health, Reason};
 use nalgebra::Vector3;
 
+use super::calendar::{calendar, in_words};
 use super::coverage::{self, FIRST_GALILEO};
 use super::model::{self, Epoch, patterns, receiver_patterns};
 use super::products::Products;
@@ -198,6 +199,13 @@ impl Recording {
     /// Seconds since the midnight before the first epoch.
     pub fn seconds(&self, epoch: &Epoch) -> f64 {
         epoch.time.since(self.midnight)
+    }
+
+    /// The date and time of `seconds` since that midnight in UTC, as 2020-06-25 12:00:00 UTC: GPS time less the leap seconds
+    /// up to the first epoch.
+    pub fn utc(&self, seconds: f64) -> String {
+        let utc = calendar(i64::from(self.midnight.day()), seconds + self.utc_minus_gps);
+        format!("{} UTC", in_words(utc))
     }
 
     /// Where the file says that the marker is, ECEF, m.

@@ -5,17 +5,15 @@ use std::fmt::Write;
 use kestirim_gnss_ppp::{Corrections, Geodetic};
 use kestirim_ppp_filter::Health;
 
+use super::calendar::{Calendar, calendar};
 use super::{Followed, Recording};
-
-/// Days between the first of January 1970 and day zero of the modified Julian date.
-const UNIX_DAY: i64 = 40_587;
 
 /// One position of the marker.
 struct Row {
     /// Year, month, day, hour, minute of GPS time, and its second.
-    gps: ([i64; 5], f64),
+    gps: Calendar,
     /// The same of UTC.
-    utc: ([i64; 5], f64),
+    utc: Calendar,
     latitude: f64,
     longitude: f64,
     height: f64,
@@ -59,24 +57,6 @@ fn rows(recording: &Recording, followed: &Followed) -> Vec<Row> {
         }
     });
     rows.collect()
-}
-
-/// The date and time of seconds after a midnight, to the millisecond.
-fn calendar(day: i64, seconds: f64) -> ([i64; 5], f64) {
-    let milliseconds = (1e3 * seconds).round() as i64;
-    let (days, rest) = (milliseconds.div_euclid(86_400_000), milliseconds.rem_euclid(86_400_000));
-    // Civil date from days since the first of March of year 0 (Howard Hinnant).
-    let z = day + days - UNIX_DAY + 719_468;
-    let era = z.div_euclid(146_097);
-    let of_era = z.rem_euclid(146_097);
-    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let date = of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    let year = year + era * 400 + i64::from(month <= 2);
-    let (hour, minute) = (rest / 3_600_000, rest / 60_000 % 60);
-    ([year, month, date, hour, minute], (rest % 60_000) as f64 / 1e3)
 }
 
 /// RTKLIB's solution file: GPS time, degrees, ellipsoidal height, quality 6 (precise point).
@@ -138,7 +118,7 @@ fn angle(degrees: f64, digits: usize, [positive, negative]: [char; 2]) -> (Strin
     (text, if degrees < 0.0 { negative } else { positive })
 }
 
-fn instant((date, second): ([i64; 5], f64)) -> String {
+fn instant((date, second): Calendar) -> String {
     let [year, month, day, hour, minute] = date;
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:06.3}Z")
 }
@@ -192,14 +172,6 @@ mod tests {
             satellites: 12,
             trusted: Some(true),
         }
-    }
-
-    #[test]
-    fn dates_of_the_calendar() {
-        assert_eq!(calendar(59_025, 0.0), ([2020, 6, 25, 0, 0], 0.0));
-        assert_eq!(calendar(59_025, 86_399.999_6), ([2020, 6, 26, 0, 0], 0.0));
-        assert_eq!(calendar(51_544, -18.0), ([1999, 12, 31, 23, 59], 42.0));
-        assert_eq!(calendar(60_369, 45_296.5), ([2024, 2, 29, 12, 34], 56.5));
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub struct Report {
     pub mode: Mode,
     /// All epochs from the first on.
     pub epochs: usize,
+    /// The first and the last epoch in UTC, as `2020-06-25 12:00:00 UTC`.
+    pub utc: [String; 2],
     /// Those with a solution that nothing contradicts.
     pub solved: usize,
     /// Those with a solution that is not to be relied upon.
@@ -166,6 +168,7 @@ impl Report {
             published: setup.published && filter.is_published(),
             mode: Mode::of(setup.motion),
             epochs: followed.epochs,
+            utc: ends(recording, setup).map(|t| recording.utc(t)),
             solved: followed.fixes.len() - followed.contradictions().count(),
             contradicted: followed.contradictions().count(),
             position_ecef_m: fix.position.into(),
@@ -192,6 +195,12 @@ impl Report {
             }),
         })
     }
+}
+
+/// When the first and the last epoch are that were taken, s.
+fn ends(recording: &Recording, setup: &Setup) -> [f64; 2] {
+    let epochs = recording.epochs(setup.until);
+    [epochs.first(), epochs.last()].map(|it| it.map_or(0.0, |epoch| recording.seconds(epoch)))
 }
 
 /// As in reports.
@@ -252,6 +261,8 @@ impl Report {
         };
         let epochs = format!("{}, {} with a solution{contradicted}", self.epochs, self.solved);
         fact("epochs", epochs);
+        let [first, last] = &self.utc;
+        fact("first, last epoch", format!("{first}, {last}"));
         let [x, y, z] = self.position_ecef_m;
         fact("position (ECEF)", format!("{x:.4} m, {y:.4} m, {z:.4} m"));
         let place = Geodetic::from_ecef(&Vector3::from(self.position_ecef_m));
