@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 use crate::program::{Desk, host_sim, json, refusal, rows_of};
+use host_sim::metrics::median;
+use host_sim::system::{AnySystem, Files, Settings, Source};
+use host_sim::systems::gnss::Gnss;
 use serde_json::Value;
 
 /// A station: its files, and where it is.
@@ -119,6 +122,36 @@ fn every_epoch_counts() {
         "{warnings}"
     );
     assert!(warnings.contains("without an orbit") && warnings.contains("G04"), "{warnings}");
+}
+
+/// What the page shows of a day: where its satellites stood, what their directions are worth, which of them is the worst.
+#[test]
+fn a_day_can_be_looked_at() {
+    let Some(esbc) = Station::esbc() else { return };
+    let mut files = Files::default();
+    for pair in esbc.arguments[2..].chunks(2) {
+        files.add(pair[0].trim_start_matches('-'), &pair[1]);
+    }
+    let settings = Settings::new(AnySystem::settings(&Gnss));
+    let opened = Gnss.open(Source::Files(files), &settings).expect("a recording");
+    let answer = opened.answer(&settings).expect("an answer");
+    let figure = |id: &str| answer.figures.iter().find(|it| it.id == id).expect("a figure");
+    assert_eq!(figure("error").x.label, "time, h since 2020-06-24 23:59:42 UTC");
+    let ends = answer.facts.iter().find(|(name, _)| name == "first, last epoch").expect("a fact");
+    assert_eq!(ends.1, "2020-06-24 23:59:42 UTC, 2020-06-25 23:59:12 UTC");
+    let tracks = figure("sky").series.iter().filter(|it| it.name.starts_with('G'));
+    let table = &answer.tables[0];
+    assert!(tracks.count() == table.rows.len() && table.rows.len() > 25, "{:?}", table.rows);
+    let of = |name: &str| {
+        let series = figure("dilution").series.iter().find(|it| it.name == name).expect("a line");
+        median(&series.y.iter().copied().filter(|it| it.is_finite()).collect::<Vec<_>>())
+    };
+    let [used, position, vertical] = ["satellites used", "PDOP", "VDOP"].map(of);
+    println!("medians: {used} satellites, PDOP {position:.2}, VDOP {vertical:.2}");
+    assert!((7.0..12.0).contains(&used), "{used}");
+    assert!((1.3..3.0).contains(&position) && (0.8..position).contains(&vertical), "{position}");
+    let figures = answer.figures.iter();
+    assert!(figures.flat_map(|it| &it.series).map(|it| it.x.len()).sum::<usize>() < 600_000);
 }
 
 #[test]

@@ -7,7 +7,8 @@ use std::io;
 use std::path::Path;
 
 use host_sim::figure::{Figure, svg};
-use host_sim::systems::gnss::figures::{errors, left};
+use host_sim::systems::gnss::figures::errors;
+use host_sim::systems::gnss::figures::residuals::left;
 use host_sim::systems::gnss::settings::PROCESS_NOISE;
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::{Config, Motion};

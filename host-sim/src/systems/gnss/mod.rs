@@ -156,8 +156,7 @@ impl System for Gnss {
         track: &Track,
         answer: &mut Answer,
     ) -> Result<(), Error> {
-        let truth = Setup::of(settings).truth(recording);
-        answer.figures = figures::draw(track, truth.as_ref());
+        figures::draw(recording, &Setup::of(settings), track, answer);
         Ok(())
     }
 

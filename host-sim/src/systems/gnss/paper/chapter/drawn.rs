@@ -69,7 +69,7 @@ impl Days {
                 filter.title(),
                 followed.rejected.code
             );
-            let figure = figures::left(Figure::new(id, title), followed, |report| &report.code);
+            let figure = figures::residuals::left(Figure::new(id, title), followed, |report| &report.code);
             figure.showing(None, Some([-34.0, 34.0])).caption(
                 "Residuals over √(Qᵥ/γ), without the rejected codes: outliers stand out of the plain filter's, some \
                  out of the t-test's, and none out of the others'; near ones are thinned.",
@@ -115,7 +115,7 @@ impl Days {
             (fix.position - place).norm() / Vector3::from(*deviations).norm()
         });
         let ratio = median(&ratios.collect::<Vec<_>>());
-        figures::deviations(figure, followed, Some(&place)).caption(format!(
+        figures::position::deviations(figure, followed, Some(&place)).caption(format!(
             "After the first hour the error is {ratio:.1} times the deviation in three dimensions (median)."
         ))
     }

@@ -1,0 +1,106 @@
+//! Which satellite is the bad one.
+
+use kestirim_gnss_files::satellite_name;
+use kestirim_gnss_ppp::Slip;
+use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_robust_kalman::Decision;
+
+use super::arcs::{Arcs, Sighting, is_rejected, is_used};
+use super::residuals::Kind;
+use crate::metrics::{mean, rms};
+use crate::system::Sheet;
+
+const COLUMNS: [&str; 10] = [
+    "satellite",
+    "first used, h",
+    "last used, h",
+    "epochs used",
+    "codes rejected, %",
+    "phases rejected, %",
+    "slips",
+    "RMS of codes, m",
+    "RMS of phases, mm",
+    "mean elevation, °",
+];
+
+/// A row a satellite, the one with the greatest share of rejected observations first; of equal ones, the one whose phases in use
+/// fit worst.
+pub fn sheet(arcs: &Arcs<'_>) -> Sheet {
+    let mut rows: Vec<_> = arcs.satellites().map(|(number, all)| Row::of(number, all)).collect();
+    rows.sort_by(|a, b| b.badness().partial_cmp(&a.badness()).unwrap_or(std::cmp::Ordering::Equal));
+    Sheet::new("satellites", "Satellites, the worst first", &COLUMNS)
+        .caption(
+            "Ordered by the share of observations that were rejected; residuals are those of observations in use.",
+        )
+        .with(rows.iter().map(Row::cells))
+}
+
+/// What became of a satellite.
+#[derive(Debug, Clone)]
+struct Row {
+    name: String,
+    /// First and last use, s; none of one that was never used.
+    used: Option<[f64; 2]>,
+    epochs: usize,
+    /// Shares of rejected codes and phases.
+    rejected: [f64; 2],
+    slips: usize,
+    /// Root mean square residuals of codes and phases, m.
+    residuals: [f64; 2],
+    /// rad.
+    elevation: f64,
+}
+
+impl Row {
+    fn of(number: u8, all: &[Sighting<'_>]) -> Self {
+        let used: Vec<_> = all.iter().filter(|(_, report)| is_used(report)).collect();
+        let kinds: [Kind; 2] = [|report| &report.code, |report| &report.phase];
+        let each = |kind: Kind| all.iter().map(move |(_, report)| kind(report));
+        let elevations: Vec<_> = all.iter().map(|(_, report)| report.direction.elevation).collect();
+        Self {
+            name: satellite_name(number),
+            used: used.first().zip(used.last()).map(|(first, last)| [first.0, last.0]),
+            epochs: used.len(),
+            rejected: kinds.map(|kind| {
+                each(kind).filter(|it| is_rejected(it)).count() as f64 / all.len().max(1) as f64
+            }),
+            slips: all.iter().filter(|(_, report)| slipped(report)).count(),
+            residuals: kinds.map(|kind| residual(each(kind))),
+            elevation: mean(&elevations),
+        }
+    }
+
+    fn badness(&self) -> [f64; 2] {
+        [self.rejected[0] + self.rejected[1], self.residuals[1]]
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let hour =
+            |t: Option<f64>| t.map_or_else(|| "—".to_owned(), |t| format!("{:.2}", t / 3600.0));
+        let [codes, phases] = self.rejected.map(|share| format!("{:.1}", 100.0 * share));
+        let [code, phase] = self.residuals;
+        vec![
+            self.name.clone(),
+            hour(self.used.map(|[first, _]| first)),
+            hour(self.used.map(|[_, last]| last)),
+            self.epochs.to_string(),
+            codes,
+            phases,
+            self.slips.to_string(),
+            format!("{code:.2}"),
+            format!("{:.1}", 1e3 * phase),
+            format!("{:.0}", self.elevation.to_degrees()),
+        ]
+    }
+}
+
+/// Root mean square of the residuals in use.
+fn residual<'a>(decisions: impl Iterator<Item = &'a Decision<f64>>) -> f64 {
+    let used = decisions.filter(|it| !is_rejected(it)).map(|it| it.residual);
+    rms(&used.collect::<Vec<_>>())
+}
+
+/// Whether its phase lost count of cycles: a satellite that comes, or comes back, is no slip.
+fn slipped(report: &SatelliteReport) -> bool {
+    !matches!(report.slipped, None | Some(Slipped::New | Slipped::Seen(Slip::Gap)))
+}
