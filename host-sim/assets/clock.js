@@ -43,15 +43,8 @@ class Clock {
 
   // From when to when a figure reaches, s: over time, or as a map whose points know when they were; null without times.
   static reach({ seconds, data }) {
-    let [low, high] = [Infinity, -Infinity];
-    for (const { x, customdata } of data) {
-      for (const value of (seconds ? x : customdata) ?? []) {
-        if (value === null) continue;
-        low = Math.min(low, value * (seconds ?? 1));
-        high = Math.max(high, value * (seconds ?? 1));
-      }
-    }
-    return low < high ? [low, high] : null;
+    const ends = Elements.extent(data.flatMap(({ x, customdata }) => (seconds ? x : customdata) ?? []));
+    return ends && ends[0] < ends[1] ? ends.map((end) => end * (seconds ?? 1)) : null;
   }
 
   // All figures that are shown, before they are drawn.
@@ -177,12 +170,7 @@ class Clock {
   }
 
   #toggle() {
-    if (this.playing) {
-      cancelAnimationFrame(this.playing);
-      this.playing = null;
-      this.play.textContent = "play";
-      return;
-    }
+    if (this.playing) { cancelAnimationFrame(this.playing); this.playing = null; this.play.textContent = "play"; return; }
     this.play.textContent = "pause";
     const [low, high] = this.range();
     if (this.cursor === null || this.cursor < low || this.cursor >= high) this.move(low);
@@ -203,8 +191,7 @@ class Clock {
   static #words(time, length) {
     if (length < 7200) return `${time.toFixed(length < 20 ? 3 : 2)} s`;
     const whole = Math.floor(time);
-    const two = (value) => String(value).padStart(2, "0");
-    return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)} h`;
+    return `${Math.floor(whole / 3600)}:${new Date((whole % 3600) * 1000).toISOString().slice(14, 19)} h`;
   }
 
   // Draws the cursor where it is; nobody is asked.

@@ -48,11 +48,7 @@ const Controls = (() => {
       if (timer) { clearInterval(timer); timer = null; button.textContent = "play"; return; }
       button.textContent = "pause";
       // The last step may end below the maximum: the end is where nothing moves any more.
-      const step = () => {
-        const before = range.value;
-        range.stepUp();
-        return range.value !== before;
-      };
+      const step = () => { const before = range.value; range.stepUp(); return range.value !== before; };
       if (!step()) range.value = range.min;
       timer = setInterval(() => {
         if (busy() && range.isConnected) return;

@@ -8,6 +8,13 @@ const Elements = {
     return made;
   },
 
+  // The least and the greatest of numbers; null if there is none.
+  extent(values) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const value of values) if (value !== null) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    return low <= high ? [low, high] : null;
+  },
+
   // Of whatever kind.
   /** @type {(selector: string, within?: Document | Element) => any[]} */
   all: (selector, within = document) => [...within.querySelectorAll(selector)],

@@ -221,10 +221,7 @@
     offerHistory();
   }
 
-  function offerHistory() {
-    element("undo").disabled = !past.length;
-    element("redo").disabled = !future.length;
-  }
+  const offerHistory = () => { element("undo").disabled = !past.length; element("redo").disabled = !future.length; };
 
   function travel(from, to) {
     if (!from.length || opening) return;
@@ -313,9 +310,7 @@
 
   // --- recordings
 
-  function askForFiles(does) {
-    for (const id of ["any", "files", "upload"]) element(id).hidden = !does;
-  }
+  const askForFiles = (does) => { for (const id of ["any", "files", "upload"]) element(id).hidden = !does; };
 
   const source = (system) => sources.find((source) => source.system === system);
 
@@ -402,8 +397,8 @@
     if (state.recording) dropped = [];
   }
   Drop.listen(drop);
-  for (const id of ["any-files", "any-folder"]) {
-    element(id).addEventListener("change", ({ target }) => { drop([...target.files].filter(({ name }) => !name.startsWith("."))); target.value = ""; });
+  for (const field of all("#any input")) {
+    field.addEventListener("change", () => { drop([...field.files].filter(({ name }) => !name.startsWith("."))); field.value = ""; });
   }
 
   // --- undo, comparison, downloads
@@ -433,10 +428,8 @@
     restore({ ...state, ...state.a, a: shown() });
   });
   for (const button of all(".copy")) {
-    button.addEventListener("click", async () => {
-      await navigator.clipboard.writeText(element(button.dataset.of).textContent);
-      button.textContent = "copied";
-    });
+    button.addEventListener("click", () => navigator.clipboard.writeText(element(button.dataset.of).textContent)
+      .then(() => { button.textContent = "copied"; }));
   }
 
   // A button that gives a file of this session.

@@ -22,12 +22,8 @@ const Figures = (() => {
   function fit({ plot, figure }) {
     const extent = (axis, along) => {
       if (axis.range) return axis.range[1] - axis.range[0];
-      const values = figure.data.filter((series) => series.visible !== "legendonly").flatMap((series) => series[along]);
-      let [low, high] = [Infinity, -Infinity];
-      for (const value of values) {
-        if (value === null) continue;
-        [low, high] = [Math.min(low, value), Math.max(high, value)];
-      }
+      const shown = figure.data.filter((series) => series.visible !== "legendonly");
+      const [low, high] = Elements.extent(shown.flatMap((series) => series[along])) ?? [0, 0];
       return high - low;
     };
     const [wide, high] = [extent(figure.layout.xaxis, "x"), extent(figure.layout.yaxis, "y")];
