@@ -8,6 +8,7 @@ mod list;
 pub mod live;
 mod made_for_it;
 mod merge;
+mod recorded;
 mod replay;
 mod run;
 pub mod serve;
@@ -42,6 +43,8 @@ pub fn command(arguments: &[OsString]) -> Command {
              streams, and target/report/index.html shows what came out, beside what the papers print.",
         )
         .after_help(examples(ALL[0]))
+        .args_conflicts_with_subcommands(true)
+        .arg(run::data())
         .subcommand(run::command())
         .subcommand(replay::command())
         .subcommand(Sweep::augment_args(
@@ -99,7 +102,7 @@ on standard error says which file, which line and what was expected. NO_COLOR is
 /// One sentence.
 pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
     let Some((name, matches)) = matches.subcommand() else {
-        return run::everything(Path::new(REPORT));
+        return run::everything(Path::new(REPORT), run::data_of(matches));
     };
     match name {
         "run" => run::run(matches),

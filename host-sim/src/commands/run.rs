@@ -1,13 +1,19 @@
 //! `host-sim run`: a system on its synthetic streams, published beside own results.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use clap::{ArgMatches, Args, Command};
+use clap::{Arg, ArgMatches, Args, Command, value_parser};
 
 use super::arguments::{chosen, read};
+use super::recorded::{self, Folders};
+use crate::report::Recorded;
 use crate::system::{AnySystem, Outputs, RunOptions, Setting, Settings, say_where, tried};
 use crate::systems::ALL;
+use crate::text::{command_line, printable_path};
 use crate::{Error, output, report};
+
+/// The option that names a folder of recordings.
+const DATA: &str = "data";
 
 pub(super) fn command() -> Command {
     let about = "Run a system on its synthetic streams and print published beside own results";
@@ -19,7 +25,34 @@ fn of(system: &dyn AnySystem) -> Command {
     let command = RunOptions::augment_args(Command::new(system.name()).about(system.title()));
     let command = command.next_help_heading("One cell instead of all tables");
     let command = command.args(system.cell().iter().flat_map(Setting::arguments));
-    Outputs::augment_args(command)
+    Outputs::augment_args(command).arg(data().requires("report"))
+}
+
+/// The option that adds recordings to the report.
+pub(super) fn data() -> Arg {
+    let help = "Show in the report what the recordings of this folder give, too: those that README's table cites, laid out as \
+                fetch-data does; missing ones are named";
+    let arg = Arg::new(DATA).long(DATA).value_name("FOLDER").help(help);
+    arg.value_parser(value_parser!(PathBuf))
+}
+
+/// The folder of recordings, if there is one.
+pub(super) fn data_of(matches: &ArgMatches) -> Option<&Path> {
+    matches.get_one::<PathBuf>(DATA).map(PathBuf::as_path)
+}
+
+/// The recorded part of a chapter, if there is a folder of recordings.
+fn recorded(
+    system: &dyn AnySystem,
+    data: Option<&Path>,
+    report: &Path,
+    arguments: &[&str],
+) -> Result<Option<Recorded>, Error> {
+    let Some(data) = data else { return Ok(None) };
+    let words = arguments.iter().map(|&word| word.to_owned());
+    let words = words.chain(["--data".to_owned(), printable_path(data)]);
+    let command = command_line(["host-sim".to_owned()].into_iter().chain(words));
+    recorded::of(system, Folders { data, report }, &command)
 }
 
 /// Runs an experiment, writes what was asked for, and prints the rest.
@@ -27,10 +60,17 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
     let (options, outputs) = (read::<RunOptions>(matches)?, read::<Outputs>(matches)?);
     outputs.check()?;
+    let data = data_of(matches);
+    data.map_or(Ok(()), recorded::refuse_absent)?;
     let cell = Settings::matched(system.cell(), matches);
     let samples = tried(&system.trials(&options, &cell)?)?;
     let experiment = system.experiment(&options, &cell, &samples, outputs.any_file())?;
-    if let Some(chapter) = experiment.chapter {
+    if let Some(mut chapter) = experiment.chapter {
+        if let Some(report) = &outputs.report {
+            let shown = printable_path(report);
+            let words = ["run", system.name(), "--report", &shown];
+            chapter.recorded = recorded(system, data, report, &words)?;
+        }
         outputs.write(chapter)?;
     }
     if outputs.json {
@@ -40,15 +80,17 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 }
 
 /// Runs every system on its synthetic streams, prints the few numbers that matter most, and writes the
-/// report into `folder`.
-pub(super) fn everything(folder: &Path) -> Result<(), Error> {
+/// report into `folder`, with what the recordings of a folder of `data` give.
+pub(super) fn everything(folder: &Path, data: Option<&Path>) -> Result<(), Error> {
     output::refuse_unwritable_folder(folder)?;
+    data.map_or(Ok(()), recorded::refuse_absent)?;
     let mut chapters = Vec::new();
     for system in ALL {
         let (options, cell) = (RunOptions::default(), Settings::new(system.cell()));
         let samples = tried(&system.trials(&options, &cell)?)?;
         let experiment = system.experiment(&options, &cell, &samples, true)?;
-        if let Some(chapter) = experiment.chapter {
+        if let Some(mut chapter) = experiment.chapter {
+            chapter.recorded = recorded(system, data, folder, &[])?;
             output::print(&format!("{}\n", chapter.summary))?;
             chapters.push(chapter);
         }

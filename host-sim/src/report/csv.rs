@@ -31,26 +31,25 @@ pub fn write(path: &Path, chapters: &[Chapter]) -> Result<(), Error> {
         let mut table = csv::Writer::from_writer(file);
         table.write_record(HEADER)?;
         for chapter in chapters {
-            for (comparison, made) in chapter.tables() {
-                for it @ Value { quantity, condition, method, unit, .. } in &comparison.values {
-                    let n = it.n.map_or_else(String::new, |n| n.to_string());
-                    let [value, error] = [it.value, it.standard_error].map(number);
-                    let [published, limit] = [it.published, it.limit].map(number);
-                    table.write_record([
-                        chapter.system,
-                        &comparison.id,
-                        quantity,
-                        condition,
-                        method,
-                        &value,
-                        unit,
-                        &error,
-                        &n,
-                        &published,
-                        &limit,
-                        &made.command,
-                    ])?;
-                }
+            for (id, it, command) in chapter.numbers() {
+                let Value { quantity, condition, method, unit, .. } = it;
+                let n = it.n.map_or_else(String::new, |n| n.to_string());
+                let [value, error] = [it.value, it.standard_error].map(number);
+                let [published, limit] = [it.published, it.limit].map(number);
+                table.write_record([
+                    chapter.system,
+                    id,
+                    quantity,
+                    condition,
+                    method,
+                    &value,
+                    unit,
+                    &error,
+                    &n,
+                    &published,
+                    &limit,
+                    command,
+                ])?;
             }
         }
         table.flush()

@@ -45,6 +45,7 @@ fn results(chapters: &[Chapter]) -> serde_json::Value {
             "headlines": chapter.headlines,
             "summary": chapter.summary,
             "tables": tables.collect::<Vec<_>>(),
+            "recorded": chapter.recorded,
         })
     };
     json!(chapters.iter().map(system).collect::<Vec<_>>())

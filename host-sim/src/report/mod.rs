@@ -5,13 +5,15 @@ pub mod csv;
 mod document;
 mod folder;
 mod page;
+mod recorded;
 mod session;
 mod value;
 
 pub use comparison::{Comparison, Row};
 pub use folder::write;
+pub use recorded::{Recorded, Replayed, Studied};
 pub use session::Session;
-pub use value::{Value, printed};
+pub use value::{Value, printed, rounded};
 
 use serde::Serialize;
 
@@ -39,6 +41,8 @@ pub struct Chapter {
     pub headlines: Vec<Headline>,
     /// The figure that the first page shows; nothing if it is not there.
     pub picture: &'static str,
+    /// What recordings gave, if there is a folder of them.
+    pub recorded: Option<Recorded>,
 }
 
 /// A row of the report's first table: one quantity, by everyone.
@@ -101,6 +105,7 @@ impl Chapter {
             streams: Vec::new(),
             headlines: Vec::new(),
             picture: "",
+            recorded: None,
         }
     }
 
@@ -129,12 +134,21 @@ impl Chapter {
         self.tables().map(|(comparison, _)| comparison)
     }
 
-    /// The figures.
+    /// The figures, those of recordings at the end.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
-        self.items.iter().filter_map(|item| match &item.content {
+        let figures = self.items.iter().filter_map(|item| match &item.content {
             Content::Figure(figure) => Some(figure),
             Content::Comparison(_) => None,
-        })
+        });
+        figures.chain(self.recorded.iter().flat_map(Recorded::figures))
+    }
+
+    /// Each number of a table, the table's name, and the command that makes it again; those of recordings at the end.
+    pub fn numbers(&self) -> impl Iterator<Item = (&str, &Value, &str)> {
+        let numbers = self.tables().flat_map(|(table, made)| {
+            table.values.iter().map(|value| (table.id.as_str(), value, made.command.as_str()))
+        });
+        numbers.chain(self.recorded.iter().flat_map(Recorded::numbers))
     }
 }
 

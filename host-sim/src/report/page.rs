@@ -1,10 +1,12 @@
 //! The report as one page that needs nothing but itself.
 
+mod recorded;
+
 use maud::{Markup, PreEscaped, html};
 
 use super::document::{Document, figures};
-use super::{Chapter, Comparison, Content, Headline, Item, Row};
-use crate::figure::{View, svg};
+use super::{Chapter, Comparison, Content, Headline, Item, Row, rounded};
+use crate::figure::{Figure, View, svg};
 
 /// More than a screen has columns, so that there is something to zoom into.
 const VIEW: View = View { most_points: 3000, window: None };
@@ -17,7 +19,7 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
         main {
             (headlines(chapters))
             (pictures(chapters))
-            @for chapter in chapters { (section(chapter)) }
+            @for chapter in chapters { (section(chapter)) (recorded::section(chapter)) }
         }
         footer {
             p.soft {
@@ -33,6 +35,7 @@ pub(super) fn render(chapters: &[Chapter]) -> String {
 }
 
 fn header(chapters: &[Chapter]) -> Markup {
+    let recorded = chapters.iter().any(|chapter| chapter.recorded.is_some());
     html! {
         header #top {
             h1 { (TITLE) }
@@ -40,7 +43,8 @@ fn header(chapters: &[Chapter]) -> Markup {
             p {
                 "Every table and figure of the five papers beside what this library makes of the same "
                 "experiment, and beside what nothing can be better than, where that is known. "
-                "All of it on synthetic streams: the same command gives the same numbers."
+                "On synthetic streams: the same command gives the same numbers."
+                @if recorded { " Recordings stand behind each chapter." }
             }
             p.soft {
                 "Drag in a figure to zoom, click twice to see everything; or focus it and use "
@@ -49,7 +53,10 @@ fn header(chapters: &[Chapter]) -> Markup {
             nav aria-label="contents" {
                 ul {
                     @for chapter in chapters {
-                        li { a href={ "#" (chapter.system) } { (chapter.title) } }
+                        li {
+                            a href={ "#" (chapter.system) } { (chapter.title) }
+                            @if chapter.recorded.is_some() { " · " a href={ "#" (recorded::id(chapter)) } { "recorded" } }
+                        }
                     }
                 }
             }
@@ -119,16 +126,6 @@ fn headline(line: &Headline) -> Markup {
     }
 }
 
-/// Three digits that count.
-fn rounded(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let before = value.abs().max(1e-9).log10().floor() as i32 + 1;
-    let decimals = usize::try_from(3 - before).unwrap_or_default();
-    format!("{value:.decimals$}")
-}
-
 /// A picture of each system, which leads to its chapter.
 fn pictures(chapters: &[Chapter]) -> Markup {
     html! {
@@ -151,14 +148,18 @@ fn shown(item: &Item) -> Markup {
     html! {
         @match &item.content {
             Content::Comparison(comparison) => (table(comparison)),
-            Content::Figure(figure) => {
-                figure id=(figure.id) data-figure=(figure.id) {
-                    h3 { (figure.title) }
-                    figcaption { (figure.caption) " (" a href={ (figure.id) ".svg" } { "SVG" } ", " a href={ (figure.id) ".csv" } { "CSV" } ")" }
-                }
-            }
+            Content::Figure(figure) => (drawing(figure)),
         }
         p.made { code { (made.command) } " · seed " (made.seed) " · " (made.trials) }
+    }
+}
+
+fn drawing(figure: &Figure) -> Markup {
+    html! {
+        figure id=(figure.id) data-figure=(figure.id) {
+            h3 { (figure.title) }
+            figcaption { (figure.caption) " (" a href={ (figure.id) ".svg" } { "SVG" } ", " a href={ (figure.id) ".csv" } { "CSV" } ")" }
+        }
     }
 }
 
@@ -190,7 +191,7 @@ fn table(comparison: &Comparison) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Figure, Series};
+    use crate::figure::Series;
     use crate::report::Made;
     use crate::report::document::tests::assert_fetches_nothing;
 
@@ -225,6 +226,7 @@ mod tests {
                 limit: None,
             }],
             picture: "vehicle-plan",
+            recorded: None,
         };
         let page = render(&[chapter]);
         for text in [

@@ -94,6 +94,16 @@ fn finite(value: impl Into<Option<f64>>) -> Option<f64> {
     value.into().filter(|value| value.is_finite())
 }
 
+/// Three digits that count.
+pub fn rounded(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = value.abs().max(1e-9).log10().floor() as i32 + 1;
+    let decimals = usize::try_from(3 - before).unwrap_or_default();
+    format!("{value:.decimals$}")
+}
+
 /// The number in a printed text: of `≈ 1.5` 1.5, of `−0.17` its negative. None if there are several or none, or only a bound.
 pub fn printed(text: &str) -> Option<f64> {
     if ["<", ">", "above", "below"].iter().any(|bound| text.contains(bound)) {

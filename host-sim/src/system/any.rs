@@ -12,6 +12,7 @@ use super::files::{FileField, Files, Source};
 use super::idle::refuse;
 use super::online::{Panel, Plan};
 use super::opened::{self, Opened};
+use super::recorded::Study;
 use super::run::RunOptions;
 use super::setting::Setting;
 use super::settings::Settings;
@@ -43,6 +44,8 @@ pub trait AnySystem: Sync {
     fn outputs(&self) -> &'static [OutputField];
     /// [`System::PANELS`].
     fn panels(&self) -> &'static [Panel];
+    /// [`System::RECORDED`].
+    fn recorded(&self) -> &'static [Study];
     /// [`System::settings`] of any recording.
     fn settings(&self) -> Vec<Setting>;
     /// [`System::cell`].
@@ -123,6 +126,10 @@ impl<S: System> AnySystem for S {
 
     fn panels(&self) -> &'static [Panel] {
         S::PANELS
+    }
+
+    fn recorded(&self) -> &'static [Study] {
+        S::RECORDED
     }
 
     fn settings(&self) -> Vec<Setting> {

@@ -12,6 +12,7 @@ use super::account::{Account, Answer, Table};
 use super::files::{FileField, Files};
 use super::idle::Idle;
 use super::online::{Panel, Plan};
+use super::recorded::Study;
 use super::run::RunOptions;
 use super::setting::Setting;
 use super::settings::Settings;
@@ -57,6 +58,8 @@ pub trait System: Sync + 'static {
     const CHECKED: &'static [&'static str] = &[];
     /// Figures of a stream that is followed while it comes; none if no estimator follows one.
     const PANELS: &'static [Panel] = &[];
+    /// Recordings that its results are told of, for the report; none if there are none.
+    const RECORDED: &'static [Study] = &[];
 
     /// What is read.
     type Recording: Send + Sync;

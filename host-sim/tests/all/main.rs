@@ -25,6 +25,7 @@ mod outputs_cli;
 #[path = "../program/mod.rs"]
 mod program;
 mod radio_cli;
+mod recorded_cli;
 mod robot_cli;
 mod room;
 mod scripts;

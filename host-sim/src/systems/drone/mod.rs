@@ -8,6 +8,7 @@ pub mod account;
 pub mod figures;
 mod online;
 pub mod paper;
+mod recorded;
 pub mod recording;
 pub mod settings;
 pub mod track;
@@ -23,7 +24,7 @@ use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
     Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
-    Setting, Settings, System, Table,
+    Setting, Settings, Study, System, Table,
 };
 use kestirim_replay::drone::{self, Track};
 use kestirim_sweep::{Block, Samples};
@@ -64,6 +65,7 @@ impl System for Drone {
         endings: &["csv"],
     }];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Losses];
+    const RECORDED: &'static [Study] = recorded::STUDIES;
 
     type Recording = Recording;
     type Trace = Track;

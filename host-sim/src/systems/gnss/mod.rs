@@ -7,6 +7,7 @@
 pub mod account;
 pub mod figures;
 pub mod paper;
+mod recorded;
 pub mod recording;
 pub mod settings;
 pub mod track;
@@ -27,7 +28,7 @@ use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
     Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, RunOptions, Setting,
-    Settings, System, Table,
+    Settings, Study, System, Table,
 };
 
 /// The system.
@@ -85,6 +86,7 @@ impl System for Gnss {
             endings: &["csv"],
         },
     ];
+    const RECORDED: &'static [Study] = recorded::STUDIES;
 
     type Recording = Recording;
     type Trace = Track;

@@ -11,6 +11,7 @@ mod calibrate;
 pub mod figures;
 mod online;
 pub mod paper;
+mod recorded;
 pub mod recording;
 pub mod settings;
 pub mod strides;
@@ -35,7 +36,7 @@ use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
     Account, Answer, Calibration, Detail, FileField, Files, Finding, Idle, OutputField, Panel,
-    Plan, RunOptions, Setting, Settings, System, Table,
+    Plan, RunOptions, Setting, Settings, Study, System, Table,
 };
 use crate::table;
 
@@ -83,6 +84,7 @@ impl System for Pedestrian {
         },
     ];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Forces, Panel::Rates];
+    const RECORDED: &'static [Study] = recorded::STUDIES;
 
     type Recording = Recording;
     type Trace = Track;

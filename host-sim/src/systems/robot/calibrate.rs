@@ -1,7 +1,7 @@
 //! `host-sim calibrate robot`: what each anchor measures too long.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use kestirim_import::Options as Reading;
@@ -58,6 +58,11 @@ impl Options {
         let inputs =
             [Some(&self.anchors), Some(&self.log), self.points.as_ref(), self.truth.as_ref()];
         output::refuse_overwriting("--out", Some(&self.out), inputs.into_iter().flatten())?;
+        let calibrations = self.write()?;
+        output::show(&Report { system: Robot::NAME, anchors: calibrations }, self.json)
+    }
+
+    fn write(&self) -> Result<Vec<AnchorCalibration>, Error> {
         let anchors = anchors::read(&self.anchors)?;
         let residuals = self.residuals(&anchors)?;
         let calibrations = residuals.calibrations(&anchors);
@@ -68,7 +73,7 @@ impl Options {
             });
         }
         calibration::write(&self.out, &calibrations)?;
-        output::show(&Report { system: Robot::NAME, anchors: calibrations }, self.json)
+        Ok(calibrations)
     }
 
     fn residuals(&self, anchors: &Anchors) -> Result<Residuals, Error> {
@@ -102,6 +107,21 @@ impl Options {
         }
         Ok(residuals)
     }
+}
+
+/// Writes the calibration of the recording of a folder of which the truth is known.
+pub(super) fn from_truth(folder: &Path, to: &Path) -> Result<(), Error> {
+    let [anchors, log, truth] =
+        ["anchors.csv", "ranges.csv", "truth.csv"].map(|it| folder.join(it));
+    let options = Options {
+        anchors,
+        log,
+        points: None,
+        truth: Some(truth),
+        out: to.to_path_buf(),
+        json: false,
+    };
+    options.write().map(drop)
 }
 
 /// What the command prints.

@@ -11,6 +11,7 @@ pub mod figures;
 mod height;
 mod online;
 pub mod paper;
+mod recorded;
 pub mod recording;
 pub mod settings;
 mod survey;
@@ -35,7 +36,7 @@ use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
     Account, Answer, Calibration, Detail, FileField, Files, Finding, Idle, OutputField, Panel,
-    Plan, RunOptions, Setting, Settings, System, Table,
+    Plan, RunOptions, Setting, Settings, Study, System, Table,
 };
 
 /// The system.
@@ -91,6 +92,7 @@ impl System for Robot {
     }];
     const CHECKED: &'static [&'static str] = &["height", "dim", "calibrated"];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Ranges];
+    const RECORDED: &'static [Study] = recorded::STUDIES;
 
     type Recording = Recording;
     type Trace = Tracks;

@@ -36,6 +36,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
         picture: "drone-fig-3-6-circling",
         items,
         streams: walks.streams(),
+        recorded: None,
     })
 }
 

@@ -45,6 +45,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
         picture: "gnss-figure-4-1",
         items,
         streams: days.streams(),
+        recorded: None,
     })
 }
 

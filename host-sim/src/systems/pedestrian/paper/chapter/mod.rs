@@ -54,6 +54,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
         picture: "pedestrian-figure-17",
         items,
         streams: streams::streams(&fast.recording.log.samples, &fast.ours, &fast.recording.truth()),
+        recorded: None,
     })
 }
 

@@ -62,6 +62,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
         picture: "robot-round",
         items,
         streams: streams(&round.recording, &round.calibrated),
+        recorded: None,
     })
 }
 

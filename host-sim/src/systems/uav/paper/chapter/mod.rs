@@ -35,6 +35,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
         picture: "uav-fig-6-1-alpha",
         items,
         streams: streams::streams(report)?,
+        recorded: None,
     })
 }
 

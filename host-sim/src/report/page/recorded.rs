@@ -1,0 +1,71 @@
+//! The recorded part of a chapter on the page.
+
+use maud::{Markup, html};
+
+use super::{drawing, table};
+use crate::report::{Chapter, Recorded, Replayed, Studied, rounded};
+
+/// Beside the chapter, not in it: each recording has a time of its own.
+pub(super) fn section(chapter: &Chapter) -> Markup {
+    let Some(Recorded { folder, left_out, studies }) = &chapter.recorded else { return html! {} };
+    html! {
+        section id=(id(chapter)) {
+            h2 { (chapter.title) " — recorded" }
+            p.soft {
+                "Recordings below " code { (folder) } " · "
+                a href={ "#" (chapter.system) } { "the same system on synthetic streams" } " · "
+                a href="#top" { "back to all systems" }
+            }
+            @if studies.is_empty() { p { "No recording that the results are told of is there." } }
+            @if !left_out.is_empty() { ul.warnings { @for sentence in left_out { li { (sentence) } } } }
+            @for study in studies { (studied(study)) }
+        }
+    }
+}
+
+/// Its place on the page.
+pub(super) fn id(chapter: &Chapter) -> String {
+    format!("{}-recorded", chapter.system)
+}
+
+fn studied(study: &Studied) -> Markup {
+    let Studied { table: together, command, quantities, replays } = study;
+    html! {
+        (table(together))
+        p.made { code { (command) } }
+        details {
+            summary { "Each recording (" (replays.len()) ")" }
+            div.scroll tabindex="0" role="region" aria-label="each recording" {
+                table {
+                    caption { "Each recording" }
+                    thead { tr {
+                        th scope="col" {}
+                        @for quantity in quantities { th scope="col" { (quantity) } }
+                        th scope="col" { "health" }
+                    } }
+                    tbody { @for replay in replays { (row(replay)) } }
+                }
+            }
+            @for replay in replays { (drawn(replay)) }
+        }
+    }
+}
+
+fn row(replay: &Replayed) -> Markup {
+    html! {
+        tr {
+            th scope="row" { (replay.name) }
+            @for value in &replay.values { td { (value.value.map_or_else(|| "—".to_owned(), rounded)) } }
+            td { (replay.health) }
+        }
+    }
+}
+
+fn drawn(replay: &Replayed) -> Markup {
+    html! {
+        section data-clock="one" {
+            @for figure in &replay.figures { (drawing(figure)) }
+            p.made { @for command in &replay.commands { (replay.name) ": " code { (command) } br; } }
+        }
+    }
+}
