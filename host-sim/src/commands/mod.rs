@@ -4,6 +4,7 @@ mod archive;
 mod arguments;
 mod check;
 pub mod design;
+mod fetch_data;
 mod list;
 pub mod live;
 mod made_for_it;
@@ -22,6 +23,7 @@ use clap_complete::Shell;
 
 use self::arguments::{read, sentence};
 use self::design::Design;
+use self::fetch_data::FetchData;
 use self::made_for_it::{CALIBRATE, IDENTIFY, SURVEY};
 use self::merge::Together;
 use self::serve::Serve;
@@ -66,6 +68,9 @@ pub fn command(arguments: &[OsString]) -> Command {
                 .about("Explore recordings in the browser: thresholds and filters with sliders"),
         ))
         .subcommand(live::command(arguments))
+        .subcommand(FetchData::augment_args(Command::new("fetch-data").about(
+            "Fetch the recordings that may be passed on from those who publish them, by curl or wget",
+        )))
         .subcommand(Command::new("list").about("List systems, scenarios and log formats"))
         .subcommand(
             Command::new("completions")
@@ -116,6 +121,7 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
         "design" => read::<Design>(matches)?.run(),
         "serve" => read::<Serve>(matches)?.run(),
         "live" => live::run(matches),
+        "fetch-data" => read::<FetchData>(matches)?.run(),
         "list" => output::print(&list::list()),
         _ => completions(matches),
     }

@@ -11,6 +11,7 @@ mod cli;
 mod completions;
 mod design_cli;
 mod drone_cli;
+mod fetch_cli;
 mod foreign_flights;
 mod foreign_logs;
 mod foreign_messages;
