@@ -246,7 +246,8 @@ class Clock {
     if (!xaxis || this.cursor === null) return;
     entry.dots ??= new Map();
     for (const dot of entry.dots.values()) dot.hidden = true;
-    entry.figure.data.forEach(({ name, x, y, customdata, visible, line, mode }) => {
+    const ellipses = [];
+    entry.figure.data.forEach(({ name, x, y, customdata, visible, line, mode, meta }) => {
       const place = customdata && visible === true ? Clock.#at(customdata, this.cursor) : null;
       if (!place) return;
       // Between points that no line joins there is nothing.
@@ -254,6 +255,7 @@ class Clock {
       const between = (values) => values[place.before] === null || values[place.after] === null ? NaN
         : values[place.before] + place.share * (values[place.after] - values[place.before]);
       const [left, top] = [xaxis.l2p(between(x)), yaxis.l2p(between(y))];
+      if (meta?.ellipses) ellipses.push(Clock.#ellipse(entry.plot._fullLayout, meta.ellipses.map(between), [left, top], line.color));
       if (!(left >= 0 && left <= xaxis._length && top >= 0 && top <= yaxis._length)) return;
       if (!entry.dots.has(name)) entry.dots.set(name, Clock.#mark(entry, "here"));
       const dot = entry.dots.get(name);
@@ -261,6 +263,17 @@ class Clock {
       dot.style.setProperty("--series", line.color);
       dot.style.transform = `translate(${xaxis._offset + left}px, ${yaxis._offset + top}px)`;
     });
+    if (!entry.ellipses && !ellipses.length) return;
+    entry.ellipses ??= Clock.#mark(entry, "ellipses");
+    entry.ellipses.style.transform = `translate(${xaxis._offset}px, ${yaxis._offset}px)`;
+    entry.ellipses.innerHTML = `<svg width="${xaxis._length}" height="${yaxis._length}">${ellipses.join("")}</svg>`;
+  }
+
+  // The unit circle's point (u, v) lies at (a u, b u + c v) from the centre, in units of the axes; nothing where that is not known.
+  static #ellipse({ xaxis, yaxis }, [a, b, c], [left, top], colour) {
+    const [across, up] = [xaxis, yaxis].map((axis) => axis.l2p(1) - axis.l2p(0));
+    const matrix = [across * a, up * b, 0, up * c, left, top];
+    return matrix.every(Number.isFinite) ? `<circle r="1" stroke="${colour}" transform="matrix(${matrix})"/>` : "";
   }
 
   static #mark(entry, className) {

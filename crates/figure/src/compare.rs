@@ -63,13 +63,18 @@ fn twin<'a>(figure: &Figure, place: usize, other: &'a Figure) -> Option<&'a Seri
     other.series.iter().filter(|series| series.name == *name).nth(before)
 }
 
+/// The covariances of a series one after the other.
+fn flat(series: &Series) -> Option<&[f64]> {
+    series.spread.as_deref().map(<[_]>::as_flattened)
+}
+
 /// Whether another figure has the same series.
 fn same(figure: &Figure, place: usize, other: &Figure) -> bool {
     // Gaps are no numbers, and gaps all the same.
     let equal = |a: &[f64], b: &[f64]| {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
     };
-    let both = |a: &Option<Vec<f64>>, b: &Option<Vec<f64>>| match (a, b) {
+    let both = |a: Option<&[f64]>, b: Option<&[f64]>| match (a, b) {
         (Some(a), Some(b)) => equal(a, b),
         (a, b) => a.is_none() && b.is_none(),
     };
@@ -77,8 +82,9 @@ fn same(figure: &Figure, place: usize, other: &Figure) -> bool {
     twin(figure, place, other).is_some_and(|theirs| {
         equal(&ours.x, &theirs.x)
             && equal(&ours.y, &theirs.y)
-            && both(&ours.error, &theirs.error)
-            && both(&ours.times, &theirs.times)
+            && both(ours.error.as_deref(), theirs.error.as_deref())
+            && both(ours.times.as_deref(), theirs.times.as_deref())
+            && both(flat(ours), flat(theirs))
             && ours.labels == theirs.labels
     })
 }

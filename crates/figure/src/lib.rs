@@ -2,12 +2,14 @@
 
 mod compare;
 pub mod csv;
+mod ellipse;
 mod outline;
 pub mod plotly;
 mod series;
 pub mod svg;
 mod thin;
 
+pub use ellipse::ellipse;
 pub use series::{Colour, Mark, Series};
 pub use thin::View;
 

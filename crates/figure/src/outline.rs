@@ -16,7 +16,8 @@ pub(crate) fn width(figure: &Figure, shown: &[Range<usize>]) -> f64 {
 }
 
 /// Indices of the points that are drawn: of a line, those that keep it within `most` of the whole one, at each time where times
-/// are known; of points, one of those that would be drawn over each other at about the same time. A gap stays one.
+/// are known, and its ellipses as near theirs; of points, one of those that would be drawn over each other at about the same time.
+/// A gap stays one.
 pub(crate) fn indices(series: &Series, shown: Range<usize>, most: f64) -> Vec<usize> {
     // Marks along a line are what it is about.
     let is_marked = series.mark == Mark::LineAndPoints;
@@ -35,31 +36,47 @@ pub(crate) fn indices(series: &Series, shown: Range<usize>, most: f64) -> Vec<us
         let cell = |i: usize| (place(i).map(|value| (value / most) as i64), when(i));
         return shown.filter(|&i| is_gap(i) || seen.insert(cell(i))).collect();
     }
-    let mut kept = Vec::new();
-    let mut begin = shown.start;
-    while begin < shown.end {
-        let end = (begin..shown.end).find(|&i| is_gap(i)).unwrap_or(shown.end);
-        let line = Line { series, times, most: most / std::f64::consts::SQRT_2 };
-        line.straightened(begin..end, &mut kept);
-        kept.extend((end < shown.end).then_some(end));
-        begin = end + 1;
+    let most = most / std::f64::consts::SQRT_2;
+    match series.ellipses().filter(|ellipses| ellipses.len() >= shown.end) {
+        None => Line { times, most, place }.kept(shown, is_gap),
+        Some(ellipses) => {
+            let place = |i: usize| {
+                let ([x, y], [a, b, c]) = (place(i), ellipses[i]);
+                // What is unknown does not change.
+                let coarser = |part: f64| if part.is_nan() { 0.0 } else { part / COARSER };
+                [x, y, coarser(a), coarser(b), coarser(c)]
+            };
+            Line { times, most, place }.kept(shown, is_gap)
+        }
     }
-    kept
 }
 
 /// Stretches of time in each of which a spot is drawn once.
 const STRETCHES: f64 = 500.0;
 
-/// A line without gaps, and how far it may be moved along either axis.
-struct Line<'a> {
-    series: &'a Series,
+/// How much coarser ellipses may be than the line: an uncertainty is read to a tenth, and shrinks a little with every measurement.
+const COARSER: f64 = 8.0;
+
+/// A line, and how far it may be moved along each of N axes.
+struct Line<'a, F> {
     times: Option<&'a [f64]>,
     most: f64,
+    /// Where a point is.
+    place: F,
 }
 
-impl Line<'_> {
-    fn place(&self, i: usize) -> [f64; 2] {
-        [self.series.x[i], self.series.y[i]]
+impl<const N: usize, F: Fn(usize) -> [f64; N]> Line<'_, F> {
+    /// The points that are kept of each piece between gaps, and the gaps.
+    fn kept(&self, shown: Range<usize>, is_gap: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut kept = Vec::new();
+        let mut begin = shown.start;
+        while begin < shown.end {
+            let end = (begin..shown.end).find(|&i| is_gap(i)).unwrap_or(shown.end);
+            self.straightened(begin..end, &mut kept);
+            kept.extend((end < shown.end).then_some(end));
+            begin = end + 1;
+        }
+        kept
     }
 
     /// When a point was; if nobody knows, they are taken to be as far apart in time as each other.
@@ -91,30 +108,30 @@ impl Line<'_> {
         kept.extend((end > from).then_some(end));
     }
 
-    /// How far behind another point it is in time, and how far from it along both axes.
-    fn seen(&self, i: usize, from: usize) -> (f64, [f64; 2]) {
-        let ([x, y], [a, b]) = (self.place(i), self.place(from));
-        (self.time(i) - self.time(from), [x - a, y - b])
+    /// How far behind another point it is in time, and how far from it along each axis.
+    fn seen(&self, i: usize, from: usize) -> (f64, [f64; N]) {
+        let (here, there) = ((self.place)(i), (self.place)(from));
+        (self.time(i) - self.time(from), std::array::from_fn(|axis| here[axis] - there[axis]))
     }
 }
 
-/// Slopes along both axes with which a straight line passes all points so far.
-struct Door([[f64; 2]; 2]);
+/// Slopes along each axis with which a straight line passes all points so far.
+struct Door<const N: usize>([[f64; 2]; N]);
 
-impl Door {
-    const OPEN: Self = Self([[f64::NEG_INFINITY, f64::INFINITY]; 2]);
+impl<const N: usize> Door<N> {
+    const OPEN: Self = Self([[f64::NEG_INFINITY, f64::INFINITY]; N]);
 
     /// Whether the line may end at a point so far away. At the same time there is no line but to itself.
-    fn takes(&self, (time, way): (f64, [f64; 2])) -> bool {
-        let mut both = self.0.iter().zip(way);
+    fn takes(&self, (time, way): (f64, [f64; N])) -> bool {
+        let mut all = self.0.iter().zip(way);
         let has_slope = |low, high, way: f64| (low..=high).contains(&(way / time));
-        both.all(
+        all.all(
             |(&[low, high], way)| if time > 0.0 { has_slope(low, high, way) } else { way == 0.0 },
         )
     }
 
     /// Shuts out the slopes that pass a point too far away.
-    fn close(&mut self, (time, way): (f64, [f64; 2]), most: f64) {
+    fn close(&mut self, (time, way): (f64, [f64; N]), most: f64) {
         for ([low, high], way) in self.0.iter_mut().zip(way) {
             if time > 0.0 {
                 (*low, *high) = (low.max((way - most) / time), high.min((way + most) / time));
@@ -201,6 +218,30 @@ mod tests {
         for i in 0..800 {
             let off = (between(times[i]) - series.x[i]).abs();
             assert!(off <= 0.1, "{off} m off after {} s", times[i]);
+        }
+    }
+
+    #[test]
+    fn an_ellipse_that_grows_on_a_straight_way_is_kept() {
+        // Nothing is known for a while, then the variance grows to a square metre and shrinks again.
+        let spread = |i: u32| match f64::from(i) / 100.0 {
+            ..0.2 => [f64::NAN; 3],
+            part => [1.0, 0.0, 1.0].map(|it| it * (1.0 - (2.0 * part - 1.0).abs())),
+        };
+        let series = Series::path("", (0..100).map(|i| [f64::from(i), 0.0]));
+        assert_eq!(indices(&series, 0..100, 0.02), [0, 99]);
+        let series = series.uncertain((0..100).map(spread));
+        let kept = indices(&series, 0..100, 0.02);
+        assert!(kept.len() < 30, "{kept:?}");
+        assert!([0, 19, 20, 99].iter().all(|end| kept.contains(end)), "{kept:?}");
+        let ellipses = series.ellipses().unwrap();
+        for pair in kept.windows(2).filter(|pair| pair[0] >= 20) {
+            for i in pair[0]..pair[1] {
+                let share = (i - pair[0]) as f64 / (pair[1] - pair[0]) as f64;
+                let [before, after] = [pair[0], pair[1]].map(|i| ellipses[i][0]);
+                let off = before + share * (after - before) - ellipses[i][0];
+                assert!(off.abs() <= COARSER * 0.02, "{off} at {i}");
+            }
         }
     }
 

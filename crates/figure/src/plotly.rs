@@ -75,6 +75,11 @@ fn trace(series: &Series, kept: &[usize]) -> Value {
     if let Some(times) = &series.times {
         trace["customdata"] = json!(pick(times));
     }
+    if let Some(ellipses) = series.ellipses() {
+        let part = |place: usize| ellipses.iter().map(|ellipse| ellipse[place]).collect::<Vec<_>>();
+        let parts = [0, 1, 2].map(|place| pick(&part(place)));
+        trace["meta"] = json!({ "ellipses": parts });
+    }
     if series.faint {
         trace["opacity"] = json!(0.45);
     }
@@ -143,6 +148,32 @@ mod tests {
         assert_eq!(drawn["data"][1]["text"], json!(["A1"]));
         assert_eq!(drawn["data"][1]["visible"], "legendonly");
         assert_eq!(drawn["layout"]["yaxis"]["scaleanchor"], "x");
+    }
+
+    #[test]
+    fn ellipses_come_through_thinned_as_their_points_are() {
+        let points = (0..3000).map(|i| [f64::from(i), f64::from(i / 1000)]);
+        let spread = |i: u32| match i {
+            0 => [f64::NAN; 3],
+            _ => [4.0, 1.2, 1.0].map(|part| part * f64::from(1 + i / 1000).powi(2)),
+        };
+        let path = Series::path("ours", points).timed((0..3000).map(f64::from));
+        let path = path.uncertain((0..3000).map(spread));
+        let drawn = figure(&Figure::new("f", "F").map().with(path), VIEW);
+        let list = |value: &Value| value.as_array().unwrap().clone();
+        let times = list(&drawn["data"][0]["customdata"]);
+        let parts = list(&drawn["data"][0]["meta"]["ellipses"]);
+        assert!(times.len() < 20 && parts.len() == 3, "{times:?}");
+        for (place, part) in parts.iter().enumerate() {
+            let part = list(part);
+            assert_eq!((part.len(), &part[0]), (times.len(), &Value::Null));
+            for (time, value) in times.iter().zip(part).skip(1) {
+                let times_longer = f64::from(1 + time.as_f64().unwrap() as u32 / 1000);
+                let expected = 5.991_f64.sqrt() * [2.0, 0.6, 0.8][place] * times_longer;
+                let value = value.as_f64().unwrap();
+                assert!((value - expected).abs() < 1e-5, "{value} after {time} s");
+            }
+        }
     }
 
     #[test]

@@ -1,3 +1,5 @@
+use crate::ellipse;
+
 /// Points with a name, and how they are marked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -10,6 +12,9 @@ pub struct Series {
     /// When each point was, in seconds of the clock of [`Figure::over_seconds`](crate::Figure::over_seconds): of a map, whose
     /// axes are no times.
     pub times: Option<Vec<f64>>,
+    /// How uncertain each point of a map is, where that is known: the variance along x, the covariance and the variance along y, in
+    /// the axes' unit squared. The page draws the ellipse of the point at the cursor.
+    pub spread: Option<Vec<[f64; 3]>>,
     /// Half the length of the error bars, where there are any.
     pub error: Option<Vec<f64>>,
     /// What stands beside the points, where anything does.
@@ -94,6 +99,7 @@ impl Series {
             x,
             y,
             times: None,
+            spread: None,
             error: None,
             labels: None,
             mark,
@@ -134,6 +140,11 @@ impl Series {
         Self { times: Some(times.into_iter().collect()), ..self }
     }
 
+    /// With the covariance of each point: variance along x, covariance, variance along y; `NaN` where none is known.
+    pub fn uncertain(self, spread: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        Self { spread: Some(spread.into_iter().collect()), ..self }
+    }
+
     /// With error bars of this half length.
     pub fn with_error(self, error: Vec<f64>) -> Self {
         Self { error: Some(error), ..self }
@@ -147,6 +158,11 @@ impl Series {
     /// Shown by the legend alone at first.
     pub fn hidden(self) -> Self {
         Self { hidden: true, ..self }
+    }
+
+    /// The [`ellipse`] of each point, where covariances are known.
+    pub(crate) fn ellipses(&self) -> Option<Vec<[f64; 3]>> {
+        Some(self.spread.as_ref()?.iter().map(|&spread| ellipse(spread)).collect())
     }
 
     /// Points and their error bars and labels; a bar or text that is missing is none.
