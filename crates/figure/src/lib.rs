@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod compare;
+mod contour;
 pub mod csv;
 mod ellipse;
 mod outline;
@@ -9,6 +10,7 @@ mod series;
 pub mod svg;
 mod thin;
 
+pub use contour::Grid;
 pub use ellipse::ellipse;
 pub use series::{Colour, Mark, Series};
 pub use thin::View;
