@@ -187,7 +187,7 @@ fn by_row(trace: &Trace, log: &[RangeRow]) -> (Vec<bool>, Vec<f64>) {
                 == (row.time_us, row.anchor, row.range)
         });
         let reception = next.map(|(_, reception)| *reception);
-        let nis = reception.and_then(|reception| reception.nis).unwrap_or(f64::NAN);
+        let nis = reception.and_then(|reception| reception.nis()).unwrap_or(f64::NAN);
         (reception.is_some_and(|reception| reception.taken), nis)
     };
     log.iter().map(of).unzip()

@@ -10,7 +10,7 @@ mod wheeled;
 use std::fmt::Debug;
 
 use kestirim_adaptive_kalman::Learning;
-use kestirim_kalman::Covariance;
+use kestirim_kalman::{Covariance, Innovation};
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_tracker::{Config, EpochMethod, Health, Outcome, RangeSample, Report};
 use nalgebra::SVector;
@@ -50,21 +50,30 @@ pub trait Follow: Debug {
 pub struct Reception {
     /// Whether it was taken in.
     pub taken: bool,
-    /// The normalised innovation squared of a range, from a tracker that weighs ranges one by one.
-    pub nis: Option<f64>,
+    /// The innovation of a range (m), its variance and NIS, from a tracker that weighs ranges one by one.
+    pub innovation: Option<Innovation<f64>>,
 }
 
 impl Reception {
     /// Of a tracker that weighs nothing.
     pub const fn unweighed(taken: bool) -> Self {
-        Self { taken, nis: None }
+        Self { taken, innovation: None }
     }
 
     /// Of a range that was weighed by itself, or refused.
     fn of_range<T: Scalar, E>(answer: &Result<Report<T>, E>) -> Self {
         let Ok(report) = answer else { return Self::unweighed(false) };
-        let nis = report.innovation.map(|innovation| innovation.nis.to_f64());
-        Self { taken: report.outcome != Outcome::Rejected, nis }
+        let innovation = report.innovation.map(|seen| Innovation {
+            innovation: seen.innovation.to_f64(),
+            variance: seen.variance.to_f64(),
+            nis: seen.nis.to_f64(),
+        });
+        Self { taken: report.outcome != Outcome::Rejected, innovation }
+    }
+
+    /// The normalised innovation squared.
+    pub fn nis(&self) -> Option<f64> {
+        Some(self.innovation?.nis)
     }
 }
 

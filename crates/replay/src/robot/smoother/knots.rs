@@ -93,7 +93,7 @@ impl Knots {
     /// that it had already. One that it weighed and left out may be of use.
     fn take(&mut self, setup: &Setup, range: Option<&(Range, Reception)>) {
         let Some((range, reception)) = range else { return };
-        if reception.taken || reception.nis.is_some() {
+        if reception.taken || reception.innovation.is_some() {
             let metres = range.metres - setup.bias(range.anchor);
             self.measured.push(Measured { knot: self.points.len(), anchor: range.anchor, metres });
         }

@@ -18,7 +18,7 @@ pub fn streams(recording: &Recording, tracks: &Tracks) -> Vec<Stream> {
         };
         let ranges = trace.ranges.iter().map(|(range, reception)| {
             let taken = f64::from(u8::from(reception.taken));
-            let nis = reception.nis.unwrap_or(f64::NAN);
+            let nis = reception.nis().unwrap_or(f64::NAN);
             (seconds(range.time_us), vec![range.anchor as f64, range.metres, taken, nis])
         });
         let names = ["anchor_index", "range_m", "taken", "nis"];
