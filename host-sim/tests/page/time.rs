@@ -110,3 +110,37 @@ fn mouse_and_keys_move_the_cursor_in_a_figure() {
     page.press(".");
     assert_ne!(told(), places[2]);
 }
+
+#[test]
+fn the_ellipse_of_a_place_follows_the_cursor() {
+    let server = Server::start(&["serve", "--port", "0"]);
+    for width in WIDTHS {
+        let Some(page) = explore(&server, "robot", width) else { return };
+        for id in ["plan", "dilution"] {
+            // Where its middle is from the dot, and how large it is, px.
+            let at = |share: f64| {
+                let script = format!(
+                    "{{ const s = document.querySelector('.clock input'); \
+                     s.value = Number(s.min) + {share} * (s.max - s.min); s.dispatchEvent(new Event('input')); \
+                     const box = '#figure-{id} .box '; \
+                     const [a, b] = ['.here:not([hidden])', '.ellipses circle'].map(it => \
+                     [...document.querySelectorAll(box + it)].at(-1).getBoundingClientRect()); \
+                     JSON.stringify([b.x + b.width / 2 - a.x - a.width / 2, b.y + b.height / 2 - a.y - a.height / 2, \
+                     b.width, b.height, b.x]) }}"
+                );
+                let text = page.evaluate(&script);
+                let numbers: [f64; 5] =
+                    serde_json::from_str(text.as_str().expect("text")).expect("numbers");
+                assert!(numbers[..2].iter().all(|off| off.abs() < 1.0), "{id}: {numbers:?}");
+                assert!(
+                    numbers[2..4].iter().all(|size| (2.0..200.0).contains(size)),
+                    "{id}: {numbers:?}"
+                );
+                numbers
+            };
+            assert_ne!(at(0.3)[4], at(0.7)[4], "{id}");
+        }
+        page.screenshot(&format!("time-ellipse-{width}.png"));
+        assert_quiet(&page, server.place());
+    }
+}

@@ -6,11 +6,13 @@ use kestirim_replay::robot::{Smoothed, Trace, doubts};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
+use super::links::Link;
 use super::recording::Recording;
 use super::track::Tracks;
 use super::{Robot, height, settings};
 use crate::Error;
 use crate::system::{Account, Settings, System, Table};
+use crate::text::printable;
 
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
@@ -19,6 +21,7 @@ struct Report {
     updates: usize,
     rejected: usize,
     lost_s: f64,
+    links: Vec<Link>,
     import: Vec<String>,
     warnings: Vec<String>,
     accuracy: Option<Accuracy>,
@@ -80,12 +83,14 @@ pub(super) fn account(
 ) -> Result<Account, Error> {
     let traces = tracks.traces.as_slice();
     let points = points(recording, traces.iter().map(Trace::last));
-    let found = settings::of_recording(recording, settings)?.found;
+    let setup = settings::of_recording(recording, settings)?;
+    let found = &setup.found;
     let report = Report {
         system: Robot::NAME,
         updates: traces.iter().map(Trace::taken).sum(),
         rejected: traces.iter().map(Trace::rejected).sum(),
         lost_s: traces.iter().map(Trace::lost_s).sum(),
+        links: Link::all(recording, &setup, traces),
         import: recording.import.clone(),
         warnings: warnings(recording, tracks, points.as_deref()),
         accuracy: Accuracy::of_recording(recording, traces),
@@ -106,8 +111,11 @@ pub(super) fn account(
     }
     account.fact("ranges taken in", report.updates.to_string());
     account.fact("ranges left out", report.rejected.to_string());
+    if let Some(worst) = worst(&report.links) {
+        account.fact("most left out", worst);
+    }
     account.fact("without a position", format!("{:.1} s", report.lost_s));
-    if let Some(found) = &found {
+    if let Some(found) = found {
         account.fact("height of the tag", height::in_words(found));
     }
     if let Some(points) = &report.points {
@@ -130,6 +138,14 @@ pub(super) fn account(
         }
     }
     Ok(account)
+}
+
+/// The anchor of which the largest share was left out, if any was.
+fn worst(links: &[Link]) -> Option<String> {
+    let shares = links.iter().filter_map(|link| Some((link, link.rejected_share?)));
+    let (link, share) =
+        shares.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, share)| *share > 0.0)?;
+    Some(format!("{}: {:.1} % of {}", printable(&link.anchor), 100.0 * share, link.ranges))
 }
 
 /// The points at which there is a position; none of a moving tag.

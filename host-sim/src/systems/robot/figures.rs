@@ -1,11 +1,15 @@
 //! What a recording and its track look like.
 
+pub mod dilution;
+pub mod links;
 pub mod plan;
 pub mod streams;
 
-use kestirim_replay::robot::{Event, Reception, Setup, Trace, TrackerKind};
+use kestirim_replay::robot::{Event, Setup, Trace, TrackerKind};
 
-use self::plan::{ellipse, rectangle, room};
+use self::links::Links;
+use self::plan::{around, rectangle, room};
+use super::links::{Link, table};
 use super::recording::Recording;
 use super::track::{Tracks, track};
 use crate::Error;
@@ -13,14 +17,12 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
 use crate::system::Answer;
 
-/// χ² of one degree of freedom, 95 %.
-const CHI_SQUARE_1: f64 = 3.841;
 /// Ellipses along a track.
 const ELLIPSES: usize = 30;
 /// Between the points of a static recording, s.
 const PAUSE_S: f64 = 0.5;
 
-/// The page's figures, with trilateration alone to compare with.
+/// The page's figures and its table, with trilateration alone to compare with.
 pub(super) fn draw(
     recording: &Recording,
     setup: &Setup,
@@ -43,10 +45,17 @@ pub(super) fn draw(
         others.push(smoothed.track("smoothed", smoothed.line()).coloured(Colour::Other(5)));
         errors.push(smoothed.error("smoothed").coloured(Colour::Other(5)));
     }
+    errors.push(shown.sigma("σ of the tracker").coloured(Colour::Other(3)));
+    let links = Links::new(&shown, setup);
+    answer.tables = vec![table(&Link::all(recording, setup, &tracks.traces))];
     answer.figures = vec![
         shown.plan("plan", others),
+        shown.dilution("dilution", setup),
         shown.ranges("ranges"),
-        shown.health("health"),
+        links.residuals("residuals"),
+        links.nis("nis"),
+        links.rejections("rejections"),
+        shown.dilution_over_time("hdop", setup),
         shown.position("position"),
         self::errors("error", errors),
     ];
@@ -75,6 +84,11 @@ impl<'a> Shown<'a> {
         Self { recording, traces, shifts_s }
     }
 
+    /// When something of a part is shown, s.
+    fn seconds(&self, part: usize, time_us: i64) -> f64 {
+        time_us as f64 * 1e-6 + self.shifts_s.get(part).copied().unwrap_or_default()
+    }
+
     /// A series over time with a gap after each part.
     fn over_time(
         &self,
@@ -83,9 +97,9 @@ impl<'a> Shown<'a> {
         points: impl Fn(usize, &Trace) -> Vec<(i64, f64)>,
     ) -> Series {
         let (mut xs, mut ys) = (Vec::new(), Vec::new());
-        for (index, (trace, shift_s)) in self.traces.iter().zip(&self.shifts_s).enumerate() {
+        for (index, trace) in self.traces.iter().enumerate() {
             for (time_us, value) in points(index, trace) {
-                xs.push(time_us as f64 * 1e-6 + shift_s);
+                xs.push(self.seconds(index, time_us));
                 ys.push(value);
             }
             xs.push(xs.last().copied().unwrap_or_default());
@@ -94,22 +108,23 @@ impl<'a> Shown<'a> {
         Series::new(name, mark, xs, ys)
     }
 
-    /// Every position that was found.
+    /// Every position that was found, with its time, and its covariance where the tracker knows any.
     pub fn track(&self, name: &str, mark: Mark) -> Series {
-        let positions = |trace: &Trace| {
-            let found = trace.epochs.iter().map(|epoch| match epoch.position {
-                Some([x, y, _]) => [x, y],
-                None => [f64::NAN; 2],
-            });
-            found.chain([[f64::NAN; 2]]).collect::<Vec<_>>()
-        };
-        let series = Series::path(name, self.traces.iter().flat_map(positions)).marked(mark);
-        series.timed(self.traces.iter().zip(&self.shifts_s).flat_map(|(trace, shift_s)| {
-            let times = trace.epochs.iter().map(|epoch| epoch.time_us);
-            // The gap after a part.
-            let gap = trace.epochs.last().map_or(0, |epoch| epoch.time_us);
-            times.chain([gap]).map(|time_us| time_us as f64 * 1e-6 + shift_s).collect::<Vec<_>>()
-        }))
+        let (mut places, mut times, mut spreads) = (Vec::new(), Vec::new(), Vec::new());
+        for (part, trace) in self.traces.iter().enumerate() {
+            for epoch in &trace.epochs {
+                places.push(epoch.position.map_or([f64::NAN; 2], |[x, y, _]| [x, y]));
+                times.push(self.seconds(part, epoch.time_us));
+                spreads.push(epoch.spread.unwrap_or([f64::NAN; 3]));
+            }
+            // A gap after each part.
+            places.push([f64::NAN; 2]);
+            times.push(times.last().copied().unwrap_or_default());
+            spreads.push([f64::NAN; 3]);
+        }
+        let is_known = spreads.iter().any(|[xx, ..]| xx.is_finite());
+        let series = Series::path(name, places).marked(mark).timed(times);
+        if is_known { series.uncertain(spreads) } else { series }
     }
 
     /// Where 95 of 100 positions would be if the tracker's covariance were right.
@@ -124,7 +139,7 @@ impl<'a> Shown<'a> {
                 if let (true, Some([x, y, _]), Some(spread)) =
                     (chosen, epoch.position, epoch.spread)
                 {
-                    points.extend(ellipse([x, y], spread));
+                    points.extend(around([x, y], spread));
                     points.push([f64::NAN; 2]);
                 }
             }
@@ -168,34 +183,13 @@ impl<'a> Shown<'a> {
         figure.with(Series::new("left out", Mark::Crosses, xs, ys).coloured(Colour::Alarm))
     }
 
-    /// What the tracker thinks of itself.
-    pub fn health(&self, id: &str) -> Figure {
-        let nis = |taken: bool| {
-            move |_: usize, trace: &Trace| -> Vec<(i64, f64)> {
-                let weighed =
-                    |reception: &Reception| reception.nis.filter(|_| reception.taken == taken);
-                let ranges = trace.ranges.iter();
-                ranges.filter_map(|(range, it)| Some((range.time_us, weighed(it)?))).collect()
-            }
-        };
+    /// Standard deviation of the position over time, as far as the tracker knows it.
+    fn sigma(&self, name: &str) -> Series {
         let sigma = |_: usize, trace: &Trace| {
             let epochs = trace.epochs.iter();
             epochs.filter_map(|e| Some((e.time_us, 100.0 * e.sigma_m()?))).collect()
         };
-        let bound = |_: usize, trace: &Trace| {
-            let epochs = &trace.epochs;
-            let ends = [epochs.first(), epochs.last()].into_iter().flatten();
-            ends.map(|epoch| (epoch.time_us, CHI_SQUARE_1)).collect()
-        };
-        Figure::new(id, "Health")
-            .over_seconds("NIS of a range; σ of the position, cm")
-            .logarithmic()
-            .showing(None, Some([1e-2, 1e3]))
-            .caption("95 % of the NIS are below the line if the model is right; what is left out is far above it.")
-            .with(self.over_time("NIS", Mark::Dots, nis(true)).coloured(Colour::Other(4)))
-            .with(self.over_time("NIS, left out", Mark::Crosses, nis(false)).coloured(Colour::Alarm))
-            .with(self.over_time("95 %", Mark::Dashes, bound).coloured(Colour::Limit))
-            .with(self.over_time("σ of the position, cm", Mark::Line, sigma).coloured(Colour::Ours))
+        self.over_time(name, self.line(), sigma)
     }
 
     /// Coordinates over time, with the truth where it is known.

@@ -9,6 +9,7 @@ pub mod account;
 mod calibrate;
 pub mod figures;
 mod height;
+pub mod links;
 mod online;
 pub mod paper;
 mod recorded;

@@ -30,7 +30,18 @@ fn every_synthetic_recording_opens_with_the_same_figures() {
     for (name, _) in Robot::SYNTHETIC {
         let answer = answer(&*open(name), &json!({}));
         let ids: Vec<_> = answer.figures.iter().map(|figure| figure.id.as_str()).collect();
-        assert_eq!(ids, ["plan", "ranges", "health", "position", "error"], "{name}");
+        let expected = [
+            "plan",
+            "dilution",
+            "ranges",
+            "residuals",
+            "nis",
+            "rejections",
+            "hdop",
+            "position",
+            "error",
+        ];
+        assert_eq!(ids, expected, "{name}");
         assert!(answer.warnings.is_empty(), "{name}: {:?}", answer.warnings);
         assert!(rmse_cm(&answer) < 40.0, "{name}: {} cm", rmse_cm(&answer));
     }
@@ -114,6 +125,64 @@ fn a_gate_leaves_out_what_a_wide_one_takes() {
     assert!(left_out(json!({ "gate": 2.0 })) > left_out(json!({})));
 }
 
+/// How many points of a figure are seen in all series whose name an anchor's begins.
+fn count(figure: &Figure, anchor: &str) -> usize {
+    let series = figure.series.iter().filter(|series| series.name == anchor);
+    series.flat_map(|series| &series.y).filter(|y| y.is_finite()).count()
+}
+
+#[test]
+fn each_anchors_ranges_are_told_apart_by_every_tracker() {
+    for tracker in ["lsq", "nls", "ekf", "aekf", "aekf-published", "default"] {
+        let answer = answer(&*open("crowded-round"), &json!({ "tracker": tracker }));
+        let is_weighed = ["ekf", "aekf", "default"].contains(&tracker);
+        for anchor in ["A1", "A2", "A3", "A4"] {
+            let ranges = count(figure(&answer, "ranges"), anchor);
+            assert!(ranges > 100, "{tracker} {anchor}: {ranges}");
+            // A first position is made of ranges that are not weighed.
+            let residuals = count(figure(&answer, "residuals"), anchor);
+            assert!(residuals + 10 > ranges, "{tracker} {anchor}: {residuals} of {ranges}");
+            assert_eq!(count(figure(&answer, "nis"), anchor) > 100, is_weighed, "{tracker}");
+            let bound = count(figure(&answer, "residuals"), &format!("{anchor} +2σ"));
+            assert_eq!(bound > 100, is_weighed, "{tracker}");
+            let shares = figure(&answer, "rejections");
+            assert!(count(shares, anchor) >= ranges, "{tracker} {anchor}");
+        }
+    }
+}
+
+#[test]
+fn the_share_that_was_left_out_is_of_the_last_ten_seconds() {
+    let answer = answer(&*open("crowded-round"), &json!({ "gate": 2.0 }));
+    let figure = figure(&answer, "rejections");
+    let most = figure.series.iter().flat_map(|it| &it.y).fold(0.0, |a: f64, b| a.max(*b));
+    assert!((20.0..=100.0).contains(&most), "{most} %");
+    // Somebody before each anchor in turn, and nobody in the end.
+    for series in &figure.series {
+        let least = series.y.iter().skip(100).fold(100.0, |a: f64, b| a.min(*b));
+        assert!(least < 5.0, "{}: {least} %", series.name);
+    }
+}
+
+#[test]
+fn the_path_knows_its_uncertainty_and_lies_over_the_dilution() {
+    for (tracker, known) in [("default", true), ("lsq", false)] {
+        let answer = answer(&*open("line"), &json!({ "tracker": tracker }));
+        for id in ["plan", "dilution"] {
+            let series = figure(&answer, id).series.iter().find(|it| it.name == "track").unwrap();
+            assert_eq!(series.spread.is_some(), known, "{tracker} {id}");
+            assert_eq!(series.times.as_ref().unwrap().len(), series.x.len());
+        }
+        let dilution = figure(&answer, "dilution");
+        assert!(dilution.series.iter().any(|it| it.name.starts_with("HDOP 1")), "{tracker}");
+        // Four anchors in the corners of a room.
+        let hdop = figure(&answer, "hdop");
+        let used = hdop.series.last().unwrap().y.iter().filter(|y| y.is_finite());
+        assert!(used.clone().count() > 10, "{tracker}");
+        assert!(used.clone().all(|y| (0.9..2.5).contains(y)), "{tracker}: {used:?}");
+    }
+}
+
 #[test]
 fn what_cannot_be_read_is_refused_in_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,9 +201,40 @@ fn what_cannot_be_read_is_refused_in_one_sentence() {
     assert!(refusal.contains("log.csv, line 2: expected a range"), "{refusal}");
     file("log.csv", "t,anchor,range\n0,A,2.2\n0,B,4.1\n0,C,4.3\n");
     let answer = answer(&*open(&files).unwrap(), &json!({}));
-    assert!(figure(&answer, "error").series.iter().all(|s| s.y.iter().all(|y| y.is_nan())));
+    let errors = figure(&answer, "error").series.iter().filter(|it| !it.name.starts_with('σ'));
+    assert!(errors.flat_map(|series| &series.y).all(|y| y.is_nan()));
     assert!(answer.disabled.iter().any(|(name, _)| *name == "calibrated"));
     files.add("points", file("points.csv", "point,x,y\nP,0,0\n"));
     files.add("imu", file("imu.csv", "t\n0\n"));
     assert!(open(&files).is_err());
+}
+
+#[test]
+fn zz_measure() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/robot");
+    for (name, extra) in [("plaza1", "odom"), ("labyrinth", "odom"), ("inrol_env1", "imu"), ("trek_m1l", "")] {
+        let mut files = Files::default();
+        for (field, file) in [("anchors", "anchors.csv"), ("log", "ranges.csv"), ("truth", "truth.csv")] {
+            let path = root.join(name).join(file);
+            if path.exists() { files.add(field, path); }
+        }
+        if !extra.is_empty() { files.add(extra, root.join(name).join(format!("{extra}.csv"))); }
+        let settings = Settings::new(settings::table(None));
+        let opened = Robot.open(Source::Files(files), &settings).unwrap();
+        for height in [0.0, 0.1, 0.2] {
+        let began = std::time::Instant::now();
+        let answer = answer(&*opened, &json!({ "height": height }));
+        let computed = began.elapsed();
+        let view = crate::figure::View { most_points: 700, window: None };
+        let drawn: Vec<_> = answer.figures.iter().map(|it| crate::figure::plotly::figure(it, view)).collect();
+        let all = began.elapsed();
+        println!("{name}: answer {computed:?}, with json {all:?}");
+        if height > 0.1 { for (figure, value) in answer.figures.iter().zip(&drawn) {
+            let series: Vec<_> = value["data"].as_array().unwrap().iter().map(|it| (it["name"].as_str().unwrap().to_owned(), it["x"].as_array().unwrap().len())).collect();
+            let full: Vec<_> = figure.series.iter().map(|it| it.x.len()).collect();
+            println!("  {}: {} bytes {series:?} of {full:?}", figure.id, value.to_string().len());
+        }
+        for row in &answer.tables[0].rows { println!("   {row:?}"); } }
+        }
+    }
 }

@@ -1,10 +1,7 @@
 //! The plan of a room: anchors, truth, and how sure a position is.
 
-use crate::figure::{Colour, Figure, Mark, Series};
+use crate::figure::{Colour, Figure, Mark, Series, ellipse};
 use crate::systems::robot::recording::{Recording, Truth};
-
-/// χ² of two degrees of freedom, 95 %.
-const CHI_SQUARE_2: f64 = 5.991;
 
 /// A map with the anchors, the rectangle about them, and the true path.
 pub fn room(id: &str, recording: &Recording) -> Figure {
@@ -46,15 +43,11 @@ pub(super) fn rectangle(name: &str, [x0, y0, x1, y1]: [f64; 4]) -> Series {
 }
 
 /// The ellipse that holds 95 % of a normal distribution.
-pub(super) fn ellipse([x, y]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Vec<[f64; 2]> {
-    let (mean, half) = (f64::midpoint(xx, yy), f64::midpoint(xx, -yy));
-    let root = half.hypot(xy);
-    let [long, short] = [mean + root, mean - root].map(|v| (CHI_SQUARE_2 * v.max(0.0)).sqrt());
-    let (sin, cos) = (xy.atan2(half) / 2.0).sin_cos();
+pub(super) fn around([x, y]: [f64; 2], spread: [f64; 3]) -> Vec<[f64; 2]> {
+    let [a, b, c] = ellipse(spread);
     let point = |step: u32| {
-        let (s, c) = (std::f64::consts::TAU * f64::from(step) / 24.0).sin_cos();
-        let (along, across) = (long * c, short * s);
-        [x + cos * along - sin * across, y + sin * along + cos * across]
+        let (v, u) = (std::f64::consts::TAU * f64::from(step) / 24.0).sin_cos();
+        [x + a * u, y + b * u + c * v]
     };
     (0..=24).map(point).collect()
 }
@@ -67,17 +60,21 @@ mod tests {
 
     #[test]
     fn an_ellipse_lies_along_its_longer_axis() {
-        let points = ellipse([1.0, 2.0], [2.5, 1.5, 2.5]);
+        let points = around([1.0, 2.0], [2.5, 1.5, 2.5]);
         let positions = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
         let [x0, y0, x1, y1] = Anchors { positions, ..Anchors::default() }.rectangle();
-        // Variances 4 along the diagonal and 1 across it.
-        let extent = (CHI_SQUARE_2 * 2.5).sqrt();
+        // χ² of two degrees of freedom; variances 4 along the diagonal and 1 across it.
+        let (chi_square, extent) = (5.991_f64, (5.991_f64 * 2.5).sqrt());
         for (found, expected) in [(x1 - 1.0, extent), (1.0 - x0, extent), (y1 - 2.0, extent)] {
             assert!((found - expected).abs() < 0.05 * extent, "{found} / {expected}");
         }
         assert!((y0 - (2.0 - extent)).abs() < 0.05 * extent);
         let farthest = points.iter().map(|&p| distance(p, [1.0, 2.0])).fold(0.0, f64::max);
-        assert!((farthest - 2.0 * CHI_SQUARE_2.sqrt()).abs() < 1e-9);
-        assert!((points[0][0] - 1.0 - (points[0][1] - 2.0)).abs() < 1e-9);
+        assert!((farthest - 2.0 * chi_square.sqrt()).abs() < 0.02, "{farthest}");
+        for [x, y] in points.iter().map(|[x, y]| [x - 1.0, y - 2.0]) {
+            let [along, across] = [(x + y) / 2_f64.sqrt(), (x - y) / 2_f64.sqrt()];
+            let square = along * along / 4.0 + across * across;
+            assert!((square - chi_square).abs() < 1e-9, "{square}");
+        }
     }
 }
