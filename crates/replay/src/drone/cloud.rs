@@ -3,12 +3,17 @@
 use kestirim_particle_filter::{Moments, Particles, PointMass};
 use kestirim_scalar::Scalar;
 
+use super::Region;
+use super::density::Weighed;
+
 /// Share of the weight that the heaviest carry; the others are drawn apart.
 const SHARE: f64 = 0.9;
 /// Points of an ellipse.
 const CORNERS: u32 = 64;
 /// Most particles of each kind that are drawn.
 const MOST: usize = 1500;
+/// Places of equal weight that stand for all.
+const SAMPLE: usize = 240;
 
 /// Particles or lattice points, and the ellipse that stands for them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,6 +28,10 @@ pub struct Cloud {
     pub factor: [[f64; 2]; 2],
     /// Effective number of particles.
     pub effective: f64,
+    /// Where nine tenths of the weight are, and how much is known.
+    pub region: Region,
+    /// A few places that all weigh the same, drawn by systematic resampling without chance, m.
+    pub sample: Vec<[f32; 2]>,
 }
 
 impl Cloud {
@@ -33,7 +42,7 @@ impl Cloud {
     ) -> Self {
         let moments = particles.moments_of(|state| [state[0], state[1]]);
         let states = (0..particles.len()).filter_map(|index| particles.state(index));
-        Self::new(states, particles.log_weights(), &moments, effective)
+        Self::new(states, particles.log_weights(), &moments, effective, None)
     }
 
     /// Of the points of a lattice likewise.
@@ -42,7 +51,10 @@ impl Cloud {
     ) -> Self {
         let points = (0..lattice.len()).filter_map(|index| lattice.point(index));
         let effective = lattice.effective().to_f64();
-        Self::new(points, lattice.log_weights(), &lattice.moments(), effective)
+        // Points of a space of more dimensions lie at random in the plane.
+        let size = || lattice.region().width().iter().map(|side| side.to_f64()).product::<f64>();
+        let room = (D == 2).then(|| size() / lattice.len() as f64);
+        Self::new(points, lattice.log_weights(), &lattice.moments(), effective, room)
     }
 
     fn new<T: Scalar, const D: usize, const K: usize>(
@@ -50,23 +62,38 @@ impl Cloud {
         log_weights: &[T],
         moments: &Moments<T, K>,
         effective: f64,
+        room: Option<f64>,
     ) -> Self {
         let (mut heavy, mut light) = (Vec::new(), Vec::new());
         let least = least_of_the_heaviest(log_weights.iter().map(|log| log.to_f64()).collect());
+        let mut points = Vec::with_capacity(log_weights.len());
         for (state, log_weight) in states.zip(log_weights) {
-            let kind = if log_weight.to_f64() >= least { &mut heavy } else { &mut light };
-            kind.push([state[0], state[1]].map(|axis| axis.to_f64() as f32));
+            let (place, log_weight) = ([state[0], state[1]].map(T::to_f64), log_weight.to_f64());
+            let kind = if log_weight >= least { &mut heavy } else { &mut light };
+            kind.push(place.map(|axis| axis as f32));
+            points.push((place, log_weight.exp()));
         }
-        let (mean, factor) = (moments.mean(), moments.factor());
+        let (mean, factor, deviation) = (moments.mean(), moments.factor(), moments.deviation());
         let factor = [0, 1].map(|row| [factor[row][0].to_f64(), factor[row][1].to_f64()]);
-        let mean = [mean[0].to_f64(), mean[1].to_f64()];
-        Self { heavy: thinned(&heavy), light: thinned(&light), mean, factor, effective }
+        let [mean, deviation] = [mean, deviation].map(|it| [it[0], it[1]].map(T::to_f64));
+        Self {
+            region: Region::of(&points, mean, deviation, room, SHARE),
+            sample: sampled(&points),
+            heavy: thinned(&heavy),
+            light: thinned(&light),
+            mean,
+            factor,
+            effective,
+        }
     }
 
     /// The same, as many metres further to the east and north.
     pub fn moved(mut self, by: [f64; 2]) -> Self {
-        for place in self.heavy.iter_mut().chain(&mut self.light) {
+        for place in self.heavy.iter_mut().chain(&mut self.light).chain(&mut self.sample) {
             *place = [place[0] + by[0] as f32, place[1] + by[1] as f32];
+        }
+        for [x, y] in self.region.border.iter_mut().flatten() {
+            (*x, *y) = (*x + by[0], *y + by[1]);
         }
         self.mean = [self.mean[0] + by[0], self.mean[1] + by[1]];
         self
@@ -103,6 +130,20 @@ fn least_of_the_heaviest(mut logs: Vec<f64>) -> f64 {
     last.copied().unwrap_or(f64::NEG_INFINITY)
 }
 
+/// As many of each as its weight says.
+fn sampled(points: &[Weighed]) -> Vec<[f32; 2]> {
+    let all: f64 = points.iter().map(|(_, weight)| weight).sum();
+    let step = all / SAMPLE as f64;
+    let (mut sample, mut sum) = (Vec::with_capacity(SAMPLE), 0.0);
+    for (place, weight) in points {
+        sum += weight;
+        while sample.len() < SAMPLE && sum > (sample.len() as f64 + 0.5) * step {
+            sample.push(place.map(|axis| axis as f32));
+        }
+    }
+    sample
+}
+
 /// Every so manieth.
 fn thinned(places: &[[f32; 2]]) -> Vec<[f32; 2]> {
     places.iter().step_by(places.len().div_ceil(MOST).max(1)).copied().collect()
@@ -118,6 +159,13 @@ mod tests {
         assert!((least_of_the_heaviest(logs.to_vec()) - logs[4]).abs() < 1e-12);
         assert!(least_of_the_heaviest(vec![0.0; 20]).abs() < 1e-12);
         assert!(least_of_the_heaviest(Vec::new()).is_infinite());
+    }
+
+    #[test]
+    fn a_sample_has_as_many_of_each_as_it_weighs() {
+        let sample = sampled(&[([0.0, 1.0], 0.5), ([2.0, 3.0], 0.0), ([4.0, 5.0], 1.5)]);
+        let count = |place| sample.iter().filter(|it| **it == place).count();
+        assert_eq!([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]].map(count), [60, 0, 180]);
     }
 
     #[test]

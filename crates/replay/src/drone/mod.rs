@@ -5,6 +5,7 @@
 
 mod check;
 mod cloud;
+mod density;
 mod error;
 mod estimate;
 mod flight;
@@ -15,6 +16,7 @@ mod trace;
 
 pub use self::check::check;
 pub use self::cloud::Cloud;
+pub use self::density::Region;
 pub use self::error::Error;
 pub use self::estimate::Estimate;
 pub use self::flight::{
