@@ -96,6 +96,35 @@ impl Deviations {
         }
     }
 
+    /// By a Kalman filter in doubles, where gusts (of a model that has any) are as strong as another of its flights found them.
+    ///
+    /// # Errors
+    /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample.
+    pub fn follow_as(&self, found: &Followed, options: &Options) -> Result<Followed, Error> {
+        let scalar = ScalarKind::F64;
+        let Some(extended) = &self.model.extended else {
+            let assumed = Assumed::of(&self.model, &self.log.outputs, options);
+            return estimators::kalman(&self.model, &self.log, &assumed, scalar);
+        };
+        let times = extended.gust.zip(found.gust).map(|((said, _), found)| {
+            let (said, found) = (said[0].hypot(said[1]), found[0].hypot(found[1]));
+            if said > 0.0 { found / said } else { 1.0 }
+        });
+        let tried = [times.unwrap_or(1.0)];
+        extended::follow_in(&tried, &self.model, extended, &self.log, options, scalar)
+    }
+
+    /// Its first lines, no more than so many.
+    pub fn beginning(&self, lines: usize) -> Self {
+        let samples: Vec<_> = self.log.samples.iter().take(lines).cloned().collect();
+        let end = samples.last().map_or(i64::MIN, |sample| sample.t_us);
+        let truth = self.truth.as_ref().map(|truth| {
+            truth.iter().take_while(|(t_us, _)| *t_us <= end).copied().collect::<Truth>()
+        });
+        let log = Log { outputs: self.log.outputs.clone(), samples, ..self.log };
+        Self { model: self.model.clone(), log, truth, ..*self }
+    }
+
     /// An estimate as the log has its values.
     pub fn absolute(&self, estimate: &Estimate) -> SVector<f64, 4> {
         estimate.state + SVector::from(self.origin.0)

@@ -86,6 +86,21 @@ pub(super) fn follow(
     scalar: ScalarKind,
 ) -> Result<Followed, Error> {
     let tried = if extended.gust.is_some() { &GUSTS[..] } else { &[1.0] };
+    follow_in(tried, model, extended, log, options, scalar)
+}
+
+/// The same, where gusts are of one of so many times what the model says.
+///
+/// # Errors
+/// [`Error::Estimator`] or [`Error::Sample`].
+pub(super) fn follow_in(
+    tried: &[f64],
+    model: &Model,
+    extended: &Extended,
+    log: &Log,
+    options: &Options,
+    scalar: ScalarKind,
+) -> Result<Followed, Error> {
     let mut best: Result<(f64, Followed), Error> = Err(Error::TooShort);
     for &gust in tried {
         let flight = Flight { model, extended, log, options, gust };

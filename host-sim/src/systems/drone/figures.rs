@@ -1,13 +1,15 @@
 //! What a flight looks like, measurement by measurement.
 
 mod cloud;
+mod knowledge;
+mod losses;
 pub mod streams;
 
-use kestirim_air_to_ground::Channel;
-use kestirim_replay::drone::{EnvironmentKind, Estimate, Quantity, Track};
+use kestirim_replay::drone::{EnvironmentKind, Quantity, Track};
 
+use self::losses::Predicted;
 use super::recording::Recording;
-use super::settings::{channel, expected_loss_db};
+use super::settings::channel;
 use super::simulate::{moving_user, trajectory};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::{Answer, Settings};
@@ -26,24 +28,32 @@ pub(super) fn draw(recording: &Recording, settings: &Settings, track: &Track, an
         }
         Recording::Flight(_) => (None, None),
     };
-    let drawing = Drawing { recording, track, now, channel };
+    let predicted = Predicted::of(track, channel.as_ref());
+    if let Some(share) = Predicted::share(&predicted) {
+        let within = format!("{:.0} % of {}", 100.0 * share, predicted.len());
+        answer.fact("measured within the predicted 95 % band", within);
+    }
+    let drawing = Drawing { recording, track, now };
     let errors = track.estimates.iter().map(|estimate| track.error_m(estimate).unwrap_or(f64::NAN));
     let spread = track.estimates.iter().map(|estimate| estimate.sd_m).collect();
-    let error = [("error", Colour::Ours, errors.collect())];
-    let mut spreads = vec![("spread, m", Colour::Ours, spread)];
-    if plane_m.is_some() {
-        let effective = track.estimates.iter().map(|it| it.effective().unwrap_or(f64::NAN));
-        spreads.push(("effective particles", Colour::Other(1), effective.collect()));
-    }
+    let searched_m2 = match recording {
+        Recording::Flight(recorded) => recorded.area.as_ref().map(|area| area.size()),
+        Recording::Moving | Recording::Staying => plane_m.map(|side_m| side_m * side_m),
+    };
+    let known = knowledge::regions(track);
     answer.figures = vec![
         drawing.map(plane_m),
-        drawing.over_time("error", ("Error", "distance of the estimate from the user, m"), error),
         drawing.over_time(
-            "spread",
-            ("Spread of what is believed, and how many particles count", "m; particles"),
-            spreads,
+            "error",
+            ("Error", "distance of the estimate from the user, m"),
+            ("error", errors.collect()),
         ),
-        drawing.losses(),
+        drawing.over_time("spread", ("Spread of what is believed", "m"), ("spread, m", spread)),
+        losses::figure(track, channel.as_ref(), &predicted),
+        cloud::at_moments(track, &known),
+        knowledge::region(&known),
+        knowledge::information(&known, searched_m2),
+        knowledge::effective(&known),
     ];
 }
 
@@ -53,8 +63,6 @@ struct Drawing<'a> {
     track: &'a Track,
     /// Counted from 0.
     now: usize,
-    /// By whose channel losses are expected, if that is known.
-    channel: Option<Channel<f64>>,
 }
 
 impl Drawing<'_> {
@@ -109,53 +117,24 @@ impl Drawing<'_> {
             .with(marked("estimate now", shown.place, String::new(), Colour::Ours))
     }
 
-    /// Values after each measurement, each with a name and a colour.
+    /// A value after each measurement, with its name.
     fn over_time(
         &self,
         id: &str,
         (title, label): (&str, &str),
-        lines: impl IntoIterator<Item = (&'static str, Colour, Vec<f64>)>,
+        (name, values): (&str, Vec<f64>),
     ) -> Figure {
         let times: Vec<f64> =
             self.track.estimates.iter().map(|it| self.track.seconds(it)).collect();
-        let lines: Vec<_> = lines.into_iter().collect();
-        let highest = lines.iter().flat_map(|(.., values)| values).copied().fold(0.0, f64::max);
+        let highest = values.iter().copied().fold(0.0, f64::max);
         let now = Series::path("now", [[times[self.now], 0.0], [times[self.now], highest]]);
-        let lines = lines.into_iter().map(|(name, colour, values)| {
-            Series::line(name, times.clone(), values).coloured(colour)
-        });
         Figure::new(id, title)
             .over_seconds(label)
             .caption(
                 "The broken line is now. What needs the truth is not shown where nobody knows it.",
             )
-            .with_all(lines)
+            .with(Series::line(name, times, values).coloured(Colour::Ours))
             .with(now.marked(Mark::Dashes).coloured(Colour::Truth))
-    }
-
-    /// What was measured, and what the channel expects where it is known.
-    fn losses(&self) -> Figure {
-        let track = self.track;
-        let begin = track.stops.first().map_or(0.0, |stop| stop.t);
-        let (times, losses) = track.stops.iter().map(|stop| (stop.t - begin, stop.loss)).unzip();
-        let expected = |name: &str, place: &dyn Fn(&Estimate) -> Option<[f64; 2]>, colour| {
-            let channel = self.channel.as_ref()?;
-            let points = track.estimates.iter().filter_map(|estimate| {
-                let stop = track.stop(estimate);
-                let loss = expected_loss_db(channel, &stop, place(estimate)?)?;
-                Some([track.seconds(estimate), loss])
-            });
-            let (times, losses) = points.map(|[t, loss]| (t, loss)).unzip();
-            Some(Series::line(name, times, losses).coloured(colour))
-        };
-        let at_user = expected("expected at the user", &|it| track.user(it), Colour::Truth);
-        let at_estimate = expected("expected at the estimate", &|it| Some(it.place), Colour::Ours);
-        Figure::new("path-loss", "Path loss")
-            .over_seconds("path loss, or negative level, dB")
-            .caption("What is expected is the channel's mean, with and without a line of sight.")
-            .with(Series::new("measured", Mark::Dots, times, losses).coloured(Colour::Other(4)))
-            .with_all(at_user)
-            .with_all(at_estimate)
     }
 }
 

@@ -10,7 +10,8 @@ use super::*;
 use crate::system::{AnySystem, Opened, Source, Wanted};
 use crate::table::Found;
 
-const IDS: [&str; 4] = ["map", "error", "spread", "path-loss"];
+const IDS: [&str; 8] =
+    ["map", "error", "spread", "path-loss", "clouds", "region", "information", "effective"];
 
 fn open(name: &str) -> Box<dyn Opened> {
     let settings = Settings::new(settings::table(None));
@@ -311,5 +312,19 @@ fn firmware_says_which_filter_and_what_differs() {
         let firmware = settings::firmware(recording, &settings);
         println!("{{\n{firmware}\n}}");
         assert!(firmware.contains(expected), "{firmware}");
+    }
+}
+
+#[test]
+fn tmp_timing() {
+    for name in ["moving", "staying"] {
+        let opened = open(name);
+        for k in 0..4 {
+            let sent = json!({ "seed": k + 5 });
+            let t = std::time::Instant::now();
+            let a = answer(&*opened, &sent);
+            let whole = t.elapsed();
+            println!("TMP {name} {whole:?} {:?}", a.facts);
+        }
     }
 }

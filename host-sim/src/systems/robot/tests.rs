@@ -212,29 +212,56 @@ fn what_cannot_be_read_is_refused_in_one_sentence() {
 #[test]
 fn zz_measure() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/robot");
-    for (name, extra) in [("plaza1", "odom"), ("labyrinth", "odom"), ("inrol_env1", "imu"), ("trek_m1l", "")] {
+    for (name, extra) in
+        [("plaza1", "odom"), ("labyrinth", "odom"), ("inrol_env1", "imu"), ("trek_m1l", "")]
+    {
         let mut files = Files::default();
-        for (field, file) in [("anchors", "anchors.csv"), ("log", "ranges.csv"), ("truth", "truth.csv")] {
+        for (field, file) in
+            [("anchors", "anchors.csv"), ("log", "ranges.csv"), ("truth", "truth.csv")]
+        {
             let path = root.join(name).join(file);
-            if path.exists() { files.add(field, path); }
+            if path.exists() {
+                files.add(field, path);
+            }
         }
-        if !extra.is_empty() { files.add(extra, root.join(name).join(format!("{extra}.csv"))); }
+        if !extra.is_empty() {
+            files.add(extra, root.join(name).join(format!("{extra}.csv")));
+        }
         let settings = Settings::new(settings::table(None));
         let opened = Robot.open(Source::Files(files), &settings).unwrap();
         for height in [0.0, 0.1, 0.2] {
-        let began = std::time::Instant::now();
-        let answer = answer(&*opened, &json!({ "height": height }));
-        let computed = began.elapsed();
-        let view = crate::figure::View { most_points: 700, window: None };
-        let drawn: Vec<_> = answer.figures.iter().map(|it| crate::figure::plotly::figure(it, view)).collect();
-        let all = began.elapsed();
-        println!("{name}: answer {computed:?}, with json {all:?}");
-        if height > 0.1 { for (figure, value) in answer.figures.iter().zip(&drawn) {
-            let series: Vec<_> = value["data"].as_array().unwrap().iter().map(|it| (it["name"].as_str().unwrap().to_owned(), it["x"].as_array().unwrap().len())).collect();
-            let full: Vec<_> = figure.series.iter().map(|it| it.x.len()).collect();
-            println!("  {}: {} bytes {series:?} of {full:?}", figure.id, value.to_string().len());
-        }
-        for row in &answer.tables[0].rows { println!("   {row:?}"); } }
+            let began = std::time::Instant::now();
+            let answer = answer(&*opened, &json!({ "height": height }));
+            let computed = began.elapsed();
+            let view = crate::figure::View { most_points: 700, window: None };
+            let drawn: Vec<_> =
+                answer.figures.iter().map(|it| crate::figure::plotly::figure(it, view)).collect();
+            let all = began.elapsed();
+            println!("{name}: answer {computed:?}, with json {all:?}");
+            if height > 0.1 {
+                for (figure, value) in answer.figures.iter().zip(&drawn) {
+                    let series: Vec<_> = value["data"]
+                        .as_array()
+                        .unwrap()
+                        .iter()
+                        .map(|it| {
+                            (
+                                it["name"].as_str().unwrap().to_owned(),
+                                it["x"].as_array().unwrap().len(),
+                            )
+                        })
+                        .collect();
+                    let full: Vec<_> = figure.series.iter().map(|it| it.x.len()).collect();
+                    println!(
+                        "  {}: {} bytes {series:?} of {full:?}",
+                        figure.id,
+                        value.to_string().len()
+                    );
+                }
+                for row in &answer.tables[0].rows {
+                    println!("   {row:?}");
+                }
+            }
         }
     }
 }

@@ -1,10 +1,16 @@
 //! What a flight looks like: both estimators beside each other, and what their poles and Q/R cost.
 
+mod innovations;
+mod modes;
 mod poles;
 pub mod streams;
+mod sweep;
 mod synthetic;
+mod zeros;
 
-use kestirim_replay::uav::{Estimate, EstimatorKind};
+use std::borrow::Cow;
+
+use kestirim_replay::uav::{Estimate, EstimatorKind, Followed};
 use nalgebra::SVector;
 
 use super::account::accuracy::Accuracy;
@@ -61,10 +67,18 @@ pub(super) fn draw(
     };
     answer.figures.extend((0..4).map(|state| drawn(state, ours, [luenberger, kalman])));
     answer.figures.push(error(ours, [luenberger, kalman]));
-    let options = options(settings);
+    answer.figures.push(innovations::nis(kalman));
+    answer.figures.push(innovations::whiteness(ours, kalman));
+    let (flight, options) = (&ours.flight, options(settings));
+    let plant = poles::of_model(flight)?;
+    answer.figures.push(zeros::figure(&flight.model, &flight.log.outputs, &plant));
+    answer.tables.push(modes::table(&plant));
     match recording {
         Recording::Logged(_) => {
-            answer.figures.push(poles::of_log(&ours.flight, &options, luenberger.is_some())?);
+            let found = kalman
+                .map_or_else(|| Cow::Owned(Followed::default()), |it| Cow::Borrowed(&it.followed));
+            answer.figures.push(poles::of_log(flight, &options, luenberger.is_some())?);
+            answer.figures.push(sweep::of_log(flight, &found, &options));
         }
         Recording::Synthetic(inputs) => {
             synthetic::draw(&Simulation::of(settings, *inputs), &options, answer);

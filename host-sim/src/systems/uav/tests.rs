@@ -38,7 +38,18 @@ fn synthetic_flights_answer_with_the_same_figures_whatever_the_settings() {
         let first = ids(json!({}));
         assert_eq!(
             first,
-            ["alpha", "pitch-rate", "airspeed", "pitch", "error", "poles", "against"]
+            [
+                "alpha",
+                "pitch-rate",
+                "airspeed",
+                "pitch",
+                "error",
+                "nis",
+                "whiteness",
+                "zeros",
+                "poles",
+                "against"
+            ]
         );
         for sent in [
             json!({ "noise": "none", "gain": "varying", "wrong-start": 0 }),
@@ -192,4 +203,18 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
     fs::write(&log, "t,delta_e,delta_t,q\n0,0,0,x\n").unwrap();
     let refusal = Recording::read(&files).unwrap_err().to_string();
     assert!(refusal.contains("line 2"), "{refusal}");
+}
+
+#[test]
+fn tmp_timing() {
+    for name in ["constant", "sine"] {
+        let opened = open(name);
+        for k in 0..4 {
+            let sent = json!({ "seed": k + 5 });
+            let t = std::time::Instant::now();
+            let a = answer(&*opened, &sent);
+            let whole = t.elapsed();
+            println!("TMP {name} {whole:?} {:?}", a.facts);
+        }
+    }
 }

@@ -4,8 +4,13 @@ use kestirim_replay::uav::{
     self, Deviations, Estimate, EstimatorKind, Followed, Log, Model, Plant, Sample,
 };
 
+use kestirim_observer_design::riccati;
+use kestirim_simulate::with_outputs;
+use nalgebra::{SMatrix, SVector};
+
 use super::recording::{Logged, Recording};
 use super::settings::{NEEDS_TRIM, Simulation, options};
+use super::simulate::design::Kind;
 use super::simulate::flight::{Flight, Moment};
 use super::simulate::scenario::INTERVAL_S;
 use crate::Error;
@@ -54,7 +59,10 @@ impl Track {
                 let (kind, flight) = (simulation.kind(&options), &simulation.flight);
                 let moments = flight.follow(&kind, options.scalar, simulation.seed);
                 let moments = moments.map_err(|problem| recording.refused(problem.to_string()))?;
-                Ok(simulated(flight, &moments))
+                let mut track = simulated(flight, &moments);
+                let normalised = with_outputs!(flight.outputs, normalised, flight, &kind, &moments);
+                track.followed.normalised = normalised.unwrap_or_default();
+                Ok(track)
             }
         }
     }
@@ -89,6 +97,41 @@ pub(super) fn refused(error: uav::Error) -> Error {
         uav::Error::NoTrim => format!("--absolute {NEEDS_TRIM}"),
         other => other.to_string(),
     })
+}
+
+/// Innovations of a simulated flight in standard deviations, as its Kalman filter expects them; none of an observer.
+///
+/// Those of a time together have the covariance C P Cᵀ + R; they are made independent of each other by its Cholesky factor, as if they
+/// were taken in one by one.
+fn normalised<const P: usize>(
+    c: &SMatrix<f64, P, 4>,
+    flight: &Flight,
+    kind: &Kind,
+    moments: &[Moment],
+) -> Option<Vec<Vec<f64>>> {
+    let (Kind::Matched(noise) | Kind::TimeVarying(noise)) = kind else { return None };
+    let plant = flight.plant.discrete(INTERVAL_S);
+    let (q, r) = (noise.process(&plant), noise.measurement(c));
+    let mut prior = match kind {
+        Kind::TimeVarying(_) => {
+            let off = SVector::from(flight.truth) - SVector::from(flight.start);
+            SMatrix::from_diagonal(&off.component_mul(&off))
+        }
+        _ => riccati(&plant.a, c, &q, &r).ok()?.prior,
+    };
+    let mut normalised = vec![Vec::with_capacity(moments.len()); P];
+    for moment in moments {
+        let expected = (c * prior * c.transpose() + r).cholesky()?;
+        let whitened = c * (moment.sample.y - moment.estimate);
+        let whitened = expected.l().solve_lower_triangular(&whitened)?;
+        for (all, one) in normalised.iter_mut().zip(whitened.iter()) {
+            all.push(*one);
+        }
+        let gain = expected.solve(&(c * prior)).transpose();
+        let posterior = prior - gain * c * prior;
+        prior = plant.a * posterior * plant.a.transpose() + q;
+    }
+    Some(normalised)
 }
 
 /// A simulated flight as a log would have it.

@@ -3,7 +3,7 @@
 use kestirim_observer_design::{Complex, Discrete, eigenvalues, riccati};
 use kestirim_replay::uav::{Assumed, Deviations, Model, Options, rows};
 use kestirim_uav_estimator::Step;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 use super::{KALMAN, LUENBERGER};
 use crate::Error;
@@ -30,6 +30,14 @@ pub(super) fn figure(plant: &[[f64; 2]], kalman: &[[f64; 2]], luenberger: &[[f64
         .with(marks("plant", plant, Colour::Truth).marked(Mark::Crosses))
         .with(marks(LUENBERGER.0, luenberger, LUENBERGER.1))
         .with(marks(KALMAN.0, kalman, KALMAN.1))
+}
+
+/// Poles of a flight's model.
+pub(super) fn of_model(flight: &Deviations) -> Result<Vec<[f64; 2]>, Error> {
+    let interval = flight.log.interval_s;
+    let step = flight.model.dynamics.over(interval, interval, &SVector::zeros());
+    let step = step.map_err(|error| Error::Usage(error.to_string()))?;
+    Ok(of(&step.transition.a, interval))
 }
 
 /// Poles of a logged flight: of the model, of the filter when it has settled, and of the observer, if there is one.
