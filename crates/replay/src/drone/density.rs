@@ -54,17 +54,18 @@ impl Region {
         let mut points: Vec<_> =
             points.iter().copied().filter(|(_, weight)| *weight > LEAST * most).collect();
         let all: f64 = points.iter().map(|(_, weight)| weight).sum();
-        points.iter_mut().for_each(|(_, weight)| *weight /= all);
+        for (_, weight) in &mut points {
+            *weight /= all;
+        }
         let effective = 1.0 / points.iter().map(|(_, weight)| weight * weight).sum::<f64>();
         // A cloud that is a single place still has some room.
         let scott = deviation.map(|sigma| sigma.max(1e-3) * effective.powf(-1.0 / 6.0));
-        let widths = match room {
-            Some(room) => vec![[ROOM * room.sqrt(); 2]],
-            None => {
-                let wide = WIDE.iter().map(|width| scott.map(|scott| width * scott));
-                let narrow = NARROW.iter().map(|width| [width * scott[0].max(scott[1]); 2]);
-                wide.chain(narrow).collect()
-            }
+        let widths = if let Some(room) = room {
+            vec![[ROOM * room.sqrt(); 2]]
+        } else {
+            let wide = WIDE.iter().map(|width| scott.map(|scott| width * scott));
+            let narrow = NARROW.iter().map(|width| [width * scott[0].max(scott[1]); 2]);
+            wide.chain(narrow).collect()
         };
         let grid = Grid::around(&points, mean, deviation, widths[0]);
         let counted = grid.counted(&points);
