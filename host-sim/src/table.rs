@@ -55,9 +55,13 @@ pub fn read<T>(
     read_log(path, &table, columns, row).map(drop)
 }
 
-/// Whether a file is a table with these columns.
+/// Whether a file is a table with these columns, by its beginning.
 pub fn has<const N: usize>(path: &Path, names: [&str; N]) -> bool {
-    read(path, "a table", |header| header.require(names), |_, _| Ok(())).is_ok()
+    let options = Options { strict: true, ..Options::default() };
+    let table = Log { what: "a table", usual_step_s: None, options: &options };
+    let header = |header: &Header<'_>| header.require(names);
+    text::beginning(path)
+        .is_ok_and(|bytes| parse(path, &bytes, &table, header, |_, _| Ok(())).is_ok())
 }
 
 /// Reads a log: as [`read`], but up to a hundredth of its lines, which `row` refuses without having changed anything, are

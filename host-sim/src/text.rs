@@ -1,7 +1,7 @@
 //! Text files that are no tables, read so that every complaint names the file and the line; and text for people.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
@@ -10,6 +10,8 @@ use crate::Error;
 
 /// Largest file that is read into memory, bytes.
 const LARGEST: u64 = 1 << 30;
+/// Enough to see of a table what it is, bytes.
+const BEGINNING: u64 = 1 << 16;
 
 /// What a file holds.
 ///
@@ -21,6 +23,21 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
         _ => Err(io::Error::other("it is larger than 1 GiB, which no log of use is")),
     });
     read.map_err(|source| Error::Read { path: path.to_path_buf(), source })
+}
+
+/// The first whole lines of a file, some tens of kilobytes of it at most.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+    regular(path)?;
+    let mut bytes = Vec::new();
+    File::open(path)?.take(BEGINNING).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 == BEGINNING {
+        let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        bytes.truncate(whole);
+    }
+    Ok(bytes)
 }
 
 /// How large a file is, in bytes. A pipe or a device may have no end, or never begin.

@@ -158,3 +158,50 @@ fn nothing_found(
     let names = listed(names.iter().map(String::as_str), MOST_NAMED);
     Error::Usage(format!("no system reads {names}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::env;
+
+    use super::super::recorded::{DataFile, Recorded};
+    use super::*;
+    use crate::systems::ALL;
+
+    /// Files of a recording that lie in a folder, with their fields; none if one of them is made of others.
+    fn files(recorded: &Recorded, folder: &Path) -> Option<BTreeMap<PathBuf, &'static str>> {
+        let files = recorded.files.iter().map(|(field, file)| match file {
+            DataFile::There(path) => Some((folder.join(path), *field)),
+            DataFile::Made(_) => None,
+        });
+        files.collect()
+    }
+
+    #[test]
+    fn recordings_of_every_system_are_recognised() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+        if !folder.is_dir() {
+            let required = env::var("KESTIRIM_REQUIRE_DATA").is_ok_and(|value| value == "1");
+            assert!(!required, "KESTIRIM_REQUIRE_DATA=1, but {} is absent", folder.display());
+            eprintln!("SKIPPED: recordings are recognised: {} is absent", folder.display());
+            return;
+        }
+        let mut looked_at = 0;
+        for system in ALL {
+            let all = system.recorded().iter().flat_map(|study| study.recordings);
+            for recorded in all.filter(|recorded| recorded.is_ours()) {
+                let Some(files) = files(recorded, &folder) else { continue };
+                let paths: Vec<_> = files.keys().cloned().collect();
+                let found = Recognised::of(&ALL, "", &paths, &Files::default());
+                let found = found.unwrap_or_else(|error| panic!("{}: {error}", recorded.name));
+                assert_eq!(found.system.name(), system.name(), "{}", recorded.name);
+                for (path, field) in &found.taken {
+                    assert_eq!(field.name, files[path], "{}: {}", recorded.name, path.display());
+                }
+                assert_eq!(found.taken.len(), files.len(), "{}", recorded.name);
+                looked_at += 1;
+            }
+        }
+        assert!(looked_at > 20, "{looked_at}");
+    }
+}
