@@ -314,17 +314,3 @@ fn firmware_says_which_filter_and_what_differs() {
         assert!(firmware.contains(expected), "{firmware}");
     }
 }
-
-#[test]
-fn tmp_timing() {
-    for name in ["moving", "staying"] {
-        let opened = open(name);
-        for k in 0..4 {
-            let sent = json!({ "seed": k + 5 });
-            let t = std::time::Instant::now();
-            let a = answer(&*opened, &sent);
-            let whole = t.elapsed();
-            println!("TMP {name} {whole:?} {:?}", a.facts);
-        }
-    }
-}

@@ -204,17 +204,3 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
     let refusal = Recording::read(&files).unwrap_err().to_string();
     assert!(refusal.contains("line 2"), "{refusal}");
 }
-
-#[test]
-fn tmp_timing() {
-    for name in ["constant", "sine"] {
-        let opened = open(name);
-        for k in 0..4 {
-            let sent = json!({ "seed": k + 5 });
-            let t = std::time::Instant::now();
-            let a = answer(&*opened, &sent);
-            let whole = t.elapsed();
-            println!("TMP {name} {whole:?} {:?}", a.facts);
-        }
-    }
-}
