@@ -396,7 +396,6 @@
     await open(`api/drop/${element("system").value}`, body, state);
     if (state.recording) dropped = [];
   }
-  Drop.listen(drop);
   for (const field of all("#any input")) {
     field.addEventListener("change", () => { drop([...field.files].filter(({ name }) => !name.startsWith("."))); field.value = ""; });
   }
@@ -495,6 +494,7 @@
     element("system").replaceChildren(...sources.map((source) =>
       make("option", { value: source.system, textContent: `${source.system}: ${source.title}` })));
     restore(read(location.hash));
+    Drop.listen(drop);
     addEventListener("hashchange", () => { if (location.hash.slice(1) !== address() && !opening) { remember(); restore(read(location.hash)); } });
   }).catch((error) => complain(`the program does not answer (${error}): is it still running?`));
 }
