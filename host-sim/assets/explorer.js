@@ -360,7 +360,7 @@
     opened(reply, wanted);
   }
 
-  const named = (wanted) => open(path("open", wanted), undefined, wanted);
+  const named = (wanted) => { dropped = []; return open(path("open", wanted), undefined, wanted); };
 
   element("system").addEventListener("input", () => {
     remember();
@@ -394,7 +394,7 @@
     const body = new FormData();
     for (const file of dropped) body.append("file", file);
     await open(`api/drop/${element("system").value}`, body, state);
-    if (state.recording) dropped = [];
+    if (!element("alert").textContent.includes("needed as well")) dropped = [];
   }
   for (const field of all("#any input")) {
     field.addEventListener("change", () => { drop([...field.files].filter(({ name }) => !name.startsWith("."))); field.value = ""; });
@@ -473,7 +473,7 @@
     socket.addEventListener("message", ({ data }) => {
       const answer = JSON.parse(data);
       busy = false;
-      complain(answer.refused ?? "");
+      if (element("alert").textContent !== (answer.refused ?? "")) complain(answer.refused ?? "");
       if (!answer.refused) {
         show(answer);
         after.max = String(answer.bytes);

@@ -87,6 +87,8 @@ impl Of<'_> {
             if made.contains(&path) || !are_there {
                 continue;
             }
+            // That of an earlier report is not what is made now.
+            let _ = std::fs::remove_file(&path);
             if let Err(error) = make(self.folders.data, &path) {
                 output::warn(&format!("warning: {error}"));
             }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use super::any::AnySystem;
 use super::files::{FileField, Files, Source};
 use super::settings::Settings;
-use crate::Error;
 use crate::text::{listed, printable};
+use crate::{Error, table};
 
 /// So many files are named in a complaint.
-const MOST_NAMED: usize = 4;
+const MOST_NAMED: usize = 3;
 
 /// Files of a recording, and what each was taken for.
 #[derive(Debug)]
@@ -85,7 +85,8 @@ impl Recognised {
     /// Fills a field with the file that fits it best, or with all that fit if there may be several.
     fn fill(&mut self, field: &'static FileField) {
         let fits = |path: &PathBuf| {
-            self.system.fits(field.name, path, &self.files)
+            !is_track(path)
+                && self.system.fits(field.name, path, &self.files)
                 && !self.is_another_recording(path, field)
         };
         let mut fitting: Vec<_> = self.left.iter().filter(|path| fits(path)).cloned().collect();
@@ -115,9 +116,14 @@ impl Recognised {
 
     /// Whether its name begins as that of a file that was taken.
     fn is_beside(&self, path: &Path) -> bool {
-        let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let own = stem(path).unwrap_or_default();
-        self.taken.iter().filter_map(|(path, _)| stem(path)).any(|stem| own.starts_with(&stem))
+        // What is packed has two endings.
+        let stem = |path: &Path| whole_name(path).split('.').next().unwrap_or_default().to_owned();
+        let own = stem(path);
+        let begins = |of: &str| {
+            let rest = own.strip_prefix(of);
+            rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+        };
+        self.taken.iter().any(|(path, _)| begins(&stem(path)))
     }
 
     /// Fields without which there is no recording.
@@ -128,13 +134,22 @@ impl Recognised {
     }
 }
 
+/// Whether it is a track that this program wrote: no sensor says that, and no truth is.
+fn is_track(path: &Path) -> bool {
+    table::has(path, ["health"])
+}
+
 /// Whether a file is called after a field.
 fn says(path: &Path, field: &FileField) -> bool {
     path.file_stem().is_some_and(|stem| stem.to_string_lossy().to_lowercase().contains(field.name))
 }
 
+fn whole_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 fn name(path: &Path) -> String {
-    printable(&path.file_name().unwrap_or_default().to_string_lossy())
+    printable(&whole_name(path))
 }
 
 /// A complaint that no system reads any of these files; of a single one in the words of the preferred system's reader.
@@ -175,6 +190,33 @@ mod tests {
             DataFile::Made(_) => None,
         });
         files.collect()
+    }
+
+    #[test]
+    fn a_name_goes_with_the_recording_that_it_is_called_after() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).expect("it is written");
+            path
+        };
+        let anchors = "anchor,x,y,z\nA,0,0,2\nB,9,0,2\nC,0,9,2\n";
+        let ranges = "t,anchor,range\n0,A,3\n0,B,4\n0,C,5\n1,A,3\n";
+        let paths = [
+            file("anchors.csv", anchors),
+            file("run1.csv", ranges),
+            file("run10-truth.csv", "t,x,y\n0,1,1\n9,1,1\n"),
+            file("run1-truth.csv", "t,x,y\n0,2,2\n9,2,2\n"),
+            // What was made of it is nobody's truth and height.
+            file("track.csv", "t,x,y,z,sx,sy,sz,health\n0,1,1,1,0,0,0,good\n"),
+            // Of a tag that is put down.
+            file("points.csv", "point,x,y,z\nP,1,1,1\n"),
+        ];
+        let found = Recognised::of(&ALL, "", &paths, &Files::default()).expect("a recording");
+        let truth = found.files.one("truth").and_then(Path::file_name);
+        assert_eq!(truth, Some("run1-truth.csv".as_ref()));
+        let left: Vec<_> = found.left.iter().map(|path| whole_name(path)).collect();
+        assert_eq!(left, ["run10-truth.csv", "track.csv", "points.csv"]);
     }
 
     #[test]

@@ -107,7 +107,7 @@ impl Cloud {
         self
     }
 
-    /// Where nine tenths of the weight are, and how much is known. It takes a tenth of a millisecond.
+    /// Where nine tenths of the weight are, and how much is known.
     pub fn region(&self) -> Region {
         let back = |places: [f64; 2]| [0, 1].map(|axis| places[axis] - self.moved[axis]);
         let points: Vec<Weighed> =

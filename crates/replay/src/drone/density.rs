@@ -41,8 +41,8 @@ impl Region {
     /// Weights are counted in cells and smoothed by a normal kernel (Silverman, *Density Estimation*, 1986, ch. 4). Of points that
     /// chance has placed that one of five widths counts by which they expect each other best (likelihood
     /// cross-validation, Duin, IEEE Trans. Computers 25 (1976)): so it holds for rings and several clumps, too. Points of
-    /// a lattice each have so much `room` (m²), and their kernel is as wide. A thousand particles seem spread over a tenth more
-    /// than they are, by 0.15 bits.
+    /// a lattice each have so much `room` (m²), and their kernel is as wide. Particles seem
+    /// spread over more than they are; small clumps far from each other, of which a cell is a good part, most of all.
     pub(super) fn of(
         points: &[Weighed],
         mean: [f64; 2],

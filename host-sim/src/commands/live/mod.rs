@@ -92,6 +92,8 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 pub struct Live {
     state: Arc<Mutex<State>>,
     following: Following,
+    /// Frames that are enough.
+    most: Option<u32>,
     stop: Stopper,
     listener: Option<JoinHandle<Result<(), Error>>>,
     follower: Option<JoinHandle<Result<(), Error>>>,
@@ -136,6 +138,7 @@ impl Live {
         let mut live = Self {
             state: Arc::new(Mutex::new(state)),
             following: following.clone(),
+            most: options.frames,
             stop: stop.clone(),
             listener: None,
             follower: None,
@@ -229,6 +232,8 @@ impl Live {
             following: self.following.clone(),
             source: self.source.clone(),
             recording: self.recording.clone(),
+            most: self.most,
+            stop: self.stop.clone(),
             rewinder: OnceLock::new(),
         }
     }

@@ -17,22 +17,26 @@ use crate::system::{Answer, Settings};
 /// Where the answer to a question goes.
 type Reply = Sender<Result<Answer, Error>>;
 
+/// What is asked: settings, how many bytes, whether nothing follows them, and where the answer goes.
+type Question = (Settings, u64, bool, Reply);
+
 /// A thread that decodes a recording anew: an estimator stays with its thread.
-pub(super) struct Rewinder(Sender<(Settings, u64, Reply)>);
+pub(super) struct Rewinder(Sender<Question>);
 
 impl Rewinder {
-    /// It ends when this is dropped.
-    pub(super) fn begin(path: PathBuf, following: Following) -> Self {
-        let (questions, asked) = channel::<(Settings, u64, Reply)>();
+    /// It ends when this is dropped. After the `most` frames no more is decoded.
+    pub(super) fn begin(path: PathBuf, following: Following, most: Option<u32>) -> Self {
+        let (questions, asked) = channel::<Question>();
         let work = move || {
             // From the last moment that was looked at it may not be far to the next.
             let mut last: Option<Rewound> = None;
-            for (settings, bytes, reply) in asked {
+            for (settings, bytes, is_end, reply) in asked {
                 let near = last.take().filter(|it| it.leads_to(bytes, &settings));
-                let near = near.map_or_else(|| Rewound::new(&path, &following, settings), Ok);
+                let near = near.map_or_else(|| Rewound::new(&path, &following, settings, most), Ok);
                 let answer = near.and_then(|mut near| {
-                    let answer = near.answer(bytes, &path);
-                    last = Some(near);
+                    let answer = near.answer(bytes, is_end, &path);
+                    // What failed, or came to an end, leads nowhere.
+                    last = (answer.is_ok() && !is_end).then_some(near);
                     answer
                 });
                 // Whoever asked may be gone.
@@ -44,14 +48,19 @@ impl Rewinder {
         Self(questions)
     }
 
-    /// What these settings make of so many bytes of the recording.
+    /// What these settings make of so many bytes of the recording, which may be its end.
     ///
     /// # Errors
     /// Whatever is wrong with the settings or the recording.
-    pub(super) fn answer(&self, settings: &Settings, bytes: u64) -> Result<Answer, Error> {
+    pub(super) fn answer(
+        &self,
+        settings: &Settings,
+        bytes: u64,
+        is_end: bool,
+    ) -> Result<Answer, Error> {
         let (reply, answer) = channel();
         let gone = || Error::Usage("no thread looks back".to_owned());
-        self.0.send((settings.clone(), bytes, reply)).map_err(|_| gone())?;
+        self.0.send((settings.clone(), bytes, is_end, reply)).map_err(|_| gone())?;
         answer.recv().map_err(|_| gone())?
     }
 }
@@ -68,13 +77,18 @@ struct Rewound {
 
 impl Rewound {
     /// At the recording's beginning.
-    fn new(path: &Path, following: &Following, settings: Settings) -> Result<Self, Error> {
+    fn new(
+        path: &Path,
+        following: &Following,
+        settings: Settings,
+        most: Option<u32>,
+    ) -> Result<Self, Error> {
         let following = following.with(&settings)?;
         let state = Arc::new(Mutex::new(State::new(&following)));
         let file = File::open(path);
         Ok(Self {
             settings,
-            decoder: Decoder::new(following.plan, state, None)?,
+            decoder: Decoder::new(following.plan, state, most)?,
             file: file.map_err(|source| Error::Read { path: path.to_path_buf(), source })?,
             read: 0,
         })
@@ -89,7 +103,7 @@ impl Rewound {
     ///
     /// # Errors
     /// [`Error::Read`] if the recording, `path`, cannot be read; as [`Decoder::take`].
-    fn answer(&mut self, bytes: u64, path: &Path) -> Result<Answer, Error> {
+    fn answer(&mut self, bytes: u64, is_end: bool, path: &Path) -> Result<Answer, Error> {
         let mut buffer = [0; BATCH];
         while self.read < bytes {
             let most = usize::try_from(bytes - self.read).map_or(BATCH, |left| left.min(BATCH));
@@ -101,8 +115,13 @@ impl Rewound {
             if count == 0 {
                 break;
             }
-            self.decoder.take(piece.get(..count).unwrap_or_default())?;
             self.read += count as u64;
+            if !self.decoder.take(piece.get(..count).unwrap_or_default())? {
+                break;
+            }
+        }
+        if is_end {
+            self.decoder.finish()?;
         }
         Ok(self.decoder.answer())
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use super::Stopper;
 use super::options::Following;
 use super::rewound::Rewinder;
 use super::state::State;
@@ -17,6 +18,10 @@ pub(super) struct Viewed {
     pub(super) following: Following,
     pub(super) source: String,
     pub(super) recording: PathBuf,
+    /// Frames that are enough.
+    pub(super) most: Option<u32>,
+    /// Stopped when nothing more comes.
+    pub(super) stop: Stopper,
     /// Who decodes it anew.
     pub(super) rewinder: OnceLock<Rewinder>,
 }
@@ -49,8 +54,9 @@ impl Show for Viewed {
             Moment::Now => self.bytes(),
             Moment::After(bytes) => bytes.min(self.bytes()),
         };
-        let begin = || Rewinder::begin(self.recording.clone(), self.following.clone());
-        let answer = self.rewinder.get_or_init(begin).answer(settings, bytes)?;
+        let begin = || Rewinder::begin(self.recording.clone(), self.following.clone(), self.most);
+        let is_end = self.stop.is_stopped() && bytes == self.bytes();
+        let answer = self.rewinder.get_or_init(begin).answer(settings, bytes, is_end)?;
         Ok(self.with_names(answer))
     }
 }

@@ -60,7 +60,9 @@ fn recognised(
     if !paths.iter().any(|path| zipped::is_zip(path)) {
         return Ok(of(&paths)?);
     }
-    if let Ok(found) = of(&paths) {
+    if let Ok(found) = of(&paths)
+        && !found.left.iter().any(|path| zipped::is_zip(path))
+    {
         return Ok(found);
     }
     let mut all = Vec::new();

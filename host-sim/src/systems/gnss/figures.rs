@@ -90,7 +90,7 @@ fn of_satellites(followed: &Followed, arcs: &Arcs<'_>, config: &Config) -> [Figu
             "How many satellites were used, and by how much their directions multiply the error of a range.",
         ),
         satellites(new("satellites", "Satellites"), followed, arcs).caption(
-            "When each was used, what of it was rejected, and where its ambiguity began anew.",
+            "When each was observed, what of it was rejected, and where its ambiguity began anew.",
         ),
         residuals(new("residuals", "Residuals of the codes"), followed, code.kind).caption(close),
         residuals(new("phases", "Residuals of the phases"), followed, phase.kind).caption(close),

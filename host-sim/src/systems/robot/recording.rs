@@ -144,12 +144,18 @@ impl Recording {
                         || ranges::read_static(path, &anchors, options).is_ok()
                 })
             }
+            "calibration" => table::has(path, ["anchor", "bias"]),
+            // Of a tag that is put down the log tells at which point.
+            _ if files.one("log").is_some_and(|log| table::has(log, ["point"])) => match field {
+                "points" => table::has(path, ["point", "x", "y", "z"]),
+                "height" => table::has(path, ["point", "z"]) && !table::has(path, ["x"]),
+                _ => false,
+            },
             "truth" => table::has(path, ["t", "x", "y"]),
-            "points" => table::has(path, ["point", "x", "y", "z"]),
             "imu" => ["qw", "gx", "ax", "lax"].iter().any(|name| table::has(path, ["t", name])),
             "odom" => table::has(path, ["t", "v_left", "v_right", "track"]),
-            "calibration" => table::has(path, ["anchor", "bias"]),
-            _ => table::has(path, ["t", "z"]) || table::has(path, ["point", "z"]),
+            "height" => table::has(path, ["t", "z"]) && !table::has(path, ["x"]),
+            _ => false,
         }
     }
 

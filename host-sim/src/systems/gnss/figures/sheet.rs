@@ -71,7 +71,9 @@ impl Row {
     }
 
     fn badness(&self) -> [f64; 2] {
-        [self.rejected[0] + self.rejected[1], self.residuals[1]]
+        // Without any that was used nothing fits.
+        let phase = Some(self.residuals[1]).filter(|it| it.is_finite());
+        [self.rejected[0] + self.rejected[1], phase.unwrap_or(f64::INFINITY)]
     }
 
     fn cells(&self) -> Vec<String> {
@@ -87,8 +89,8 @@ impl Row {
             codes,
             phases,
             self.slips.to_string(),
-            format!("{code:.2}"),
-            format!("{:.1}", 1e3 * phase),
+            or_dash(code, 2),
+            or_dash(1e3 * phase, 1),
             format!("{:.0}", self.elevation.to_degrees()),
         ]
     }
@@ -97,7 +99,13 @@ impl Row {
 /// Root mean square of the residuals in use.
 fn residual<'a>(decisions: impl Iterator<Item = &'a Decision<f64>>) -> f64 {
     let used = decisions.filter(|it| !is_rejected(it)).map(|it| it.residual);
-    rms(&used.collect::<Vec<_>>())
+    let used: Vec<f64> = used.collect();
+    if used.is_empty() { f64::NAN } else { rms(&used) }
+}
+
+/// A number, or a dash where there is none.
+fn or_dash(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "—".to_owned() }
 }
 
 /// Whether its phase lost count of cycles: a satellite that comes, or comes back, is no slip.

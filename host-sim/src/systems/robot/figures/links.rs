@@ -33,8 +33,8 @@ impl<'a> Links<'a> {
         let mut figure = Figure::new(id, "Residuals")
             .over_seconds("residual of a range, cm")
             .caption(
-                "What was measured less what was expected, anchor by anchor, before the range is taken in; 95 % lie between the broken \
-                 lines of ±2σ if the model is right. An anchor that measures too long lies above zero.",
+                "What was measured less what was expected, anchor by anchor, before the range is taken in (of methods \
+                 that solve each epoch by itself: after); 95 % lie between the broken lines of ±2σ if the model is right. An anchor that measures too long lies above zero.",
             );
         figure.series.extend(
             self.names().map(|(anchor, name)| self.over_time(name, Mark::Dots, anchor, taken)),
