@@ -179,6 +179,11 @@ pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>, most: usize) -> Stri
     told.join(", ")
 }
 
+/// The name of a file, without its folders.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 /// A path as a user would write it, on one line whatever its name holds.
 pub fn printable_path(path: &Path) -> String {
     path.display().to_string().replace(char::is_control, "?")

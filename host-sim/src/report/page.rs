@@ -117,13 +117,17 @@ fn headlines(chapters: &[Chapter]) -> Markup {
 
 fn headline(line: &Headline) -> Markup {
     let Headline { quantity, unit, published, theirs, ours, limit } = line;
-    let cell = |value: &Option<f64>| value.map_or_else(|| "—".to_owned(), rounded);
     html! {
         tr {
             th scope="row" { (quantity) ", " (unit) }
-            td { (cell(published)) } td { (cell(theirs)) } td.ours { (cell(ours)) } td { (cell(limit)) }
+            td { (cell(*published)) } td { (cell(*theirs)) } td.ours { (cell(*ours)) } td { (cell(*limit)) }
         }
     }
+}
+
+/// A number in a table, or a dash where there is none.
+fn cell(value: Option<f64>) -> String {
+    value.map_or_else(|| "—".to_owned(), rounded)
 }
 
 /// A picture of each system, which leads to its chapter.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::any::AnySystem;
 use super::files::{FileField, Files, Source};
 use super::settings::Settings;
-use crate::text::{listed, printable};
+use crate::text::{file_name, listed, printable};
 use crate::{Error, table};
 
 /// So many files are named in a complaint.
@@ -38,8 +38,9 @@ impl Recognised {
         paths: &[PathBuf],
         files: &Files,
     ) -> Result<Self, Error> {
+        let candidates: Vec<_> = paths.iter().filter(|path| !is_track(path)).cloned().collect();
         let mut found: Vec<_> =
-            systems.iter().map(|system| Self::of_system(*system, paths, files)).collect();
+            systems.iter().map(|system| Self::of_system(*system, &candidates, files)).collect();
         let rank =
             |it: &Self| (it.missing().is_empty(), it.taken.len(), it.system.name() == preferred);
         // The first of equals stays the first.
@@ -61,6 +62,8 @@ impl Recognised {
             )));
         }
         let equals = |it: &Self| it.missing().is_empty() && it.taken.len() == best.taken.len();
+        let is_taken = |path: &&PathBuf| best.taken.iter().any(|(taken, _)| taken == *path);
+        best.left = paths.iter().filter(|path| !is_taken(path)).cloned().collect();
         best.others = found.filter(equals).map(|it| it.system.name()).collect();
         Ok(best)
     }
@@ -85,8 +88,7 @@ impl Recognised {
     /// Fills a field with the file that fits it best, or with all that fit if there may be several.
     fn fill(&mut self, field: &'static FileField) {
         let fits = |path: &PathBuf| {
-            !is_track(path)
-                && self.system.fits(field.name, path, &self.files)
+            self.system.fits(field.name, path, &self.files)
                 && !self.is_another_recording(path, field)
         };
         let mut fitting: Vec<_> = self.left.iter().filter(|path| fits(path)).cloned().collect();
@@ -117,7 +119,7 @@ impl Recognised {
     /// Whether its name begins as that of a file that was taken.
     fn is_beside(&self, path: &Path) -> bool {
         // What is packed has two endings.
-        let stem = |path: &Path| whole_name(path).split('.').next().unwrap_or_default().to_owned();
+        let stem = |path: &Path| file_name(path).split('.').next().unwrap_or_default().to_owned();
         let own = stem(path);
         let begins = |of: &str| {
             let rest = own.strip_prefix(of);
@@ -144,12 +146,8 @@ fn says(path: &Path, field: &FileField) -> bool {
     path.file_stem().is_some_and(|stem| stem.to_string_lossy().to_lowercase().contains(field.name))
 }
 
-fn whole_name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
 fn name(path: &Path) -> String {
-    printable(&whole_name(path))
+    printable(&file_name(path))
 }
 
 /// A complaint that no system reads any of these files; of a single one in the words of the preferred system's reader.
@@ -215,7 +213,7 @@ mod tests {
         let found = Recognised::of(&ALL, "", &paths, &Files::default()).expect("a recording");
         let truth = found.files.one("truth").and_then(Path::file_name);
         assert_eq!(truth, Some("run1-truth.csv".as_ref()));
-        let left: Vec<_> = found.left.iter().map(|path| whole_name(path)).collect();
+        let left: Vec<_> = found.left.iter().map(|path| file_name(path)).collect();
         assert_eq!(left, ["run10-truth.csv", "track.csv", "points.csv"]);
     }
 

@@ -73,7 +73,9 @@ impl Deviations {
     fn followed(&self, options: &Options) -> Result<Followed, Error> {
         let assumed = Assumed::of(&self.model, &self.log.outputs, options);
         let kalman = |scalar| match &self.model.extended {
-            Some(extended) => extended::follow(&self.model, extended, &self.log, options, scalar),
+            Some(extended) => {
+                extended::follow(&self.model, extended, &self.log, options, scalar, None)
+            }
             None => estimators::kalman(&self.model, &self.log, &assumed, scalar),
         };
         match options.estimator {
@@ -110,8 +112,8 @@ impl Deviations {
             let (said, found) = (said[0].hypot(said[1]), found[0].hypot(found[1]));
             if said > 0.0 { found / said } else { 1.0 }
         });
-        let tried = [times.unwrap_or(1.0)];
-        extended::follow_in(&tried, &self.model, extended, &self.log, options, scalar)
+        let gust = Some(times.unwrap_or(1.0));
+        extended::follow(&self.model, extended, &self.log, options, scalar, gust)
     }
 
     /// Its first lines, no more than so many.

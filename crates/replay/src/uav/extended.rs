@@ -74,7 +74,7 @@ pub struct Beside {
     pub said: f64,
 }
 
-/// By the filter, with gusts as strong as the innovations support.
+/// By the filter, with gusts `gust` times as strong as the model says, or as strong as the innovations support.
 ///
 /// # Errors
 /// [`Error::Estimator`] or [`Error::Sample`].
@@ -84,23 +84,13 @@ pub(super) fn follow(
     log: &Log,
     options: &Options,
     scalar: ScalarKind,
+    gust: Option<f64>,
 ) -> Result<Followed, Error> {
-    let tried = if extended.gust.is_some() { &GUSTS[..] } else { &[1.0] };
-    follow_in(tried, model, extended, log, options, scalar)
-}
-
-/// The same, where gusts are of one of so many times what the model says.
-///
-/// # Errors
-/// [`Error::Estimator`] or [`Error::Sample`].
-pub(super) fn follow_in(
-    tried: &[f64],
-    model: &Model,
-    extended: &Extended,
-    log: &Log,
-    options: &Options,
-    scalar: ScalarKind,
-) -> Result<Followed, Error> {
+    let tried = match &gust {
+        Some(gust) => std::slice::from_ref(gust),
+        None if extended.gust.is_some() => &GUSTS[..],
+        None => &[1.0],
+    };
     let mut best: Result<(f64, Followed), Error> = Err(Error::TooShort);
     for &gust in tried {
         let flight = Flight { model, extended, log, options, gust };

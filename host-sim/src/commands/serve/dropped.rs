@@ -1,6 +1,6 @@
 //! Files that are dropped on the page: whose they are is found.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use axum::extract::{Multipart, Path as InPath, State};
@@ -12,6 +12,7 @@ use super::api::{Refusal, beside, open_kept, reply};
 use super::uploads::{self, Content};
 use super::{Shared, zipped};
 use crate::system::{AnySystem, Files, Recognised};
+use crate::text::file_name;
 
 /// A folder with more files is not one of recordings.
 const MOST_FILES: usize = 500;
@@ -39,9 +40,9 @@ pub(super) async fn open(
         beside(move || Ok((recognised(systems, &preferred, paths, &folder)?, folder))).await?;
     let Recognised { system, files, taken, left, others } = recognised;
     let mut opened = open_kept(&shared, system, files, folder, content).await?;
-    let taken = taken.iter().map(|(path, field)| (name(path), field.name));
+    let taken = taken.iter().map(|(path, field)| (file_name(path), field.name));
     opened["taken"] = json!(taken.collect::<Vec<_>>());
-    opened["left"] = json!(left.iter().map(|path| name(path)).collect::<Vec<_>>());
+    opened["left"] = json!(left.iter().map(|path| file_name(path)).collect::<Vec<_>>());
     opened["others"] = json!(others);
     Ok(reply(&opened))
 }
@@ -74,8 +75,4 @@ fn recognised(
         }
     }
     Ok(of(&all)?)
-}
-
-fn name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

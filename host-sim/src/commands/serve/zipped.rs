@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
+use crate::text::file_name;
+
 /// As much is unpacked, bytes.
 const LARGEST: u64 = 1 << 30;
 /// As many files are unpacked.
@@ -25,7 +27,7 @@ pub(super) fn is_zip(path: &Path) -> bool {
 /// # Errors
 /// One sentence, if it is damaged or too large.
 pub(super) fn unpack(path: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = file_name(path);
     let damaged =
         |error: ZipError| format!("{name}: expected a whole zip file, found one with {error}");
     // Its own folder is called after its number.

@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::{drawing, table};
-use crate::report::{Chapter, Recorded, Replayed, Studied, rounded};
+use super::{cell, drawing, table};
+use crate::report::{Chapter, Recorded, Replayed, Studied};
 
 /// Beside the chapter, not in it: each recording has a time of its own.
 pub(super) fn section(chapter: &Chapter) -> Markup {
@@ -55,7 +55,7 @@ fn row(replay: &Replayed) -> Markup {
     html! {
         tr {
             th scope="row" { (replay.name) }
-            @for value in &replay.values { td { (value.value.map_or_else(|| "—".to_owned(), rounded)) } }
+            @for value in &replay.values { td { (cell(value.value)) } }
             td { (replay.health) }
         }
     }

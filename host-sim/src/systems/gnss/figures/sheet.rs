@@ -77,8 +77,7 @@ impl Row {
     }
 
     fn cells(&self) -> Vec<String> {
-        let hour =
-            |t: Option<f64>| t.map_or_else(|| "—".to_owned(), |t| format!("{:.2}", t / 3600.0));
+        let hour = |t: Option<f64>| or_dash(t.map_or(f64::NAN, |t| t / 3600.0), 2);
         let [codes, phases] = self.rejected.map(|share| format!("{:.1}", 100.0 * share));
         let [code, phase] = self.residuals;
         vec![
