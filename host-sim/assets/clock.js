@@ -1,22 +1,15 @@
 // One time for the figures of a page: a window that all of them show, and a cursor that a bar, a mouse, a finger or a key moves.
 "use strict";
-
 class Clock {
   static SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
   // What the figures cover, what of it is shown, where the cursor is, all in seconds; and the frame of a play that is on.
-  /** @type {[number, number] | null} */
-  span = null;
-  /** @type {number[] | null} */
-  window = null;
-  /** @type {number | null} */
-  cursor = null;
-  /** @type {number | null} */
-  playing = null;
-  /** @type {Set<any>} */
-  members = new Set();
-  /** @type {Set<any>} */
-  tables = new Set();
+  /** @type {[number, number] | null} */ span = null;
+  /** @type {number[] | null} */ window = null;
+  /** @type {number | null} */ cursor = null;
+  /** @type {number | null} */ playing = null;
+  /** @type {Set<any>} */ members = new Set();
+  /** @type {Set<any>} */ tables = new Set();
 
   // `changed` is told of every new window and cursor.
   /** @param {Element} place @param {(clock: Clock) => void} changed */
@@ -101,7 +94,10 @@ class Clock {
   /** @param {any} table */
   follow(table) {
     const rows = Elements.all("[data-time]", table);
-    rows.forEach((row, place) => { row.tabIndex = place ? -1 : 0; });
+    // Tab stops once in a table, at the row where the focus was.
+    const stop = (at) => rows.forEach((row) => { row.tabIndex = row === at ? 0 : -1; });
+    stop(rows[0]);
+    table.addEventListener("focusin", ({ target }) => { if (rows.includes(target)) stop(target); });
     const go = ({ target }) => { if (target.closest("[data-time]")) this.move(Number(target.closest("[data-time]").dataset.time)); };
     table.addEventListener("click", go);
     table.addEventListener("keydown", (event) => {

@@ -1,6 +1,5 @@
 // Controls of what can be set: sliders, choices, switches. They know no setting and tell what is turned.
 "use strict";
-
 const Controls = (() => {
   const { all, make } = Elements;
 
@@ -113,6 +112,5 @@ const Controls = (() => {
       for (const input of all("input, select, button", part)) input.disabled = reason !== undefined;
     }
   }
-
   return { build, disable, takes };
 })();

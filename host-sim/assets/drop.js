@@ -1,35 +1,31 @@
 // Files that somebody drops on the page or chooses together: one, several, whole folders.
 "use strict";
-
-const Drop = (() => {
+const Drop = {
   // All files of a folder, without hidden ones.
-  async function within(entry) {
+  async within(entry) {
     if (entry.isFile) return [await new Promise((done, fail) => entry.file(done, fail))];
     const [reader, found] = [entry.createReader(), []];
     for (;;) {
       // A folder gives a hundred at a time.
       const some = await new Promise((done, fail) => reader.readEntries(done, fail));
       if (!some.length) return found;
-      for (const it of some) if (!it.name.startsWith(".")) found.push(...await within(it));
+      for (const it of some) if (!it.name.startsWith(".")) found.push(...await Drop.within(it));
     }
-  }
+  },
 
-  // `take` is told of files.
-  function listen(take) {
-    const root = document.documentElement;
-    const over = (is) => { root.classList.toggle("dropping", is); };
+  // `take` is told of files, `complain` of what cannot be read.
+  listen(take, complain) {
+    const over = (is) => { document.documentElement.classList.toggle("dropping", is); };
     addEventListener("dragover", (event) => { event.preventDefault(); over(true); });
     addEventListener("dragleave", (event) => { if (!event.relatedTarget) over(false); });
-    addEventListener("drop", async (event) => {
+    addEventListener("drop", (event) => {
       event.preventDefault();
       over(false);
       // What is not asked for at once is gone.
       const items = [...(event.dataTransfer?.items ?? [])].filter(({ kind }) => kind === "file");
       const parts = items.map((item) => ({ entry: item.webkitGetAsEntry(), file: item.getAsFile() }));
-      const files = await Promise.all(parts.map(({ entry, file }) => (entry ? within(entry) : [file])));
-      take(files.flat());
+      Promise.all(parts.map(({ entry, file }) => (entry ? Drop.within(entry) : [file])))
+        .then((files) => take(files.flat()), (error) => complain(`what was dropped cannot be read: ${error.message}`));
     });
-  }
-
-  return { listen };
-})();
+  },
+};

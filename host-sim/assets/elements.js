@@ -1,6 +1,5 @@
 // Elements of a page: made and found.
 "use strict";
-
 const Elements = {
   make(tag, properties = {}, ...children) {
     const made = Object.assign(document.createElement(tag), properties);
@@ -8,14 +7,16 @@ const Elements = {
     return made;
   },
 
+  // Of whatever kind.
+  /** @type {(id: string) => any} */
+  element: (id) => document.getElementById(id),
+  /** @type {(selector: string, within?: Document | Element) => any[]} */
+  all: (selector, within = document) => [...within.querySelectorAll(selector)],
+
   // The least and the greatest of numbers; null if there is none.
   extent(values) {
     let [low, high] = [Infinity, -Infinity];
     for (const value of values) if (value !== null) [low, high] = [Math.min(low, value), Math.max(high, value)];
     return low <= high ? [low, high] : null;
   },
-
-  // Of whatever kind.
-  /** @type {(selector: string, within?: Document | Element) => any[]} */
-  all: (selector, within = document) => [...within.querySelectorAll(selector)],
 };

@@ -1,104 +1,18 @@
 // The explorer: sends how the controls stand, shows what comes back. It knows no system and computes nothing.
 "use strict";
-
 {
-  const { all, make } = Elements;
-  /** @type {(id: string) => any} */
-  const element = (id) => document.getElementById(id);
-  const places = new Map();
+  const { all, element, make } = Elements;
   // What the address holds, but for window and cursor, which the clock has. `a` is what is compared with.
   let state = { system: "", recording: "", settings: {}, a: null, how: "over" };
-  let [sources, controls, disabled, windows] = [[], [], new Map(), {}];
-
+  let [sources, largest, controls, disabled, windows] = [[], 0, [], new Map(), {}];
   const clock = new Clock(element("clock"), () => { written(); if (looked !== seen()) ask(); });
-  // The window of the last question.
-  let looked = "null";
   const seen = () => JSON.stringify(clock.window);
-
-  // --- what comes back
+  let looked = "null"; // in the last question
 
   function show(answer) {
-    tell("facts", answer.facts);
-    element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
-    showFindings(answer.findings);
     disabled = new Map(answer.disabled);
     Controls.disable(disabled);
-    for (const said of ["command", "firmware"]) element(said).textContent = answer[said];
-    element("again").hidden = !answer.command;
-    element("differences").hidden = !answer.changed?.length;
-    const differs = answer.figures.some(({ data }) => state.how === "difference" || data.some(({ name }) => name.startsWith("A: ")));
-    element("same").hidden = !answer.changed || differs;
-    element("changed").tBodies[0].replaceChildren(...(answer.changed ?? []).map(([name, a, b]) => make("tr", {},
-      make("th", { scope: "row", textContent: name }), make("td", { textContent: a }), make("td", { textContent: b }))));
-    // A figure of differences is another one than that of what differs.
-    const how = answer.changed ? state.how : "alone";
-    const kind = ({ id, equal, seconds }) => JSON.stringify([id, equal, seconds, how === "difference"]);
-    const known = new Set(answer.figures.map(kind));
-    for (const [key, { place }] of places) {
-      if (known.has(key)) continue;
-      Figures.forget(place);
-      place.remove();
-      places.delete(key);
-    }
-    clock.see(answer.figures);
-    for (const table of answer.tables) tabulate(table, answer.changed ? ", of B" : "");
-    // All places first: each is then drawn as wide as it stays.
-    for (const figure of answer.figures) {
-      if (places.has(kind(figure))) continue;
-      const place = make("figure", { id: `figure-${figure.id}` }, make("h3", { textContent: figure.title }));
-      places.set(kind(figure), { place, caption: make("figcaption"), text: "" });
-      element("figures").append(place);
-    }
-    for (const figure of answer.figures) {
-      const text = JSON.stringify(figure);
-      const entry = places.get(kind(figure));
-      if (entry.text === text) continue;
-      entry.text = text;
-      Figures.draw(entry.place, figure, { clock, zoomed });
-      entry.caption.replaceChildren(figure.caption, ...(sources.length ? ["svg", "csv"] : []).map((ending) =>
-        giver(`figure-${figure.id}.${ending}`, ending.toUpperCase(), `${figure.title} as ${ending.toUpperCase()}`)));
-      entry.place.append(entry.caption);
-    }
-  }
-
-  // Names, and what is told of each.
-  const tell = (id, told) => element(id).replaceChildren(...told.map(([name, text, className = ""]) =>
-    make("div", { className }, make("dt", { textContent: name }), make("dd", { textContent: text }))));
-
-  function showFindings(findings) {
-    tell("findings", findings.map(([fault, about, text]) => [about, text, fault ? "fault" : ""]));
-    element("check").hidden = !findings.length && !element("taken").children.length;
-  }
-
-  // What files that were dropped were taken for.
-  function showTaken({ taken = [], left = [], others = [] }) {
-    const unused = left.length ? [["not used", left.join(", ")]] : [];
-    const also = others.length ? [["could be of", `${others.join(", ")} as well: choose the system first`]] : [];
-    tell("taken", [...taken, ...unused, ...also]);
-    if (taken.length) element("check").open = true;
-  }
-
-  // Rows are made for who looks at them.
-  function tabulate(table, whose) {
-    const id = `table-${table.id}`;
-    if (!element(id)) {
-      const box = make("div", { className: "scroll rows", tabIndex: 0, role: "region", ariaLabel: table.title });
-      element("tables").append(make("details", { id }, make("summary"), make("p", { className: "soft" }), box));
-      element(id).addEventListener("toggle", () => element(id).fill());
-    }
-    const [summary, caption, box] = element(id).children;
-    [summary.textContent, caption.textContent] = [table.title + whose, table.caption];
-    const text = JSON.stringify(table);
-    element(id).fill = () => {
-      if (!element(id).open || box.text === text) return;
-      box.text = text;
-      const row = (tag, cells) => make("tr", {}, ...cells.map((textContent) => make(tag, { textContent })));
-      const rows = table.rows.map((cells) => row("td", cells));
-      table.times?.forEach((time, place) => { rows[place].dataset.time = time; });
-      box.replaceChildren(make("table", {}, make("thead", {}, row("th", table.header)), make("tbody", {}, ...rows)));
-      clock.follow(box.firstChild);
-    };
-    element(id).fill();
+    Answer.show(answer, answer.changed ? state.how : "alone", { clock, zoomed, gives });
   }
 
   // What a refusal asks for by the name of an option is where the page asks for it, and is shown there.
@@ -129,13 +43,11 @@
   const post = (path, body) => request(path, body, (response) => response.json());
 
   // --- one request at a time; what happens meanwhile is asked for afterwards
-
   const question = () => JSON.stringify({
     settings: state.settings, windows, window: clock.window, a: state.a && { ...state.a, how: state.how },
   });
   const path = (what, { system, recording }) => `api/${what}/${system}/${encodeURIComponent(recording)}`;
   const of = (what) => path(what, state);
-
   let [asking, again] = [false, false];
   async function ask() {
     if (!state.recording) return;
@@ -168,47 +80,15 @@
   }
 
   // --- the address holds all of it
-
   let writing = null;
   function written() {
     clearTimeout(writing);
     writing = setTimeout(() => history.replaceState(null, "", `#${address()}`), 150);
   }
-
-  function address() {
-    const query = new URLSearchParams();
-    const say = (name, value) => { if (value) query.set(name, value); };
-    if (!state.recording) return state.system;
-    say("recording", state.recording === source(state.system)?.bundled[0][0] ? "" : state.recording);
-    say("settings", Object.keys(state.settings).length && JSON.stringify(state.settings));
-    say("a", state.a && JSON.stringify(state.a));
-    say("how", state.a && state.how);
-    say("window", clock.window?.join());
-    say("cursor", clock.cursor !== null && String(Number(clock.cursor.toFixed(6))));
-    return String(query) ? `${state.system}?${query}` : state.system;
-  }
-
-  // What an address says; what it does not say is at first.
-  function read(hash) {
-    const [system, query] = hash.replace(/^#/, "").split(/\?(.*)/s);
-    const found = source(system) ?? sources[0];
-    const said = new URLSearchParams(query);
-    const json = (name, otherwise) => { try { return JSON.parse(said.get(name)) ?? otherwise; } catch { return otherwise; } };
-    const numbers = (name) => (said.get(name) ?? "").split(",").filter(Boolean).map(Number);
-    const [window, [cursor]] = [numbers("window"), numbers("cursor")];
-    return {
-      system: found.system,
-      recording: said.get("recording") ?? found.bundled[0][0],
-      settings: json("settings", {}),
-      a: json("a", null),
-      how: said.get("how") === "difference" ? "difference" : "over",
-      window: window.length === 2 && window.every(Number.isFinite) ? window : null,
-      cursor: Number.isFinite(cursor) ? cursor : null,
-    };
-  }
+  const address = () => Session.write(state, clock, source(state.system));
+  const read = (hash) => Session.read(hash, source);
 
   // --- what was before can be had again
-
   const [past, future] = [[], []];
   let [turned, when] = ["", 0];
   // Before something changes. One movement of a control is one change.
@@ -220,7 +100,6 @@
     future.length = 0;
     offerHistory();
   }
-
   const offerHistory = () => { element("undo").disabled = !past.length; element("redo").disabled = !future.length; };
 
   function travel(from, to) {
@@ -242,13 +121,11 @@
   }
 
   // --- controls
-
   function change(name, value) {
     if (opening) return;
     remember(name);
-    const settings = { ...state.settings };
-    if (value === undefined) delete settings[name]; else settings[name] = value;
-    state.settings = settings;
+    const { [name]: _, ...others } = state.settings;
+    state.settings = value === undefined ? others : { ...others, [name]: value };
     written();
     ask();
   }
@@ -277,31 +154,25 @@
   }
 
   function opened(reply, wanted) {
-    for (const shown of ["facts", "warnings", "findings", "taken", "figures", "tables"]) element(shown).replaceChildren();
-    for (const hidden of ["check", "again", "give"]) element(hidden).hidden = true;
-    element("differences").hidden = true;
-    for (const { place } of places.values()) Figures.forget(place);
-    places.clear();
+    Answer.clear();
     windows = {};
     // Another recording has another time, unless an address says which.
     [clock.span, clock.window, clock.cursor] = [null, wanted.window ?? null, wanted.cursor ?? null];
     if (!reply) {
-      state = { ...state, recording: "", a: null };
-      controls = [];
+      [state, controls] = [{ ...state, recording: "", a: null }, []];
       clock.see([]);
       element("controls").replaceChildren();
-      written();
-      return;
+      return written();
     }
     [controls, disabled] = [reply.controls, new Map()];
     element("downloads").replaceChildren(...reply.downloads.map((name) => giver(name, name)));
     element("give").hidden = false;
-    showTaken(reply);
-    showFindings(reply.findings);
+    Answer.taken(reply);
+    Answer.findings(reply.findings);
     if (reply.files) {
       const bundled = element("bundled");
-      const known = [...bundled.options].some(({ value }) => value === reply.recording);
-      if (!known) bundled.prepend(make("option", { value: reply.recording, textContent: reply.files }));
+      const isKnown = [...bundled.options].some(({ value }) => value === reply.recording);
+      if (!isKnown) bundled.prepend(make("option", { value: reply.recording, textContent: reply.files }));
     }
     element("bundled").value = reply.recording;
     askForFiles(false);
@@ -309,10 +180,9 @@
   }
 
   // --- recordings
-
   const askForFiles = (does) => { for (const id of ["any", "files", "upload"]) element(id).hidden = !does; };
-
-  const source = (system) => sources.find((source) => source.system === system);
+  // That of a system; the first of nobody's.
+  const source = (system = sources[0]?.system) => sources.find((source) => source.system === system);
 
   // What can be opened of a system.
   function offer(name) {
@@ -335,10 +205,11 @@
     )));
   }
 
-  // The last that was asked for is opened, however long another takes.
-  // Until it is there nothing else can be changed.
+  // The last that was asked for is opened, however long another takes; until then nothing else can be changed.
   let [openings, opening] = [0, false];
   async function open(path, body, wanted) {
+    const bytes = [...(body?.values() ?? [])].reduce((sum, { size = 0 }) => sum + size, 0);
+    if (bytes > largest) return complain(`more than ${largest >> 20} MiB at once: from the command line, replay takes files of any size`);
     const number = ++openings;
     opening = true;
     complain("");
@@ -359,7 +230,6 @@
     if (system !== state.system) state = { ...state, system, settings: {}, a: null };
     opened(reply, wanted);
   }
-
   const named = (wanted) => { dropped = []; return open(path("open", wanted), undefined, wanted); };
 
   element("system").addEventListener("input", () => {
@@ -383,7 +253,6 @@
     remember();
     open(`api/open/${state.system}`, files, state);
   });
-
   // Files of which nobody says what they are; those that a recording still lacks are added to them.
   let dropped = [];
   async function drop(files) {
@@ -401,7 +270,6 @@
   }
 
   // --- undo, comparison, downloads
-
   element("undo").addEventListener("click", () => travel(past, future));
   element("redo").addEventListener("click", () => travel(future, past));
   addEventListener("keydown", (event) => {
@@ -444,57 +312,18 @@
     });
     return button;
   }
-
-  // A stream: one picture at a time, of now or of what was, as the controls stand.
-  function live({ controls: offered, settings }) {
-    const socket = new WebSocket(`ws://${location.host}/live`);
-    const [after, pause] = [element("after"), element("pause")];
-    let [paused, busy, due, asked] = [false, true, false, null];
-    state.settings = settings;
-    for (const part of all(offered.length ? "#open, #compare, #settings .buttons" : ".controls, #compare")) part.hidden = true;
-    element("back").hidden = false;
-    // Five times a second would be too much to be read out.
-    element("facts").ariaLive = "off";
-    if (!offered.length) all(".explorer")[0].style.gridTemplateColumns = "minmax(0, 1fr)";
-    const want = () => {
-      due = busy;
-      if (busy) return;
-      busy = true;
-      asked = paused ? Number(after.value) : null;
-      socket.send(JSON.stringify({ settings: state.settings, after: asked }));
-    };
-    const stop = (does) => { paused = does; pause.textContent = does ? "go on" : "pause"; want(); };
-    Controls.build(element("controls"), offered, settings, (name, value) => {
-      const { [name]: _, ...others } = state.settings;
-      state.settings = value === undefined ? others : { ...others, [name]: value };
-      want();
-    }, () => busy);
-    socket.addEventListener("open", () => { busy = false; want(); });
-    socket.addEventListener("message", ({ data }) => {
-      const answer = JSON.parse(data);
-      busy = false;
-      if (element("alert").textContent !== (answer.refused ?? "")) complain(answer.refused ?? "");
-      if (!answer.refused) {
-        show(answer);
-        after.max = String(answer.bytes);
-        if (!paused) after.value = after.max;
-        element("of").textContent = `${Math.round((100 * (asked ?? answer.bytes)) / Math.max(answer.bytes, 1))} %`;
-      }
-      if (due || !paused) want();
-    });
-    socket.addEventListener("close", () => complain("the stream has ended"));
-    pause.addEventListener("click", () => stop(!paused));
-    after.addEventListener("input", () => stop(true));
-  }
+  // Nothing is kept of a stream.
+  const gives = ({ id, title }) => (sources.length ? ["svg", "csv"] : []).map((ending) =>
+    giver(`figure-${id}.${ending}`, ending.toUpperCase(), `${title} as ${ending.toUpperCase()}`));
 
   if (matchMedia("(max-width: 800px)").matches) element("settings").open = false;
   fetch("api/sources").then((response) => response.json()).then((reply) => {
-    if (reply.live) return live(reply.live);
-    sources = reply.sources;
+    if (reply.live) return follow(reply.live, { show, complain });
+    ({ sources, largest } = reply);
     element("system").replaceChildren(...sources.map((source) =>
       make("option", { value: source.system, textContent: `${source.system}: ${source.title}` })));
     restore(read(location.hash));
-    Drop.listen(drop);
+    Drop.listen(drop, complain);
     addEventListener("hashchange", () => { if (location.hash.slice(1) !== address() && !opening) { remember(); restore(read(location.hash)); } });
   }).catch((error) => complain(`the program does not answer (${error}): is it still running?`));
 }

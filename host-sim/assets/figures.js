@@ -1,6 +1,5 @@
 // Draws figures that the program computed: theme, legend and keys. Everything else is Plotly's.
 "use strict";
-
 const Figures = (() => {
   const drawn = new Map();
   const resized = new ResizeObserver((entries) => {
@@ -14,10 +13,8 @@ const Figures = (() => {
   });
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const { make } = Elements;
-
   // Pixels beside the axes of a map: numbers, labels and the edge.
   const [BESIDE, BELOW] = [70, 54];
-
   // A map is as high as what it shows is at its width: no path is a thread in an empty field.
   function fit({ plot, figure }) {
     const extent = (axis, along) => {
@@ -77,7 +74,19 @@ const Figures = (() => {
       });
       if (figure.seconds) button.append(entry.values[index]);
       return button;
-    }));
+    }), png(entry));
+  }
+
+  // A button that gives a figure as it is shown, with its title and names.
+  function png({ plot, figure }) {
+    const button = make("button", { type: "button", className: "give", textContent: "PNG", ariaLabel: `download ${figure.title} as PNG` });
+    button.addEventListener("click", () => {
+      const legend = { title: { text: `<b>${figure.title}</b>`, side: "top" }, orientation: "h", y: 1.02, yanchor: "bottom" };
+      const more = { legend, showlegend: true, paper_bgcolor: style("--panel"), margin: { l: 58, r: 12, t: 12, b: 56 } };
+      Plotly.downloadImage({ data: plot.data, layout: { ...structuredClone(plot.layout), ...more } },
+        { format: "png", filename: figure.title, width: plot.clientWidth, height: plot.clientHeight + 80, scale: 2 });
+    });
+    return button;
   }
 
   // + and − zoom, arrows move, 0 shows everything; comma and full stop move the cursor.
@@ -149,7 +158,7 @@ const Figures = (() => {
       displaylogo: false, scrollZoom: false,
       // A page asks nobody but the program: Plotly offers to send figures to its makers, unless told otherwise.
       showSendToCloud: false,
-      modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+      modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"],
     });
     if (first) {
       clock?.listen(entry);
@@ -169,8 +178,7 @@ const Figures = (() => {
   const system = matchMedia("(prefers-color-scheme: dark)");
   theme(system.matches);
   system.addEventListener("change", () => theme(system.matches));
-  document.getElementById("theme").addEventListener("click", () =>
-    theme(document.documentElement.dataset.theme !== "dark"));
+  Elements.element("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme !== "dark"));
 
   const forget = (place) => {
     const entry = drawn.get(place);

@@ -1,6 +1,5 @@
 // The report: figures are drawn when they come into view; those of one recording have one time.
 "use strict";
-
 {
   const figures = JSON.parse(document.getElementById("figures").textContent);
   const { all, make } = Elements;

@@ -73,10 +73,11 @@ impl FetchData {
         let sum = format!("{fetched} fetched, {there} there already, {left} left");
         let told: Vec<_> = std::iter::once(sum).chain(reasons).collect();
         output::print(&told.join("\n  "))?;
-        if failed == 0 {
-            return Ok(());
-        }
-        let problem = format!("{failed} of {} files could not be fetched", chosen.len() - left);
+        let problem = match failed {
+            0 if fetched + there > 0 => return Ok(()),
+            0 => "nothing of what was asked for is fetched from its publishers".to_owned(),
+            _ => format!("{failed} of {} files could not be fetched", chosen.len() - left),
+        };
         Err(Error::File { path: self.to.clone(), problem })
     }
 

@@ -144,7 +144,8 @@ fn a_copy_serves_what_was_converted() {
     let to = desk.named("to");
     let arguments = ["fetch-data", "--sources", &list, "--to", &to];
     let output = host_sim(&arguments);
-    assert!(output.status.success());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("nothing of what was asked for"), "it is told");
     let told = text(&output.stdout);
     assert!(told.contains("data: converted from a MAT file: degrees to radians"), "{told}");
     assert!(!desk.path("to").exists(), "nobody was asked");

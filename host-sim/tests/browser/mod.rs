@@ -95,6 +95,8 @@ impl Page {
     /// Presses a key where the focus is.
     pub(crate) fn press(&self, key: &str) {
         let (code, text) = match key {
+            "Tab" => (9, ""),
+            "End" => (35, ""),
             "ArrowRight" => (39, ""),
             "ArrowDown" => (40, ""),
             "Enter" => (13, "\r"),
@@ -102,11 +104,25 @@ impl Page {
             "." => (190, "."),
             _ => panic!("no test presses {key}"),
         };
-        let down = if text.is_empty() { "rawKeyDown" } else { "keyDown" };
+        self.strike(&json!({ "key": key, "windowsVirtualKeyCode": code, "text": text }));
+    }
+
+    /// Presses a letter with the control key.
+    pub(crate) fn press_with_control(&self, letter: char) {
+        let code = u32::from(letter.to_ascii_uppercase());
+        self.strike(
+            &json!({ "key": letter, "windowsVirtualKeyCode": code, "modifiers": 2, "text": "" }),
+        );
+    }
+
+    fn strike(&self, key: &Value) {
+        let down = if key["text"] == "" { "rawKeyDown" } else { "keyDown" };
         for kind in [down, "keyUp"] {
-            let text = if kind == "keyUp" { "" } else { text };
-            let event =
-                json!({ "type": kind, "key": key, "windowsVirtualKeyCode": code, "text": text });
+            let mut event = key.clone();
+            event["type"] = kind.into();
+            if kind == "keyUp" {
+                event["text"] = "".into();
+            }
             self.call("Input.dispatchKeyEvent", &event);
         }
     }

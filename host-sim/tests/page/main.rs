@@ -7,6 +7,7 @@
 mod browser;
 mod explorer;
 mod files;
+mod keyboard;
 mod live;
 #[path = "../program/mod.rs"]
 mod program;

@@ -140,9 +140,10 @@ fn every_download_of_every_system_is_what_it_is_called() {
         page.evaluate(
             "window.given = {}; let last; URL.createObjectURL = blob => { last = blob; return '#'; }; \
              HTMLAnchorElement.prototype.click = function () { given[this.download] = last.text(); }; \
-             document.querySelectorAll('button.give').forEach(b => b.click())",
+             document.querySelectorAll('#downloads .give, figcaption .give').forEach(b => b.click())",
         );
-        let buttons = page.evaluate("document.querySelectorAll('button.give').length");
+        let buttons =
+            page.evaluate("document.querySelectorAll('#downloads .give, figcaption .give').length");
         page.wait_for(&format!("Object.keys(given).length === {buttons}"));
         let names = page.evaluate("Object.keys(given).join()");
         let names: Vec<_> = names.as_str().expect("text").split(',').collect();

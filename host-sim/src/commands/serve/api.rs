@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use super::question::{Asked, Question, page};
 use super::sessions::{Recording, Upload};
-use super::uploads::{self, Content};
+use super::uploads::{self, Content, LARGEST};
 use super::{Shared, compare, downloads, question};
 use crate::Error;
 use crate::system::{AnySystem, Files, Reading, Setting, Settings, Source};
@@ -65,7 +65,7 @@ pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
         let controls: Vec<_> = settings.table().iter().map(Setting::control).collect();
         json!({ "controls": controls, "settings": settings.to_json() })
     });
-    reply(&json!({ "live": live, "sources": sources }))
+    reply(&json!({ "live": live, "sources": sources, "largest": LARGEST }))
 }
 
 /// Opens a recording that has a name.

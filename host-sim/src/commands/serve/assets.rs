@@ -5,7 +5,7 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use axum::routing::get;
 
-const FILES: [(&str, &str, &str); 9] = [
+const FILES: [(&str, &str, &str); 12] = [
     ("/", "text/html; charset=utf-8", include_str!("../../../assets/explorer.html")),
     ("/page.css", "text/css; charset=utf-8", include_str!("../../../assets/page.css")),
     ("/elements.js", "text/javascript; charset=utf-8", include_str!("../../../assets/elements.js")),
@@ -13,6 +13,9 @@ const FILES: [(&str, &str, &str); 9] = [
     ("/controls.js", "text/javascript; charset=utf-8", include_str!("../../../assets/controls.js")),
     ("/drop.js", "text/javascript; charset=utf-8", include_str!("../../../assets/drop.js")),
     ("/figures.js", "text/javascript; charset=utf-8", include_str!("../../../assets/figures.js")),
+    ("/answer.js", "text/javascript; charset=utf-8", include_str!("../../../assets/answer.js")),
+    ("/session.js", "text/javascript; charset=utf-8", include_str!("../../../assets/session.js")),
+    ("/live.js", "text/javascript; charset=utf-8", include_str!("../../../assets/live.js")),
     ("/explorer.js", "text/javascript; charset=utf-8", include_str!("../../../assets/explorer.js")),
     (
         "/plotly.js",
