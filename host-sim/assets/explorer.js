@@ -208,8 +208,6 @@
   // The last that was asked for is opened, however long another takes; until then nothing else can be changed.
   let [openings, opening] = [0, false];
   async function open(path, body, wanted) {
-    const bytes = [...(body?.values() ?? [])].reduce((sum, { size = 0 }) => sum + size, 0);
-    if (bytes > largest) return complain(`more than ${largest >> 20} MiB at once: from the command line, replay takes files of any size`);
     const number = ++openings;
     opening = true;
     complain("");
@@ -249,14 +247,16 @@
     event.preventDefault();
     const files = new FormData(element("open"));
     for (const [name, file] of [...files]) if (file instanceof File && !file.size && !file.name) files.delete(name);
-    if (opening) return;
+    if (opening || !fits([...files.values()])) return;
     remember();
     open(`api/open/${state.system}`, files, state);
   });
+  const fits = (files) => files.reduce((sum, { size = 0 }) => sum + size, 0) <= largest
+    || complain(`more than ${largest >> 20} MiB at once: replay, on the command line, takes more`);
   // Files of which nobody says what they are; those that a recording still lacks are added to them.
   let dropped = [];
   async function drop(files) {
-    if (opening || !files.length) return;
+    if (opening || !files.length || !fits(files)) return;
     remember();
     const isAnew = (old) => !files.some(({ name, size }) => name === old.name && size === old.size);
     dropped = [...dropped.filter(isAnew), ...files];

@@ -17,7 +17,7 @@ const LATEST_TIME: f64 = 1e10;
 pub(crate) const FARTHEST_POSITION: f64 = 1e8;
 
 /// So many columns that are not used are named.
-const MOST_NAMED: usize = 12;
+pub(crate) const MOST_NAMED: usize = 12;
 
 /// How a log was read.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -109,14 +109,18 @@ impl Inertial {
         found.map(|(_, values)| values.as_slice())
     }
 
-    /// The magnetic field at each sample (body, in the log's unit, not a number where it was not measured), if columns of
-    /// a usual name have it.
+    /// The names of a magnetometer's columns, if there are any of a usual name.
+    pub fn magnetic_columns(&self) -> Option<[&'static str; 3]> {
+        let is_there = |name: &&str| self.column(name).is_some();
+        FIELD_COLUMNS.into_iter().find(|names| names.iter().all(is_there))
+    }
+
+    /// The magnetic field at each sample (body, in the log's unit, not a number where it was not measured), if there are
+    /// [columns](Self::magnetic_columns) of it.
     pub fn magnetic_field(&self) -> Option<Vec<[f64; 3]>> {
-        FIELD_COLUMNS.iter().find_map(|names| {
-            let [x, y, z] = names.map(|name| self.column(name));
-            let (x, y, z) = (x?, y?, z?);
-            Some(x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect())
-        })
+        let [x, y, z] = self.magnetic_columns()?.map(|name| self.column(name));
+        let (x, y, z) = (x?, y?, z?);
+        Some(x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect())
     }
 }
 

@@ -52,7 +52,7 @@ impl SensorClass {
 
     /// Standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
     #[inline] // As above.
-    pub(crate) fn heading_rate<T: Scalar>(self) -> T {
+    pub fn heading_rate<T: Scalar>(self) -> T {
         match self {
             Self::Industrial => T::from_f64(0.00048),
             Self::Consumer => T::from_f64(0.002),
@@ -61,7 +61,7 @@ impl SensorClass {
 
     /// Standard deviation of the scale of all strides of a walk.
     #[inline] // As above.
-    pub(crate) fn stride_scale<T: Scalar>(self) -> T {
+    pub fn stride_scale<T: Scalar>(self) -> T {
         match self {
             Self::Industrial => T::from_f64(0.005),
             Self::Consumer => T::from_f64(0.01),

@@ -37,9 +37,9 @@ pub struct PathUncertainty<T: Scalar> {
 
 impl<T: Scalar> PathUncertainty<T> {
     /// Standard deviation of a footprint in the plane, each axis (m).
-    const FOOTPRINT: f64 = 0.028;
+    pub const FOOTPRINT: f64 = 0.028;
     /// Standard deviation of the height gained in a stride (m).
-    const HEIGHT: f64 = 0.047;
+    pub const HEIGHT: f64 = 0.047;
 
     /// At the start of a walk: nothing is uncertain but where the foot stands exactly.
     pub fn new(sensor: SensorClass) -> Self {

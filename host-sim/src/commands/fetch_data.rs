@@ -75,7 +75,7 @@ impl FetchData {
         output::print(&told.join("\n  "))?;
         let problem = match failed {
             0 if fetched + there > 0 => return Ok(()),
-            0 => "nothing of what was asked for is fetched from its publishers".to_owned(),
+            0 => "nothing of what was asked for can be fetched".to_owned(),
             _ => format!("{failed} of {} files could not be fetched", chosen.len() - left),
         };
         Err(Error::File { path: self.to.clone(), problem })

@@ -58,6 +58,33 @@ fn walks_seen_by_cameras() {
 }
 
 #[test]
+fn smoothed_no_foot_jumps_as_it_lands() {
+    let Some(folder) = recordings::folder() else { return };
+    // How much further than in the sample before the track goes in one, m.
+    let jump = |walk: &Walk| {
+        let places = walk.track.windows(3).map(|it| [it[0], it[1], it[2]].map(|it| it.position));
+        let second = |[a, b, c]: [[f64; 3]; 3]| {
+            let of = |axis: usize| c[axis] - 2.0 * b[axis] + a[axis];
+            of(0).hypot(of(1)).hypot(of(2))
+        };
+        places.map(second).fold(0.0, f64::max)
+    };
+    let mut ratios = Vec::new();
+    for (file, _) in vicon(&folder) {
+        let recorded = log::read(&file, &log::Options::default()).expect("a walk");
+        let tracked = |smooth| {
+            let options = Options { smooth, ..industrial(false) };
+            jump(&walk(&recorded.samples, &options).expect("a track"))
+        };
+        let (before, after) = (tracked(false), tracked(true));
+        println!("{}: {:.1} mm, smoothed {:.1} mm", file.display(), 1e3 * before, 1e3 * after);
+        ratios.push(after / before);
+    }
+    assert!(median(&ratios) < 0.1, "{ratios:?}");
+    assert!(ratios.iter().all(|ratio| *ratio < 0.25), "{ratios:?}");
+}
+
+#[test]
 fn loops_of_a_bare_chip_close() {
     let Some(folder) = recordings::folder() else { return };
     let mut logs = 0;

@@ -27,6 +27,10 @@ pub struct Options {
     pub causal: bool,
     /// Correct the heading by a magnetometer, if there is one.
     pub magnetometer: bool,
+    /// Take back over each swing what its end corrected.
+    pub smooth: bool,
+    /// The walk ends where it began: for [`Walk::close`](super::Walk::close), after what a magnetometer shows.
+    pub closed: bool,
     /// Number type of the estimator.
     pub scalar: ScalarKind,
 }
@@ -96,6 +100,8 @@ impl Default for Options {
             contact_height_m: None,
             causal: false,
             magnetometer: true,
+            smooth: false,
+            closed: false,
             scalar: ScalarKind::F32,
         }
     }

@@ -6,10 +6,12 @@
 
 mod check;
 mod choices;
+mod closed;
 mod error;
 mod heading;
 mod position;
 mod sensor;
+mod smoothed;
 mod trace;
 mod walk;
 mod warning;

@@ -12,6 +12,7 @@ use kestirim_scalar::{Components, Q12_20, Scalar};
 use nalgebra::SVector;
 
 use super::choices::{WithDetector, with_detector};
+use super::smoothed::smooth;
 use super::trace::{Moment, OnlyAtStart, See, Updates};
 use super::{
     DetectorKind, Error, Options, Sample, SensorClass, TrackPoint, TrackerKind, sentences,
@@ -29,8 +30,10 @@ pub struct Walk {
     pub path_length_m: f64,
     /// Horizontal distance from start to end, m.
     pub closure_m: f64,
-    /// The rate at which the heading drifted, rad/s, as a magnetometer showed it and as the path was corrected by.
+    /// The rate at which the heading drifted, rad/s, as a magnetometer or a closed path showed it and as it was corrected by.
     pub heading_rate: Option<f64>,
+    /// How far from the start the end was, m, before the walk was [closed](Self::close).
+    pub gap_m: Option<f64>,
     /// What is suspicious about the sensor or the walk.
     pub warnings: Vec<String>,
     /// The class of sensor that it was tracked for.
@@ -44,9 +47,9 @@ pub struct Walk {
 /// One stride of the foot, from stance to stance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stride {
-    /// When the foot stands again, µs.
+    /// When the stance ends to which it led, µs.
     pub time_us: u64,
-    /// Where it stands then, m.
+    /// Where the foot stands then, m.
     pub position: [f64; 3],
     /// Horizontal distance from the stance before, m.
     pub length_m: f64,
@@ -76,6 +79,22 @@ pub(super) fn watched(
     if samples.len() < 2 {
         return Err(Error::TooShort { found: samples.len(), needed: 2 });
     }
+    if !options.smooth || updates == Updates::OnlyAtStart {
+        return tracked(samples, options, updates, see);
+    }
+    let mut moments = Vec::with_capacity(samples.len());
+    let mut walk = tracked(samples, options, updates, &mut |moment| moments.push(moment))?;
+    smooth(&mut walk, &mut moments);
+    moments.into_iter().for_each(see);
+    Ok(walk)
+}
+
+fn tracked(
+    samples: &[Sample],
+    options: &Options,
+    updates: Updates,
+    see: &mut See<'_>,
+) -> Result<Walk, Error> {
     match options.scalar {
         ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
         ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),

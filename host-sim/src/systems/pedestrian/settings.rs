@@ -52,6 +52,16 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
             "Correct the heading where the foot stands twice in the same magnetic field, if the log has one; not causally",
             true,
         ),
+        Setting::switch(
+            "closed",
+            "The walk ends where it began, within about 0.1 m: correct heading, scale and height by that",
+            false,
+        ),
+        Setting::switch(
+            "smooth",
+            "Take back over each swing what its end corrects, so that no foot jumps as it lands (not for firmware)",
+            false,
+        ),
         Setting::number("rate", "Average the log down to this rate first", "Hz", rates, rates[1])
             .undecided(),
         Setting::one_of("scalar", "Number type of the tracker", &ScalarKind::F32).live(),
@@ -69,11 +79,14 @@ pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> 
         "factor" if !scaled.contains(&detector) => {
             Some(Idle::foreign("is for --detector variance, angular-rate or shoe"))
         }
-        "magnetometer" if !turns_back(settings) => {
+        "magnetometer" | "closed" if !turns_back(settings) => {
             Some(Idle::foreign("is for --tracker ekf and --detector adaptive, without --causal"))
         }
         "magnetometer" if has_field == Some(false) => {
             Some(Idle::implied("is of no use: the log has no magnetometer"))
+        }
+        "smooth" if settings.is_on("causal") => {
+            Some(Idle::foreign("looks ahead: not with --causal"))
         }
         "causal" if detector != DetectorName::Adaptive => {
             Some(Idle::implied("is what every detector but adaptive does anyway"))
@@ -82,7 +95,7 @@ pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> 
     }
 }
 
-/// Whether a magnetometer may correct the heading: that of the other trackers does not drift at a constant rate.
+/// Whether the heading may be corrected afterwards: that of the other trackers does not drift at a constant rate.
 fn turns_back(settings: &Settings) -> bool {
     settings.chosen::<TrackerKind>("tracker") == TrackerKind::Ekf
         && settings.chosen::<DetectorName>("detector") == DetectorName::Adaptive
@@ -110,6 +123,8 @@ pub fn options(settings: &Settings) -> Options {
         contact_height_m: settings.number("contact-height"),
         causal: settings.is_on("causal"),
         magnetometer: settings.is_on("magnetometer") && turns_back(settings),
+        smooth: settings.is_on("smooth") && !settings.is_on("causal"),
+        closed: settings.is_on("closed") && turns_back(settings),
         scalar: settings.chosen("scalar"),
     }
 }

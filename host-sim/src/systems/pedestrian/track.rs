@@ -42,6 +42,11 @@ impl Track {
         if let Some(rate) = rate {
             trace.walk.turn_back(rate);
         }
+        if options.closed
+            && let Err(refused) = trace.walk.close()
+        {
+            trace.walk.warnings.push(refused);
+        }
         Ok(Self { averaged, trace })
     }
 

@@ -9,8 +9,8 @@ use kestirim_replay::pedestrian::TrackPoint;
 
 use crate::Error;
 use crate::systems::pedestrian::Sample;
-use crate::table::{FARTHEST_POSITION, refused};
-use crate::text;
+use crate::table::{FARTHEST_POSITION, MOST_NAMED, refused};
+use crate::text::{self, listed};
 
 const TRUTH_COLUMNS: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
 /// A recorded walk.
@@ -61,13 +61,23 @@ pub fn read(path: &Path, options: &Options) -> Result<Log, Error> {
 pub fn parse(path: &Path, bytes: &[u8], options: &Options) -> Result<Log, Error> {
     let read = inertial::read(bytes, options).map_err(|error| refused(path, &error))?;
     let truth = truth(path, &read)?;
+    let import = read.conclusions.iter().map(Conclusion::to_string);
     Ok(Log {
         truth,
         field: read.magnetic_field(),
-        import: read.conclusions.iter().map(Conclusion::to_string).collect(),
+        import: import.chain(left_out(&read)).collect(),
         warnings: read.damage.sentences(),
         samples: read.samples,
     })
+}
+
+/// A sentence that names the columns of numbers that are not used, if there are any.
+fn left_out(log: &Inertial) -> Option<String> {
+    let field = log.magnetic_columns().unwrap_or_default();
+    let names = log.other.iter().map(|(name, _)| name.as_str());
+    let names = names.filter(|name| !field.contains(name) && !TRUTH_COLUMNS.contains(name));
+    let names = listed(names, MOST_NAMED);
+    (!names.is_empty()).then(|| format!("columns that are not used: {names}"))
 }
 
 /// Where the sensor was, by the columns that say so.

@@ -1,0 +1,229 @@
+//! A walk that ended where it began.
+
+use kestirim_pedestrian::PathUncertainty;
+use nalgebra::{Matrix2, Vector2};
+
+use super::{Stride, Walk};
+
+/// Standard deviation of how near the start a walk ends that ends where it began, m.
+const PUT_BACK: f64 = 0.1;
+/// χ² of three degrees of freedom that a closed walk exceeds once in a thousand.
+const UNLIKELY: f64 = 16.3;
+/// Rates that are tried first, to either side, and how many standard deviations the last of them is away.
+const TRIED: (i32, f64) = (40, 4.0);
+
+impl Walk {
+    /// Closes the path: it ends where it began, in the plane and in height.
+    ///
+    /// What makes a path wrong is known by its kinds ([`PathUncertainty`]): a constant rate of the heading, a scale, an error
+    /// of each stride. The most likely of them that close it are taken back; standard deviations are those that remain.
+    ///
+    /// # Errors
+    /// A sentence if there is no stride, or if these errors do not explain how far the end is from the start: the walk
+    /// stays as it was.
+    pub fn close(&mut self) -> Result<(), String> {
+        let (Some(first), Some(last)) = (self.track.first().copied(), self.strides.last()) else {
+            return Err("the path is not closed: there is no stride".to_owned());
+        };
+        let start = first.position;
+        let path = Path::of(self);
+        let prior = Prior::of(self);
+        let (rate, scale, unlikely) = path.closing(&prior);
+        let (gap_m, rise_m) = (path.end(0.0, 0.0).norm(), last.position[2] - start[2]);
+        if unlikely + rise_m * rise_m / (prior.heights + PUT_BACK * PUT_BACK) > UNLIKELY {
+            return Err(format!(
+                "the path is not closed: its end is {gap_m:.2} m from its start and {rise_m:+.2} m above it, \
+                 which errors of this sensor do not explain"
+            ));
+        }
+        let before = self.heading_rate.unwrap_or(0.0);
+        self.turn_back(rate);
+        self.heading_rate = Some(before + rate);
+        self.shorten(start, scale);
+        self.spread(start, &prior);
+        for (stride, sigma_m) in self.strides.iter_mut().zip(path.remaining(&prior, rate, scale)) {
+            stride.sigma_m = sigma_m;
+        }
+        self.gap_m = Some(gap_m);
+        if let Some([x, y, _]) = self.track.last().map(|point| point.position) {
+            self.closure_m = (x - start[0]).hypot(y - start[1]);
+        }
+        Ok(())
+    }
+
+    /// Makes the path shorter by a scale, in the plane.
+    fn shorten(&mut self, start: [f64; 3], scale: f64) {
+        let shorter = |[x, y, z]: [f64; 3]| {
+            [
+                start[0] + (x - start[0]) * (1.0 - scale),
+                start[1] + (y - start[1]) * (1.0 - scale),
+                z,
+            ]
+        };
+        self.track.iter_mut().for_each(|point| point.position = shorter(point.position));
+        for stride in &mut self.strides {
+            stride.position = shorter(stride.position);
+            stride.length_m *= 1.0 - scale;
+        }
+        self.path_length_m *= 1.0 - scale;
+    }
+
+    /// Takes back what is left at the end, from each stride the same, while the foot moves.
+    fn spread(&mut self, start: [f64; 3], prior: &Prior) {
+        let end = self.strides.last().map_or(start, |stride| stride.position);
+        let of_a_stride = [
+            prior.share_of_a_stride() * (end[0] - start[0]),
+            prior.share_of_a_stride() * (end[1] - start[1]),
+            prior.height_share_of_a_stride() * (end[2] - start[2]),
+        ];
+        let taken = |place: [f64; 3], strides: f64| {
+            [0, 1, 2].map(|axis| place[axis] - strides * of_a_stride[axis])
+        };
+        let (mut done, mut from) = (0, start);
+        for point in &mut self.track {
+            while let Some(stride) = self.strides.get(done).filter(|it| it.time_us < point.time_us)
+            {
+                (done, from) = (done + 1, stride.position);
+            }
+            let way = |to: [f64; 3]| (to[0] - from[0]).hypot(to[1] - from[1]);
+            let share = self.strides.get(done).map_or(0.0, |stride| {
+                let length_m = way(stride.position);
+                if length_m > 0.0 { (way(point.position) / length_m).min(1.0) } else { 1.0 }
+            });
+            point.position = taken(point.position, done as f64 + share);
+        }
+        for (index, stride) in self.strides.iter_mut().enumerate() {
+            stride.position = taken(stride.position, (index + 1) as f64);
+        }
+    }
+}
+
+/// How large the errors of a path are, before it is known that it is closed.
+struct Prior {
+    /// Standard deviation of the heading's rate, rad/s.
+    rate: f64,
+    /// Of the scale.
+    scale: f64,
+    /// Variance of all strides' own errors, each axis, m².
+    strides: f64,
+    /// Of all height errors, m².
+    heights: f64,
+    count: f64,
+}
+
+impl Prior {
+    fn of(walk: &Walk) -> Self {
+        let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
+        let count = walk.strides.len() as f64;
+        Self {
+            rate: class.heading_rate(),
+            scale: class.stride_scale(),
+            strides: count * PathUncertainty::<f64>::FOOTPRINT.powi(2),
+            heights: count * PathUncertainty::<f64>::HEIGHT.powi(2),
+            count,
+        }
+    }
+
+    /// What a stride takes of what is left at the end.
+    fn share_of_a_stride(&self) -> f64 {
+        self.strides / (self.strides + PUT_BACK * PUT_BACK) / self.count.max(1.0)
+    }
+
+    fn height_share_of_a_stride(&self) -> f64 {
+        self.heights / (self.heights + PUT_BACK * PUT_BACK) / self.count.max(1.0)
+    }
+}
+
+/// Steps from stance to stance, and when each was made after the start, s.
+struct Path {
+    steps: Vec<(f64, Vector2<f64>)>,
+}
+
+impl Path {
+    /// The time of a step is the mean over its way: a pause before or after it turns no step.
+    fn of(walk: &Walk) -> Self {
+        let mut pairs = walk.track.windows(2).peekable();
+        let start_us = walk.track.first().map_or(0, |point| point.time_us);
+        let step = |stride: &Stride| {
+            let (mut step, mut timed) = (Vector2::zeros(), Vector2::zeros());
+            while let Some([a, b]) = pairs.next_if(|pair| pair[1].time_us <= stride.time_us) {
+                let [from, to] = [a, b].map(|point| Vector2::from(point.horizontal()));
+                step += to - from;
+                timed += (to - from) * (b.time_us.saturating_sub(start_us) as f64 * 1e-6);
+            }
+            let length = step.norm_squared();
+            (if length > 0.0 { timed.dot(&step) / length } else { 0.0 }, step)
+        };
+        Self { steps: walk.strides.iter().map(step).collect() }
+    }
+
+    /// The path so far after each stride, turned back at a rate and less long by a scale, and how it changes with both.
+    fn walked(&self, rate: f64, scale: f64) -> impl Iterator<Item = (Vector2<f64>, Matrix2<f64>)> {
+        let (mut sum, mut turned) = (Vector2::zeros(), Vector2::zeros());
+        self.steps.iter().map(move |(seconds, step)| {
+            let (sine, cosine) = (-rate * seconds).sin_cos();
+            let step = Matrix2::new(cosine, -sine, sine, cosine) * step;
+            sum += step;
+            turned += Vector2::new(step.y, -step.x) * *seconds;
+            let place = sum * (1.0 - scale);
+            (place, Matrix2::from_columns(&[turned * (1.0 - scale), -sum]))
+        })
+    }
+
+    fn end(&self, rate: f64, scale: f64) -> Vector2<f64> {
+        self.walked(rate, scale).last().map_or_else(Vector2::zeros, |(place, _)| place)
+    }
+
+    /// χ² of these errors.
+    fn unlikeliness(&self, prior: &Prior, [rate, scale]: [f64; 2]) -> f64 {
+        let of_the_end =
+            self.end(rate, scale).norm_squared() / (prior.strides + PUT_BACK * PUT_BACK);
+        (rate / prior.rate).powi(2) + (scale / prior.scale).powi(2) + of_the_end
+    }
+
+    /// The most likely rate and scale that close the path, and their χ².
+    fn closing(&self, prior: &Prior) -> (f64, f64, f64) {
+        let (count, furthest) = TRIED;
+        let tried =
+            (-count..=count).map(|k| f64::from(k) / f64::from(count) * furthest * prior.rate);
+        let unlikely = |rate: &f64| self.unlikeliness(prior, [*rate, 0.0]);
+        let begin = tried.min_by(|a, b| unlikely(a).total_cmp(&unlikely(b))).unwrap_or(0.0);
+        let mut found = Vector2::new(begin, 0.0);
+        let weights =
+            Matrix2::from_diagonal(&Vector2::new(prior.rate.powi(-2), prior.scale.powi(-2)));
+        for _ in 0..20 {
+            let Some((end, slope)) = self.walked(found.x, found.y).last() else { break };
+            let weight = 1.0 / (prior.strides + PUT_BACK * PUT_BACK);
+            let information = weights + slope.transpose() * slope * weight;
+            let gradient = weights * found + slope.transpose() * end * weight;
+            let Some(inverse) = information.try_inverse() else { break };
+            found -= inverse * gradient;
+        }
+        (found.x, found.y, self.unlikeliness(prior, [found.x, found.y]))
+    }
+
+    /// Standard deviations after each stride, m, when it is known that the path is closed.
+    fn remaining(&self, prior: &Prior, rate: f64, scale: f64) -> Vec<[f64; 3]> {
+        let variances =
+            Matrix2::from_diagonal(&Vector2::new(prior.rate.powi(2), prior.scale.powi(2)));
+        let Some((_, end)) = self.walked(rate, scale).last() else { return Vec::new() };
+        let [own, height] = [prior.strides, prior.heights].map(|all| all / prior.count);
+        let known = PUT_BACK * PUT_BACK;
+        let gap = end * variances * end.transpose() + Matrix2::identity() * (prior.strides + known);
+        let inverse = gap.try_inverse().unwrap_or_else(Matrix2::zeros);
+        let after = |(index, (_, slope)): (usize, (Vector2<f64>, Matrix2<f64>))| {
+            let strides = (index + 1) as f64;
+            let noise = Matrix2::identity() * (strides * own);
+            let with_end = slope * variances * end.transpose() + noise;
+            let all = slope * variances * slope.transpose() + noise;
+            let left = all - with_end * inverse * with_end.transpose();
+            let z = strides * height;
+            let z = z - z * z / (prior.heights + known);
+            [left[(0, 0)], left[(1, 1)], z].map(|variance| variance.max(0.0).sqrt())
+        };
+        self.walked(rate, scale).enumerate().map(after).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
