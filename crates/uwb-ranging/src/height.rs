@@ -378,7 +378,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         let solver = Solver { huber, ..Solver::new(self.height) };
         let near = start.and_then(|start| {
             let variance = freed.first()?.variance;
-            solver.descend::<2>(&freed, &SVector::from(start), variance, None).ok()?
+            solver.descend::<2>(&freed, &SVector::from(start), variance).ok()
         });
         // Two standard deviations a range.
         let most = T::from_f64(4.0) * T::from_micro(freed.len().min(2000) as i32 * 1_000_000);

@@ -3,9 +3,9 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     AntennaDelay, Broadcast, Calibration, Channel, ClockOffset, DataRate, DoubleSided, Downlink,
-    Heard, HeightSearch, Huber, LevelBias, Observation, Quartiles, Room, SingleSided, Solver,
-    Ticks, Timestamp, Trilateration, dilution_of_precision, expected_range, survey, trilaterate,
-    weighted_dilution,
+    Heard, HeightSearch, Huber, LevelBias, Observation, Quartiles, Room, Search, SingleSided,
+    Solver, Ticks, Timestamp, Trilateration, dilution_of_precision, expected_range, survey,
+    trilaterate, weighted_dilution,
 };
 
 use super::values::{
@@ -99,6 +99,13 @@ fn solvers<T: Scalar, const D: usize>() {
     let observations = any([observation; 4]);
     keep(Solver::solve::<D>(&solver, slice(&observations), maybe(matrix())));
     keep(trilaterate::<T, D>(slice(&observations), number()));
+    for search in [any(Search::<T, D>::new(maybe(matrix()))), any(Search::near(matrix()))] {
+        let mut search = search;
+        for _ in 0..rounds() {
+            let found = Search::advance(&mut search, &solver, slice(&observations), whole());
+            keep(found.map(Option::<&_>::copied));
+        }
+    }
 }
 
 fn anchors<T: Scalar, const A: usize>() {

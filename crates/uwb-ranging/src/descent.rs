@@ -1,0 +1,183 @@
+//! Gauss and Newton's steps from one start, one after the other.
+
+use crate::common_bias::CommonBias;
+use crate::symmetric::NormalEquations;
+use crate::{Error, Fix, Huber, Observation, Solver, expected_range};
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::{SMatrix, SVector};
+
+/// Where the steps from one start have come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Descent<T: Scalar, const D: usize> {
+    position: SVector<T, D>,
+    bias: T,
+    steps: u16,
+}
+
+/// What a step came to.
+pub(crate) enum Step<T: Scalar, const D: usize> {
+    /// One of the first, which tell nothing yet.
+    First,
+    /// Somewhere on the way: what it cost there, and how far the step went (m).
+    Next { cost: T, moved: T },
+    /// A minimum.
+    Settled(Fix<T, D>),
+}
+
+/// How exactly a minimum is to be found.
+pub(crate) struct Care {
+    /// A step of no more than this ends the search, m.
+    settled: f64,
+    /// After so many steps …
+    many: u16,
+    /// … one of no more than this does, m.
+    slow: f64,
+}
+
+impl Care {
+    /// To the millimetre.
+    pub(crate) const EXACT: Self = Self { settled: 1e-3, many: 30, slow: 1e-3 };
+    /// So that a filter can begin there: Huber's weights would take dozens of steps for ranges that contradict each other.
+    pub(crate) const ROUGH: Self = Self { settled: 1e-2, many: 12, slow: 0.1 };
+}
+
+impl<T: Scalar, const D: usize> Descent<T, D> {
+    const MOST_STEPS: u16 = 30;
+    /// Steps in which every range counts, so that Huber's weights begin near the answer.
+    const PLAIN_STEPS: u16 = 3;
+
+    /// Before the first step from here (m).
+    pub(crate) fn from(start: SVector<T, D>) -> Self {
+        Self { position: start, bias: T::ZERO, steps: 0 }
+    }
+
+    /// Where it is, m.
+    pub(crate) fn position(&self) -> &SVector<T, D> {
+        &self.position
+    }
+
+    /// The next step.
+    ///
+    /// # Errors
+    /// [`Error::DegenerateGeometry`] or [`Error::NotConverged`]: no minimum is reached from this start.
+    pub(crate) fn step(
+        &mut self,
+        solver: &Solver<T>,
+        observations: &[Observation<T>],
+        noise: &Noise<T>,
+        care: &Care,
+    ) -> Result<Step<T, D>, Error> {
+        let prior = solver.common_bias.filter(|_| observations.len() > D + 1);
+        let is_plain = self.steps < Self::PLAIN_STEPS;
+        let robust = solver.huber.filter(|_| !is_plain);
+        let mut equations = NormalEquations::<T, D>::new();
+        let mut common = CommonBias::new();
+        let mut cost = T::ZERO;
+        for observation in observations {
+            let expected = expected_range(&self.position, solver.height, &observation.anchor);
+            let residual = observation.range - expected.distance - self.bias;
+            let (weight, square) = noise.weighed(residual, observation.variance, robust);
+            cost += square;
+            equations.add(&expected.direction, residual, weight);
+            if prior.is_some() {
+                common.add(&expected.direction, residual, weight);
+            }
+        }
+        let least = equations.least_pivot();
+        if let Some(bias_sigma) = prior {
+            let ratio = noise.sigma / bias_sigma;
+            common.add(&[T::ZERO; D], -self.bias, ratio * ratio);
+            cost += (self.bias / bias_sigma) * (self.bias / bias_sigma);
+            common.eliminate_from(&mut equations);
+        }
+        let factors = equations.factorised_above(least).ok_or(Error::DegenerateGeometry)?;
+        let moved = factors.solve(&equations.b);
+        let moved_bias = if prior.is_some() { common.solve(&moved) } else { T::ZERO };
+        let (moved, moved_bias) = limited(moved, moved_bias);
+        for axis in 0..D {
+            self.position.as_array_mut()[axis] += moved[axis];
+        }
+        self.bias += moved_bias;
+        if !(T::all_finite(self.position.as_array()) && self.bias.is_finite()) {
+            return Err(Error::NotConverged);
+        }
+        self.steps = self.steps.saturating_add(1);
+        if self.steps <= Self::PLAIN_STEPS + 1 {
+            return Ok(Step::First);
+        }
+        let moved = moved.iter().fold(moved_bias.abs(), |most, moved| most.max(moved.abs()));
+        let least = if self.steps < care.many { care.settled } else { care.slow };
+        if moved > T::from_f64(least) {
+            let is_last = self.steps >= Self::MOST_STEPS;
+            return if is_last { Err(Error::NotConverged) } else { Ok(Step::Next { cost, moved }) };
+        }
+        let inverse = factors.inverse();
+        let common_bias_variance =
+            if prior.is_some() { common.variance(&factors) * noise.variance } else { T::ZERO };
+        Ok(Step::Settled(Fix {
+            position: self.position,
+            covariance: SMatrix::from_fn(|i, j| inverse[i][j] * noise.variance),
+            common_bias: self.bias,
+            common_bias_variance,
+            cost,
+            ambiguous: false,
+        }))
+    }
+}
+
+/// The noise of the best range, to which all weights are relative.
+pub(crate) struct Noise<T> {
+    variance: T,
+    sigma: T,
+    per_sigma: T,
+}
+
+impl<T: Scalar> Noise<T> {
+    /// Of this variance, m².
+    pub(crate) fn new(variance: T) -> Self {
+        let sigma = variance.sqrt();
+        Self { variance, sigma, per_sigma: sigma.recip() }
+    }
+
+    /// The weight of a residual of this variance and what it costs. Roots and divisions only where they
+    /// change something: a processor without a floating-point unit is in here most of a start.
+    fn weighed(&self, residual: T, variance: T, huber: Option<Huber<T>>) -> (T, T) {
+        let alike = variance == self.variance;
+        let weight = if alike { T::ONE } else { self.variance / variance };
+        let mut deviations = residual.abs() * self.per_sigma;
+        let square = deviations * deviations * weight;
+        match huber.map(|huber| huber.threshold(residual)) {
+            Some(threshold) if square > threshold * threshold => {
+                if !alike {
+                    deviations *= weight.sqrt();
+                }
+                let cost = threshold * (T::TWO * deviations - threshold);
+                (weight * threshold / deviations, cost)
+            }
+            _ => (weight, square),
+        }
+    }
+}
+
+/// A step of no more than 2 m: far from the answer the distances are not linear.
+fn limited<T: Scalar, const D: usize>(step: [T; D], bias: T) -> ([T; D], T) {
+    let mut length = T::norm(&step);
+    if bias != T::ZERO {
+        length = T::norm(&[length, bias]);
+    }
+    if length <= T::TWO {
+        return (step, bias);
+    }
+    let divisor = length.divisor();
+    let shortened = |component| T::TWO * T::divided_by(component, divisor);
+    (step.map(shortened), shortened(bias))
+}
