@@ -2,6 +2,7 @@
 
 use crate::config::{OFFICE, size};
 use crate::measurement::Range;
+use crate::start::Start;
 use crate::tracker::LATE_US;
 use crate::{
     Anchor, Config, DifferenceSample, Error, Health, Outcome, RangeSample, Report, Tracker,
@@ -242,6 +243,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             (Some(arrival), _) => (second, arrival + difference),
             (None, Some(arrival)) => (first, arrival - difference),
             (None, None) if is_first => {
+                self.tracker.start = Start::new();
                 if let Some(link) = links.get_mut(first) {
                     link.hear(time_us, T::ZERO);
                 }
@@ -266,12 +268,16 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             self.tracker.pace.hear(time_us);
             return collected;
         }
-        // Their clock is chosen so that they look like distances: least squares knows it to some metres beforehand.
-        let by = self.reach - sum * T::from_micro(count.min(2000) * 1_000_000).recip();
-        for link in links.iter_mut() {
-            link.shift(by);
+        let mut range = range;
+        // Their clock is chosen so that they look like distances: least squares knows it to some metres beforehand. It stays
+        // while a position is looked for, whose clock it is.
+        if !self.tracker.start.is_on() {
+            let by = self.reach - sum * T::from_micro(count.min(2000) * 1_000_000).recip();
+            for link in links.iter_mut() {
+                link.shift(by);
+            }
+            range += by;
         }
-        let range = range + by;
         self.tracker.collect(&RangeSample { time_us, anchor, range }, range)
     }
 

@@ -64,9 +64,6 @@ impl<T: Copy> Health<T> {
     }
 }
 
-/// After so many tries to begin, ranges that contradict each other are accepted, too.
-pub(crate) const MOST_TRIES: u8 = 20;
-
 /// Mean NIS of ranges up to which they agree.
 const NIS_OF_AGREEMENT: f64 = 4.0;
 
@@ -86,13 +83,11 @@ pub(crate) struct Counters<T> {
     /// Two for each that was rejected lately, less one for each that was taken in.
     pub(crate) distrust: u16,
     pub(crate) starts: u16,
-    /// Failed attempts to find a position.
-    pub(crate) tries: u8,
 }
 
 impl<T: Scalar> Counters<T> {
     pub(crate) fn new() -> Self {
-        Self { nis: T::ONE, taken: 0, rejected: 0, distrust: 0, starts: 0, tries: 0 }
+        Self { nis: T::ONE, taken: 0, rejected: 0, distrust: 0, starts: 0 }
     }
 
     #[inline(always)]
@@ -122,21 +117,10 @@ impl<T: Scalar> Counters<T> {
         self.distrust > 2 * u16::from(heard)
     }
 
-    /// Whether to try to begin a position now that so many of all `anchors` are `heard`: when all are, or one of them
-    /// `again`, before the others; and how many tries there were.
-    pub(crate) fn try_again(&mut self, heard: u8, anchors: usize, again: bool) -> Option<u8> {
-        if !again && usize::from(heard) < anchors {
-            return None;
-        }
-        let tries = self.tries;
-        self.tries = tries.saturating_add(1);
-        Some(tries)
-    }
-
     /// A position was begun.
     pub(crate) fn begun(&mut self) {
         self.starts = self.starts.saturating_add(1);
-        (self.tries, self.distrust, self.nis) = (0, 0, T::ONE);
+        (self.distrust, self.nis) = (0, T::ONE);
     }
 }
 

@@ -1,12 +1,11 @@
-//! A first position, or a new one.
+//! A first position, or a new one: looked for in a few steps with each range, so that no range takes much longer than another.
 
 use crate::Config;
-use crate::health::MOST_TRIES;
 use crate::link::Link;
 use heapless::Vec;
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_scalar::{Columns, Components, Scalar};
-use kestirim_uwb_ranging::{Fix, Observation, Solver, expected_range};
+use kestirim_uwb_ranging::{Fix, Observation, Search, Solver, expected_range};
 use nalgebra::{SMatrix, SVector};
 
 /// Standard deviation that biases add to the fit's, m.
@@ -23,42 +22,222 @@ const ROUNDING: f64 = 1.0 / 64.0;
 /// deviations a range cost 3.
 const LARGEST_COST: f64 = 12.0;
 
-/// The estimate that the fresh ranges make, if they are enough and agree with each other, or after many `tries` even if they
-/// do not.
-pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
-    config: &Config<T>,
-    links: &[Link<T>],
+/// After so many ranges without a position, ranges that contradict each other are accepted, too.
+const MOST_TRIES: u8 = 20;
+
+/// Residuals that a range has time for beside its own: of four anchors in five steps, of eight in two.
+const WORK: usize = 20;
+/// Age of the ranges beyond which the tag may be anywhere (µs).
+const LONGEST_US: u64 = 3_000_000;
+
+/// The search for a position of D coordinates among up to A anchors.
+///
+/// An attempt is made with the ranges that are fresh at one moment; what is heard while it goes on is for the next.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct Start<T: Scalar, const D: usize, const A: usize> {
+    /// The moment (µs).
     time_us: u64,
-    fresh_us: u64,
+    /// The ranges that were fresh then, in the order of the links; none at all between two attempts.
+    ranges: Vec<Option<Fresh<T>>, A>,
+    search: Search<T, D>,
+    /// The link that is left out, when all have contradicted each other.
+    without: Option<usize>,
+    /// Ranges since the first attempt began.
     tries: u8,
-) -> Option<Gaussian<T, N>> {
-    let variance = config.range_sigma * config.range_sigma;
-    let mut observations = Vec::<Observation<T>, A>::new();
-    for link in links {
-        if let Some((range, age_us)) = link.fresh(time_us, fresh_us) {
-            let anchor = link.anchor.position;
-            // The tag may have moved since.
-            let age = T::from_micro(age_us.min(fresh_us) as i32);
-            let moved = (age * T::from_f64(VELOCITY_SIGMA)).min(T::from_f64(FARTHEST));
-            let variance = variance + moved * moved;
-            observations.push(Observation { anchor, range, variance }).ok()?;
+}
+
+/// A range (m) and its variance (m²).
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Fresh<T> {
+    range: T,
+    variance: T,
+}
+
+/// A position that was found, and when the tag was there (µs).
+pub(crate) struct Begun<T: Scalar, const N: usize> {
+    pub(crate) estimate: Gaussian<T, N>,
+    pub(crate) time_us: u64,
+}
+
+/// What an attempt has come to.
+enum Progress<T: Scalar, const D: usize> {
+    /// There are more steps to take.
+    Unfinished,
+    /// The ranges make this position.
+    Found(Fix<T, D>),
+    /// They make none.
+    Nothing,
+}
+
+impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
+    /// Before the first range.
+    pub(crate) fn new() -> Self {
+        let search = Search::new(None);
+        Self { time_us: 0, ranges: Vec::new(), search, without: None, tries: 0 }
+    }
+
+    /// Whether an attempt goes on.
+    pub(crate) fn is_on(&self) -> bool {
+        !self.ranges.is_empty()
+    }
+
+    /// Takes some steps, now that another range was heard; an attempt begins where that `may` be. The estimate that its ranges
+    /// make, if they agree with each other, or all but one that is too long, or after many ranges even if they do not.
+    pub(crate) fn go_on<const N: usize>(
+        &mut self,
+        config: &Config<T>,
+        links: &[Link<T>],
+        (time_us, fresh_us): (u64, u64),
+        may: bool,
+    ) -> Option<Begun<T, N>> {
+        let oldest_us = time_us.saturating_sub(fresh_us.min(LONGEST_US));
+        if self.time_us < oldest_us {
+            self.ranges.clear();
+        }
+        if !self.is_on() {
+            if !may {
+                return None;
+            }
+            self.begin(config, links, (time_us, fresh_us));
+        }
+        let accepts_all = self.tries >= MOST_TRIES;
+        self.tries = self.tries.saturating_add(1);
+        let solver = Solver {
+            height: config.height,
+            room: config.room,
+            common_bias: (N > 2 * D).then_some(config.common_bias_sigma),
+            huber: config.huber,
+        };
+        let fix = match self.advance(&solver, links, accepts_all) {
+            Progress::Unfinished => return None,
+            Progress::Found(fix) => fix,
+            Progress::Nothing => {
+                self.ranges.clear();
+                return None;
+            }
+        };
+        self.ranges.clear();
+        self.tries = 0;
+        Some(Begun { estimate: estimate(config, &fix)?, time_us: self.time_us })
+    }
+
+    /// Begins an attempt with the ranges that are fresh now.
+    fn begin(&mut self, config: &Config<T>, links: &[Link<T>], (time_us, fresh_us): (u64, u64)) {
+        let variance = config.range_sigma * config.range_sigma;
+        for link in links {
+            let fresh = link.fresh(time_us, fresh_us).map(|(range, age_us)| {
+                // The tag may have moved since.
+                let age = T::from_micro(age_us.min(fresh_us) as i32);
+                let moved = (age * T::from_f64(VELOCITY_SIGMA)).min(T::from_f64(FARTHEST));
+                Fresh { range, variance: variance + moved * moved }
+            });
+            // There are no more links than places.
+            let _ = self.ranges.push(fresh);
+        }
+        (self.time_us, self.without, self.search) = (time_us, None, Search::new(None));
+    }
+
+    /// The ranges but for the one that is left out.
+    fn observations(&self, links: &[Link<T>]) -> Vec<Observation<T>, A> {
+        let mut observations = Vec::new();
+        for (index, (link, fresh)) in links.iter().zip(&self.ranges).enumerate() {
+            if let Some(Fresh { range, variance }) = *fresh
+                && self.without != Some(index)
+            {
+                let anchor = link.anchor.position;
+                let _ = observations.push(Observation { anchor, range, variance });
+            }
+        }
+        observations
+    }
+
+    /// Takes as many steps as a range has time for. Where all ranges contradict each other, the attempt goes on without the
+    /// longest, unless they are accepted all the same.
+    fn advance(
+        &mut self,
+        solver: &Solver<T>,
+        links: &[Link<T>],
+        accepts_all: bool,
+    ) -> Progress<T, D> {
+        let observations = self.observations(links);
+        let steps = WORK.checked_div(observations.len()).unwrap_or(1).max(1);
+        let fix = match self.search.advance(solver, &observations, steps) {
+            Ok(None) => return Progress::Unfinished,
+            Ok(Some(fix)) => *fix,
+            Err(_) => return Progress::Nothing,
+        };
+        let agrees = fix.cost <= T::from_f64(LARGEST_COST);
+        match self.without {
+            None if agrees || accepts_all => Progress::Found(fix),
+            // What is left must have a range to spare, without which there is nothing to tell.
+            None if observations.len() > D + 1 => {
+                self.without = self.longest(solver, links, &fix);
+                self.search = Search::near(fix.position);
+                Progress::Unfinished
+            }
+            Some(index) if agrees && self.is_blocked(index, solver, links, &fix) => {
+                Progress::Found(fix)
+            }
+            _ => Progress::Nothing,
         }
     }
-    let estimates_bias = N > 2 * D;
-    let solver = Solver {
-        height: config.height,
-        room: config.room,
-        common_bias: estimates_bias.then_some(config.common_bias_sigma),
-        huber: config.huber,
-    };
-    let most = T::from_f64(LARGEST_COST);
-    // In turn: all ranges, and all but one. Both at once take longer than a sample may.
-    let fix = if tries % 2 == 1 && tries < MOST_TRIES {
-        without_one(&solver, &observations, most, tries / 2)?
-    } else {
-        let fix = solver.solve::<D>(&observations, None).ok();
-        fix.filter(|fix| fix.cost <= most || tries >= MOST_TRIES)?
-    };
+
+    /// The link whose range is too long by most at a place.
+    fn longest(&self, solver: &Solver<T>, links: &[Link<T>], fix: &Fix<T, D>) -> Option<usize> {
+        let mut longest = T::MIN;
+        let mut found = None;
+        for index in 0..links.len() {
+            let excess = self.excess(index, solver, links, fix);
+            if let Some(excess) = excess.filter(|&it| it > longest) {
+                (longest, found) = (excess, Some(index));
+            }
+        }
+        found
+    }
+
+    /// By how much a range is too long at a place, m.
+    #[inline(never)]
+    fn excess(
+        &self,
+        index: usize,
+        solver: &Solver<T>,
+        links: &[Link<T>],
+        fix: &Fix<T, D>,
+    ) -> Option<T> {
+        let (link, fresh) = (links.get(index)?, (*self.ranges.get(index)?)?);
+        let expected = expected_range(&fix.position, solver.height, &link.anchor.position);
+        Some(fresh.range - expected.distance - fix.common_bias)
+    }
+
+    /// Whether a range is far too long at a place.
+    fn is_blocked(
+        &self,
+        index: usize,
+        solver: &Solver<T>,
+        links: &[Link<T>],
+        fix: &Fix<T, D>,
+    ) -> bool {
+        let Some(Some(fresh)) = self.ranges.get(index) else { return false };
+        let most = fresh.variance * T::from_f64(LARGEST_COST);
+        let excess = self.excess(index, solver, links, fix);
+        excess.is_some_and(|excess| excess > T::ZERO && excess * excess > most)
+    }
+}
+
+/// The estimate that begins with a fix.
+fn estimate<T: Scalar, const D: usize, const N: usize>(
+    config: &Config<T>,
+    fix: &Fix<T, D>,
+) -> Option<Gaussian<T, N>> {
     let mut mean = SVector::<T, N>::zeros();
     let mut covariance = SMatrix::<T, N, N>::zeros();
     for axis in 0..D {
@@ -71,7 +250,7 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
         covariance.as_columns_mut()[D + axis][D + axis] =
             T::from_f64(VELOCITY_SIGMA * VELOCITY_SIGMA);
     }
-    if estimates_bias {
+    if N > 2 * D {
         mean.as_array_mut()[2 * D] = fix.common_bias;
         let known = fix.common_bias_variance > T::ZERO;
         covariance.as_columns_mut()[2 * D][2 * D] = if known {
@@ -82,29 +261,6 @@ pub(crate) fn start<T: Scalar, const D: usize, const N: usize, const A: usize>(
     }
     let covariance = Covariance::from_lower_triangle(&covariance);
     covariance.is_finite().then(|| Gaussian::new(mean, covariance))
-}
-
-/// The position that the ranges make without one that is too long; none if they do not agree then either. What is left must
-/// have a range to spare, without which the solver finds none. Each turn leaves out another one.
-fn without_one<T: Scalar, const D: usize, const A: usize>(
-    solver: &Solver<T>,
-    observations: &Vec<Observation<T>, A>,
-    most: T,
-    turn: u8,
-) -> Option<Fix<T, D>> {
-    let index = usize::from(turn).checked_rem(observations.len())?;
-    let blocked = observations.get(index)?;
-    let mut rest = Vec::<Observation<T>, A>::new();
-    for (other, observation) in observations.iter().enumerate() {
-        if other != index {
-            rest.push(*observation).ok()?;
-        }
-    }
-    let fix = solver.solve::<D>(&rest, None).ok()?;
-    let expected = expected_range(&fix.position, solver.height, &blocked.anchor).distance;
-    let excess = blocked.range - expected - fix.common_bias;
-    let is_blocked = excess * excess > blocked.variance * most && excess > T::ZERO;
-    (is_blocked && fix.cost <= most).then_some(fix)
 }
 
 #[cfg(test)]

@@ -204,8 +204,11 @@ fn the_first_position_waits_for_all_anchors_or_a_second_round() {
     assert_eq!(offer(0, 0), Outcome::Collected);
     assert_eq!(offer(0, 1), Outcome::Collected);
     assert_eq!(offer(0, 3), Outcome::Collected);
-    assert_eq!(offer(100_000, 0), Outcome::Started);
-    assert_eq!(tracker.health(100_000).restarts, 0);
+    // From here on a position is looked for, in a few steps with each range.
+    let started =
+        (1..10).find(|&k| offer(100_000 * k, [3, 0, 1][k as usize % 3]) == Outcome::Started);
+    assert!(started.is_some_and(|k| (2..7).contains(&k)), "{started:?}");
+    assert_eq!(tracker.health(700_000).restarts, 0);
     assert!((tracker.position().unwrap().x - 3.0).abs() < 0.1);
 }
 

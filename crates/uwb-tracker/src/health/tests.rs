@@ -87,16 +87,12 @@ fn others_agree_if_they_are_more_than_the_coordinates() {
 }
 
 #[test]
-fn a_beginning_is_tried_when_all_are_heard_or_one_again() {
+fn a_position_that_was_begun_is_believed() {
     let mut counters = Counters::<f64>::new();
-    assert_eq!(counters.try_again(3, 4, false), None);
-    assert_eq!(counters.try_again(4, 4, false), Some(0));
-    assert_eq!(counters.try_again(2, 4, true), Some(1));
     counters.take(9.0);
     counters.reject(4, false);
     counters.begun();
     assert_eq!((counters.starts, counters.distrust, counters.nis), (1, 0, 1.0));
-    assert_eq!(counters.try_again(4, 4, false), Some(0));
 }
 
 /// Anchors in a square around the origin, at these times of their last ranges (µs).

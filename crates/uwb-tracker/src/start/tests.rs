@@ -8,6 +8,7 @@ const CORNERS: [[f64; 3]; 5] =
 const TAG: [f64; 3] = [3.0, 2.0, 1.0];
 const NOW_US: u64 = 20_000_000;
 const FRESH_US: u64 = 8_000_000;
+const SOON: u32 = 20;
 
 /// Links in the corners, heard so long ago (µs), with ranges that are so much too long (m).
 fn links<const A: usize>(
@@ -32,12 +33,26 @@ fn observations<const A: usize>(moved: [f64; A], excess: [f64; A]) -> [Observati
     })
 }
 
+/// The estimate that begins within so many ranges, if all say the same, and how many it takes.
+fn begun_after<const D: usize, const N: usize, const A: usize>(
+    config: &Config<f64>,
+    links: &[Link<f64>; A],
+    ranges: u32,
+) -> Option<(u32, Gaussian<f64, N>)> {
+    let mut start = Start::<f64, D, A>::new();
+    (1..=ranges).find_map(|range| {
+        let begun = start.go_on(config, links, (NOW_US, FRESH_US), true)?;
+        assert_eq!(begun.time_us, NOW_US);
+        Some((range, begun.estimate))
+    })
+}
+
+/// Soon: before what contradicts itself is accepted.
 fn begun<const N: usize, const A: usize>(
     config: &Config<f64>,
     links: &[Link<f64>; A],
-    tries: u8,
 ) -> Option<Gaussian<f64, N>> {
-    start::<f64, 2, N, A>(config, links, NOW_US, FRESH_US, tries)
+    Some(begun_after::<2, N, A>(config, links, SOON)?.1)
 }
 
 #[test]
@@ -46,7 +61,7 @@ fn a_start_is_the_fix_and_what_biases_and_rounding_add() {
     let excess = [0.1, -0.05, 0.08, 0.02];
     // What was heard a second ago may be half a metre off, and never more than a metre.
     let (ages_us, moved) = ([0, 1_000_000, 2_000_000, 8_000_000], [0.0, 0.5, 1.0, 1.0]);
-    let found = begun::<4, 4>(&config, &links(&config, ages_us, excess), 0).expect("a start");
+    let found = begun::<4, 4>(&config, &links(&config, ages_us, excess)).expect("a start");
     let solver = Solver { huber: config.huber, ..Solver::new(1.0) };
     let fix = solver.solve::<2>(&observations(moved, excess), None).expect("a fix");
     assert!((found.mean.fixed_rows::<2>(0) - fix.position).norm() < 1e-9, "{}", found.mean);
@@ -64,7 +79,7 @@ fn a_start_is_the_fix_and_what_biases_and_rounding_add() {
 #[test]
 fn a_common_bias_begins_as_the_fix_knows_it() {
     let config = Config::uncalibrated(1.0);
-    let found = begun::<5, 4>(&config, &links(&config, [0; 4], [0.4; 4]), 0).expect("a start");
+    let found = begun::<5, 4>(&config, &links(&config, [0; 4], [0.4; 4])).expect("a start");
     let solver = Solver { huber: config.huber, common_bias: Some(0.3), ..Solver::new(1.0) };
     let fix = solver.solve::<2>(&observations([0.0; 4], [0.4; 4]), None).expect("a fix");
     assert!(fix.common_bias > 0.2, "{fix:?}");
@@ -72,7 +87,7 @@ fn a_common_bias_begins_as_the_fix_knows_it() {
     let variance = found.covariance.variances()[4];
     assert!((variance - fix.common_bias_variance).abs() < 1e-9, "{variance}, {fix:?}");
     // Three ranges do not tell it: it is what it was before.
-    let found = begun::<5, 3>(&config, &links(&config, [0; 3], [0.0; 3]), 0).expect("a start");
+    let found = begun::<5, 3>(&config, &links(&config, [0; 3], [0.0; 3])).expect("a start");
     assert!((found.covariance.variances()[4] - 0.3 * 0.3).abs() < 1e-9);
     assert_eq!(found.mean[4], 0.0);
 }
@@ -81,61 +96,108 @@ fn a_common_bias_begins_as_the_fix_knows_it() {
 fn old_ranges_begin_nothing() {
     let config = Config::calibrated(1.0);
     let old = FRESH_US + 1;
-    assert!(begun::<4, 4>(&config, &links(&config, [0, 0, FRESH_US, old], [0.0; 4]), 0).is_some());
-    assert!(begun::<4, 4>(&config, &links(&config, [0, 0, old, old], [0.0; 4]), 0).is_none());
+    assert!(begun::<4, 4>(&config, &links(&config, [0, 0, FRESH_US, old], [0.0; 4])).is_some());
+    assert!(begun::<4, 4>(&config, &links(&config, [0, 0, old, old], [0.0; 4])).is_none());
+}
+
+#[test]
+fn ranges_that_agree_make_a_position_at_once() {
+    let config = Config::calibrated(1.0);
+    let links = links::<5>(&config, [0; 5], [0.05, -0.05, 0.0, 0.05, 0.0]);
+    let (ranges, _) = begun_after::<2, 4, 5>(&config, &links, SOON).expect("a start");
+    assert!(ranges <= 2, "{ranges}");
 }
 
 #[test]
 fn ranges_that_contradict_each_other_are_taken_in_the_end() {
     let config = Config { huber: None, ..Config::calibrated(1.0) };
     let links = links(&config, [0; 4], [2.0, -2.0, 2.0, -2.0]);
-    for tries in 0..=25 {
-        assert_eq!(begun::<4, 4>(&config, &links, tries).is_some(), tries >= 20, "{tries}");
-    }
+    let (ranges, _) = begun_after::<2, 4, 4>(&config, &links, 100).expect("a start");
+    assert!((SOON + 1..2 * SOON).contains(&ranges), "{ranges}");
 }
 
 #[test]
-fn each_second_time_another_anchor_is_left_out() {
+fn an_attempt_belongs_to_the_ranges_that_it_began_with() {
     let config = Config::calibrated(1.0);
-    for blocked in 0..5_u8 {
-        let excess =
-            core::array::from_fn(|index| if index == usize::from(blocked) { 3.0 } else { 0.0 });
+    // They do not agree, which takes a while to find out.
+    let before = links::<5>(&config, [0; 5], [0.0, 3.0, 0.0, 0.0, 0.0]);
+    let mut start = Start::<f64, 2, 5>::new();
+    let mut go_on = |links: &[Link<f64>; 5], time_us| {
+        start.go_on::<4>(&config, links, (time_us, FRESH_US), true)
+    };
+    assert!(go_on(&before, NOW_US).is_none());
+    // What was measured later is of another place.
+    let mut after = before;
+    for link in &mut after {
+        link.hear(NOW_US + 1, 4.0);
+    }
+    let begun = (1..SOON).find_map(|later| go_on(&after, NOW_US + u64::from(later)));
+    let begun = begun.expect("a start");
+    assert_eq!(begun.time_us, NOW_US);
+    let off = (begun.estimate.mean[0] - TAG[0]).hypot(begun.estimate.mean[1] - TAG[1]);
+    assert!(off < 1e-3, "{off} m");
+}
+
+#[test]
+fn an_attempt_of_ranges_that_are_old_by_now_is_given_up() {
+    let config = Config::calibrated(1.0);
+    let before = links::<5>(&config, [0; 5], [0.0, 3.0, 0.0, 0.0, 0.0]);
+    let mut start = Start::<f64, 2, 5>::new();
+    assert!(start.go_on::<4>(&config, &before, (NOW_US, FRESH_US), true).is_none());
+    assert!(start.is_on());
+    let later_us = NOW_US + FRESH_US + 1;
+    assert!(start.go_on::<4>(&config, &before, (later_us, FRESH_US), true).is_none());
+    assert!(!start.is_on(), "none is fresh");
+    // Others are begun with.
+    let mut fresh = links::<5>(&config, [0; 5], [0.0; 5]);
+    for link in &mut fresh {
+        let (range, _) = link.fresh(NOW_US, 0).expect("a range");
+        link.hear(later_us, range);
+    }
+    let mut ranges =
+        (0..SOON).filter_map(|_| start.go_on::<4>(&config, &fresh, (later_us, FRESH_US), true));
+    assert_eq!(ranges.next().expect("a start").time_us, later_us);
+}
+
+#[test]
+fn the_one_that_is_too_long_is_left_out() {
+    let config = Config::calibrated(1.0);
+    for blocked in 0..5_usize {
+        let excess = core::array::from_fn(|index| if index == blocked { 3.0 } else { 0.0 });
         let links = links::<5>(&config, [0; 5], excess);
-        for tries in 0..10 {
-            let found = begun::<4, 5>(&config, &links, tries);
-            assert_eq!(found.is_some(), tries == 2 * blocked + 1, "{blocked}, {tries}");
-            let off = found.map(|found| (found.mean[0] - TAG[0]).hypot(found.mean[1] - TAG[1]));
-            assert!(off.is_none_or(|off| off < 1e-3), "{off:?}");
-        }
+        let found = begun::<4, 5>(&config, &links).expect("a start");
+        let off = (found.mean[0] - TAG[0]).hypot(found.mean[1] - TAG[1]);
+        assert!(off < 1e-3, "{blocked}: {off} m");
     }
     // Of four, three are left: one to spare.
     let four = links::<4>(&config, [0; 4], [0.0, 3.0, 0.0, 0.0]);
-    assert!(begun::<4, 4>(&config, &four, 3).is_some());
+    assert!(begun::<4, 4>(&config, &four).is_some());
     // What is too short is in nobody's way, and what is left must have a range to spare.
     let short = links::<5>(&config, [0; 5], [-3.0, 0.0, 0.0, 0.0, 0.0]);
-    assert!(begun::<4, 5>(&config, &short, 1).is_none());
+    assert!(begun::<4, 5>(&config, &short).is_none());
     let three = links::<3>(&config, [0; 3], [0.0; 3]);
-    assert!(begun::<4, 3>(&config, &three, 0).is_some());
-    assert!(begun::<4, 3>(&config, &three, 1).is_none());
+    assert!(begun::<4, 3>(&config, &three).is_some());
     let three = links::<3>(&config, [0; 3], [3.0, 0.0, 0.0]);
-    assert!((1..9).all(|tries| begun::<4, 3>(&config, &three, tries).is_none()));
-    // A little too long is what the others make up for: left out it would not be wrong enough.
-    let near = links::<5>(&config, [0; 5], [0.2, 0.0, 0.0, 0.0, 0.0]);
-    assert!(begun::<4, 5>(&config, &near, 1).is_none());
+    assert!(begun::<4, 3>(&config, &three).is_none());
 }
 
 #[test]
 fn a_range_is_not_blocked_that_is_as_long_as_all() {
     let config = Config::uncalibrated(1.0);
     let links = links::<5>(&config, [0; 5], [0.5, 0.4, 0.4, 0.4, 0.4]);
-    assert!(begun::<5, 5>(&config, &links, 1).is_none());
+    assert!(begun::<5, 5>(&config, &links).is_some());
+    let solver = Solver { common_bias: Some(0.3), ..Solver::new(1.0) };
+    let mut attempt = Start::<f64, 2, 5>::new();
+    attempt.begin(&config, &links, (NOW_US, FRESH_US));
+    let fix = solver.solve::<2>(&attempt.observations(&links), None).expect("a fix");
+    assert!((0..5).all(|index| !attempt.is_blocked(index, &solver, &links, &fix)), "{fix:?}");
 }
 
 #[test]
 fn a_start_in_space_has_the_same_states() {
     let config = Config::uncalibrated(0.0);
     let links = links::<5>(&config, [0; 5], [0.2; 5]);
-    let found = start::<f64, 3, 7, 5>(&config, &links, NOW_US, FRESH_US, 0).expect("a start");
+    let found = begun_after::<3, 7, 5>(&config, &links, SOON).expect("a start").1;
     let p = found.covariance.to_matrix();
     for state in 3..6 {
         assert!((p[(state, state)] - 0.5 * 0.5).abs() < 1e-9, "{p}");
@@ -147,19 +209,17 @@ fn a_start_in_space_has_the_same_states() {
     let known = if fix.common_bias_variance > 0.0 { fix.common_bias_variance } else { 0.09 };
     assert!((p[(6, 6)] - known).abs() < 1e-9, "{fix:?} {p}");
     // Without the fifth, a sixth state is the last.
-    assert!(start::<f64, 3, 6, 5>(&config, &links, NOW_US, FRESH_US, 0).is_some());
+    assert!(begun_after::<3, 6, 5>(&config, &links, SOON).is_some());
 }
 
 #[test]
 fn in_space_one_range_to_spare_is_left_of_five() {
     let config = Config::calibrated(0.0);
     let blocked = [0.0, 3.0, 0.0, 0.0, 0.0];
-    let found = |tries| {
-        let links = links::<5>(&config, [0; 5], blocked);
-        start::<f64, 3, 6, 5>(&config, &links, NOW_US, FRESH_US, tries)
-    };
-    assert!(found(3).is_some() && found(5).is_none());
-    let four = links::<4>(&config, [0; 4], [0.0, 3.0, 0.0, 0.0]);
-    let found = |tries| start::<f64, 3, 6, 4>(&config, &four, NOW_US, FRESH_US, tries);
-    assert!((1..9).step_by(2).all(|tries| found(tries).is_none()));
+    let links = links::<5>(&config, [0; 5], blocked);
+    let (_, found) = begun_after::<3, 6, 5>(&config, &links, SOON).expect("a start");
+    let off = (found.mean.fixed_rows::<3>(0) - SVector::from(TAG)).norm();
+    assert!(off < 1e-2, "{off} m");
+    let four = self::links::<4>(&config, [0; 4], [0.0, 3.0, 0.0, 0.0]);
+    assert!(begun_after::<3, 6, 4>(&config, &four, SOON).is_none());
 }

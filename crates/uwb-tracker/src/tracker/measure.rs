@@ -2,7 +2,6 @@
 
 use super::Tracker;
 use crate::measurement::Range;
-use crate::start::start;
 use crate::take_in::take_in;
 use crate::{Error, Outcome, RangeSample, Report};
 use kestirim_scalar::Scalar;
@@ -65,18 +64,17 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Report { outcome, innovation: None }
     }
 
-    /// Makes a position of the fresh ranges, if they are enough: when all anchors have been heard, or
+    /// Looks for the position that the fresh ranges make, if they are enough: when all anchors have been heard, or
     /// one of them `again` after another, before the others.
     pub(super) fn begin(&mut self, now_us: u64, again: bool) -> bool {
         let heard = self.count_heard(now_us);
-        let Some(tries) = self.counters.try_again(heard, self.links.len(), again) else {
+        let may = again || usize::from(heard) >= self.links.len();
+        let now = (now_us, self.pace.fresh_us());
+        let Some(begun) = self.start.go_on(&self.config, &self.links, now, may) else {
             return false;
         };
-        self.estimate =
-            start::<T, D, N, A>(&self.config, &self.links, now_us, self.pace.fresh_us(), tries);
-        if self.estimate.is_none() {
-            return false;
-        }
+        // It is of the time of its ranges: the next sample moves it on.
+        (self.estimate, self.time_us) = (Some(begun.estimate), begun.time_us);
         for link in &mut self.links {
             *link = link.begun(&self.config);
         }

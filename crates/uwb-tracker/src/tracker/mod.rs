@@ -6,6 +6,7 @@ use crate::config::{bias_shape, size};
 use crate::health::Counters;
 use crate::link::Link;
 use crate::pace::Pace;
+use crate::start::Start;
 use crate::stillness::Stillness;
 use crate::wheel_noise::LARGEST_SPEED;
 use crate::{Anchor, Config, Error, InertialSample, OdometrySample, RangeSample, Report};
@@ -46,6 +47,7 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     /// How the common bias depends on the distance: a constant, and a slope, 1/m.
     pub(crate) bias_shape: [T; 2],
     counters: Counters<T>,
+    pub(crate) start: Start<T, D, A>,
 }
 
 /// Standard deviation beyond which a position is given up among anchors of an office, m; in proportion where they
@@ -89,6 +91,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             lost_sigma: size * T::from_f64(LOST_SIGMA),
             bias_shape: bias_shape(size),
             counters: Counters::new(),
+            start: Start::new(),
         })
     }
 

@@ -11,7 +11,7 @@ use crate::health::{self, Counters, Place, count_heard};
 use crate::link::Link;
 use crate::measurement::ProportionalRange;
 use crate::pace::Pace;
-use crate::start::start;
+use crate::start::Start;
 use crate::take_in::take_in;
 use crate::tracker::{LATE_US, LOST_SIGMA, LOST_US, plausible_wheels};
 use crate::{
@@ -45,6 +45,7 @@ pub struct WheelTracker<T: Scalar, const A: usize> {
     /// How much larger the anchors' place is than an office.
     size: T,
     counters: Counters<T>,
+    start: Start<T, 2, A>,
 }
 
 /// Mean NIS of ranges from which on the wheels are taken to slip, or to be others' than the robot's; below it, their
@@ -78,6 +79,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             pace: Pace::new(anchors.len()),
             size,
             counters: Counters::new(),
+            start: Start::new(),
         })
     }
 
@@ -277,15 +279,15 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
 
     fn begin(&mut self, again: bool) -> bool {
         let heard = count_heard(&self.links, &self.pace, self.time_us);
-        let Some(tries) = self.counters.try_again(heard, self.links.len(), again) else {
+        let may = again || usize::from(heard) >= self.links.len();
+        let now = (self.time_us, self.pace.fresh_us());
+        let Some(begun) = self.start.go_on::<5>(&self.config, &self.links, now, may) else {
             return false;
         };
-        let fresh_us = self.pace.fresh_us();
-        let found = start::<T, 2, 5, A>(&self.config, &self.links, self.time_us, fresh_us, tries);
-        let Some(found) = found else { return false };
         let biases = common_sigmas(self.config.common_bias_sigma / self.size, self.size);
-        let course = |gain| Some(Course::begun(&found, biases, gain));
-        self.courses = [course(T::ONE), course(-T::ONE)];
+        let course = |gain| Some(Course::begun(&begun.estimate, biases, gain));
+        // It is of the time of its ranges: the next sample moves it on.
+        (self.courses, self.time_us) = ([course(T::ONE), course(-T::ONE)], begun.time_us);
         for link in &mut self.links {
             *link = link.begun(&self.config);
         }

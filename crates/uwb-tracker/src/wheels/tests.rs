@@ -145,7 +145,8 @@ fn after_gaps<const K: usize>(gaps_us: [u64; K]) -> State {
     let mut tracker = tracker::<4>(8.0);
     tracker.odometry(&wheels(0, 1.0, 0.0)).expect("wheels");
     hear_all(&mut tracker, 0, [8.0, 4.0]);
-    let mut time_us = 0;
+    hear_all(&mut tracker, 1, [8.0, 4.0]);
+    let mut time_us = 1;
     for gap_us in gaps_us {
         time_us += gap_us;
         hear(&mut tracker, time_us, 0, [8.0, 4.0]).expect("a range");
@@ -167,17 +168,20 @@ fn a_position_is_given_up_after_a_minute_or_when_it_is_worthless() {
 fn a_first_position_waits_for_all_anchors_or_one_of_them_again() {
     let mut tracker = tracker::<4>(1.0);
     // Some radios ask each twice; the fourth is silent.
-    for (time_us, anchor, outcome) in [
-        (0, 0, Outcome::Collected),
-        (10_000, 0, Outcome::Collected),
-        (20_000, 1, Outcome::Collected),
-        (30_000, 2, Outcome::Collected),
-        (40_000, 2, Outcome::Collected),
-        (50_000, 0, Outcome::Started),
-    ] {
+    for (time_us, anchor) in
+        [(0, 0), (10_000, 0), (20_000, 1), (30_000, 2), (40_000, 2), (50_000, 0)]
+    {
         let report = hear(&mut tracker, time_us, anchor, [1.0, 0.5]).expect("a range");
-        assert_eq!(report.outcome, outcome, "{time_us}");
+        assert_eq!(report.outcome, Outcome::Collected, "{time_us}");
+        assert_eq!(tracker.start.is_on(), time_us == 50_000, "{time_us}");
     }
+    // What three say is looked at from every side, in a few ranges.
+    let mut later = (6..20_u64).map(|k| {
+        let report = hear(&mut tracker, 10_000 * k, k as usize % 3, [1.0, 0.5]);
+        report.expect("a range").outcome
+    });
+    let started = later.position(|outcome| outcome == Outcome::Started);
+    assert!(started.is_some_and(|ranges| ranges < 6), "{started:?}");
 }
 
 #[test]

@@ -63,7 +63,11 @@ fn a_doubted_standstill_is_uncertain_in_every_direction() {
             let range = distance(place, [3.0 + moved, 2.0, 1.0]);
             tracker.range(&sample(time_us, anchor, range)).expect("a range");
         }
-        let variances = tracker.estimate().expect("a position").covariance.variances();
+        let Some(estimate) = tracker.estimate() else {
+            assert_eq!(step, 0, "a position after two epochs");
+            continue;
+        };
+        let variances = estimate.covariance.variances();
         if step == 200 {
             at_rest = Some(variances);
         }

@@ -191,13 +191,14 @@ fn a_position_is_given_up_beyond_two_metres() {
 #[test]
 fn a_first_position_does_not_begin_with_an_anchor_that_is_asked_twice() {
     let mut tracker = Plane::new(Config::calibrated(1.0), &anchors(&CORNERS, 0.0)).expect("a room");
-    // The fourth is silent.
-    for (step, anchor) in [0, 0, 1, 1, 2, 2, 0].into_iter().enumerate() {
+    // The fourth is silent. From the seventh range on a position is looked for, in a few steps with each.
+    let anchors = [0, 0, 1, 1, 2, 2].into_iter().cycle();
+    let started = anchors.enumerate().take(20).position(|(step, anchor)| {
         let range = distance(CORNERS[anchor], on_the_way(0));
         let report = tracker.range(&sample(10_000 * step as u64, anchor, range)).expect("a range");
-        let outcome = if step == 6 { Outcome::Started } else { Outcome::Collected };
-        assert_eq!(report.outcome, outcome, "{step}");
-    }
+        report.outcome == Outcome::Started
+    });
+    assert!(started.is_some_and(|step| (6..12).contains(&step)), "{started:?}");
 }
 
 #[test]
