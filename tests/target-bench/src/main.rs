@@ -19,8 +19,14 @@ struct Options {
     #[arg(long)]
     json: bool,
     /// Keep the numbers as the baseline that the tests compare with
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["only", "target"])]
     keep: bool,
+    /// Only the workloads whose image's name begins like this: uwb-tracker
+    #[arg(long, value_name = "NAME", default_value = "")]
+    only: String,
+    /// Only the targets whose triple begins like this: thumbv7em
+    #[arg(long, value_name = "TRIPLE", default_value = "")]
+    target: String,
 }
 
 #[derive(Serialize)]
@@ -38,11 +44,12 @@ fn main() -> Result<()> {
     }
     let mut compilers = BTreeMap::new();
     let mut rows = Vec::new();
-    let bar = progress(2 * TARGETS.len() as u64, "targets");
-    for target in TARGETS {
+    let targets = TARGETS.iter().filter(|target| target.triple.starts_with(&options.target));
+    let bar = progress(2 * targets.clone().count() as u64, "targets");
+    for target in targets {
         for profile in Profile::ALL {
             let images = Images::needed(target, profile)?;
-            rows.extend(workloads::measure(&images)?);
+            rows.extend(workloads::measure(&images, &options.only)?);
             compilers.insert(target.triple.to_owned(), images.compiler);
             bar.inc(1);
         }

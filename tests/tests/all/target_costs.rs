@@ -23,7 +23,7 @@ fn measure() -> Result<Measured> {
     for target in TARGETS {
         for profile in Profile::ALL {
             let Some(images) = Images::of(target, profile)? else { continue };
-            rows.extend(workloads::measure(&images)?);
+            rows.extend(workloads::measure(&images, "")?);
             compilers.insert(target.triple.to_owned(), images.compiler);
         }
     }
