@@ -34,20 +34,26 @@ pub(crate) enum Step<T: Scalar, const D: usize> {
 }
 
 /// How exactly a minimum is to be found.
-pub(crate) struct Care {
+pub(crate) struct Care<T> {
     /// A step of no more than this ends the search, m.
-    settled: f64,
+    settled: T,
     /// After so many steps …
     many: u16,
     /// … one of no more than this does, m.
-    slow: f64,
+    slow: T,
 }
 
-impl Care {
+impl<T: Scalar> Care<T> {
     /// To the millimetre.
-    pub(crate) const EXACT: Self = Self { settled: 1e-3, many: 30, slow: 1e-3 };
+    pub(crate) fn exact() -> Self {
+        let settled = T::from_f64(1e-3);
+        Self { settled, many: 30, slow: settled }
+    }
+
     /// So that a filter can begin there: Huber's weights would take dozens of steps for ranges that contradict each other.
-    pub(crate) const ROUGH: Self = Self { settled: 1e-2, many: 12, slow: 0.1 };
+    pub(crate) fn rough() -> Self {
+        Self { settled: T::from_f64(1e-2), many: 12, slow: T::from_f64(0.1) }
+    }
 }
 
 impl<T: Scalar, const D: usize> Descent<T, D> {
@@ -74,7 +80,7 @@ impl<T: Scalar, const D: usize> Descent<T, D> {
         solver: &Solver<T>,
         observations: &[Observation<T>],
         noise: &Noise<T>,
-        care: &Care,
+        care: &Care<T>,
     ) -> Result<Step<T, D>, Error> {
         let prior = solver.common_bias.filter(|_| observations.len() > D + 1);
         let is_plain = self.steps < Self::PLAIN_STEPS;
@@ -116,7 +122,7 @@ impl<T: Scalar, const D: usize> Descent<T, D> {
         }
         let moved = moved.iter().fold(moved_bias.abs(), |most, moved| most.max(moved.abs()));
         let least = if self.steps < care.many { care.settled } else { care.slow };
-        if moved > T::from_f64(least) {
+        if moved > least {
             let is_last = self.steps >= Self::MOST_STEPS;
             return if is_last { Err(Error::NotConverged) } else { Ok(Step::Next { cost, moved }) };
         }

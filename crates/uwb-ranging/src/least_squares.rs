@@ -6,6 +6,7 @@ use nalgebra::{SMatrix, SVector};
 /// A range from a place that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Observation<T: Scalar> {
     /// The anchor's place in the room, m.
     pub anchor: SVector<T, 3>,
@@ -108,7 +109,7 @@ impl<T: Scalar> Solver<T> {
     ) -> Result<Fix<T, D>, Error> {
         let (mut descent, noise) = (Descent::from(*start), Noise::new(scale));
         loop {
-            if let Step::Settled(fix) = descent.step(self, observations, &noise, &Care::EXACT)? {
+            if let Step::Settled(fix) = descent.step(self, observations, &noise, &Care::exact())? {
                 return Ok(fix);
             }
         }

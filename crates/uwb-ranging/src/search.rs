@@ -86,7 +86,7 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         steps: usize,
     ) -> Result<Option<&Fix<T, D>>, Error> {
         let noise = Noise::new(least_variance::<T, D>(observations)?);
-        let care = if self.is_exact { Care::EXACT } else { Care::ROUGH };
+        let care = if self.is_exact { Care::exact() } else { Care::rough() };
         for _ in 0..steps {
             let next = &mut self.next;
             let descent = self.descent.get_or_insert_with(|| {
@@ -124,16 +124,17 @@ impl<T: Scalar, const D: usize> Search<T, D> {
     ) -> bool {
         let Some(best) = &self.best else { return false };
         if self.is_exact {
-            return are_near(position, &best.fix.position, SAME);
+            return are_near(position, &best.fix.position, T::from_f64(SAME));
         }
+        let near = T::from_f64(ROUGHLY_SAME);
         let is_worse = match (best.inside, is_inside(solver, position)) {
             (true, false) => true,
             (false, true) => false,
             // Four is two standard deviations.
             _ => cost > best.fix.cost + T::TWO + T::TWO,
         };
-        let is_near = are_near(position, &best.fix.position, ROUGHLY_SAME);
-        moved < T::from_f64(ROUGHLY_SAME) && (is_near || is_worse)
+        let is_near = are_near(position, &best.fix.position, near);
+        moved < near && (is_near || is_worse)
     }
 
     /// Keeps the better of two fixes: one in the room, and else the one of smaller cost.
@@ -152,10 +153,10 @@ impl<T: Scalar, const D: usize> Search<T, D> {
             }
             return;
         }
-        if self.is_exact && are_near(&fix.position, &best.fix.position, SAME) {
+        if self.is_exact && are_near(&fix.position, &best.fix.position, T::from_f64(SAME)) {
             return;
         }
-        let apart = !are_near(&fix.position, &best.fix.position, 0.5);
+        let apart = !are_near(&fix.position, &best.fix.position, T::HALF);
         // Four is two standard deviations.
         let alike = (fix.cost - best.fix.cost).abs() < T::TWO + T::TWO;
         let ambiguous = fix.ambiguous || best.fix.ambiguous || (apart && alike);
@@ -176,13 +177,13 @@ impl<T: Scalar, const D: usize> Found<T, D> {
 }
 
 /// Whether two places are no farther apart, m.
-fn are_near<T: Scalar, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>, metres: f64) -> bool {
+fn are_near<T: Scalar, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>, metres: T) -> bool {
     let mut squares = T::ZERO;
     for axis in 0..D {
         let apart = a.as_array()[axis] - b.as_array()[axis];
         squares += apart * apart;
     }
-    squares < T::from_f64(metres * metres)
+    squares < metres * metres
 }
 
 fn is_inside<T: Scalar, const D: usize>(solver: &Solver<T>, position: &SVector<T, D>) -> bool {

@@ -2,8 +2,7 @@
 
 use crate::config::{OFFICE, size};
 use crate::measurement::Range;
-use crate::start::Start;
-use crate::tracker::LATE_US;
+use crate::tracker::{LATE_US, Place};
 use crate::{
     Anchor, Config, DifferenceSample, Error, Health, Outcome, RangeSample, Report, Tracker,
 };
@@ -191,8 +190,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         let [first, second] = sample.anchors;
         let continued = self.continued(sample);
         let height = self.tracker.config.height;
-        let (Some(link), Some(estimate)) =
-            (self.tracker.links.get(first), &mut self.tracker.estimate)
+        let (Some(link), Place::Known(estimate)) =
+            (self.tracker.links.get(first), &mut self.tracker.place)
         else {
             return Err(Error::NoSuchAnchor);
         };
@@ -232,7 +231,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
     fn collect(&mut self, sample: &DifferenceSample<T>, difference: T) -> Report<T> {
         let [first, second] = sample.anchors;
         let (time_us, fresh_us) = (sample.time_us, self.tracker.pace.fresh_us());
-        let links = &mut self.tracker.links;
+        let links = &self.tracker.links;
         let collected = Report { outcome: Outcome::Collected, innovation: None };
         let heard = |anchor: usize| {
             let (arrival, _) = links.get(anchor)?.fresh(time_us, fresh_us)?;
@@ -243,8 +242,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             (Some(arrival), _) => (second, arrival + difference),
             (None, Some(arrival)) => (first, arrival - difference),
             (None, None) if is_first => {
-                self.tracker.start = Start::new();
-                if let Some(link) = links.get_mut(first) {
+                // What is looked for is of another clock.
+                self.tracker.give_up();
+                if let Some(link) = self.tracker.links.get_mut(first) {
                     link.hear(time_us, T::ZERO);
                 }
                 (second, difference)
@@ -253,6 +253,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             (None, None) => return collected,
         };
         self.last = Some((anchor, true));
+        let is_begun = self.tracker.is_begun();
+        let links = &mut self.tracker.links;
         let (mut sum, mut count) = (range, 1);
         for (other, link) in links.iter().enumerate() {
             if let Some((arrival, _)) = link.fresh(time_us, fresh_us).filter(|_| other != anchor) {
@@ -271,7 +273,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         let mut range = range;
         // Their clock is chosen so that they look like distances: least squares knows it to some metres beforehand. It stays
         // while a position is looked for, whose clock it is.
-        if !self.tracker.start.is_on() {
+        if !is_begun {
             let by = self.reach - sum * T::from_micro(count.min(2000) * 1_000_000).recip();
             for link in links.iter_mut() {
                 link.shift(by);
@@ -291,7 +293,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
 
     /// Sets a clock that has walked far back to zero, with all arrivals.
     fn set_back(&mut self) {
-        let Some(estimate) = &mut self.tracker.estimate else { return };
+        let Place::Known(estimate) = &mut self.tracker.place else { return };
         let clock = &mut estimate.mean.as_array_mut()[2 * D];
         if clock.abs() <= T::from_f64(FARTHEST) {
             return;

@@ -45,21 +45,13 @@ const LONGEST_US: u64 = 3_000_000;
 pub(crate) struct Start<T: Scalar, const D: usize, const A: usize> {
     /// The moment (µs).
     time_us: u64,
-    /// The ranges that were fresh then, in the order of the links; none at all between two attempts.
-    ranges: Vec<Option<Fresh<T>>, A>,
+    /// The ranges that were fresh then; none at all between two attempts.
+    observations: Vec<Observation<T>, A>,
     search: Search<T, D>,
-    /// The link that is left out, when all have contradicted each other.
-    without: Option<usize>,
+    /// Whether the last of them is left out, because all have contradicted each other.
+    leaves_out: bool,
     /// Ranges since the first attempt began.
     tries: u8,
-}
-
-/// A range (m) and its variance (m²).
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Fresh<T> {
-    range: T,
-    variance: T,
 }
 
 /// A position that was found, and when the tag was there (µs).
@@ -82,12 +74,12 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
     /// Before the first range.
     pub(crate) fn new() -> Self {
         let search = Search::new(None);
-        Self { time_us: 0, ranges: Vec::new(), search, without: None, tries: 0 }
+        Self { time_us: 0, observations: Vec::new(), search, leaves_out: false, tries: 0 }
     }
 
     /// Whether an attempt goes on.
     pub(crate) fn is_on(&self) -> bool {
-        !self.ranges.is_empty()
+        !self.observations.is_empty()
     }
 
     /// Takes some steps, now that another range was heard; an attempt begins where that `may` be. The estimate that its ranges
@@ -101,7 +93,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
     ) -> Option<Begun<T, N>> {
         let oldest_us = time_us.saturating_sub(fresh_us.min(LONGEST_US));
         if self.time_us < oldest_us {
-            self.ranges.clear();
+            self.observations.clear();
         }
         if !self.is_on() {
             if !may {
@@ -117,15 +109,15 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
             common_bias: (N > 2 * D).then_some(config.common_bias_sigma),
             huber: config.huber,
         };
-        let fix = match self.advance(&solver, links, accepts_all) {
+        let fix = match self.advance(&solver, accepts_all) {
             Progress::Unfinished => return None,
             Progress::Found(fix) => fix,
             Progress::Nothing => {
-                self.ranges.clear();
+                self.observations.clear();
                 return None;
             }
         };
-        self.ranges.clear();
+        self.observations.clear();
         self.tries = 0;
         Some(Begun { estimate: estimate(config, &fix)?, time_us: self.time_us })
     }
@@ -134,103 +126,81 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
     fn begin(&mut self, config: &Config<T>, links: &[Link<T>], (time_us, fresh_us): (u64, u64)) {
         let variance = config.range_sigma * config.range_sigma;
         for link in links {
-            let fresh = link.fresh(time_us, fresh_us).map(|(range, age_us)| {
-                // The tag may have moved since.
-                let age = T::from_micro(age_us.min(fresh_us) as i32);
-                let moved = (age * T::from_f64(VELOCITY_SIGMA)).min(T::from_f64(FARTHEST));
-                Fresh { range, variance: variance + moved * moved }
-            });
+            let Some((range, age_us)) = link.fresh(time_us, fresh_us) else { continue };
+            // The tag may have moved since.
+            let age = T::from_micro(age_us.min(fresh_us) as i32);
+            let moved = (age * T::from_f64(VELOCITY_SIGMA)).min(T::from_f64(FARTHEST));
+            let (anchor, variance) = (link.anchor.position, variance + moved * moved);
             // There are no more links than places.
-            let _ = self.ranges.push(fresh);
+            let _ = self.observations.push(Observation { anchor, range, variance });
         }
-        (self.time_us, self.without, self.search) = (time_us, None, Search::new(None));
-    }
-
-    /// The ranges but for the one that is left out.
-    fn observations(&self, links: &[Link<T>]) -> Vec<Observation<T>, A> {
-        let mut observations = Vec::new();
-        for (index, (link, fresh)) in links.iter().zip(&self.ranges).enumerate() {
-            if let Some(Fresh { range, variance }) = *fresh
-                && self.without != Some(index)
-            {
-                let anchor = link.anchor.position;
-                let _ = observations.push(Observation { anchor, range, variance });
-            }
-        }
-        observations
+        (self.time_us, self.leaves_out, self.search) = (time_us, false, Search::new(None));
     }
 
     /// Takes as many steps as a range has time for. Where all ranges contradict each other, the attempt goes on without the
     /// longest, unless they are accepted all the same.
-    fn advance(
-        &mut self,
-        solver: &Solver<T>,
-        links: &[Link<T>],
-        accepts_all: bool,
-    ) -> Progress<T, D> {
-        let observations = self.observations(links);
-        let steps = WORK.checked_div(observations.len()).unwrap_or(1).max(1);
-        let fix = match self.search.advance(solver, &observations, steps) {
+    fn advance(&mut self, solver: &Solver<T>, accepts_all: bool) -> Progress<T, D> {
+        let count = self.observations.len().saturating_sub(usize::from(self.leaves_out));
+        let observations = self.observations.get(..count).unwrap_or_default();
+        let steps = WORK.checked_div(count).unwrap_or(1).max(1);
+        let fix = match self.search.advance(solver, observations, steps) {
             Ok(None) => return Progress::Unfinished,
             Ok(Some(fix)) => *fix,
             Err(_) => return Progress::Nothing,
         };
         let agrees = fix.cost <= T::from_f64(LARGEST_COST);
-        match self.without {
-            None if agrees || accepts_all => Progress::Found(fix),
-            // What is left must have a range to spare, without which there is nothing to tell.
-            None if observations.len() > D + 1 => {
-                self.without = self.longest(solver, links, &fix);
-                self.search = Search::near(fix.position);
-                Progress::Unfinished
-            }
-            Some(index) if agrees && self.is_blocked(index, solver, links, &fix) => {
-                Progress::Found(fix)
-            }
-            _ => Progress::Nothing,
+        if self.leaves_out {
+            let is_right = agrees && self.is_blocked(solver, &fix);
+            return if is_right { Progress::Found(fix) } else { Progress::Nothing };
         }
+        if agrees || accepts_all {
+            return Progress::Found(fix);
+        }
+        // What is left must have a range to spare, without which there is nothing to tell.
+        if count <= D + 1 {
+            return Progress::Nothing;
+        }
+        self.leave_out_longest(solver, &fix);
+        Progress::Unfinished
     }
 
-    /// The link whose range is too long by most at a place.
-    fn longest(&self, solver: &Solver<T>, links: &[Link<T>], fix: &Fix<T, D>) -> Option<usize> {
-        let mut longest = T::MIN;
-        let mut found = None;
-        for index in 0..links.len() {
-            let excess = self.excess(index, solver, links, fix);
-            if let Some(excess) = excess.filter(|&it| it > longest) {
-                (longest, found) = (excess, Some(index));
+    /// Goes on without the range that is too long by most at a place, and from there.
+    fn leave_out_longest(&mut self, solver: &Solver<T>, fix: &Fix<T, D>) {
+        let (mut longest, mut found) = (T::MIN, 0);
+        for (index, observation) in self.observations.iter().enumerate() {
+            let excess = excess(solver, fix, observation);
+            if excess > longest {
+                (longest, found) = (excess, index);
             }
         }
-        found
+        if let Some((last, others)) = self.observations.split_last_mut()
+            && let Some(longest) = others.get_mut(found)
+        {
+            core::mem::swap(last, longest);
+        }
+        self.leaves_out = true;
+        self.search = Search::near(fix.position);
     }
 
-    /// By how much a range is too long at a place, m.
-    #[inline(never)]
-    fn excess(
-        &self,
-        index: usize,
-        solver: &Solver<T>,
-        links: &[Link<T>],
-        fix: &Fix<T, D>,
-    ) -> Option<T> {
-        let (link, fresh) = (links.get(index)?, (*self.ranges.get(index)?)?);
-        let expected = expected_range(&fix.position, solver.height, &link.anchor.position);
-        Some(fresh.range - expected.distance - fix.common_bias)
+    /// Whether the range that is left out is far too long at a place.
+    fn is_blocked(&self, solver: &Solver<T>, fix: &Fix<T, D>) -> bool {
+        self.observations.last().is_some_and(|observation| {
+            let excess = excess(solver, fix, observation);
+            let most = observation.variance * T::from_f64(LARGEST_COST);
+            excess > T::ZERO && excess * excess > most
+        })
     }
+}
 
-    /// Whether a range is far too long at a place.
-    fn is_blocked(
-        &self,
-        index: usize,
-        solver: &Solver<T>,
-        links: &[Link<T>],
-        fix: &Fix<T, D>,
-    ) -> bool {
-        let Some(Some(fresh)) = self.ranges.get(index) else { return false };
-        let most = fresh.variance * T::from_f64(LARGEST_COST);
-        let excess = self.excess(index, solver, links, fix);
-        excess.is_some_and(|excess| excess > T::ZERO && excess * excess > most)
-    }
+/// By how much a range is too long at a place, m.
+#[inline(never)]
+fn excess<T: Scalar, const D: usize>(
+    solver: &Solver<T>,
+    fix: &Fix<T, D>,
+    observation: &Observation<T>,
+) -> T {
+    let expected = expected_range(&fix.position, solver.height, &observation.anchor);
+    observation.range - expected.distance - fix.common_bias
 }
 
 /// The estimate that begins with a fix.

@@ -8,7 +8,7 @@ use kestirim_scalar::{Components, Scalar};
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Health of the tracker at `time_us`.
     pub fn health(&self, time_us: u64) -> Health<T> {
-        let place = self.estimate.as_ref().and_then(|estimate| {
+        let place = self.estimate().and_then(|estimate| {
             let variances = estimate.covariance.variances();
             let coordinates = variances.iter().take(D);
             let velocity = self.velocity()?;

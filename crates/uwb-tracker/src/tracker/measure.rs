@@ -1,6 +1,6 @@
 //! Updates of the estimate by ranges.
 
-use super::Tracker;
+use super::{Place, Tracker};
 use crate::measurement::Range;
 use crate::take_in::take_in;
 use crate::{Error, Outcome, RangeSample, Report};
@@ -17,7 +17,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         [observes_bias, redundant]: [bool; 2],
     ) -> Result<Report<T>, Error> {
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
-        let Some(estimate) = &mut self.estimate else {
+        let Place::Known(estimate) = &mut self.place else {
             return Ok(self.collect(sample, range));
         };
         let place = link.anchor.position;
@@ -46,7 +46,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Counts a range that was left out; when half of them are, the position is given up.
     pub(super) fn reject(&mut self, is_blocked: bool) {
         if self.counters.reject(self.heard.max(D as u8), is_blocked) {
-            self.estimate = None;
+            self.give_up();
         }
     }
 
@@ -70,11 +70,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let heard = self.count_heard(now_us);
         let may = again || usize::from(heard) >= self.links.len();
         let now = (now_us, self.pace.fresh_us());
-        let Some(begun) = self.start.go_on(&self.config, &self.links, now, may) else {
-            return false;
-        };
+        let Place::Sought(start) = &mut self.place else { return false };
+        let Some(begun) = start.go_on(&self.config, &self.links, now, may) else { return false };
         // It is of the time of its ranges: the next sample moves it on.
-        (self.estimate, self.time_us) = (Some(begun.estimate), begun.time_us);
+        (self.place, self.time_us) = (Place::Known(begun.estimate), begun.time_us);
         for link in &mut self.links {
             *link = link.begun(&self.config);
         }

@@ -33,7 +33,7 @@ pub type CalibratedSpaceTracker<T, const A: usize> = Tracker<T, 3, 6, A>;
 pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     pub(crate) config: Config<T>,
     pub(crate) links: Vec<Link<T>, A>,
-    pub(crate) estimate: Option<Gaussian<T, N>>,
+    pub(crate) place: Place<T, D, N, A>,
     /// Time of the estimate, µs.
     pub(crate) time_us: u64,
     stillness: Stillness<T>,
@@ -47,7 +47,21 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     /// How the common bias depends on the distance: a constant, and a slope, 1/m.
     pub(crate) bias_shape: [T; 2],
     counters: Counters<T>,
-    pub(crate) start: Start<T, D, A>,
+}
+
+/// The estimate, or the search for one: there are never both, and they have the same room.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) enum Place<T: Scalar, const D: usize, const N: usize, const A: usize> {
+    Known(Gaussian<T, N>),
+    Sought(Start<T, D, A>),
 }
 
 /// Standard deviation beyond which a position is given up among anchors of an office, m; in proportion where they
@@ -81,7 +95,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(Self {
             config,
             links,
-            estimate: None,
+            place: Place::Sought(Start::new()),
             time_us: 0,
             stillness: Stillness::new(),
             wheels: None,
@@ -91,28 +105,30 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             lost_sigma: size * T::from_f64(LOST_SIGMA),
             bias_shape: bias_shape(size),
             counters: Counters::new(),
-            start: Start::new(),
         })
     }
 
     /// Position of the tag, m; none before the first one, or when it is lost.
     #[inline]
     pub fn position(&self) -> Option<SVector<T, D>> {
-        let estimate = self.estimate.as_ref()?;
+        let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[axis]))
     }
 
     /// Velocity of the tag, m/s.
     #[inline]
     pub fn velocity(&self) -> Option<SVector<T, D>> {
-        let estimate = self.estimate.as_ref()?;
+        let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[D + axis]))
     }
 
     /// Mean and covariance of all states.
     #[inline]
     pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
-        self.estimate.as_ref()
+        match &self.place {
+            Place::Known(estimate) => Some(estimate),
+            Place::Sought(_) => None,
+        }
     }
 
     /// The standard deviation that is attributed to an anchor's ranges at present, m.
@@ -196,10 +212,20 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(())
     }
 
+    /// Gives the position up: another one is looked for.
+    pub(crate) fn give_up(&mut self) {
+        self.place = Place::Sought(Start::new());
+    }
+
+    /// Whether a search for a position has begun.
+    pub(crate) fn is_begun(&self) -> bool {
+        matches!(&self.place, Place::Sought(start) if start.is_on())
+    }
+
     /// Whether there is a position.
     #[inline]
     pub(crate) fn is_located(&self) -> bool {
-        self.estimate.is_some()
+        matches!(self.place, Place::Known(_))
     }
 
     /// Whether enough anchors are heard to tell a common bias from a distance, and whether there are more than unknowns.

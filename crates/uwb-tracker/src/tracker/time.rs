@@ -1,6 +1,6 @@
 //! Time of the estimate, and standstills of the tag.
 
-use super::{LOST_US, Tracker};
+use super::{LOST_US, Place, Tracker};
 use crate::health::count_heard;
 use crate::measurement::{Speed, Standstill};
 use crate::{Error, OdometrySample, motion};
@@ -25,12 +25,16 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Fields that [`Tracker::advance`] changes.
     #[inline]
     pub(crate) fn timed(&self) -> Timed<T, N> {
-        (self.estimate, self.time_us, self.heard, self.doubted_until_us)
+        (self.estimate().copied(), self.time_us, self.heard, self.doubted_until_us)
     }
 
     #[inline]
     pub(crate) fn restore(&mut self, before: Timed<T, N>) {
-        (self.estimate, self.time_us, self.heard, self.doubted_until_us) = before;
+        let estimate;
+        (estimate, self.time_us, self.heard, self.doubted_until_us) = before;
+        if let Some(estimate) = estimate {
+            self.place = Place::Known(estimate);
+        }
     }
 
     /// Moves the estimate on to `time_us`; gives it up if it has become worthless.
@@ -41,12 +45,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             return Ok(());
         }
         if elapsed > LOST_US {
-            self.estimate = None;
+            self.give_up();
         }
         if self.counters.nis > T::from_f64(Self::NIS_OF_MOTION) {
             self.doubt_standing();
         }
-        if let Some(mut estimate) = self.estimate {
+        if let Some(mut estimate) = self.estimate().copied() {
             let still = self.is_still(time_us) && Standstill::agrees::<T, D, N>(&estimate);
             let interval = T::from_micro(elapsed.min(LOST_US) as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
@@ -60,7 +64,11 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             let variances = estimate.covariance.variances();
             let most = self.lost_sigma * self.lost_sigma;
             let lost = variances.iter().take(D).any(|&variance| variance > most);
-            self.estimate = if lost { None } else { Some(estimate) };
+            if lost {
+                self.give_up();
+            } else {
+                self.place = Place::Known(estimate);
+            }
         }
         self.time_us = time_us;
         self.heard = self.count_heard(time_us);
@@ -97,7 +105,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             return;
         }
         self.doubted_until_us = self.time_us.saturating_add(Self::DOUBT_US);
-        if let Some(estimate) = &mut self.estimate {
+        if let Place::Known(estimate) = &mut self.place {
             for index in D..2 * D {
                 // Unless the variance is out of range already, in which case it is large enough.
                 let _ = estimate.add_variance_at(index, T::from_f64(Self::DOUBTED_VARIANCE));
