@@ -2,8 +2,8 @@
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
-    Error, Huber, Observation, Room, Solver, Trilateration, dilution_of_precision, expected_range,
-    trilaterate, weighted_dilution,
+    Error, Fix, Huber, Observation, Room, Search, Solver, Trilateration, dilution_of_precision,
+    expected_range, trilaterate, weighted_dilution,
 };
 use nalgebra::{SVector, Vector2, Vector3};
 use proptest::prelude::*;
@@ -54,7 +54,53 @@ fn check_exact<T: Scalar>(tag: [f64; 3], tolerance: f64) {
     assert!((fix.position.map(T::to_f64) - Vector3::from(tag)).norm() < 5e-3);
 }
 
+/// What a search comes to that is interrupted after so many steps again and again, and how often it is.
+fn searched<T: Scalar, const D: usize>(
+    solver: &Solver<T>,
+    observations: &[Observation<T>],
+    steps: usize,
+) -> (Result<Fix<T, D>, Error>, usize) {
+    let mut search = Search::new(None);
+    for calls in 1..500 {
+        match search.advance(solver, observations, steps) {
+            Ok(None) => {}
+            Ok(Some(fix)) => return (Ok(*fix), calls),
+            Err(error) => return (Err(error), calls),
+        }
+    }
+    panic!("it does not end");
+}
+
+/// Ranges that agree, or of which one is `excess` too long.
+fn check_search<T: Scalar>(tag: [f64; 3], excess: f64) -> Result<(), TestCaseError> {
+    let mut ranges = CORNERS.map(|place| distance(place, tag));
+    ranges[1] += excess;
+    let observations = observations::<T, 4>(CORNERS, ranges);
+    let huber = Some(Huber { long: T::HALF, short: T::from_f64(2.5) });
+    let solver = Solver { huber, ..Solver::new(T::from_f64(tag[2])) };
+    let (at_once, calls) = searched::<T, 2>(&solver, &observations, usize::MAX);
+    let (one_by_one, steps) = searched::<T, 2>(&solver, &observations, 1);
+    prop_assert_eq!(at_once, one_by_one);
+    prop_assert_eq!(calls, 1);
+    prop_assert!(steps <= if excess == 0.0 { 8 } else { 150 }, "{} steps", steps);
+    if excess == 0.0 {
+        let exact = solver.solve::<2>(&observations, None).unwrap();
+        let apart = (one_by_one.unwrap().position - exact.position).map(T::to_f64).norm();
+        prop_assert!(apart < 0.02, "{} m", apart);
+    }
+    Ok(())
+}
+
 proptest! {
+    #[test]
+    fn a_search_that_is_interrupted_ends_where_the_solver_does(
+        x in 0.5..4.3f64, y in 0.5..5.9f64, excess in prop_oneof![Just(0.0), 0.5..5.0f64]
+    ) {
+        check_search::<f64>([x, y, 1.0], excess)?;
+        check_search::<f32>([x, y, 1.0], excess)?;
+        check_search::<Q12_20>([x, y, 1.0], excess)?;
+    }
+
     #[test]
     fn exact_ranges_give_the_exact_place(x in 0.2..4.6f64, y in 0.2..6.2f64, z in 0.0..1.5f64) {
         check_exact::<f64>([x, y, z], 1e-9);

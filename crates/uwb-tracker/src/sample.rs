@@ -89,9 +89,9 @@ pub struct OdometrySample<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome {
-    /// The range is kept for a first position, for which more are needed.
+    /// The range is kept for a first position, for which more are needed, or which is looked for with each.
     Collected,
-    /// The range made a first position possible, or a new one after the tracker was lost.
+    /// With this range a first position was found, or a new one after the tracker was lost, from those of a moment or so ago.
     Started,
     /// The range was taken in with its full weight.
     Taken,
