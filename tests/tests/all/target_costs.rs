@@ -71,6 +71,15 @@ fn nothing_costs_more_than_it_did() -> Result<()> {
     Ok(())
 }
 
+/// Whoever has time for an estimator has time for each of its steps: first positions and alignments are spread.
+#[test]
+fn no_step_is_longer_than_ten_means() {
+    let (rows, _) = measured();
+    for row in rows.iter().filter(|row| !row.name.starts_with("peer-")) {
+        assert!(row.instructions_max as f64 <= 10.0 * row.instructions_mean, "{row}");
+    }
+}
+
 #[test]
 fn estimators_link_neither_panics_nor_doubles_nor_static_memory() {
     let (rows, _) = measured();
