@@ -226,3 +226,59 @@ fn in_space_one_range_to_spare_is_left_of_five() {
     let four = self::links::<4>(&config, [0; 4], [0.0, 3.0, 0.0, 0.0]);
     assert!(begun_after::<3, 6, 4>(&config, &four, SOON).is_none());
 }
+
+/// Numbers at random, from 0 to 1 (xorshift).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Starts in rooms at random, where up to one range is too long by up to 5 m: how many ranges they take on average, and at most,
+/// and the share of them within 30 cm.
+fn in_rooms<const A: usize>(is_blocked: bool) -> (f64, u32, f64) {
+    const ROOMS: u32 = 1000;
+    let (config, mut random) = (Config::calibrated(1.0), Random(88_172_645_463_325_252));
+    let (mut sum, mut most, mut right) = (0, 0, 0);
+    for _ in 0..ROOMS {
+        let tag = SVector::from([8.0 * random.next(), 6.0 * random.next(), 1.0]);
+        let blocked = (random.next() * A as f64) as usize;
+        let links: [Link<f64>; A] = core::array::from_fn(|index| {
+            let angle = core::f64::consts::TAU * (index as f64 + 0.5 * random.next()) / A as f64;
+            let height = 0.3 + 2.0 * random.next();
+            let place = [4.0 + 4.0 * angle.cos(), 3.0 + 3.0 * angle.sin(), height];
+            let position = SVector::from(place);
+            let mut link = Link::new(Anchor { position, bias: 0.0 }, &config);
+            let excess =
+                if is_blocked && index == blocked { 0.5 + 4.5 * random.next() } else { 0.0 };
+            let noise = 0.2 * random.next() - 0.1;
+            link.hear(NOW_US, (position - tag).norm() + excess + noise);
+            link
+        });
+        let Some((ranges, found)) = begun_after::<2, 4, A>(&config, &links, 60) else { continue };
+        (sum, most) = (sum + ranges, most.max(ranges));
+        right += u32::from((found.mean[0] - tag[0]).hypot(found.mean[1] - tag[1]) < 0.3);
+    }
+    (f64::from(sum) / f64::from(ROOMS), most, f64::from(right) / f64::from(ROOMS))
+}
+
+#[test]
+fn a_position_takes_a_few_ranges() {
+    extern crate std;
+    let check = |anchors, [agree, blocked]: [(f64, u32, f64); 2]| {
+        std::println!("{anchors} anchors that agree: {agree:?}; one of them blocked: {blocked:?}");
+        assert!(agree.0 <= 5.5 && agree.1 <= 8 && agree.2 > 0.97, "{anchors}: {agree:?}");
+        assert!(blocked.0 <= 18.0 && blocked.1 <= 60, "{anchors}: {blocked:?}");
+        assert!(anchors < 5 || blocked.2 > 0.98, "{anchors}: {blocked:?}");
+    };
+    check(3, [in_rooms::<3>(false), in_rooms::<3>(true)]);
+    check(4, [in_rooms::<4>(false), in_rooms::<4>(true)]);
+    check(5, [in_rooms::<5>(false), in_rooms::<5>(true)]);
+    check(6, [in_rooms::<6>(false), in_rooms::<6>(true)]);
+    check(8, [in_rooms::<8>(false), in_rooms::<8>(true)]);
+}
