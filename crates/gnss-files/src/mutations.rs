@@ -5,7 +5,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use crate::{Antennas, Clocks, Observations, Orbits, StationLoading, Text, samples};
+use crate::{Antennas, Clocks, Navigation, Observations, Orbits, StationLoading, Text, samples};
 
 /// Reads bytes as every format; each complaint is one line.
 fn read(bytes: Vec<u8>) {
@@ -16,6 +16,7 @@ fn read(bytes: Vec<u8>) {
             Observations::parse(&text).map(drop),
             Orbits::parse(&texts).map(drop),
             Clocks::parse(&texts).map(drop),
+            Navigation::parse(&texts).map(drop),
             Antennas::parse(std::slice::from_ref(&text), "ANT  TYPE       DOME").map(drop),
             crate::Biases::parse(&texts).map(drop),
             StationLoading::parse(&text, "here", Some([4e6, 0.0, 4.9e6])).map(drop),
@@ -38,6 +39,9 @@ fn files() -> Vec<Vec<u8>> {
         samples::compressed_2(),
         samples::orbits(),
         samples::clocks(),
+        samples::navigation_2(),
+        samples::navigation_3(),
+        samples::navigation_4(),
         samples::antennas(),
         samples::loading(),
     ];

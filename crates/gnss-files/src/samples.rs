@@ -1,10 +1,14 @@
 //! Small files of each format, made by hand.
 
+mod navigation;
+
 use std::iter;
 use std::path::Path;
 
 use crate::error::Warning;
 use crate::text::Text;
+
+pub(crate) use self::navigation::{navigation_2, navigation_3, navigation_4};
 
 /// Absolute biases of one satellite and differential ones of another, a receiver's and a phase's.
 pub(crate) fn biases() -> String {

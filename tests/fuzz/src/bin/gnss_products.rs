@@ -1,7 +1,7 @@
-//! Any bytes as orbits, clocks, antennas and ocean loading.
+//! Any bytes as orbits, clocks, ephemerides, antennas and ocean loading.
 #![no_main]
 
-use kestirim_gnss_files::{Antennas, Clocks, Orbits, StationLoading, Text};
+use kestirim_gnss_files::{Antennas, Clocks, Navigation, Orbits, StationLoading, Text};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -11,4 +11,5 @@ fuzz_target!(|bytes: &[u8]| {
     let _ = Antennas::parse(&texts, "TRM59800.00     SCIS");
     let _ = Orbits::parse(&texts);
     let _ = Clocks::parse(&texts);
+    let _ = Navigation::parse(&texts);
 });

@@ -1,0 +1,164 @@
+//! Broadcast ephemerides: RINEX navigation files 2.x, 3.0x and 4.0x.
+
+mod ephemeris;
+mod record;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+pub use self::ephemeris::{Ephemeris, Message};
+use self::record::{Layout, Record};
+use crate::error::{Error, Warning};
+use crate::fields::{blank_separated, decimal};
+use crate::satellites::PerSatellite;
+use crate::text::{Line, Lines, Text};
+
+/// What satellites broadcast about themselves, which are called by number: of GPS that of their name, of Galileo that and 100.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Navigation {
+    /// Of each message by itself, as two of a satellite of Galileo hold for the same instant.
+    messages: [PerSatellite<Ephemeris>; 3],
+    /// Klobuchar's ionosphere as GPS broadcasts it: α in s, s per semicircle and so on, then β.
+    pub ionosphere: Option<[[f64; 4]; 2]>,
+    /// How many records were passed over: other systems, other messages.
+    pub skipped: usize,
+    /// Warnings about the files.
+    pub warnings: Vec<Warning>,
+}
+
+impl Navigation {
+    /// Reads files in any order, such as those of three days. Where two hold the same ephemeris, that of the file that begins
+    /// later is taken.
+    ///
+    /// # Errors
+    /// [`Error`]: the file, the line, what was expected there and what was found.
+    pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, Error> {
+        let texts: Result<Vec<_>, _> = paths.iter().map(Text::read).collect();
+        Self::parse(&texts?)
+    }
+
+    /// Reads files in memory, as [`Self::read`].
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(texts: &[Text]) -> Result<Self, Error> {
+        let mut navigation = Self::default();
+        let mut files = Vec::new();
+        for text in texts {
+            let mut file = Vec::new();
+            navigation.parse_file(text, &mut file)?;
+            if file.is_empty() {
+                let problem = "expected ephemerides of satellites of GPS or Galileo, found none";
+                return Err(text.error(problem));
+            }
+            files.push(file);
+        }
+        navigation.put(&files);
+        Ok(navigation)
+    }
+
+    /// What a stream held: ephemerides with the numbers of their satellites, in any order.
+    pub fn of(ephemerides: impl IntoIterator<Item = (u8, Ephemeris)>) -> Self {
+        let mut navigation = Self::default();
+        navigation.put(&[ephemerides.into_iter().collect()]);
+        navigation
+    }
+
+    /// A satellite's ephemerides in a message in the order of the times they are made for; none of one that the files do not
+    /// know.
+    pub fn satellite(&self, number: u8, message: Message) -> &[Ephemeris] {
+        self.messages[message as usize].of(number)
+    }
+
+    /// The numbers of the satellites in the files, each once.
+    pub fn satellites(&self) -> impl Iterator<Item = u8> {
+        let is_known = |number: &u8| self.messages.iter().any(|of| !of.of(*number).is_empty());
+        (0..=u8::MAX).filter(is_known)
+    }
+
+    fn put(&mut self, files: &[Vec<(u8, Ephemeris)>]) {
+        for message in Message::ALL {
+            let of_message = |file: &Vec<(u8, Ephemeris)>| {
+                let mut satellites = PerSatellite::default();
+                for (number, ephemeris) in file.iter().filter(|(_, it)| it.message == message) {
+                    satellites.push(*number, *ephemeris);
+                }
+                satellites
+            };
+            let files = files.iter().map(of_message).collect();
+            self.messages[message as usize] =
+                PerSatellite::merge(files, |ephemeris| ephemeris.time, |_, _| ());
+        }
+    }
+
+    fn parse_file(&mut self, text: &Text, found: &mut Vec<(u8, Ephemeris)>) -> Result<(), Error> {
+        let mut lines = text.lines();
+        let layout = self.header(text, &mut lines)?;
+        while let Some(line) = lines.next() {
+            if line.bytes.trim_ascii().is_empty() {
+                continue;
+            }
+            let read = match Record::of(line, layout, &mut lines) {
+                Record::Ephemeris(number, message, numbers) => {
+                    let ephemeris = Ephemeris::read(number, message, &numbers);
+                    ephemeris.map(|ephemeris| found.push((number, ephemeris)))
+                }
+                Record::Ionosphere(numbers) => {
+                    numbers.ionosphere().map(|ionosphere| self.ionosphere = Some(ionosphere))
+                }
+                Record::Other => {
+                    self.skipped += 1;
+                    Ok(())
+                }
+            };
+            match read {
+                Err(_) if lines.is_at_end() && !text.ends_with_line_break() => {
+                    let problem = "the file ends within this record, which is left out";
+                    self.warnings.push(line.warning(problem));
+                }
+                read => read?,
+            }
+        }
+        Ok(())
+    }
+
+    fn header(&mut self, text: &Text, lines: &mut Lines<'_>) -> Result<Layout, Error> {
+        let first = lines.next().filter(|line| line.label() == b"RINEX VERSION / TYPE");
+        let wrong = || text.wrong_kind("a navigation file (RINEX)");
+        let first = first.ok_or_else(wrong)?;
+        let version = first.finite("a version of RINEX", 0, 9)?;
+        if !(2.0..5.0).contains(&version) {
+            return Err(first.error(format!("expected RINEX 2, 3 or 4, found version {version}")));
+        }
+        let layout = Layout::of(version, first.column(20)).ok_or_else(wrong)?;
+        let mut ionosphere = [None; 2];
+        for line in lines {
+            match line.label() {
+                b"END OF HEADER" => {
+                    if let [Some(alpha), Some(beta)] = ionosphere {
+                        self.ionosphere = Some([alpha, beta]);
+                    }
+                    return Ok(layout);
+                }
+                b"ION ALPHA" => ionosphere[0] = four(&line, 2),
+                b"ION BETA" => ionosphere[1] = four(&line, 2),
+                b"IONOSPHERIC CORR" if line.bytes.starts_with(b"GPSA") => {
+                    ionosphere[0] = four(&line, 5);
+                }
+                b"IONOSPHERIC CORR" if line.bytes.starts_with(b"GPSB") => {
+                    ionosphere[1] = four(&line, 5);
+                }
+                _ => {}
+            }
+        }
+        Err(text.error("expected the end of the header, found the end of the file"))
+    }
+}
+
+/// Four numbers from a column of a header on; none if they cannot be read, which costs the ionosphere of one carrier alone.
+fn four(line: &Line<'_>, from: usize) -> Option<[f64; 4]> {
+    let mut numbers = blank_separated(line.columns(from, 60)).map(decimal);
+    let mut next = || numbers.next().flatten();
+    Some([next()?, next()?, next()?, next()?])
+}

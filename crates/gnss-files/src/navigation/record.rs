@@ -1,0 +1,160 @@
+//! Records of navigation files: lines, and the numbers in them.
+
+use super::ephemeris::Message;
+use crate::error::Error;
+use crate::fields::{blank_separated, satellite};
+use crate::text::{Line, Lines};
+use crate::time::{GpsTime, full_year};
+
+/// Columns of a number.
+const WIDTH: usize = 19;
+/// The most lines of a record that is read.
+const LINES: usize = 8;
+/// Numbers of the first line, and of each further one.
+const FIRST: usize = 3;
+const FURTHER: usize = 4;
+
+/// Where records have what.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    /// The version without its decimals.
+    version: i32,
+    /// The system whose satellites are told by their number alone.
+    system: Option<u8>,
+}
+
+impl Layout {
+    /// That of a version and the letter of a file's type; none if that is no navigation file.
+    pub(super) const fn of(version: f64, kind: u8) -> Option<Self> {
+        let version = version as i32;
+        let system = match (version, kind) {
+            (2, b'N') => Some(b'G'),
+            (2, b'E') => Some(b'E'),
+            // Of GLONASS and of SBAS.
+            (2, b'G' | b'H') | (3.., b'N') => None,
+            _ => return None,
+        };
+        Some(Self { version, system })
+    }
+
+    /// How many columns stand before the numbers of a further line.
+    const fn margin(self) -> usize {
+        if self.version < 3 { 3 } else { 4 }
+    }
+
+    fn satellite(self, line: &Line<'_>) -> Option<u8> {
+        match self.system {
+            Some(b'E') => satellite(&[b"E", line.columns(0, 2)].concat()),
+            Some(_) => satellite(line.columns(0, 2)),
+            None if self.version < 3 => None,
+            None => satellite(line.columns(0, 3)),
+        }
+    }
+}
+
+/// The lines of a record.
+#[derive(Debug)]
+pub(super) struct Numbers<'a> {
+    /// By which the record is told.
+    first: Line<'a>,
+    lines: Vec<Line<'a>>,
+    layout: Layout,
+}
+
+impl Numbers<'_> {
+    /// The time in the first line.
+    pub(super) fn time(&self) -> Result<GpsTime, Error> {
+        let line = self.lines.first().unwrap_or(&self.first);
+        if self.layout.version < 3 {
+            line.short_time([3, 6, 9, 12, 15, 17, 22], full_year)
+        } else {
+            line.time([4, 8, 11, 14, 17, 20, 23])
+        }
+    }
+
+    /// A number by its place among all of the record; none where there are blanks.
+    pub(super) fn optional(&self, place: usize) -> Result<Option<f64>, Error> {
+        let margin = self.layout.margin();
+        let (line, column) = match place.checked_sub(FIRST) {
+            None => (0, margin + WIDTH + place * WIDTH),
+            Some(rest) => (1 + rest / FURTHER, margin + rest % FURTHER * WIDTH),
+        };
+        let Some(line) = self.lines.get(line) else { return Ok(None) };
+        line.optional_number("a number of a navigation message", column, column + WIDTH)
+    }
+
+    /// A number that has to be there.
+    pub(super) fn needed(&self, place: usize) -> Result<f64, Error> {
+        let complaint = || self.first.expected("a whole navigation message");
+        self.optional(place)?.ok_or_else(complaint)
+    }
+
+    /// α and β of Klobuchar's model.
+    pub(super) fn ionosphere(&self) -> Result<[[f64; 4]; 2], Error> {
+        let mut both = [[0.0; 4]; 2];
+        for (place, coefficient) in both.as_flattened_mut().iter_mut().enumerate() {
+            *coefficient = self.needed(place)?;
+        }
+        Ok(both)
+    }
+}
+
+/// A record, as far as it is of use.
+#[derive(Debug)]
+pub(super) enum Record<'a> {
+    /// Of a satellite; its message, if that is told.
+    Ephemeris(u8, Option<Message>, Numbers<'a>),
+    /// Klobuchar's model.
+    Ionosphere(Numbers<'a>),
+    /// Another one.
+    Other,
+}
+
+impl<'a> Record<'a> {
+    /// The record that begins with a line; `lines` go on behind it.
+    pub(super) fn of(first: Line<'a>, layout: Layout, lines: &mut Lines<'a>) -> Self {
+        if layout.version >= 4 {
+            let lines = rest(None, lines, |line| line.column(0) != b'>');
+            return Self::of_version_4(Numbers { first, lines, layout });
+        }
+        let lines = rest(Some(first), lines, |line| line.columns(0, 2).is_empty());
+        match layout.satellite(&first) {
+            Some(number) => Self::Ephemeris(number, None, Numbers { first, lines, layout }),
+            None => Self::Other,
+        }
+    }
+
+    fn of_version_4(numbers: Numbers<'a>) -> Self {
+        let mut words = blank_separated(numbers.first.bytes).skip(1);
+        let mut word = || words.next().unwrap_or_default();
+        let (kind, name, message) = (word(), word(), word());
+        let message = match (name.first(), message) {
+            (Some(b'G'), b"LNAV") => Message::Lnav,
+            (Some(b'E'), b"INAV") => Message::Inav,
+            (Some(b'E'), b"FNAV") => Message::Fnav,
+            _ => return Self::Other,
+        };
+        match (kind, satellite(name)) {
+            (b"EPH", Some(number)) => Self::Ephemeris(number, Some(message), numbers),
+            (b"ION", _) if message == Message::Lnav => Self::Ionosphere(numbers),
+            _ => Self::Other,
+        }
+    }
+}
+
+/// A first line, if there is one, and those that follow as long as they `belong` to it; not more than are read.
+fn rest<'a>(
+    first: Option<Line<'a>>,
+    lines: &mut Lines<'a>,
+    belongs: impl Fn(&Line<'a>) -> bool,
+) -> Vec<Line<'a>> {
+    let mut record: Vec<_> = first.into_iter().collect();
+    let mut ahead = lines.clone();
+    while let Some(line) = ahead.next().filter(&belongs) {
+        if record.len() < LINES {
+            record.push(line);
+        }
+        *lines = ahead.clone();
+    }
+    record
+}
