@@ -264,6 +264,7 @@ impl GnssObservation {
                 clock: state.clock,
                 clock_interval: state.clock_interval,
                 clock_distance: state.clock_distance,
+                accuracy: 0.0,
             },
             // SAFETY: the caller keeps what the header asks for.
             antenna: unsafe { antenna(self.antenna)? },

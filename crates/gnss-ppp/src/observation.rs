@@ -22,6 +22,8 @@ pub struct SatelliteState {
     pub clock_interval: f64,
     /// Time to the nearer of both, s.
     pub clock_distance: f64,
+    /// Standard deviation of a range by orbit and clock, m: what a broadcast ephemeris says of itself, zero of precise products.
+    pub accuracy: f64,
 }
 
 /// Modelled observation of a satellite.

@@ -98,6 +98,12 @@ impl Config {
         }
     }
 
+    /// The settings with ephemerides that satellites broadcast, each at its own accuracy ([`SatelliteState::accuracy`]): these stay
+    /// wrong by the same for as long as one serves, up to two hours.
+    pub fn broadcast(motion: Motion) -> Self {
+        Self { correlation_time: 7_200.0, ..Self::new(motion) }
+    }
+
     /// The settings for geodetic receivers with final products of the IGS, which our results are made
     /// with: the published ones (Table 1), but for the estimator, and slips that a code outlier cannot imitate.
     pub fn new(motion: Motion) -> Self {

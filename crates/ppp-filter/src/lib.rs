@@ -16,6 +16,7 @@ mod phase_monitor;
 mod report;
 mod rest;
 mod running;
+mod single_point;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod solution;
@@ -28,5 +29,6 @@ pub use estimator::Estimator;
 pub use filter::PppFilter;
 pub use fixer::{AmbiguityFixer, FixedSolution, PhaseBias};
 pub use observation::SatelliteObservation;
+pub use single_point::{CodeObservation, single_point};
 pub use solution::{Contradiction, Health, SatelliteReport, Slipped, Solution};
 pub use states::states;

@@ -44,6 +44,8 @@ impl Line {
     ) -> Self {
         let sine = libm::sin(expected.direction.elevation);
         let clock = config.clock_variance(&observation.state);
+        // Of orbit and clock: alike in both.
+        let told = observation.state.accuracy * observation.state.accuracy;
         let mut line = Self {
             satellite: observation.satellite,
             state,
@@ -53,8 +55,8 @@ impl Line {
             expected,
             code: 0.0,
             phase: 0.0,
-            code_variance: config.code.variance(sine) + clock,
-            phase_variance: config.phase.variance(sine),
+            code_variance: config.code.variance(sine) + clock + told,
+            phase_variance: config.phase.variance(sine) + told,
             clock_variance: clock,
             phase_noise: 1.0,
         };

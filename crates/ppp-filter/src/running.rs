@@ -34,7 +34,7 @@ const LINEAR: f64 = 100.0;
 /// Largest number of relinearisations of an epoch.
 const RELINEARISATIONS: usize = 5;
 /// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
-const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
+pub(crate) const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;

@@ -34,6 +34,7 @@ fn state(prn: u8, seconds: f64) -> SatelliteState {
         clock: 1e-5 * f64::from(prn),
         clock_interval: 0.0,
         clock_distance: 0.0,
+        accuracy: 0.0,
     }
 }
 

@@ -137,6 +137,7 @@ impl Products {
                 clock: clock.bias,
                 clock_interval: clock.interval,
                 clock_distance: clock.distance,
+                accuracy: 0.0,
             },
             antenna: satellite
                 .antenna

@@ -140,6 +140,7 @@ pub(crate) fn rinex(epochs: u32, fault: impl Fn(u32, u8) -> Option<Fault>) -> St
                     clock,
                     clock_interval: 0.0,
                     clock_distance: 0.0,
+                    accuracy: 0.0,
                 };
                 let expected = site
                     .expect(&state, Carriers::L1L2, None, wind_up[usize::from(prn)])

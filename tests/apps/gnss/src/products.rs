@@ -155,6 +155,7 @@ impl Products {
                 clock: clock.bias,
                 clock_interval: clock.interval,
                 clock_distance: clock.distance,
+                accuracy: 0.0,
             },
             antenna: site::satellite_antenna(),
         })

@@ -179,6 +179,7 @@ pub fn in_orbit(satellite: usize, elapsed: f64) -> SatelliteState {
         clock: 1e-5 * (satellite as f64 - 4.5),
         clock_interval: 0.0,
         clock_distance: 0.0,
+        accuracy: 0.0,
     }
 }
 

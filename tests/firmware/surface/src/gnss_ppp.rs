@@ -1,10 +1,11 @@
 //! Everything of `kestirim-gnss-ppp`.
 
 use kestirim_gnss_ppp::{
-    Arc, Bodies, BodyAxes, Carriers, Clock, ClockSample, Correction, Corrections, Direction,
-    Geodetic, GpsTime, OceanLoading, Orbit, OrbitSample, Pattern, Receiver, SatelliteState, Site,
-    SlipLimits, Troposphere, carried_along, eccentricity_clock, greenwich_sidereal_time, sagnac,
-    shapiro_delay, solid_tide, wind_up, zenith_hydrostatic, zenith_wet,
+    Arc, Bodies, BodyAxes, Carriers, Clock, ClockSample, Constellation, Correction, Corrections,
+    Direction, Ephemeris, Geodetic, GpsTime, Klobuchar, OceanLoading, Orbit, OrbitSample, Pattern,
+    Receiver, SatelliteState, Site, SlipLimits, Troposphere, carried_along, eccentricity_clock,
+    greenwich_sidereal_time, sagnac, shapiro_delay, solid_tide, wind_up, zenith_hydrostatic,
+    zenith_wet,
 };
 use nalgebra::Vector3;
 
@@ -80,6 +81,7 @@ fn site(pattern: Pattern<'_>) {
         clock: number(),
         clock_interval: number(),
         clock_distance: number(),
+        accuracy: number(),
     });
     keep(Site::expect(&site, &state, carriers(), maybe(&[pattern; 2]), option()));
 }
@@ -98,6 +100,38 @@ fn satellites() {
         keep(BodyAxes::from_ecef(&axes, &matrix()));
     }
     keep(wind_up(&axes(), &matrix(), &matrix(), option()));
+}
+
+fn broadcast() {
+    let ephemeris = Ephemeris {
+        constellation: one_of([Constellation::Gps, Constellation::Galileo]),
+        time: time(),
+        clock_time: time(),
+        clock: numbers(),
+        group_delay: number(),
+        root_of_axis: number(),
+        eccentricity: number(),
+        mean_anomaly: number(),
+        mean_motion_correction: number(),
+        perigee: number(),
+        node: number(),
+        node_rate: number(),
+        inclination: number(),
+        inclination_rate: number(),
+        latitude_terms: numbers(),
+        radius_terms: numbers(),
+        inclination_terms: numbers(),
+        accuracy: number(),
+        holds: number(),
+    };
+    let all = any([ephemeris; 3]);
+    if let Some(ephemeris) = any(Ephemeris::nearest(slice(&all), time())) {
+        keep(Ephemeris::holds_at(ephemeris, time()));
+        keep(Ephemeris::clock_at(ephemeris, time()));
+        keep(Ephemeris::orbit_at(ephemeris, time()));
+    }
+    let ionosphere = any(Klobuchar { alpha: numbers(), beta: numbers() });
+    keep(Klobuchar::delay(&ionosphere, &place(), &direction(), time()));
 }
 
 fn earth() {
@@ -145,5 +179,5 @@ fn signals() {
 
 /// Calls it all.
 pub fn run() {
-    call_each([times, patterns, satellites, earth, signals]);
+    call_each([times, patterns, satellites, broadcast, earth, signals]);
 }

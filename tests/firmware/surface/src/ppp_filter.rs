@@ -1,11 +1,12 @@
 //! Everything of `kestirim-ppp-filter`.
 
 use kestirim_gnss_ppp::{
-    Carriers, Corrections, GpsTime, OceanLoading, Pattern, Receiver, SatelliteState, SlipLimits,
+    Carriers, Corrections, GpsTime, Klobuchar, OceanLoading, Pattern, Receiver, SatelliteState,
+    SlipLimits,
 };
 use kestirim_ppp_filter::{
-    AmbiguityFixer, Config, Deviation, Error, Estimator, Health, Motion, PhaseBias, PppFilter,
-    SatelliteObservation, Solution, states,
+    AmbiguityFixer, CodeObservation, Config, Deviation, Error, Estimator, Health, Motion,
+    PhaseBias, PppFilter, SatelliteObservation, Solution, single_point, states,
 };
 
 use super::values::{
@@ -24,6 +25,7 @@ fn estimators() {
     keep(Estimator::iterative_igg3());
     keep(Estimator::adaptive());
     keep(Estimator::guarded(motion()));
+    keep(Config::broadcast(motion()));
     keep(states(whole()));
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
     keep::<Error>(From::from(any(kestirim_robust_kalman::Error::InvalidBlock)));
@@ -67,12 +69,19 @@ fn filters<const N: usize>() {
         clock: number(),
         clock_interval: number(),
         clock_distance: number(),
+        accuracy: number(),
     });
     let (satellite, code, phase, lock_lost) = (whole(), numbers(), numbers(), yes_or_no());
     let carriers = one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b]);
     let observation =
         SatelliteObservation { satellite, carriers, code, phase, lock_lost, state, antenna };
     let observations = any([observation; 4]);
+    let code = [maybe(number()), maybe(number())];
+    let code = CodeObservation { satellite, carriers, code, group_delay: number(), state };
+    let ionosphere = Klobuchar { alpha: numbers(), beta: numbers() };
+    let (codes, ionosphere) = (any([code; 5]), maybe(&ionosphere));
+    let time = any(GpsTime::new(whole(), number()));
+    keep(single_point::<N>(time, &receiver, slice(&codes), ionosphere, &config()));
     let mut filter = any(PppFilter::<N>::new(config()));
     keep(PppFilter::config(&filter));
     keep(<AmbiguityFixer<N> as Default>::default());

@@ -1,0 +1,222 @@
+//! Positions from the codes of one epoch each.
+
+use crate::collected::collected;
+use crate::running::GROUND;
+use crate::start::code_position;
+use crate::{Config, Error, Health, SatelliteObservation, SatelliteReport, Solution};
+use heapless::Vec;
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+use kestirim_gnss_ppp::{
+    Carriers, Constellation, Expected, Geodetic, GpsTime, Klobuchar, Receiver, SatelliteState, Site,
+};
+use kestirim_kalman::{Covariance, Gaussian};
+use kestirim_robust_kalman::{Decision, Measurement, Robust};
+use kestirim_scalar::Components;
+use nalgebra::{Matrix3, SVector, Vector3};
+
+/// Variance of what is not known beforehand, m²: the first position is good to metres.
+const UNKNOWN: f64 = 1e10;
+/// Wet zenith delay of a temperate climate, m.
+const WET_DELAY: f64 = 0.1;
+/// A carrier alone is so many times less noisy than the combination of two.
+const ALONE: f64 = 1.0 / 3.0;
+/// What of the ionosphere's broadcast delay is left, as a share (IS-GPS-200, 20.3.3.5.2.5).
+const LEFT: f64 = 0.5;
+/// Standard deviation of the ionosphere where nothing of it is broadcast: L1 at the zenith, m.
+const NOT_TOLD: f64 = 5.0;
+/// The lowest sine of an elevation by which that is mapped.
+const LOWEST: f64 = 0.1;
+/// Least squares are done again from where they led.
+const ROUNDS: usize = 2;
+/// Coordinates, the receiver's clock, and Galileo's beside that.
+const STATES: usize = 5;
+
+/// The codes of one satellite in an epoch, and the satellite's state.
+#[derive(Clone, Copy, Debug)]
+pub struct CodeObservation {
+    /// Number of the satellite, which no other has.
+    pub satellite: u8,
+    /// The carriers on which it is observed.
+    pub carriers: Carriers,
+    /// Codes on both, m: the first alone serves, too.
+    pub code: [Option<f64>; 2],
+    /// By what the satellite's clock is ahead of that of the first carrier alone, s.
+    pub group_delay: f64,
+    /// The satellite's state at the time of transmission.
+    pub state: SatelliteState,
+}
+
+impl CodeObservation {
+    /// The same as an observation of which both codes are free of the ionosphere, or alike.
+    fn whole(&self) -> Option<SatelliteObservation<'static>> {
+        let (range, _) = self.range()?;
+        Some(SatelliteObservation {
+            satellite: self.satellite,
+            carriers: self.carriers,
+            code: [range; 2],
+            phase: [0.0; 2],
+            lock_lost: false,
+            state: self.state,
+            antenna: None,
+        })
+    }
+
+    /// The code free of the ionosphere, or that of the first carrier alone, and whether it is alone.
+    fn range(&self) -> Option<(f64, bool)> {
+        match self.code {
+            [Some(first), Some(second)] => {
+                Some((self.carriers.ionosphere_free([first, second]), false))
+            }
+            [Some(first), None] => Some((first - SPEED_OF_LIGHT * self.group_delay, true)),
+            [None, _] => None,
+        }
+    }
+}
+
+/// The position of an epoch from its codes alone: free of the ionosphere where there are two, else with `ionosphere`. Outliers
+/// lose weight as in the filter of the same settings. No phase is used, and nothing of any other epoch.
+///
+/// # Errors
+/// [`Error`]: why there is no position.
+pub fn single_point<const N: usize>(
+    time: GpsTime,
+    receiver: &Receiver<'_>,
+    codes: &[CodeObservation],
+    ionosphere: Option<&Klobuchar>,
+    config: &Config,
+) -> Result<Solution<N>, Error> {
+    let start = code_position(&collected::<_, N>(codes.iter().filter_map(CodeObservation::whole)))?;
+    let mut position = start.position;
+    let mut found = Epoch::<N>::at(position, start.clock);
+    for _ in 0..ROUNDS {
+        found = Epoch::at(position, start.clock);
+        found.observe(time, receiver, codes, ionosphere, config);
+        found.update(config)?;
+        position += found.estimate.mean.xyz();
+    }
+    if !GROUND.contains(&position.norm()) {
+        return Err(Error::Contradictory);
+    }
+    Ok(found.solution(time, position))
+}
+
+/// One satellite's code, linearised.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    satellite: u8,
+    expected: Expected,
+    /// Observed less expected, m.
+    innovation: f64,
+    variance: f64,
+    row: [(usize, f64); STATES],
+}
+
+/// An epoch, linearised at a position.
+struct Epoch<const N: usize> {
+    place: Vector3<f64>,
+    clock: f64,
+    estimate: Gaussian<f64, STATES>,
+    lines: Vec<Line, N>,
+    decisions: Vec<Decision<f64>, N>,
+}
+
+impl<const N: usize> Epoch<N> {
+    fn at(place: Vector3<f64>, clock: f64) -> Self {
+        let covariance = Covariance::from_variances(&[UNKNOWN; STATES]);
+        let estimate = Gaussian::new(SVector::zeros(), covariance);
+        Self { place, clock, estimate, lines: Vec::new(), decisions: Vec::new() }
+    }
+
+    fn observe(
+        &mut self,
+        time: GpsTime,
+        receiver: &Receiver<'_>,
+        codes: &[CodeObservation],
+        ionosphere: Option<&Klobuchar>,
+        config: &Config,
+    ) {
+        let site = Site::new(receiver, &self.place, time);
+        let place = Geodetic::from_ecef(&self.place);
+        let system = |it: &CodeObservation| it.carriers.constellation();
+        let has_gps = codes.iter().any(|it| system(it) == Constellation::Gps);
+        self.lines = collected(codes.iter().enumerate().filter_map(|(index, it)| {
+            let before = codes.get(..index).unwrap_or(&[]);
+            if before.iter().any(|other| other.satellite == it.satellite) {
+                return None;
+            }
+            let (range, is_alone) = it.range()?;
+            let expected = site.expect(&it.state, it.carriers, None, None)?;
+            let direction = expected.direction;
+            if direction.elevation < config.elevation_mask {
+                return None;
+            }
+            let sine = libm::sin(direction.elevation);
+            let (delay, left) = match (is_alone, ionosphere) {
+                (false, _) => (0.0, 0.0),
+                (true, Some(model)) => {
+                    let delay = model.delay(&place, &direction, time);
+                    (delay, LEFT * delay)
+                }
+                (true, None) => (0.0, NOT_TOLD / sine.max(LOWEST)),
+            };
+            let noise = config.code.variance(sine) * if is_alone { ALONE * ALONE } else { 1.0 };
+            let wet = config.wet_delay * expected.wet_mapping;
+            let known = self.clock + expected.wet_mapping * WET_DELAY + delay;
+            let [x, y, z] = *expected.sight.as_array();
+            let is_beside = has_gps && system(it) == Constellation::Galileo;
+            Some(Line {
+                satellite: it.satellite,
+                expected,
+                innovation: range - expected.range - known,
+                variance: noise + square(left) + square(wet) + square(it.state.accuracy),
+                row: [(0, -x), (1, -y), (2, -z), (3, 1.0), (4, f64::from(u8::from(is_beside)))],
+            })
+        }));
+    }
+
+    fn update(&mut self, config: &Config) -> Result<(), Error> {
+        if self.lines.len() < 4 {
+            return Err(Error::TooFewSatellites);
+        }
+        let measurements: Vec<_, N> = collected(self.lines.iter().map(|line| Measurement {
+            row: &line.row,
+            innovation: line.innovation,
+            variance: line.variance,
+        }));
+        self.decisions = collected(self.lines.iter().map(|_| Decision::NONE));
+        let robust = Robust { adaptive: None, ..config.estimator.robust };
+        robust.update(&mut self.estimate, &measurements, &mut self.decisions)?;
+        Ok(())
+    }
+
+    fn solution(&self, time: GpsTime, position: Vector3<f64>) -> Solution<N> {
+        let estimate = &self.estimate;
+        let covariance = Matrix3::from_fn(|i, j| estimate.covariance.get(i, j).unwrap_or(0.0));
+        let rotation = Geodetic::from_ecef(&position).enu_from_ecef();
+        let satellites =
+            self.lines.iter().zip(&self.decisions).map(|(line, code)| SatelliteReport {
+                satellite: line.satellite,
+                direction: line.expected.direction,
+                code: *code,
+                phase: Decision::NONE,
+                slipped: None,
+            });
+        let heard = self.decisions.iter().filter(|code| code.weight > 0.0).count();
+        Solution {
+            time,
+            position,
+            covariance,
+            covariance_enu: rotation * covariance * rotation.transpose(),
+            clock: self.clock + estimate.mean.as_array().get(3).copied().unwrap_or(0.0),
+            wet_delay: WET_DELAY,
+            // Metres, whatever comes: no ambiguity is ever known.
+            health: if heard > STATES { Health::Converging } else { Health::Unchecked },
+            milliseconds: 0,
+            satellites: collected(satellites),
+        }
+    }
+}
+
+fn square(number: f64) -> f64 {
+    number * number
+}
