@@ -10,7 +10,7 @@ use crate::text::{Line, Text};
 use crate::time::GpsTime;
 
 /// Speed of light, m/s.
-const SPEED_OF_LIGHT: f64 = 299_792_458.0;
+pub(crate) const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 /// The bias of one code or phase of a satellite, or of one code less another.
 #[derive(Debug, Clone, PartialEq)]

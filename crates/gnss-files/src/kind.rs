@@ -8,7 +8,7 @@ use std::path::Path;
 use flate2::bufread::GzDecoder;
 
 use crate::error::{Error, quoted};
-use crate::{crinex, gzip};
+use crate::{crinex, gzip, streams};
 
 /// Enough for the first line, packed or not, bytes.
 const BEGINNING: u64 = 4096;
@@ -37,6 +37,10 @@ pub enum Kind {
     Biases,
     /// Ocean loading of stations: BLQ.
     OceanLoading,
+    /// A receiver's observations, and mostly ephemerides, as it sent them: UBX.
+    Ubx,
+    /// The same of a reference station: RTCM 3.
+    Rtcm,
 }
 
 impl Kind {
@@ -60,7 +64,7 @@ impl Kind {
     }
 
     /// Of a text.
-    fn of(bytes: &[u8]) -> Option<Self> {
+    pub(crate) fn of(bytes: &[u8]) -> Option<Self> {
         let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
         if named(b"RINEX VERSION / TYPE") {
@@ -80,6 +84,8 @@ impl Kind {
             [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Orbits),
             _ if first.starts_with(b"%=BIA") => Some(Self::Biases),
             _ if first.trim_ascii_start().starts_with(b"$$") => Some(Self::OceanLoading),
+            _ if streams::is_ubx(bytes) => Some(Self::Ubx),
+            _ if streams::is_rtcm(bytes) => Some(Self::Rtcm),
             _ => None,
         }
     }
@@ -98,6 +104,8 @@ impl fmt::Display for Kind {
             Self::Orbits => "orbits (SP3)",
             Self::Biases => "biases (Bias-SINEX)",
             Self::OceanLoading => "ocean loading (BLQ)",
+            Self::Ubx => "a receiver's stream (UBX)",
+            Self::Rtcm => "a stream of corrections (RTCM 3)",
         })
     }
 }

@@ -14,6 +14,7 @@ mod ocean_loading;
 mod open;
 mod orbits;
 mod satellites;
+mod streams;
 mod text;
 mod time;
 

@@ -45,7 +45,10 @@ fn files() -> Vec<Vec<u8>> {
         samples::antennas(),
         samples::loading(),
     ];
-    files.map(String::into_bytes).to_vec()
+    let files = files.map(String::into_bytes).to_vec();
+    #[cfg(any(feature = "rtcm", feature = "ubx"))]
+    let files = [files, crate::streams::tests::streams()].concat();
+    files
 }
 
 #[test]

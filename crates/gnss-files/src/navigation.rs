@@ -7,11 +7,14 @@ mod tests;
 
 use std::path::Path;
 
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+pub(crate) use self::ephemeris::time_of_week;
 pub use self::ephemeris::{Ephemeris, Message};
 use self::record::{Layout, Record};
 use crate::error::{Error, Warning};
 use crate::fields::{blank_separated, decimal};
 use crate::satellites::PerSatellite;
+use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
 
 /// What satellites broadcast about themselves, which are called by number: of GPS that of their name, of Galileo that and 100.
@@ -47,7 +50,10 @@ impl Navigation {
         let mut files = Vec::new();
         for text in texts {
             let mut file = Vec::new();
-            navigation.parse_file(text, &mut file)?;
+            match Stream::of(text)? {
+                Some(stream) => navigation.take(stream, &mut file),
+                None => navigation.parse_file(text, &mut file)?,
+            }
             if file.is_empty() {
                 let problem = "expected ephemerides of satellites of GPS or Galileo, found none";
                 return Err(text.error(problem));
@@ -90,6 +96,13 @@ impl Navigation {
             self.messages[message as usize] =
                 PerSatellite::merge(files, |ephemeris| ephemeris.time, |_, _| ());
         }
+    }
+
+    fn take(&mut self, stream: Stream, found: &mut Vec<(u8, Ephemeris)>) {
+        self.ionosphere = stream.ionosphere.or(self.ionosphere);
+        self.skipped += stream.skipped;
+        self.warnings.extend(stream.warnings);
+        found.extend(stream.ephemerides);
     }
 
     fn parse_file(&mut self, text: &Text, found: &mut Vec<(u8, Ephemeris)>) -> Result<(), Error> {

@@ -10,9 +10,11 @@ use std::path::Path;
 use self::body::Body;
 use self::header::Header;
 pub use self::record::{Epoch, Observations, Observed};
+pub(crate) use self::signals::Raw;
 pub use self::signals::{Carriers, Signal, Signals};
 use crate::biases::Biases;
 use crate::error::Error;
+use crate::streams::Stream;
 use crate::text::Text;
 
 impl Observations {
@@ -46,6 +48,11 @@ impl Observations {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse_unbiased(text: &Text, biases: &Biases) -> Result<Self, Error> {
+        if let Some(stream) = Stream::of(text)? {
+            let mut body = Body::default();
+            body.take(text, stream)?;
+            return Ok(body.finish(text, biases));
+        }
         let mut lines = text.lines();
         let header = Header::parse(text, &mut lines)?;
         let mut body = Body::new(header);

@@ -19,6 +19,10 @@ pub struct GpsTime {
 }
 
 impl GpsTime {
+    /// The instant at which GPS time began.
+    #[cfg(any(feature = "rtcm", feature = "ubx"))]
+    pub(crate) const EPOCH: Self = Self { day: 44_244, second: 0.0 };
+
     /// The instant `second` seconds after the midnight that begins day `day` (modified Julian date), brought into
     /// its own day. A second that is not finite or is beyond ten thousand years stays as it is.
     pub fn new(day: i32, second: f64) -> Self {

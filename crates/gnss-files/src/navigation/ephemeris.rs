@@ -78,6 +78,32 @@ pub struct Ephemeris {
 }
 
 impl Ephemeris {
+    /// What is not told: zeros of no satellite.
+    #[cfg(any(feature = "rtcm", feature = "ubx"))]
+    pub(crate) const NOTHING: Self = Self {
+        message: Message::Lnav,
+        time: GpsTime::EPOCH,
+        clock_time: GpsTime::EPOCH,
+        clock: [0.0; 3],
+        issue: 0,
+        root_of_axis: 0.0,
+        eccentricity: 0.0,
+        mean_anomaly: 0.0,
+        mean_motion_correction: 0.0,
+        perigee: 0.0,
+        node: 0.0,
+        node_rate: 0.0,
+        inclination: 0.0,
+        inclination_rate: 0.0,
+        latitude_terms: [0.0; 2],
+        radius_terms: [0.0; 2],
+        inclination_terms: [0.0; 2],
+        group_delays: [0.0; 2],
+        accuracy: None,
+        is_healthy: false,
+        fit: None,
+    };
+
     /// A satellite's ephemeris from the numbers of a record.
     pub(super) fn read(
         satellite: u8,

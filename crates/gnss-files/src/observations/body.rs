@@ -8,6 +8,7 @@ use super::signals::{Raw, Seen, Signals};
 use crate::biases::Biases;
 use crate::error::{Error, Warning};
 use crate::fields::{self, gps_satellite};
+use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
 use crate::time::{GpsTime, full_year};
 
@@ -69,6 +70,31 @@ impl Body {
             return Err(
                 text.error("expected observations of GPS satellites on L1 or L2, found none")
             );
+        }
+        Ok(())
+    }
+
+    /// Takes in the epochs of a stream.
+    pub(super) fn take(&mut self, text: &Text, stream: Stream) -> Result<(), Error> {
+        self.warnings.extend(stream.warnings);
+        for (time, satellites) in stream.epochs {
+            if self.epochs.last().is_some_and(|last| time <= last.time) {
+                self.backwards += 1;
+                continue;
+            }
+            let first = self.records.len();
+            for (satellite, raw) in satellites {
+                if self.records[first..].iter().any(|&(other, _)| other == satellite) {
+                    self.doubled += 1;
+                    continue;
+                }
+                self.raw.extend(raw);
+                self.records.push((satellite, self.raw.len()));
+            }
+            self.epochs.push(RawEpoch { time, power_failure: false, end: self.records.len() });
+        }
+        if self.raw.is_empty() {
+            return Err(text.error("expected observations of GPS or Galileo, found none"));
         }
         Ok(())
     }

@@ -74,6 +74,17 @@ impl Signal {
         trackings.contains(&tracking).then_some(Self { phase: kind == b'L', band, tracking })
     }
 
+    /// Its carrier's frequency, Hz.
+    #[cfg(feature = "rtcm")]
+    pub(crate) const fn frequency(self) -> f64 {
+        match self.band {
+            b'1' => 1_575.42e6,
+            b'2' => 1_227.60e6,
+            b'5' => 1_176.45e6,
+            _ => 1_207.14e6,
+        }
+    }
+
     /// The first carrier or the second.
     pub(super) const fn place(self) -> usize {
         if self.band == b'1' { 0 } else { 1 }
@@ -99,10 +110,10 @@ impl Signal {
 
 /// An observation.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Raw {
-    pub(super) signal: Signal,
-    pub(super) value: f64,
-    pub(super) lock_lost: bool,
+pub(crate) struct Raw {
+    pub(crate) signal: Signal,
+    pub(crate) value: f64,
+    pub(crate) lock_lost: bool,
 }
 
 /// Number of observations of each signal of each satellite.

@@ -1,4 +1,4 @@
-//! Any bytes as observations: RINEX, Compact RINEX, packed or not.
+//! Any bytes as observations: RINEX, Compact RINEX, streams of receivers, packed or not.
 #![no_main]
 
 use kestirim_gnss_files::{Observations, Text};

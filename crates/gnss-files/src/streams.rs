@@ -1,0 +1,73 @@
+//! Streams of receivers as they were recorded: RTCM 3 and UBX.
+
+mod frames;
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+mod indices;
+#[cfg(feature = "ubx")]
+mod lnav;
+#[cfg(feature = "rtcm")]
+mod rtcm;
+#[cfg(all(test, any(feature = "rtcm", feature = "ubx")))]
+pub(crate) mod tests;
+#[cfg(feature = "ubx")]
+mod ubx;
+
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+use std::collections::BTreeMap;
+
+pub(crate) use self::frames::{is_rtcm, is_ubx};
+use crate::error::{Error, Warning};
+use crate::kind::Kind;
+use crate::navigation::Ephemeris;
+use crate::observations::Raw;
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+use crate::observations::Signal;
+use crate::text::Text;
+use crate::time::GpsTime;
+
+/// A satellite with all its signals.
+pub(crate) type Signals = (u8, Vec<Raw>);
+
+/// What a stream held.
+#[derive(Debug, Default)]
+pub(crate) struct Stream {
+    /// Epochs in the order of the stream.
+    pub(crate) epochs: Vec<(GpsTime, Vec<Signals>)>,
+    /// Ephemerides with the numbers of their satellites.
+    pub(crate) ephemerides: Vec<(u8, Ephemeris)>,
+    /// α and β of Klobuchar's model.
+    pub(crate) ionosphere: Option<[[f64; 4]; 2]>,
+    /// How many messages were passed over: other systems, other things.
+    pub(crate) skipped: usize,
+    /// Warnings about it.
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl Stream {
+    /// What a file holds if it is a recorded stream, and none if it is none.
+    ///
+    /// # Errors
+    /// [`Error::File`] if nothing can be made of it.
+    pub(crate) fn of(text: &Text) -> Result<Option<Self>, Error> {
+        match Kind::of(text.bytes()) {
+            #[cfg(feature = "ubx")]
+            Some(Kind::Ubx) => Ok(Some(ubx::read(text))),
+            #[cfg(feature = "rtcm")]
+            Some(Kind::Rtcm) => rtcm::read(text).map(Some),
+            _ => Ok(None),
+        }
+    }
+}
+
+/// Tells which phases were lost since they were observed before, by for how long they have been tracked.
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+#[derive(Debug, Default)]
+struct Locks(BTreeMap<(u8, Signal), u16>);
+
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+impl Locks {
+    /// Whether a phase was lost, of which the time (in any unit that grows with it) is `tracked` now.
+    fn lost(&mut self, satellite: u8, signal: Signal, tracked: u16) -> bool {
+        self.0.insert((satellite, signal), tracked).is_some_and(|before| tracked < before)
+    }
+}

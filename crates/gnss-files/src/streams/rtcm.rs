@@ -1,0 +1,216 @@
+//! RTCM 3: observations (MSM4 and MSM7 of GPS and Galileo) and ephemerides (1019, 1045, 1046).
+
+mod ephemerides;
+
+use rtcm_rs::prelude::*;
+
+use self::ephemerides::{ROLLOVER, WEEK, fnav, gps, inav};
+use super::{Locks, Signals, Stream};
+use crate::biases::SPEED_OF_LIGHT;
+use crate::error::Error;
+use crate::fields::GALILEO;
+use crate::navigation::{Ephemeris, Message as Of, time_of_week};
+use crate::observations::{Raw, Signal};
+use crate::text::Text;
+use crate::time::GpsTime;
+
+/// Half a week, ms: farther back time does not go.
+const HALF_WEEK: i64 = 302_400_000;
+/// Most cells of satellites and signals that a message of observations may have.
+const MOST_CELLS: u32 = 64;
+
+/// Reads a file.
+///
+/// # Errors
+/// [`Error::File`] if it tells no date.
+pub(super) fn read(text: &Text) -> Result<Stream, Error> {
+    let mut reader = Reader::default();
+    let bytes = text.bytes();
+    let mut position = 0;
+    while let Some(rest) = bytes.get(position..).filter(|rest| !rest.is_empty()) {
+        match next_msg_frame(rest) {
+            (used, Some(frame)) => {
+                position += used;
+                if is_regular(&frame) {
+                    reader.take(&frame.get_message());
+                } else {
+                    reader.stream.skipped += 1;
+                }
+            }
+            // What looks like the beginning of a frame that does not end may be none.
+            (used, None) => position += used + 1,
+        }
+    }
+    reader.finish(text)
+}
+
+/// Whether a message of observations has as many cells as may be: the decoder relies on that.
+fn is_regular(frame: &MessageFrame<'_>) -> bool {
+    let number = frame.message_number().unwrap_or_default();
+    if !(1071..=1137).contains(&number) {
+        return true;
+    }
+    // The masks of satellites and of signals stand behind the header of 73 bits.
+    let ones = |from: usize, bits: usize| {
+        let bit =
+            |place: usize| frame.data().get(place / 8).map(|byte| byte >> (7 - place % 8) & 1);
+        (from..from + bits).filter_map(bit).map(u32::from).sum::<u32>()
+    };
+    (1..=MOST_CELLS).contains(&(ones(73, 64) * ones(137, 32)))
+}
+
+/// An epoch of which the week is not known yet: ms of the week, and its satellites.
+type Epoch = (i64, Vec<Signals>);
+
+#[derive(Debug, Default)]
+struct Reader {
+    stream: Stream,
+    epochs: Vec<Epoch>,
+    locks: Locks,
+    /// The first ephemerides' times, of GPS and of Galileo.
+    times: [Option<GpsTime>; 2],
+}
+
+/// The signals of a message of observations: satellites' rough ranges, and what is fine beside them, ms.
+macro_rules! cells {
+    ($reader:ident, $message:ident, $time:ident, $system:literal, $code:ident, $phase:ident, $lock:ident) => {{
+        let data = &$message.data_segment;
+        let rough = |satellite: u8| {
+            let of = data.satellite_data.iter().find(|it| it.satellite_id == satellite)?;
+            let whole = f64::from(of.gnss_satellite_rough_range_integer_ms?);
+            Some(whole + of.gnss_satellite_rough_range_mod1ms_ms)
+        };
+        for cell in data.signal_data.iter() {
+            let name = [b'0' + cell.signal_id.band(), cell.signal_id.attribute() as u8];
+            let fine = [cell.$code, cell.$phase.filter(|_| cell.half_cycle_ambiguity_ind == 0)];
+            let lock = u16::from(cell.$lock);
+            $reader.cell(
+                i64::from($message.$time),
+                ($system, cell.satellite_id),
+                name,
+                (rough(cell.satellite_id), fine, lock),
+            );
+        }
+    }};
+}
+
+impl Reader {
+    fn take(&mut self, message: &Message) {
+        match message {
+            Message::Msg1074(it) => cells!(
+                self,
+                it,
+                gps_epoch_time_ms,
+                b'G',
+                gnss_signal_fine_pseudorange_ms,
+                gnss_signal_fine_phaserange_ms,
+                gnss_phaserange_lock_time_ind
+            ),
+            Message::Msg1077(it) => cells!(
+                self,
+                it,
+                gps_epoch_time_ms,
+                b'G',
+                gnss_signal_fine_pseudorange_ext_ms,
+                gnss_signal_fine_phaserange_ext_ms,
+                gnss_phaserange_lock_time_ext_ind
+            ),
+            Message::Msg1094(it) => cells!(
+                self,
+                it,
+                gal_epoch_time_ms,
+                b'E',
+                gnss_signal_fine_pseudorange_ms,
+                gnss_signal_fine_phaserange_ms,
+                gnss_phaserange_lock_time_ind
+            ),
+            Message::Msg1097(it) => cells!(
+                self,
+                it,
+                gal_epoch_time_ms,
+                b'E',
+                gnss_signal_fine_pseudorange_ext_ms,
+                gnss_signal_fine_phaserange_ext_ms,
+                gnss_phaserange_lock_time_ext_ind
+            ),
+            Message::Msg1019(it) => self.ephemeris(it.gps_satellite_id, gps(it)),
+            Message::Msg1045(it) => self.ephemeris(GALILEO + it.gal_satellite_id, fnav(it)),
+            Message::Msg1046(it) => self.ephemeris(GALILEO + it.gal_satellite_id, inav(it)),
+            _ => self.stream.skipped += 1,
+        }
+    }
+
+    /// Takes in a signal of a satellite: a rough range, a fine code and a fine phase, ms, and for how long that is tracked.
+    fn cell(
+        &mut self,
+        time: i64,
+        (system, number): (u8, u8),
+        [band, tracking]: [u8; 2],
+        (rough, [code, phase], lock): (Option<f64>, [Option<f64>; 2], u16),
+    ) {
+        let satellite = if system == b'E' { GALILEO.saturating_add(number) } else { number };
+        let signal = |kind| Signal::new(system, &[kind, band, tracking]);
+        let (Some(rough), Some(of_code), Some(of_phase)) = (rough, signal(b'C'), signal(b'L'))
+        else {
+            return;
+        };
+        if self.epochs.last().is_none_or(|(last, _)| *last != time) {
+            self.epochs.push((time, Vec::new()));
+        }
+        let Some((_, satellites)) = self.epochs.last_mut() else { return };
+        if satellites.last().is_none_or(|(last, _)| *last != satellite) {
+            satellites.push((satellite, Vec::new()));
+        }
+        let Some((_, raw)) = satellites.last_mut() else { return };
+        let milliseconds = |fine: f64| 1e-3 * (rough + fine);
+        if let Some(code) = code {
+            let value = SPEED_OF_LIGHT * milliseconds(code);
+            raw.push(Raw { signal: of_code, value, lock_lost: false });
+        }
+        if let Some(phase) = phase {
+            let lock_lost = self.locks.lost(satellite, of_phase, lock);
+            let value = of_phase.frequency() * milliseconds(phase);
+            raw.push(Raw { signal: of_phase, value, lock_lost });
+        }
+    }
+
+    fn ephemeris(&mut self, satellite: u8, ephemeris: Ephemeris) {
+        let of = usize::from(ephemeris.message != Of::Lnav);
+        self.times[of].get_or_insert(ephemeris.time);
+        self.stream.ephemerides.push((satellite, ephemeris));
+    }
+
+    /// Gives the epochs their weeks.
+    fn finish(self, text: &Text) -> Result<Stream, Error> {
+        let Self { mut stream, epochs, times: [gps, galileo], .. } = self;
+        let Some(near) = galileo.or(gps) else {
+            let problem = "expected a message that tells the week (1019, 1045 or 1046), found none";
+            return if epochs.is_empty() { Ok(stream) } else { Err(text.error(problem)) };
+        };
+        // Weeks of Galileo are told without a doubt.
+        for (_, ephemeris) in &mut stream.ephemerides {
+            ephemeris.time = rolled_to(ephemeris.time, near);
+            ephemeris.clock_time = rolled_to(ephemeris.clock_time, near);
+        }
+        let mut last: Option<(GpsTime, i64)> = None;
+        for (milliseconds, satellites) in epochs {
+            let time = match last {
+                None => time_of_week(near, 1e-3 * milliseconds as f64),
+                Some((before, last)) => {
+                    let back = milliseconds - last < -HALF_WEEK;
+                    let step = milliseconds - last + if back { 2 * HALF_WEEK } else { 0 };
+                    GpsTime::new(before.day(), before.second() + 1e-3 * step as f64)
+                }
+            };
+            last = Some((time, milliseconds));
+            stream.epochs.push((time, satellites));
+        }
+        Ok(stream)
+    }
+}
+
+/// The same time in the 1024 weeks that are nearest to another one.
+fn rolled_to(time: GpsTime, near: GpsTime) -> GpsTime {
+    let away = f64::from(near.day() - time.day()) / f64::from(WEEK * ROLLOVER);
+    GpsTime::new(time.day() + away.round() as i32 * WEEK * ROLLOVER, time.second())
+}

@@ -1,0 +1,150 @@
+//! RTCM 3, as the decoder's own encoder makes it.
+
+use std::f64::consts::PI;
+
+use rtcm_rs::msg::{
+    GpsSigId, Msg1019T, Msg1045T, Msg1077Data, Msg1077Sig, Msg1077T, Msm57Sat, message,
+};
+use rtcm_rs::prelude::MessageBuilder;
+use rtcm_rs::util::DataVec;
+
+use super::*;
+
+fn frame(message: &message::Message) -> Vec<u8> {
+    MessageBuilder::new().build_message(message).expect("a message").to_vec()
+}
+
+/// What both messages have in common.
+macro_rules! told {
+    ($type:ident { $($own:tt)* }, $it:ident) => {
+        $type {
+            toe_s: second_of_week($it.time),
+            toc_s: second_of_week($it.clock_time),
+            af0_s: $it.clock[0],
+            crs_m: $it.radius_terms[1] as f32,
+            crc_m: $it.radius_terms[0] as f32,
+            delta_n_sc_s: ($it.mean_motion_correction / PI) as f32,
+            m0_sc: $it.mean_anomaly / PI,
+            cuc_rad: $it.latitude_terms[0] as f32,
+            cus_rad: $it.latitude_terms[1] as f32,
+            cic_rad: $it.inclination_terms[0] as f32,
+            cis_rad: $it.inclination_terms[1] as f32,
+            eccentricity: $it.eccentricity,
+            sqrt_a_sqrt_m: $it.root_of_axis,
+            omega0_sc: $it.node / PI,
+            i0_sc: $it.inclination / PI,
+            omega_sc: $it.perigee / PI,
+            $($own)*
+            ..$type::default()
+        }
+    };
+}
+
+fn second_of_week(time: crate::GpsTime) -> f32 {
+    (f64::from((time.day() - 44_244).rem_euclid(7)) * 86_400.0 + time.second()) as f32
+}
+
+pub(super) fn ephemerides([(_, gps), (_, galileo)]: &[(u8, Ephemeris); 2]) -> Vec<u8> {
+    let gps = told!(
+        Msg1019T {
+            gps_satellite_id: 1,
+            gps_week_number: 2111 % 1024,
+            ura_index: 0,
+            iode: 58,
+            iodc: 58,
+            af1_s_s: gps.clock[1] as _,
+            omegadot_sc_s: (gps.node_rate / PI) as _,
+            idot_sc_s: gps.inclination_rate / PI,
+            tgd_s: gps.group_delays[0] as f32,
+        },
+        gps
+    );
+    let galileo = told!(
+        Msg1045T {
+            gal_satellite_id: 1,
+            gal_week_number: 2111 - 1024,
+            sisa_e1_e5a_index: 107,
+            iodnav: 61,
+            af1_s_s: galileo.clock[1],
+            omegadot_sc_s: (galileo.node_rate / PI) as _,
+            idot_sc_s: (galileo.inclination_rate / PI) as f32,
+            bgd_e1_e5a_s: galileo.group_delays[0] as f32,
+        },
+        galileo
+    );
+    [frame(&message::Message::Msg1019(gps)), frame(&message::Message::Msg1045(galileo))].concat()
+}
+
+pub(super) fn observed(milliseconds: u32, lock: u16) -> Vec<u8> {
+    let mut data = Msg1077Data::default();
+    data.satellite_data.push(Msm57Sat {
+        satellite_id: 5,
+        gnss_satellite_rough_range_integer_ms: Some(70),
+        gnss_satellite_rough_range_mod1ms_ms: 0.5,
+        ..Msm57Sat::default()
+    });
+    let mut signals = DataVec::new();
+    for (band, code, phase) in [(1, 0.000_1, 0.000_2), (2, 0.000_3, 0.000_4)] {
+        signals.push(Msg1077Sig {
+            satellite_id: 5,
+            signal_id: GpsSigId::new(band, 'W'),
+            gnss_signal_fine_pseudorange_ext_ms: Some(code),
+            gnss_signal_fine_phaserange_ext_ms: Some(phase),
+            gnss_phaserange_lock_time_ext_ind: lock,
+            ..Msg1077Sig::default()
+        });
+    }
+    data.signal_data = signals;
+    frame(&message::Message::Msg1077(Msg1077T {
+        gps_epoch_time_ms: milliseconds,
+        data_segment: data,
+        ..Msg1077T::default()
+    }))
+}
+
+#[test]
+fn ephemerides_are_what_the_file_has() -> Result<(), Error> {
+    let told = broadcast()?;
+    let stream = text(ephemerides(&told));
+    assert_eq!(Kind::of(stream.bytes()), Some(Kind::Rtcm));
+    let read = Navigation::parse(&[stream])?;
+    let [gps] = read.satellite(1, Message::Lnav) else { panic!("one ephemeris") };
+    are_alike(gps, &told[0].1);
+    let [galileo] = read.satellite(101, Message::Fnav) else { panic!("one ephemeris") };
+    are_alike(galileo, &told[1].1);
+    Ok(())
+}
+
+#[test]
+fn observations_are_read_to_the_resolution_of_the_format() -> Result<(), Error> {
+    // Noise around, Saturday's last second and Sunday's first.
+    let stream = [
+        b"$GNGGA,\xd3\x00\x13noise\r\n".to_vec(),
+        ephemerides(&broadcast()?),
+        observed(604_799_000, 7),
+        observed(0, 3),
+    ]
+    .concat();
+    let observations = Observations::parse(&text(stream))?;
+    let times: Vec<_> = observations.epochs.iter().map(|it| it.time).collect();
+    assert_eq!(times[1].since(times[0]), 1.0);
+    assert_eq!((times[0].day() - 44_244) % 7, 6);
+    let [first, second] = [0, 1].map(|epoch: usize| observations.epochs[epoch].satellites[0]);
+    let c = 299_792.458;
+    for (band, [fine, phase]) in [[0.000_1, 0.000_2], [0.000_3, 0.000_4]].into_iter().enumerate() {
+        let code = first.code[band].expect("a code");
+        assert!((code - c * (70.5 + fine)).abs() < 3e-4);
+        let wavelength = c * 1e3 / [1_575.42e6, 1_227.60e6][band];
+        let range = wavelength * first.phase[band].expect("a phase");
+        assert!((range - c * (70.5 + phase)).abs() < 7.1e-5);
+    }
+    // Tracked for a shorter time than before.
+    assert_eq!((first.loss_of_lock, second.loss_of_lock), ([false; 2], [true; 2]));
+    Ok(())
+}
+
+#[test]
+fn a_stream_without_a_date_is_refused() {
+    let complaint = Observations::parse(&text(observed(0, 0))).expect_err("no date");
+    assert!(complaint.to_string().contains("tells the week"), "{complaint}");
+}

@@ -1,0 +1,170 @@
+//! UBX, made byte by byte.
+
+use std::f64::consts::PI;
+
+use super::*;
+
+fn frame(id: u8, held: &[u8]) -> Vec<u8> {
+    let length = u16::try_from(held.len()).expect("a short message").to_le_bytes();
+    let summed = [&[0x02, id, length[0], length[1]], held].concat();
+    let sums = summed.iter().fold([0_u8; 2], |[a, b], byte| {
+        let a = a.wrapping_add(*byte);
+        [a, b.wrapping_add(a)]
+    });
+    [&[0xb5, 0x62], &*summed, &sums].concat()
+}
+
+/// G05 on both carriers and E02 on the first, as it was tracked for `lock` ms.
+pub(super) fn observed(second: f64, lock: u16) -> Vec<u8> {
+    let signals = [
+        (0, 5, 0, 21e6, 1.1e8, 7),
+        (0, 5, 3, 21e6 + 3.0, 0.9e8, 7),
+        // Half a cycle is not known.
+        (2, 2, 0, 24e6, 1.2e8, 3),
+        (6, 2, 0, 19e6, 1.0e8, 7),
+    ];
+    let mut held = second.to_le_bytes().to_vec();
+    held.extend(2111_u16.to_le_bytes());
+    held.extend([18, signals.len() as u8, 1, 1, 0, 0]);
+    for (system, number, signal, code, phase, status) in signals {
+        held.extend(f64::to_le_bytes(code));
+        held.extend(f64::to_le_bytes(phase));
+        held.extend([0; 4]);
+        held.extend([system, number, signal, 0]);
+        held.extend(lock.to_le_bytes());
+        held.extend([40, 0, 0, 0, status, 0]);
+    }
+    frame(0x15, &held)
+}
+
+/// Bits from the first to the last, in words with room for parity.
+fn subframe(number: u64, fields: &[(i64, usize)]) -> Vec<u8> {
+    let mut bits = vec![false; 240];
+    let mut place = 43;
+    for (value, width) in [(number as i64, 3), (0, 2)].iter().chain(fields) {
+        for bit in (0..*width).rev() {
+            bits[place] = value >> bit & 1 == 1;
+            place += 1;
+        }
+    }
+    let mut held = vec![0, 1, 0, 0, 10, 0, 2, 0];
+    for word in bits.chunks(24) {
+        let word = word.iter().fold(0_u32, |word, bit| word << 1 | u32::from(*bit));
+        // Parity, and two bits that say nothing.
+        held.extend((word << 6 | 0xc000_002a).to_le_bytes());
+    }
+    frame(0x13, &held)
+}
+
+fn in_units(value: f64, power: i32) -> i64 {
+    (value / 2_f64.powi(power)).round() as i64
+}
+
+pub(super) fn subframes(it: &Ephemeris) -> Vec<u8> {
+    let turns = |angle: f64, power| in_units(angle / PI, power);
+    let ([cuc, cus], [crc, crs], [cic, cis]) =
+        (it.latitude_terms, it.radius_terms, it.inclination_terms);
+    let second = f64::from((it.time.day() - 44_244).rem_euclid(7)) * 86_400.0 + it.time.second();
+    let issue = i64::from(it.issue);
+    let first = [
+        (2111 % 1024, 10),
+        (1, 2),
+        (0, 4),
+        (0, 6),
+        (0, 2),
+        (0, 1),
+        (0, 44),
+        (0, 43),
+        (in_units(it.group_delays[0], -31), 8),
+        (issue, 8),
+        (in_units(second, 4), 16),
+        (in_units(it.clock[2], -55), 8),
+        (in_units(it.clock[1], -43), 16),
+        (in_units(it.clock[0], -31), 22),
+    ];
+    let second = [
+        (issue, 8),
+        (in_units(crs, -5), 16),
+        (turns(it.mean_motion_correction, -43), 16),
+        (turns(it.mean_anomaly, -31), 32),
+        (in_units(cuc, -29), 16),
+        (in_units(it.eccentricity, -33), 32),
+        (in_units(cus, -29), 16),
+        (in_units(it.root_of_axis, -19), 32),
+        (in_units(second, 4), 16),
+    ];
+    let third = [
+        (in_units(cic, -29), 16),
+        (turns(it.node, -31), 32),
+        (in_units(cis, -29), 16),
+        (turns(it.inclination, -31), 32),
+        (in_units(crc, -5), 16),
+        (turns(it.perigee, -31), 32),
+        (turns(it.node_rate, -43), 24),
+        (issue, 8),
+        (turns(it.inclination_rate, -43), 14),
+    ];
+    [subframe(1, &first), subframe(2, &second), subframe(3, &third)].concat()
+}
+
+#[test]
+fn ephemerides_are_what_the_file_has() -> Result<(), Error> {
+    let [(_, told), _] = broadcast()?;
+    let ionosphere =
+        [(1, 2), (56, 6), (5, 8), (2, 8), (-1, 8), (-2, 8), (40, 8), (6, 8), (-1, 8), (-8, 8)];
+    let stream =
+        text([observed(360_000.0, 100), subframe(4, &ionosphere), subframes(&told)].concat());
+    assert_eq!(Kind::of(stream.bytes()), Some(Kind::Ubx));
+    let read = Navigation::parse(&[stream])?;
+    let [gps] = read.satellite(1, Message::Lnav) else { panic!("one ephemeris") };
+    are_alike(gps, &told);
+    let [alpha, beta] = read.ionosphere.expect("the page");
+    assert_eq!((alpha[0], alpha[3]), (5.0 * 2_f64.powi(-30), -2.0 * 2_f64.powi(-24)));
+    assert_eq!((beta[0], beta[3]), (81_920.0, -524_288.0));
+    // Of another issue there is none.
+    let mut other = told;
+    other.issue = 59;
+    let mixed = [
+        observed(360_000.0, 100),
+        subframes(&told)[..160].to_vec(),
+        subframes(&other)[60..].to_vec(),
+    ];
+    let complaint = Navigation::parse(&[text(mixed.concat())]).expect_err("no ephemeris");
+    assert!(complaint.to_string().contains("found none"));
+    Ok(())
+}
+
+#[test]
+fn observations_are_read_to_the_last_bit() -> Result<(), Error> {
+    let stream = [
+        b"$GNGGA,,\r\n".to_vec(),
+        observed(345_600.000_5, 1_000),
+        observed(345_601.000_5, 2_000),
+        observed(345_602.000_5, 10),
+    ];
+    let observations = Observations::parse(&text(stream.concat()))?;
+    let epoch = &observations.epochs[0];
+    assert_eq!((epoch.time.day(), epoch.satellites.len()), (59_025, 2));
+    assert!((epoch.time.second() - 0.000_5).abs() < 1e-9);
+    let [gps, galileo] = [epoch.satellites[0], epoch.satellites[1]];
+    assert_eq!(
+        (gps.prn, gps.code, gps.phase),
+        (5, [Some(21e6), Some(21e6 + 3.0)], [Some(1.1e8), Some(0.9e8)])
+    );
+    assert_eq!((galileo.prn, galileo.code, galileo.phase), (102, [Some(24e6), None], [None; 2]));
+    let lost: Vec<_> =
+        observations.epochs.iter().map(|it| it.satellites[0].loss_of_lock[0]).collect();
+    assert_eq!(lost, [false, false, true]);
+    Ok(())
+}
+
+#[test]
+fn a_damaged_message_is_left_out() -> Result<(), Error> {
+    let mut second = observed(345_601.0, 2_000);
+    second[40] ^= 1;
+    let stream = [observed(345_600.0, 1_000), second, observed(345_602.0, 3_000)];
+    let observations = Observations::parse(&text(stream.concat()))?;
+    assert_eq!(observations.epochs.len(), 2);
+    assert!(observations.warnings[0].to_string().ends_with("1 damaged messages are left out"));
+    Ok(())
+}

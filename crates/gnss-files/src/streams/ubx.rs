@@ -1,0 +1,140 @@
+//! UBX: observations (RXM-RAWX), and the message of GPS on L1 (RXM-SFRBX).
+
+use std::ops::RangeInclusive;
+
+use ublox::proto27::{PacketRef, Proto27};
+use ublox::rxm_rawx::{RxmRawxRef, TrkStatFlags};
+use ublox::rxm_sfrbx::RxmSfrbxRef;
+use ublox::{ParserBuilder, UbxPacket};
+
+use super::lnav::{self, Collection, Subframe, WORDS};
+use super::{Locks, Signals, Stream};
+use crate::fields::GALILEO;
+use crate::observations::{Raw, Signal};
+use crate::text::Text;
+use crate::time::GpsTime;
+
+/// The longest message that is read, bytes: 255 signals.
+const LONGEST: usize = 8_192;
+/// `gnssId` of GPS and of Galileo.
+const OF_GPS: u8 = 0;
+const OF_GALILEO: u8 = 2;
+/// `sigId` of L1 C/A, the signal that carries the message which is read.
+const L1: u8 = 0;
+/// Days of a week.
+const WEEK: i32 = 7;
+/// Numbers of GPS satellites.
+const GPS: RangeInclusive<u8> = 1..=32;
+
+/// Reads a file.
+pub(super) fn read(text: &Text) -> Stream {
+    let mut reader = Reader::default();
+    let mut parser = ParserBuilder::new().with_protocol::<Proto27>().with_fixed_buffer::<LONGEST>();
+    let mut damaged = 0;
+    // The parser takes no more at once than it has room for.
+    for piece in text.bytes().chunks(LONGEST / 2) {
+        let mut packets = parser.consume_ubx(piece);
+        while let Some(packet) = packets.next() {
+            match packet {
+                Ok(UbxPacket::Proto27(PacketRef::RxmRawx(message))) => {
+                    reader.observations(&message);
+                }
+                Ok(UbxPacket::Proto27(PacketRef::RxmSfrbx(message))) => reader.subframe(&message),
+                Ok(_) => reader.stream.skipped += 1,
+                Err(_) => damaged += 1,
+            }
+        }
+    }
+    let mut stream = reader.finish();
+    if damaged > 0 {
+        let problem = format!("{damaged} damaged messages are left out");
+        stream.warnings.push(text.warning(problem));
+    }
+    stream
+}
+
+#[derive(Debug, Default)]
+struct Reader {
+    stream: Stream,
+    locks: Locks,
+    /// Subframes in the order of the stream, of which the week is not known by themselves.
+    subframes: Vec<(u8, Subframe)>,
+}
+
+impl Reader {
+    fn observations(&mut self, message: &RxmRawxRef<'_>) {
+        let day = GpsTime::EPOCH.day() + WEEK * i32::from(message.week());
+        let time = GpsTime::new(day, message.rcv_tow());
+        let mut satellites: Vec<Signals> = Vec::new();
+        for it in message.measurements() {
+            // The driver's name of the signal: it was reserved before there were receivers of two carriers.
+            let Some((satellite, [code, phase])) = told(it.gnss_id(), it.sv_id(), it.reserved2())
+            else {
+                continue;
+            };
+            let known = satellites.iter().position(|(other, _)| *other == satellite);
+            let place = known.unwrap_or_else(|| {
+                satellites.push((satellite, Vec::new()));
+                satellites.len() - 1
+            });
+            let raw = &mut satellites[place].1;
+            let status = it.trk_stat();
+            if status.contains(TrkStatFlags::PR_VALID) {
+                raw.push(Raw { signal: code, value: it.pr_mes(), lock_lost: false });
+            }
+            // Half a cycle may be missing until it is told that none is.
+            if status.contains(TrkStatFlags::CP_VALID | TrkStatFlags::HALF_CYCLE) {
+                let lock_lost = self.locks.lost(satellite, phase, it.lock_time());
+                raw.push(Raw { signal: phase, value: it.cp_mes(), lock_lost });
+            }
+        }
+        self.stream.epochs.push((time, satellites));
+    }
+
+    fn subframe(&mut self, message: &RxmSfrbxRef<'_>) {
+        let is_lnav = message.gnss_id() == OF_GPS
+            && message.reserved1() == L1
+            && GPS.contains(&message.sv_id());
+        match Subframe::of(message.dwrd().take(WORDS)) {
+            Some(subframe) if is_lnav => self.subframes.push((message.sv_id(), subframe)),
+            _ => self.stream.skipped += 1,
+        }
+    }
+
+    /// Makes ephemerides of the subframes.
+    fn finish(self) -> Stream {
+        let Self { mut stream, subframes, .. } = self;
+        let Some(near) = stream.epochs.first().map(|(time, _)| *time) else { return stream };
+        let mut collection = Collection::default();
+        for (satellite, subframe) in subframes {
+            stream.ionosphere = lnav::ionosphere(&subframe).or(stream.ionosphere);
+            if let Some(ephemeris) = collection.take(satellite, subframe, near) {
+                stream.ephemerides.push((satellite, ephemeris));
+            }
+        }
+        stream
+    }
+}
+
+/// The satellite and its code and phase of a signal, by the numbers that the receiver has for it; none of a signal that is not
+/// used.
+fn told(system: u8, number: u8, signal: u8) -> Option<(u8, [Signal; 2])> {
+    let (letter, satellite) = match system {
+        OF_GPS => (b'G', number),
+        OF_GALILEO => (b'E', GALILEO.checked_add(number)?),
+        _ => return None,
+    };
+    let [band, tracking] = match (system, signal) {
+        (_, 0) => *b"1C",
+        (OF_GPS, 3) => *b"2L",
+        (OF_GPS, 4) => *b"2S",
+        (OF_GALILEO, 1) => *b"1B",
+        (OF_GALILEO, 3) => *b"5I",
+        (OF_GALILEO, 4) => *b"5Q",
+        (OF_GALILEO, 5) => *b"7I",
+        (OF_GALILEO, 6) => *b"7Q",
+        _ => return None,
+    };
+    let of = |kind| Signal::new(letter, &[kind, band, tracking]);
+    Some((satellite, [of(b'C')?, of(b'L')?]))
+}
