@@ -74,6 +74,12 @@ pub const TLSE: Station = Station {
 };
 
 impl Station {
+    /// The same day with observations of another file: below the folder, or a whole path.
+    #[must_use]
+    pub const fn observed_in(self, observations: &'static str) -> Self {
+        Self { observations, ..self }
+    }
+
     /// Reads its files.
     ///
     /// # Panics

@@ -53,6 +53,7 @@ pub(crate) fn gnss<'py>(
             let paths = Paths {
                 obs: &obs,
                 sp3: &sp3,
+                nav: &[],
                 antex: &antex,
                 clk: &clk,
                 bias: &bias,
@@ -62,7 +63,7 @@ pub(crate) fn gnss<'py>(
             let epochs = recording.epochs(until);
             let receiver = recording.receiver(Corrections::ALL);
             let run = |order| {
-                let pass = Pass { systems, order, ambiguities, with_residuals: false };
+                let pass = Pass { systems, order, ambiguities, ..Pass::default() };
                 follow(&recording, epochs, &receiver, config, pass, || ())
             };
             let mut followed = run(Order::Forwards);

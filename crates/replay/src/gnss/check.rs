@@ -55,7 +55,11 @@ pub fn check(recording: &Recording) -> Vec<Finding> {
                 last / 3600.0
             ),
             "what lies outside cannot be solved",
-            "add the SP3 file of the day before or after",
+            if recording.products().broadcast().is_some() {
+                "add the navigation file of the day before or after"
+            } else {
+                "add the SP3 file of the day before or after"
+            },
         )
     } else {
         Finding::note("products", "the orbits cover the observations")

@@ -44,6 +44,18 @@ pub enum Ambiguities {
     Fixed,
 }
 
+/// From what positions are made.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+pub enum Method {
+    /// From codes and phases, carried on from epoch to epoch
+    #[default]
+    Filter,
+    /// From the codes of each epoch alone: metres, one carrier serves, too
+    Single,
+}
+
 /// Which filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]

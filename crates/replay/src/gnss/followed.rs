@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::choices::{Ambiguities, STATES, STATES_WITH_GALILEO, Systems};
+use super::choices::{Ambiguities, Method, STATES, STATES_WITH_GALILEO, Systems};
 use super::fixing::{Fixer, Fixing};
 use super::model::Epoch;
 use super::outage::{Outage, Outages, Unused};
 use super::products::Unusable;
 use super::recording::Recording;
+use super::single::{bound, single};
 use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
 use kestirim_ppp_filter::{
     Config, Contradiction, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped,
@@ -170,6 +171,8 @@ pub struct Pass {
     pub systems: Systems,
     /// In which order.
     pub order: Order,
+    /// From what positions are made.
+    pub method: Method,
     /// Whether ambiguities become whole numbers.
     pub ambiguities: Ambiguities,
     /// Whether to keep what became of each observation.
@@ -186,6 +189,10 @@ pub fn follow(
     pass: Pass,
     next: impl FnMut(),
 ) -> Followed {
+    let config = recording.settled(config);
+    if pass.method == Method::Single {
+        return single(recording, epochs, receiver, &config, pass, next);
+    }
     if recording.has_galileo() && pass.systems != Systems::Gps {
         let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
         feed(filter, recording, epochs, receiver, pass, next)
@@ -246,6 +253,9 @@ fn feed<const N: usize>(
         };
         match solution {
             Ok(mut solution) => {
+                if recording.products().broadcast().is_some() {
+                    bound(&mut solution, recording, epoch, receiver, filter.config(), systems);
+                }
                 if let Some(fixer) = &mut fixer {
                     fixer.fix(epoch.time, &filter, &observations, &mut solution);
                 }
@@ -311,7 +321,7 @@ impl Followed {
         self.converged_since = None;
     }
 
-    fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {
+    pub(super) fn miss(&mut self, prn: u8, reason: Unusable, unused: &mut Unused) {
         let tally = self.satellites.entry(prn).or_default();
         match reason {
             Unusable::Incomplete => unused.incomplete += 1,
@@ -326,7 +336,12 @@ impl Followed {
         }
     }
 
-    fn take<const N: usize>(&mut self, t: f64, solution: &Solution<N>, with_residuals: bool) {
+    pub(super) fn take<const N: usize>(
+        &mut self,
+        t: f64,
+        solution: &Solution<N>,
+        with_residuals: bool,
+    ) {
         self.fixes.push(Fix { t, position: solution.position });
         let sd_enu = solution.deviations_enu();
         self.deviations.push(sd_enu);

@@ -4,6 +4,7 @@
 //! ECEF, m; times s since the midnight before the first epoch.
 
 mod accuracy;
+mod broadcast;
 mod calendar;
 mod check;
 mod choices;
@@ -15,13 +16,15 @@ mod outage;
 mod products;
 mod recording;
 mod shelf;
+mod single;
 mod smoothed;
+mod told;
 mod track_file;
 mod whole_biases;
 
 pub use self::accuracy::{Accuracy, BEGINNING};
 pub use self::check::check;
-pub use self::choices::{Ambiguities, FilterKind, STATES, STATES_WITH_GALILEO, Systems};
+pub use self::choices::{Ambiguities, FilterKind, Method, STATES, STATES_WITH_GALILEO, Systems};
 pub use self::coverage::names;
 pub use self::fixing::Fixing;
 pub use self::followed::{Both, Fix, Followed, Last, Order, Pass, Slips, Tally, follow};

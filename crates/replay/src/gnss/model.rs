@@ -1,7 +1,9 @@
 //! The data of files as the observation model takes them: `kestirim-gnss-files` to `kestirim-gnss-ppp`, bit for bit.
 
-use kestirim_gnss_files::{self as files, Observed};
-use kestirim_gnss_ppp::{Carriers, ClockSample, GpsTime, OceanLoading, OrbitSample, Pattern};
+use kestirim_gnss_files::{self as files, Message, Observed};
+use kestirim_gnss_ppp::{
+    Carriers, ClockSample, Constellation, Ephemeris, GpsTime, OceanLoading, OrbitSample, Pattern,
+};
 use nalgebra::Vector3;
 
 /// Observations of one instant.
@@ -34,6 +36,52 @@ pub(super) fn orbit_sample(reference: GpsTime, sample: &files::OrbitSample) -> O
 /// A sample of a clock that counts from `reference`.
 pub(super) fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f64) -> ClockSample {
     ClockSample { second: time(instant).since(reference), bias }
+}
+
+/// An ephemeris of GPS holds for half its fit interval, which is four hours unless it tells another one …
+const USUAL_FIT: f64 = 14_400.0;
+/// … and one of Galileo is not to be used when it is older, s (Galileo OS service definition).
+const OLDEST_GALILEO: f64 = 14_400.0;
+
+/// An ephemeris with the clock of two carriers; none of a satellite that calls itself unhealthy or tells no accuracy, and none of
+/// which the group delay between its own carriers and these is not told.
+pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<Ephemeris> {
+    let [first, second] = told.group_delays;
+    let (delay, own) = match (carriers, told.message) {
+        (Carriers::L1L2, Message::Lnav) | (Carriers::E1E5a, Message::Fnav) => (first, first),
+        (Carriers::E1E5b, Message::Inav) => (second, second),
+        // Galileo OS SIS ICD 5.1.5: the clock of E1 alone is the same, whichever it is taken from.
+        (Carriers::E1E5a, Message::Inav) => (first, second),
+        _ => return None,
+    };
+    let constellation = carriers.constellation();
+    let holds = match constellation {
+        Constellation::Gps => told.fit.unwrap_or(USUAL_FIT) / 2.0,
+        Constellation::Galileo => OLDEST_GALILEO,
+    };
+    let [offset, drift, ageing] = told.clock;
+    let accuracy = told.accuracy.filter(|_| told.is_healthy)?;
+    Some(Ephemeris {
+        constellation,
+        time: time(told.time),
+        clock_time: time(told.clock_time),
+        clock: [offset - own + delay, drift, ageing],
+        group_delay: delay,
+        root_of_axis: told.root_of_axis,
+        eccentricity: told.eccentricity,
+        mean_anomaly: told.mean_anomaly,
+        mean_motion_correction: told.mean_motion_correction,
+        perigee: told.perigee,
+        node: told.node,
+        node_rate: told.node_rate,
+        inclination: told.inclination,
+        inclination_rate: told.inclination_rate,
+        latitude_terms: told.latitude_terms,
+        radius_terms: told.radius_terms,
+        inclination_terms: told.inclination_terms,
+        accuracy,
+        holds,
+    })
 }
 
 /// Two carriers.

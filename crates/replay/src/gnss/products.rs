@@ -3,8 +3,9 @@
 use kestirim_gnss_files::{self as files, Antenna, Antennas, Clocks, Observed, Orbits};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
-use kestirim_ppp_filter::SatelliteObservation;
+use kestirim_ppp_filter::{CodeObservation, SatelliteObservation};
 
+use super::broadcast::Broadcast;
 use super::model::{carriers, clock_sample, orbit_sample, patterns};
 use super::whole_biases::WholeBiases;
 
@@ -41,6 +42,8 @@ pub struct Products {
     reference: GpsTime,
     satellites: Vec<Satellite>,
     whole: WholeBiases,
+    /// In place of all of them, where there are no precise ones.
+    broadcast: Option<Broadcast>,
 }
 
 impl Products {
@@ -73,7 +76,12 @@ impl Products {
             let antenna = antennas.satellite(prn, start).cloned();
             Satellite { orbit: orbit.collect(), clock, antenna }
         });
-        Self { reference, satellites: satellites.collect(), whole: WholeBiases::default() }
+        Self {
+            reference,
+            satellites: satellites.collect(),
+            whole: WholeBiases::default(),
+            broadcast: None,
+        }
     }
 
     /// Products of which all samples count from `reference`: the satellites in the order of their numbers, from 1.
@@ -82,7 +90,18 @@ impl Products {
         satellites: impl IntoIterator<Item = Satellite>,
     ) -> Self {
         let satellites = std::iter::once(Satellite::default()).chain(satellites).collect();
-        Self { reference, satellites, whole: WholeBiases::default() }
+        Self { reference, satellites, whole: WholeBiases::default(), broadcast: None }
+    }
+
+    /// What satellites broadcast, in place of products.
+    pub(super) fn of_broadcast(start: files::GpsTime, broadcast: Broadcast) -> Self {
+        let nothing = Self::of_satellites(GpsTime::new(start.day(), 0.0), []);
+        Self { broadcast: Some(broadcast), ..nothing }
+    }
+
+    /// What satellites broadcast, if that serves in place of products.
+    pub const fn broadcast(&self) -> Option<&Broadcast> {
+        self.broadcast.as_ref()
     }
 
     /// The same with biases that make ambiguities whole.
@@ -109,7 +128,49 @@ impl Products {
         else {
             return Err(Unusable::Incomplete);
         };
-        let satellite = self.satellites.get(usize::from(observed.prn)).ok_or(Unusable::NoOrbit)?;
+        let (state, _) = self.state(observed.prn, time, first)?;
+        let antenna = self.satellites.get(usize::from(observed.prn));
+        Ok(SatelliteObservation {
+            satellite: observed.prn,
+            carriers: carriers(observed.carriers),
+            code: [first, second],
+            phase: [l1, l2],
+            lock_lost: observed.loss_of_lock.contains(&true),
+            state,
+            antenna: antenna
+                .and_then(|satellite| satellite.antenna.as_ref())
+                .and_then(|antenna| patterns(antenna, carriers(observed.carriers))),
+        })
+    }
+
+    /// The codes of an observed satellite, as [`Self::observation`].
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn code(&self, time: GpsTime, observed: &Observed) -> Result<CodeObservation, Unusable> {
+        let first = observed.code[0].ok_or(Unusable::Incomplete)?;
+        let (state, group_delay) = self.state(observed.prn, time, first)?;
+        Ok(CodeObservation {
+            satellite: observed.prn,
+            carriers: carriers(observed.carriers),
+            code: observed.code,
+            group_delay,
+            state,
+        })
+    }
+
+    /// The state of a satellite when it sent what was received at `time` with a code of so many m, and by what its clock is ahead
+    /// of that of the first carrier alone, s, if that is told.
+    fn state(
+        &self,
+        number: u8,
+        time: GpsTime,
+        first: f64,
+    ) -> Result<(SatelliteState, f64), Unusable> {
+        if let Some(broadcast) = &self.broadcast {
+            return broadcast.state(number, time, first);
+        }
+        let satellite = self.satellites.get(usize::from(number)).ok_or(Unusable::NoOrbit)?;
         let clock = Clock {
             reference: self.reference,
             samples: &satellite.clock,
@@ -125,24 +186,14 @@ impl Products {
         // runs away by less than a millimetre.
         let clock = clock.at(sent).or_else(|| clock.at(time)).ok_or_else(missing)?;
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
-        Ok(SatelliteObservation {
-            satellite: observed.prn,
-            carriers: carriers(observed.carriers),
-            code: [first, second],
-            phase: [l1, l2],
-            lock_lost: observed.loss_of_lock.contains(&true),
-            state: SatelliteState {
-                position: orbit.position,
-                velocity: orbit.velocity,
-                clock: clock.bias,
-                clock_interval: clock.interval,
-                clock_distance: clock.distance,
-                accuracy: 0.0,
-            },
-            antenna: satellite
-                .antenna
-                .as_ref()
-                .and_then(|antenna| patterns(antenna, carriers(observed.carriers))),
-        })
+        let state = SatelliteState {
+            position: orbit.position,
+            velocity: orbit.velocity,
+            clock: clock.bias,
+            clock_interval: clock.interval,
+            clock_distance: clock.distance,
+            accuracy: 0.0,
+        };
+        Ok((state, 0.0))
     }
 }

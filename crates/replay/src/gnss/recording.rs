@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 use kestirim_gnss_files::{Antenna, Error, Observations, StationLoading};
 use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
+use kestirim_ppp_filter::Config;
 use nalgebra::Vector3;
 
 use super::calendar::{calendar, in_words};
-use super::coverage::{self, FIRST_GALILEO};
+use super::coverage::FIRST_GALILEO;
 use super::model::{self, Epoch, patterns, receiver_patterns};
 use super::products::Products;
 use super::shelf::Shelf;
-use super::whole_biases::WholeBiases;
+use super::told::{Served, Told};
 
 /// Fewer satellites give no position, …
 pub const FEWEST_SATELLITES: usize = 4;
@@ -21,10 +22,12 @@ const POOR: f64 = 0.1;
 /// Where the files are.
 #[derive(Debug, Clone, Copy)]
 pub struct Paths<'a> {
-    /// Observations: RINEX 2 or 3, plain or compact, packed or not.
+    /// Observations: RINEX 2 to 4, plain or compact, or a recorded stream, UBX or RTCM 3; packed or not.
     pub obs: &'a Path,
-    /// Orbits: one SP3 file or more.
+    /// Orbits: one SP3 file or more; without any …
     pub sp3: &'a [PathBuf],
+    /// … what satellites broadcast: one RINEX navigation file or stream or more; that of the observations, if these are a stream.
+    pub nav: &'a [PathBuf],
     /// Antennas: one ANTEX file or more.
     pub antex: &'a [PathBuf],
     /// Clocks; without any those of the orbit files serve.
@@ -76,12 +79,11 @@ impl Recording {
     /// As [`read`](Self::read).
     pub fn read_beside(paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
         let biases = shelf.biases(paths.bias)?;
-        let clocks = || (!paths.clk.is_empty()).then(|| shelf.clocks(paths.clk)).transpose();
-        let (observations, (orbits, clocks)) = rayon::join(
+        let (observations, satellites) = rayon::join(
             || Observations::read_unbiased(paths.obs, &biases),
-            || rayon::join(|| shelf.orbits(paths.sp3), clocks),
+            || Told::read(paths, shelf),
         );
-        let (observations, orbits, clocks) = (observations?, orbits?, clocks?);
+        let (observations, satellites) = (observations?, satellites?);
         let antennas = shelf.antennas(paths.antex, &observations.antenna)?;
         let near = observations.approximate_position;
         let read = |path| StationLoading::read(path, &observations.marker, near);
@@ -90,26 +92,21 @@ impl Recording {
             let problem = "expected observations of GPS satellites, found none".to_owned();
             return Err(Error::File { path: paths.obs.to_path_buf(), problem });
         };
-        let told = [
-            &observations.warnings[..],
-            &orbits.warnings,
-            clocks.as_ref().map_or(&[], |clocks| &clocks.warnings),
-            &antennas.warnings,
-            loading.as_ref().map_or(&[], |loading| &loading.warnings),
-        ];
-        let told = told.into_iter().flatten().map(|warning| (None, warning.to_string()));
-        let mut warnings: Vec<_> = told.collect();
+        let of_loading = loading.as_ref().map_or(&[][..], |loading| &loading.warnings);
+        let told = observations.warnings.iter().chain(satellites.warnings());
+        let told = told.chain(&antennas.warnings).chain(of_loading);
+        let mut warnings: Vec<_> = told.map(|warning| (None, warning.to_string())).collect();
         let midnight = GpsTime::new(start.day(), 0.0);
         let antex = paths.antex.first().map_or_else(String::new, |path| printable(path));
-        let left_out =
-            coverage::left_out(&observations, &orbits, &antennas, (&antex, start), &mut warnings);
+        let antennas_of = (&*antennas, &*antex);
+        let Served { products, left_out, span } =
+            satellites.serve(start, &observations, biases, antennas_of, &mut warnings);
         let galileo = observations.signals.range(FIRST_GALILEO..).next();
         let loading = loading.and_then(|station| station.loading);
         Ok(Self {
             path: paths.obs.to_path_buf(),
             truth: None,
-            products: Products::new(start, &orbits, clocks.as_deref(), &antennas)
-                .with_whole(WholeBiases::new(clocks.as_deref(), biases, &observations.signals)),
+            products,
             epochs: observations
                 .epochs
                 .into_iter()
@@ -125,7 +122,7 @@ impl Recording {
             loading: loading.as_ref().map(model::ocean_loading),
             utc_minus_gps: -start.leap_seconds(),
             midnight,
-            orbits_span: coverage::span(&orbits, midnight),
+            orbits_span: span,
             warnings,
         })
     }
@@ -221,6 +218,15 @@ impl Recording {
     /// Orbits, clocks and antennas of satellites.
     pub const fn products(&self) -> &Products {
         &self.products
+    }
+
+    /// Settings of a filter with what broadcast ephemerides need, where those serve.
+    pub fn settled(&self, config: Config) -> Config {
+        let Config { correlation_time, .. } = match self.products.broadcast() {
+            Some(_) => Config::broadcast(config.motion),
+            None => config,
+        };
+        Config { correlation_time, ..config }
     }
 
     /// Why no ambiguity can become a whole number, if that is so.

@@ -4,13 +4,14 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_gnss_files::{Antennas, Biases, Clocks, Error, Orbits};
+use kestirim_gnss_files::{Antennas, Biases, Clocks, Error, Navigation, Orbits};
 
 /// Products that were read, for the recordings of other stations that need the same.
 #[derive(Debug, Default)]
 pub struct Shelf {
     orbits: Kept<Orbits>,
     clocks: Kept<Clocks>,
+    navigation: Kept<Navigation>,
     biases: Kept<Biases>,
     antennas: Kept<Antennas>,
 }
@@ -59,6 +60,10 @@ impl Shelf {
 
     pub(super) fn clocks(&self, paths: &[PathBuf]) -> Result<Arc<Clocks>, Error> {
         self.clocks.get(paths, "", || Clocks::read(paths))
+    }
+
+    pub(super) fn navigation(&self, paths: &[PathBuf]) -> Result<Arc<Navigation>, Error> {
+        self.navigation.get(paths, "", || Navigation::read(paths))
     }
 
     pub(super) fn biases(&self, paths: &[PathBuf]) -> Result<Arc<Biases>, Error> {

@@ -44,11 +44,16 @@ impl System for Gnss {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "obs",
-            "What the receiver observed: RINEX 2, 3 or 4 or CRINEX, GPS on L1 and L2, Galileo on E1 and E5a or E5b; any file may be packed with gzip",
+            "What the receiver observed: RINEX 2, 3 or 4, CRINEX, or a recorded stream, UBX (RXM-RAWX, RXM-SFRBX) or RTCM 3; GPS on L1 and L2, Galileo on E1 and E5a or E5b; any file may be packed with gzip",
         ),
-        FileField::required(
+        FileField::optional(
             "sp3",
             "Precise orbits, SP3, one file or more: those of the day before and after help at its ends",
+        )
+        .several(),
+        FileField::optional(
+            "nav",
+            "Where there are no precise orbits: what the satellites broadcast, RINEX navigation 2, 3 or 4, one file or more; positions are good to metres then",
         )
         .several(),
         FileField::optional(
@@ -56,9 +61,9 @@ impl System for Gnss {
             "Precise clocks, RINEX, one file or more [default: the clocks of the orbit files]",
         )
         .several(),
-        FileField::required(
+        FileField::optional(
             "antex",
-            "Phase centres of the satellites' and the receiver's antennas, ANTEX, one file or more",
+            "Phase centres of the satellites' and the receiver's antennas, ANTEX, one file or more: precise orbits need it",
         )
         .several(),
         FileField::optional(
@@ -122,8 +127,9 @@ impl System for Gnss {
     fn fits(field: &str, path: &Path, _: &Files) -> bool {
         let kind = Kind::of_file(path).ok().flatten();
         match field {
-            "obs" => kind == Some(Kind::Observations),
+            "obs" => matches!(kind, Some(Kind::Observations | Kind::Ubx | Kind::Rtcm)),
             "sp3" => kind == Some(Kind::Orbits),
+            "nav" => kind == Some(Kind::Navigation),
             "clk" => kind == Some(Kind::Clocks),
             "antex" => kind == Some(Kind::Antennas),
             "bias" => kind == Some(Kind::Biases),

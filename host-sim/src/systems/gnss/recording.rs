@@ -2,7 +2,9 @@
 
 pub mod truth;
 
-use kestirim_gnss_files as files;
+use std::path::Path;
+
+use kestirim_gnss_files::{self as files, Kind};
 use kestirim_gnss_ppp::Correction;
 use kestirim_replay::gnss::{Paths, Recording, Shelf};
 
@@ -19,12 +21,18 @@ const SYNTHETIC_S: f64 = 8.0 * 3600.0;
 /// The file, the line, and what was expected there.
 pub fn read(files: &Files) -> Result<Recording, Error> {
     let obs = files.required("obs")?;
-    files.required("sp3")?;
-    files.required("antex")?;
+    if !files.all("sp3").is_empty() {
+        files.required("antex")?;
+    } else if files.all("nav").is_empty() && !is_stream(obs) {
+        let sentence =
+            "a file is needed: --sp3 (with --antex), or --nav where there are no precise orbits";
+        return Err(Error::Usage(sentence.to_owned()));
+    }
     let truth = files.one("truth").map(truth::read).transpose()?;
     let paths = Paths {
         obs,
         sp3: files.all("sp3"),
+        nav: files.all("nav"),
         antex: files.all("antex"),
         clk: files.all("clk"),
         bias: files.all("bias"),
@@ -33,13 +41,21 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
     let mut recording =
         Recording::read_beside(&paths, &files.shared.of::<Shelf>()).map_err(error)?;
     recording.truth = truth;
-    if paths.blq.is_none() {
+    if !paths.sp3.is_empty() && !paths.nav.is_empty() {
+        recording.warn(None, "the precise orbits are taken, --nav is not used");
+    }
+    if paths.blq.is_none() && !paths.sp3.is_empty() {
         recording.warn(
             Some(Correction::OceanLoading),
             "the load of the oceans' tides is not corrected, up to some centimetres (--blq)",
         );
     }
     Ok(recording)
+}
+
+/// Whether a file is a recorded stream, which may hold what satellites broadcast.
+pub fn is_stream(path: &Path) -> bool {
+    matches!(Kind::of_file(path), Ok(Some(Kind::Ubx | Kind::Rtcm)))
 }
 
 /// The first hours of a synthetic day by name.

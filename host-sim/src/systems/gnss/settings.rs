@@ -6,7 +6,7 @@ mod part;
 
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::{Config, Motion};
-use kestirim_replay::gnss::{Ambiguities, FilterKind, Recording, Systems};
+use kestirim_replay::gnss::{Ambiguities, FilterKind, Method, Recording, Systems};
 use kestirim_robust_kalman::{Igg3, Weight};
 use nalgebra::Vector3;
 
@@ -32,6 +32,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     vec![
         Setting::one_of("mode", "Whether the receiver moves", &Mode::default()),
         Setting::one_of("systems", "Satellites of which systems serve", &Systems::default()),
+        Setting::one_of("method", "From what positions are made", &Method::default()),
         Setting::one_of("ambiguities", "Whether ambiguities become whole", &Ambiguities::default()),
         Setting::decades(
             "process-noise",
@@ -106,7 +107,11 @@ pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
     let any = |is: fn(FilterKind) -> bool| {
         settings.chosen::<Choice>("filter").filters().iter().any(|filter| is(*filter))
     };
+    let is_single = settings.chosen::<Method>("method") == Method::Single;
     match name {
+        "mode" | "process-noise" | "ambiguities" | "smooth" if is_single => {
+            Some(Idle::foreign("is for --method filter"))
+        }
         "process-noise" if settings.chosen::<Mode>("mode") == Mode::Static => {
             Some(Idle::foreign("is for --mode kinematic"))
         }
@@ -132,6 +137,8 @@ pub struct Setup {
     pub motion: Motion,
     /// Satellites of which systems serve.
     pub systems: Systems,
+    /// From what positions are made.
+    pub method: Method,
     /// Whether ambiguities become whole numbers.
     pub ambiguities: Ambiguities,
     /// Lowest elevation of a satellite, rad; none: the filter's own choice.
@@ -157,6 +164,7 @@ impl Setup {
             filter: Choice::One(filter),
             motion,
             systems: Systems::default(),
+            method: Method::default(),
             ambiguities: Ambiguities::default(),
             mask: None,
             published: false,
@@ -182,12 +190,14 @@ impl Setup {
             filter: settings.chosen("filter"),
             motion,
             systems: settings.chosen("systems"),
+            method: settings.chosen("method"),
             ambiguities: settings.chosen("ambiguities"),
             mask: settings.number("mask").map(f64::to_radians),
             published: settings.is_on("published"),
             thresholds: ["k0", "k1"].map(|name| settings.number(name)),
             corrections: left_out.fold(Corrections::ALL, |all, part| all.without(part.into())),
-            is_smoothed: settings.is_on("smooth"),
+            is_smoothed: settings.is_on("smooth")
+                && settings.chosen::<Method>("method") == Method::Filter,
             until: settings.number("until"),
             truth: settings.text("truth").and_then(|text| place(&text).ok()),
         }

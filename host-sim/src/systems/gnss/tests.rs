@@ -57,6 +57,7 @@ fn every_control_changes_what_it_should() {
     let cases = [
         (json!({}), json!({ "filter": "gkf" }), "error"),
         (json!({}), json!({ "filter": "all" }), "error"),
+        (json!({}), json!({ "method": "single" }), "error"),
         (json!({ "filter": "ikf" }), published, "error"),
         (json!({}), moving.clone(), "components"),
         (moving, json!({ "mode": "kinematic", "process-noise": 1e-4 }), "components"),

@@ -39,8 +39,8 @@ impl Track {
         let run = |filter: FilterKind, order: Order| {
             let with_residuals =
                 detail == Detail::Every && filter == main && order == Order::Forwards;
-            let Setup { systems, ambiguities, .. } = *setup;
-            let pass = Pass { systems, order, ambiguities, with_residuals };
+            let Setup { systems, method, ambiguities, .. } = *setup;
+            let pass = Pass { systems, order, method, ambiguities, with_residuals };
             follow(recording, epochs, &receiver, setup.config(filter), pass, || progress.inc())
         };
         let forwards = || -> Vec<_> {

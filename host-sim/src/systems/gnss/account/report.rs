@@ -4,7 +4,7 @@ use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::{Correction, Geodetic, zenith_hydrostatic};
 use kestirim_ppp_filter::Health;
 use kestirim_replay::gnss::{
-    Accuracy, Both, FilterKind, Fixing, Followed, Recording, Slips, Unused,
+    Accuracy, Both, FilterKind, Fixing, Followed, Method, Recording, Slips, Unused,
 };
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -29,6 +29,8 @@ pub struct Report {
     pub published: bool,
     /// Whether the receiver was allowed to move.
     pub mode: Mode,
+    /// From what positions were made.
+    pub method: Method,
     /// All epochs from the first on.
     pub epochs: usize,
     /// The first and the last epoch in UTC, as `2020-06-25 12:00:00 UTC`.
@@ -167,6 +169,7 @@ impl Report {
             filter,
             published: setup.published && filter.is_published(),
             mode: Mode::of(setup.motion),
+            method: setup.method,
             epochs: followed.epochs,
             utc: ends(recording, setup).map(|t| recording.utc(t)),
             solved: followed.fixes.len() - followed.contradictions().count(),
@@ -253,7 +256,10 @@ impl Report {
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = Vec::new();
         let mut fact = |name, value| facts.push((name, value));
-        let mode = format!("{:?}", self.mode).to_lowercase();
+        let mode = match self.method {
+            Method::Filter => format!("{:?}", self.mode).to_lowercase(),
+            Method::Single => "single epochs, codes alone".to_owned(),
+        };
         fact("filter", format!("{}, {mode}", self.title()));
         let contradicted = match self.contradicted {
             0 => String::new(),

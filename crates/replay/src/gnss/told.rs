@@ -1,0 +1,104 @@
+//! What is told of satellites: precise orbits and clocks, or their own ephemerides.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use kestirim_gnss_files::{
+    Antennas, Biases, Clocks, Error, GpsTime, Navigation, Observations, Orbits, Warning,
+};
+use kestirim_gnss_ppp::Correction;
+
+use super::broadcast::Broadcast;
+use super::coverage::{self, names};
+use super::model;
+use super::products::Products;
+use super::recording::Paths;
+use super::shelf::Shelf;
+use super::whole_biases::WholeBiases;
+
+/// What is told of satellites.
+#[derive(Debug)]
+pub(super) enum Told {
+    /// By a service.
+    Precise(Arc<Orbits>, Option<Arc<Clocks>>),
+    /// By themselves.
+    Broadcast(Arc<Navigation>),
+}
+
+/// A warning, and the correction that it concerns, if it is not all of them.
+type Doubt = (Option<Correction>, String);
+
+/// What comes of it for a recording.
+#[derive(Debug)]
+pub(super) struct Served {
+    pub(super) products: Products,
+    /// Satellites that are not to be used.
+    pub(super) left_out: BTreeSet<u8>,
+    /// From when to when there are orbits, s since midnight.
+    pub(super) span: [f64; 2],
+}
+
+impl Told {
+    /// Precise orbits, if there are any, or else what satellites broadcast: a receiver's stream holds that itself.
+    pub(super) fn read(paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
+        if paths.sp3.is_empty() {
+            let own = [paths.obs.to_path_buf()];
+            let nav = if paths.nav.is_empty() { &own } else { paths.nav };
+            return Ok(Self::Broadcast(shelf.navigation(nav)?));
+        }
+        let clocks = || (!paths.clk.is_empty()).then(|| shelf.clocks(paths.clk)).transpose();
+        let (orbits, clocks) = rayon::join(|| shelf.orbits(paths.sp3), clocks);
+        Ok(Self::Precise(orbits?, clocks?))
+    }
+
+    /// Warnings of the readers.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = &Warning> {
+        let (one, other) = match self {
+            Self::Precise(orbits, clocks) => {
+                (&orbits.warnings[..], clocks.as_ref().map_or(&[][..], |clocks| &clocks.warnings))
+            }
+            Self::Broadcast(navigation) => (&navigation.warnings[..], &[][..]),
+        };
+        one.iter().chain(other)
+    }
+
+    /// What serves observations that begin at `start`; of the antennas, those in `antex`.
+    pub(super) fn serve(
+        &self,
+        start: GpsTime,
+        observations: &Observations,
+        biases: Arc<Biases>,
+        (antennas, antex): (&Antennas, &str),
+        warnings: &mut Vec<Doubt>,
+    ) -> Served {
+        let midnight = model::time(GpsTime::new(start.day(), 0.0));
+        match self {
+            Self::Precise(orbits, clocks) => {
+                let clocks = clocks.as_deref();
+                let whole = WholeBiases::new(clocks, biases, &observations.signals);
+                let products = Products::new(start, orbits, clocks, antennas).with_whole(whole);
+                let known = (antex, start);
+                let left_out = coverage::left_out(observations, orbits, antennas, known, warnings);
+                Served { products, left_out, span: coverage::span(orbits, midnight) }
+            }
+            Self::Broadcast(navigation) => {
+                let broadcast = Broadcast::new(navigation, &observations.signals);
+                let sentence = "orbits and clocks are those that the satellites broadcast: positions are good to metres";
+                warnings.push((None, sentence.to_owned()));
+                let disowned: Vec<_> = broadcast.disowned().collect();
+                if !disowned.is_empty() {
+                    let names = names(disowned);
+                    warnings.push((
+                        None,
+                        format!(
+                            "{names} call themselves unhealthy at times, and are left out then"
+                        ),
+                    ));
+                }
+                let span = broadcast.span(midnight);
+                let products = Products::of_broadcast(start, broadcast);
+                Served { products, left_out: BTreeSet::new(), span }
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Positions with what satellites broadcast, beside those with precise orbits and clocks.
+//!
+//! What nine satellites of GPS really broadcast on the evening of the day of ESBC stands in `gnss_broadcast/esbc_evening.rnx`.
+//! For the whole day, and with Galileo, ephemerides are fitted to the precise products: they show that the chain is right, and
+//! nothing of how far real satellites are off what they say.
+//!
+//! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
+//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+
+mod fit;
+
+use std::path::{Path, PathBuf};
+
+use host_sim::metrics::{error_over_sigma, rms};
+use kestirim_gnss_files::{Antennas, Clocks, Orbits};
+use kestirim_gnss_ppp::{Corrections, Site};
+use kestirim_ppp_filter::{Config, Health, Motion};
+use kestirim_replay::gnss::{Epoch, Followed, Method, Pass, Paths, Recording, follow};
+use kestirim_tests::gnss::{ESBC, ESBC_MULTI, Station};
+use kestirim_tests::recordings::folder_of;
+use nalgebra::Vector3;
+
+const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
+const EVENING: &str = include_str!("gnss_broadcast/esbc_evening.rnx");
+/// When the nine satellites' ephemerides hold and six of them at least are in view, s.
+const FROM: f64 = 72_000.0;
+const UNTIL: f64 = 78_000.0;
+
+/// The observations of a station with a navigation file in place of products.
+fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recording {
+    let file = tempfile::NamedTempFile::new().expect("a temporary file");
+    std::fs::write(file.path(), navigation).expect("a file can be written");
+    let antennas: Vec<_> = ["esbc2020177/esbc.atx.gz"].map(|name| folder.join(name)).into();
+    Recording::read(&Paths {
+        obs: &folder.join(station.observations),
+        sp3: &[],
+        nav: &[file.path().to_path_buf()],
+        antex: &antennas,
+        clk: &[],
+        bias: &[],
+        blq: None,
+    })
+    .expect("all can be read")
+}
+
+/// By how much the ranges of an epoch's satellites differ from those of precise products, m, beside what all have in common.
+fn off(broadcast: &Recording, precise: &Recording, epoch: &Epoch) -> Vec<f64> {
+    let truth = Vector3::from(ESBC.truth);
+    let receiver = precise.receiver(Corrections::ALL);
+    let site = Site::new(&receiver, &truth, epoch.time);
+    let range = |recording: &Recording, observed| {
+        let it = recording.products().observation(epoch.time, observed).ok()?;
+        Some(site.expect(&it.state, it.carriers, it.antenna.as_ref(), None)?.range)
+    };
+    let both = epoch.satellites.iter().filter_map(|observed| {
+        Some((observed.prn > 100, range(broadcast, observed)? - range(precise, observed)?))
+    });
+    let both: Vec<(bool, f64)> = both.collect();
+    let of = |system: bool| both.iter().filter(move |(it, _)| *it == system).map(|(_, off)| *off);
+    let mean = |system| of(system).sum::<f64>() / of(system).count().max(1) as f64;
+    let means = [mean(false), mean(true)];
+    both.iter().map(|(system, off)| off - means[usize::from(*system)]).collect()
+}
+
+/// Follows a recording and tells errors, m, and errors over deviations.
+fn followed(
+    what: &str,
+    recording: &Recording,
+    [from, until]: [f64; 2],
+    motion: Motion,
+    method: Method,
+) -> (Followed, [f64; 3]) {
+    let epochs: Vec<_> = (recording.epochs(Some(until)).iter())
+        .filter(|epoch| recording.seconds(epoch) >= from)
+        .cloned()
+        .collect();
+    let receiver = recording.receiver(Corrections::ALL);
+    let pass = Pass { method, ..Pass::default() };
+    let found = follow(recording, &epochs, &receiver, Config::new(motion), pass, || ());
+    let truth = Vector3::from(ESBC.truth);
+    let told = found.fixes.iter().zip(&found.deviations);
+    let told: Vec<_> =
+        told.map(|(fix, sd)| ((fix.position - truth).norm(), Vector3::from(*sd).norm())).collect();
+    let errors: Vec<_> = told.iter().map(|(error, _)| *error).collect();
+    let last = *errors.last().expect("a solution");
+    let measures = [last, rms(&errors), error_over_sigma(told).expect("deviations")];
+    println!(
+        "{what}: {} of {} epochs, last {:.3} m, RMS {:.3} m, error over deviation {:.2}",
+        found.fixes.len(),
+        epochs.len(),
+        measures[0],
+        measures[1],
+        measures[2]
+    );
+    (found, measures)
+}
+
+fn is_never_converged(followed: &Followed) {
+    assert!(
+        followed
+            .healths
+            .iter()
+            .all(|health| matches!(health, Health::Converging | Health::Unchecked))
+    );
+}
+
+#[test]
+fn an_evening_of_real_ephemerides() {
+    let Some(folder) = folder_of("gnss") else { return };
+    let (broadcast, precise) = (with_navigation(&folder, ESBC, EVENING), ESBC.read(&folder));
+    let all: Vec<f64> = (precise.epochs(Some(UNTIL)).iter())
+        .filter(|epoch| precise.seconds(epoch) >= FROM)
+        .flat_map(|epoch| off(&broadcast, &precise, epoch))
+        .collect();
+    println!(
+        "real ephemerides of GPS against precise products: {:.3} m, {} ranges",
+        rms(&all),
+        all.len()
+    );
+    assert!(all.len() > 1_000 && rms(&all) < 1.0);
+    let run = |what, motion, method| followed(what, &broadcast, [FROM, UNTIL], motion, method);
+    for (what, motion, method, most) in [
+        ("single", Motion::Static, Method::Single, 3.0),
+        ("static", Motion::Static, Method::Filter, 2.0),
+        ("kinematic", KINEMATIC, Method::Filter, 2.5),
+    ] {
+        let (found, [_, rms, ratio]) = run(what, motion, method);
+        assert!(found.fixes.len() >= 195 && rms < most && ratio < 1.0);
+        is_never_converged(&found);
+    }
+}
+
+#[test]
+fn a_day_of_fitted_ephemerides() {
+    let Some(folder) = folder_of("gnss") else { return };
+    let path = |name: &str| -> PathBuf { folder.join("esbc2020177_multi").join(name) };
+    let orbits = Orbits::read(&[
+        path("GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz"),
+        path("GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz"),
+    ]);
+    let clocks = Clocks::read(&[path("GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz")]);
+    let antennas =
+        Antennas::read(&[folder.join("esbc2020177/esbc.atx.gz"), path("galileo_igs20.atx.gz")], "");
+    let (orbits, clocks, antennas) =
+        (orbits.expect("orbits"), clocks.expect("clocks"), antennas.expect("antennas"));
+    let navigation = fit::navigation(59_025, &orbits, &clocks, &antennas);
+    let fitted = with_navigation(&folder, ESBC_MULTI, &navigation);
+    let precise = ESBC_MULTI.read(&folder);
+    let all: Vec<f64> = (precise.epochs(Some(82_800.0)).iter().step_by(10))
+        .flat_map(|epoch| off(&fitted, &precise, epoch))
+        .collect();
+    println!(
+        "fitted ephemerides against precise products: {:.4} m, {} ranges",
+        rms(&all),
+        all.len()
+    );
+    assert!(all.len() > 4_000 && rms(&all) < 0.1);
+    let run = |what, motion, method| followed(what, &fitted, [0.0, 82_800.0], motion, method);
+    for (what, motion, method, most) in [
+        ("single", Motion::Static, Method::Single, 2.0),
+        ("static", Motion::Static, Method::Filter, 0.5),
+        ("kinematic", KINEMATIC, Method::Filter, 1.0),
+    ] {
+        let (found, [_, rms, ratio]) = run(what, motion, method);
+        assert!(found.fixes.len() > 2_750 && rms < most && ratio < 1.0);
+        is_never_converged(&found);
+    }
+}

@@ -1,0 +1,250 @@
+//! Ephemerides as satellites would broadcast them, fitted to precise orbits and clocks, as a RINEX navigation file.
+
+use std::fmt::Write as _;
+
+use kestirim_gnss_files::{
+    Antennas, Clocks, GpsTime as FileTime, Orbits, PhaseCentre, satellite_name,
+};
+use kestirim_gnss_ppp::constants::{EARTH_GRAVITY, EARTH_ROTATION};
+use kestirim_gnss_ppp::{
+    Bodies, BodyAxes, Carriers, Constellation, Ephemeris, GpsTime, Orbit, OrbitSample, Pattern,
+};
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// The interval of ephemerides, and how far from its time one is fitted, s.
+const INTERVAL: f64 = 7_200.0;
+const REACH: f64 = 4_500.0;
+/// Samples of an orbit that is fitted, s apart.
+const STEP: f64 = 300.0;
+/// Numbers that are fitted.
+const NUMBERS: usize = 15;
+/// By what each of them is changed to see what it does: √m, 1, rad, rad/s, and so on.
+const CHANGES: [f64; NUMBERS] =
+    [1e-3, 1e-7, 1e-7, 1e-11, 1e-7, 1e-7, 1e-11, 1e-7, 1e-11, 1e-7, 1e-7, 1.0, 1.0, 1e-7, 1e-7];
+
+/// The navigation file of a day (modified Julian date) with the satellites that orbits, clocks and antennas know.
+pub(super) fn navigation(
+    day: i32,
+    orbits: &Orbits,
+    clocks: &Clocks,
+    antennas: &Antennas,
+) -> String {
+    let mut text = header("     3.05           NAVIGATION DATA     MIXED", "RINEX VERSION / TYPE");
+    text += &header("", "END OF HEADER");
+    for number in clocks.satellites() {
+        for step in 0..=12 {
+            let time = GpsTime::new(day, INTERVAL * f64::from(step));
+            let precise = Precise { number, orbits, clocks, antennas };
+            if let Some(ephemeris) = precise.fit(time) {
+                write(&mut text, number, &ephemeris);
+            }
+        }
+    }
+    text
+}
+
+struct Precise<'a> {
+    number: u8,
+    orbits: &'a Orbits,
+    clocks: &'a Clocks,
+    antennas: &'a Antennas,
+}
+
+impl Precise<'_> {
+    fn fit(&self, time: GpsTime) -> Option<Ephemeris> {
+        let samples: Vec<_> = (self.orbits.satellite(self.number).iter())
+            .map(|it| OrbitSample::from_ecef(time, model(it.time), &Vector3::from(it.position)))
+            .collect();
+        let orbit = Orbit { reference: time, samples: &samples };
+        let steps = (REACH / STEP) as i32;
+        let positions: Vec<_> = (-steps..=steps)
+            .filter_map(|step| {
+                let at = time.plus(STEP * f64::from(step));
+                let centre = orbit.at(at)?.position;
+                Some((at, centre + self.to_phase_centre(&centre, at)?))
+            })
+            .collect();
+        if positions.len() < NUMBERS {
+            return None;
+        }
+        let state = orbit.at(time)?;
+        let mut ephemeris = elements(self.constellation(), time, &state.position, &state.velocity);
+        ephemeris.clock = self.clock(time)?;
+        for _ in 0..8 {
+            improve(&mut ephemeris, &positions);
+        }
+        Some(ephemeris)
+    }
+
+    const fn constellation(&self) -> Constellation {
+        if self.number > 100 { Constellation::Galileo } else { Constellation::Gps }
+    }
+
+    /// From the centre of mass to the phase centre of the combination of both carriers.
+    fn to_phase_centre(&self, centre: &Vector3<f64>, time: GpsTime) -> Option<Vector3<f64>> {
+        let antenna =
+            self.antennas.satellite(self.number, FileTime::new(time.day(), time.second()))?;
+        let ([l1, l2], [e1, e5a, _]) = (&antenna.frequencies, &antenna.galileo);
+        let (first, second, carriers) = match self.constellation() {
+            Constellation::Gps => (l1, l2, Carriers::L1L2),
+            Constellation::Galileo => (e1, e5a, Carriers::E1E5a),
+        };
+        let axes = BodyAxes::nominal(centre, &Bodies::at(time, -18.0).sun)?;
+        let offset = |centre: &PhaseCentre| pattern(centre.offset).satellite_offset(&axes);
+        let [first, second] = [offset(first.as_ref()?), offset(second.as_ref()?)];
+        Some(Vector3::from_fn(|axis, _| carriers.ionosphere_free([first[axis], second[axis]])))
+    }
+
+    /// A parabola through the clock's samples.
+    fn clock(&self, time: GpsTime) -> Option<[f64; 3]> {
+        let samples: Vec<_> = (self.clocks.satellite(self.number).iter())
+            .map(|it| (model(it.time).since(time) / REACH, it.bias))
+            .filter(|(away, _)| away.abs() <= 1.0)
+            .collect();
+        let first = samples.first().filter(|_| samples.len() > 10)?.1;
+        let powers =
+            DMatrix::from_fn(samples.len(), 3, |row, power| samples[row].0.powi(power as i32));
+        let biases = DVector::from_fn(samples.len(), |row, _| samples[row].1 - first);
+        let found = powers.svd(true, true).solve(&biases, 1e-12).ok()?;
+        Some([found[0] + first, found[1] / REACH, found[2] / (REACH * REACH)])
+    }
+}
+
+fn model(time: FileTime) -> GpsTime {
+    GpsTime::new(time.day(), time.second())
+}
+
+const fn pattern(offset: [f64; 3]) -> Pattern<'static> {
+    Pattern { offset, first: 0.0, step: 1.0, mean: &[], azimuth_step: 0.0, by_azimuth: &[] }
+}
+
+/// The ellipse of a position and a velocity in the axes of its time.
+fn elements(
+    constellation: Constellation,
+    time: GpsTime,
+    position: &Vector3<f64>,
+    velocity: &Vector3<f64>,
+) -> Ephemeris {
+    let radius = position.norm();
+    let momentum = position.cross(velocity);
+    let axis = 1.0 / (2.0 / radius - velocity.norm_squared() / EARTH_GRAVITY);
+    let to_perigee = velocity.cross(&momentum) / EARTH_GRAVITY - position / radius;
+    let eccentricity = to_perigee.norm();
+    let node = f64::atan2(momentum.x, -momentum.y);
+    let to_node = Vector3::new(node.cos(), node.sin(), 0.0);
+    let across = momentum.normalize().cross(&to_node);
+    let perigee = f64::atan2(to_perigee.dot(&across), to_perigee.dot(&to_node));
+    let argument = f64::atan2(position.dot(&across), position.dot(&to_node));
+    let anomaly = 2.0
+        * f64::atan(
+            ((1.0 - eccentricity) / (1.0 + eccentricity)).sqrt()
+                * ((argument - perigee) / 2.0).tan(),
+        );
+    Ephemeris {
+        constellation,
+        time,
+        clock_time: time,
+        clock: [0.0; 3],
+        group_delay: 0.0,
+        root_of_axis: axis.sqrt(),
+        eccentricity,
+        mean_anomaly: anomaly - eccentricity * anomaly.sin(),
+        mean_motion_correction: 0.0,
+        perigee,
+        node: node + EARTH_ROTATION * second_of_week(time),
+        node_rate: 0.0,
+        inclination: f64::atan2(momentum.xy().norm(), momentum.z),
+        inclination_rate: 0.0,
+        latitude_terms: [0.0; 2],
+        radius_terms: [0.0; 2],
+        inclination_terms: [0.0; 2],
+        accuracy: 2.0,
+        holds: INTERVAL,
+    }
+}
+
+/// The numbers that are fitted, in the order of [`CHANGES`].
+fn numbers(it: &mut Ephemeris) -> [&mut f64; NUMBERS] {
+    let ([a, b], [c, d], [e, f]) =
+        (&mut it.latitude_terms, &mut it.radius_terms, &mut it.inclination_terms);
+    [
+        &mut it.root_of_axis,
+        &mut it.eccentricity,
+        &mut it.mean_anomaly,
+        &mut it.mean_motion_correction,
+        &mut it.perigee,
+        &mut it.node,
+        &mut it.node_rate,
+        &mut it.inclination,
+        &mut it.inclination_rate,
+        a,
+        b,
+        c,
+        d,
+        e,
+        f,
+    ]
+}
+
+/// One step of Gauss and Newton.
+fn improve(ephemeris: &mut Ephemeris, positions: &[(GpsTime, Vector3<f64>)]) {
+    let rows = 3 * positions.len();
+    let at = |it: &Ephemeris| {
+        DVector::from_iterator(
+            rows,
+            positions.iter().flat_map(|(time, _)| <[f64; 3]>::from(it.orbit_at(*time).position)),
+        )
+    };
+    let now = at(ephemeris);
+    let wanted =
+        DVector::from_iterator(rows, positions.iter().flat_map(|(_, it)| <[f64; 3]>::from(*it)));
+    let mut jacobian = DMatrix::zeros(rows, NUMBERS);
+    for (place, change) in CHANGES.iter().enumerate() {
+        let mut changed = *ephemeris;
+        *numbers(&mut changed)[place] += change;
+        jacobian.set_column(place, &(at(&changed) - &now));
+    }
+    let step = jacobian.svd(true, true).solve(&(wanted - now), 1e-9).expect("both were asked for");
+    for (place, number) in numbers(ephemeris).into_iter().enumerate() {
+        *number += step[place] * CHANGES[place];
+    }
+}
+
+fn second_of_week(time: GpsTime) -> f64 {
+    f64::from((time.day() - 44_244).rem_euclid(7)) * 86_400.0 + time.second()
+}
+
+fn header(content: &str, label: &str) -> String {
+    format!("{content:<60}{label}\n")
+}
+
+/// A record. Every number is what it is for the messages' accuracies: 2 m of GPS, 3.12 m of Galileo.
+fn write(text: &mut String, number: u8, it: &Ephemeris) {
+    let galileo = it.constellation == Constellation::Galileo;
+    let hour = it.time.since(GpsTime::new(59_025, 0.0)) / 3600.0;
+    let (day, hour) = if hour < 24.0 { (25, hour) } else { (26, hour - 24.0) };
+    let ([cuc, cus], [crc, crs], [cic, cis]) =
+        (it.latitude_terms, it.radius_terms, it.inclination_terms);
+    let rows = [
+        [1.0, crs, it.mean_motion_correction, it.mean_anomaly],
+        [cuc, it.eccentricity, cus, it.root_of_axis],
+        [second_of_week(it.time), cic, it.node, cis],
+        [it.inclination, crc, it.perigee, it.node_rate],
+        [it.inclination_rate, if galileo { 258.0 } else { 1.0 }, 2111.0, 0.0],
+        [if galileo { 3.12 } else { 2.0 }, 0.0, 0.0, 1.0],
+        [second_of_week(it.time), if galileo { 0.0 } else { 4.0 }, 0.0, 0.0],
+    ];
+    let fixed = |value: f64| {
+        let plain = format!("{value:.12e}");
+        let (mantissa, exponent) = plain.split_once('e').expect("an exponent");
+        let exponent: i32 = exponent.parse().expect("a number");
+        let sign = if exponent < 0 { '-' } else { '+' };
+        format!("{:>19}", format!("{mantissa}e{sign}{:02}", exponent.abs()))
+    };
+    let name = satellite_name(number);
+    let clock = it.clock.map(fixed).concat();
+    writeln!(text, "{name} 2020 06 {day} {hour:02} 00 00{clock}").expect("memory");
+    for row in rows {
+        writeln!(text, "    {}", row.map(fixed).concat()).expect("memory");
+    }
+}

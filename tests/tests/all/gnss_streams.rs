@@ -1,0 +1,178 @@
+//! A day that was recorded as RINEX, told again as RTCM 3 (MSM7) and as UBX (RXM-RAWX), gives the same positions.
+//!
+//! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
+//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+
+use std::collections::BTreeMap;
+use std::io::Read as _;
+use std::path::Path;
+
+use flate2::read::GzDecoder;
+use kestirim_gnss_files::{Epoch, Observations};
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+use kestirim_gnss_ppp::{Corrections, FREQUENCY};
+use kestirim_ppp_filter::{Config, Motion};
+use kestirim_replay::gnss::{Followed, Pass, follow};
+use kestirim_tests::gnss::ESBC;
+use kestirim_tests::recordings::folder_of;
+use rtcm_rs::Message;
+use rtcm_rs::MessageBuilder;
+use rtcm_rs::msg::{GpsSigId, Msg1019T, Msg1077Data, Msg1077Sig, Msg1077T, Msm57Sat};
+
+/// The week of the day, and when it began.
+const WEEK: u16 = 2_111;
+const SUNDAY: i32 = 59_021;
+/// What a message of UBX tells at most of how long a phase was tracked, ms.
+const LONGEST_LOCK: u16 = 64_500;
+
+/// How often a phase was told since it was lost, and how many cycles it is shifted by: a format tells phases near codes alone.
+#[derive(Default)]
+struct Tracked(BTreeMap<(u8, usize), (u16, f64)>);
+
+/// The observations as RINEX, without what streams do not tell: the antenna, and where it stands.
+fn rinex(folder: &Path) -> String {
+    let mut text = String::new();
+    let file = std::fs::File::open(folder.join(ESBC.observations)).expect("a recording");
+    GzDecoder::new(file).read_to_string(&mut text).expect("text");
+    let is_told = |line: &&str| !line.contains("ANT # / TYPE") && !line.contains("ANTENNA: DELTA");
+    text.lines().filter(is_told).flat_map(|line| [line, "\n"]).collect()
+}
+
+fn second_of_week(epoch: &Epoch) -> f64 {
+    f64::from(epoch.time.day() - SUNDAY) * 86_400.0 + epoch.time.second()
+}
+
+fn rtcm(epochs: &[Epoch]) -> Vec<u8> {
+    let mut tracked = Tracked::default();
+    let week = Msg1019T {
+        gps_satellite_id: 1,
+        gps_week_number: WEEK % 1024,
+        toe_s: 345_600.0,
+        ..Msg1019T::default()
+    };
+    let mut stream = frame(&Message::Msg1019(week));
+    for epoch in epochs {
+        let mut data = Msg1077Data::default();
+        for observed in &epoch.satellites {
+            let Some(code) = observed.code[0] else { continue };
+            let milliseconds = |metres: f64| 1e3 * metres / SPEED_OF_LIGHT;
+            let rough = (1024.0 * milliseconds(code)).round() / 1024.0;
+            data.satellite_data.push(Msm57Sat {
+                satellite_id: observed.prn,
+                gnss_satellite_rough_range_integer_ms: Some(rough.floor() as u8),
+                gnss_satellite_rough_range_mod1ms_ms: rough - rough.floor(),
+                ..Msm57Sat::default()
+            });
+            for band in 0..2 {
+                let (Some(code), Some(phase)) = (observed.code[band], observed.phase[band]) else {
+                    continue;
+                };
+                let cycles_of = 1e-3 * FREQUENCY[band];
+                let place = tracked.0.entry((observed.prn, band)).or_insert((0, f64::INFINITY));
+                let fine = |shift: f64| (phase + shift) / cycles_of - rough;
+                place.0 = if observed.loss_of_lock[band] { 0 } else { (place.0 + 1).min(704) };
+                let fits = fine(place.1).abs() < 0.003_5;
+                if !fits {
+                    *place = (0, (rough * cycles_of - phase).round());
+                }
+                data.signal_data.push(Msg1077Sig {
+                    satellite_id: observed.prn,
+                    signal_id: GpsSigId::new(band as u8 + 1, 'W'),
+                    gnss_signal_fine_pseudorange_ext_ms: Some(milliseconds(code) - rough),
+                    gnss_signal_fine_phaserange_ext_ms: Some(fine(place.1)),
+                    gnss_phaserange_lock_time_ext_ind: place.0,
+                    ..Msg1077Sig::default()
+                });
+            }
+        }
+        stream.extend(frame(&Message::Msg1077(Msg1077T {
+            gps_epoch_time_ms: (1e3 * second_of_week(epoch)).round() as u32,
+            data_segment: data,
+            ..Msg1077T::default()
+        })));
+    }
+    stream
+}
+
+fn frame(message: &Message) -> Vec<u8> {
+    MessageBuilder::new().build_message(message).expect("a message").to_vec()
+}
+
+fn ubx(epochs: &[Epoch]) -> Vec<u8> {
+    let mut tracked = Tracked::default();
+    let mut stream = Vec::new();
+    for epoch in epochs {
+        let mut signals = Vec::new();
+        for observed in &epoch.satellites {
+            for (band, signal) in [(0, 0), (1, 3)] {
+                let (Some(code), Some(phase)) = (observed.code[band], observed.phase[band]) else {
+                    continue;
+                };
+                let (lock, _) = tracked.0.entry((observed.prn, band)).or_default();
+                *lock = if observed.loss_of_lock[band] {
+                    0
+                } else {
+                    lock.saturating_add(30_000).min(LONGEST_LOCK)
+                };
+                signals.extend(code.to_le_bytes());
+                signals.extend(phase.to_le_bytes());
+                signals.extend([0, 0, 0, 0, 0, observed.prn, signal, 0]);
+                signals.extend(lock.to_le_bytes());
+                signals.extend([40, 0, 0, 0, 7, 0]);
+            }
+        }
+        let mut held = second_of_week(epoch).to_le_bytes().to_vec();
+        held.extend(WEEK.to_le_bytes());
+        held.extend([18, (signals.len() / 32) as u8, 1, 1, 0, 0]);
+        held.extend(signals);
+        let length = (held.len() as u16).to_le_bytes();
+        let summed = [&[0x02, 0x15, length[0], length[1]], &*held].concat();
+        let sums = summed.iter().fold([0_u8; 2], |[a, b], byte| {
+            let a = a.wrapping_add(*byte);
+            [a, b.wrapping_add(a)]
+        });
+        stream.extend([&[0xb5, 0x62], &*summed, &sums].concat());
+    }
+    stream
+}
+
+fn positions(folder: &Path, observations: &[u8]) -> Followed {
+    let file = tempfile::NamedTempFile::new().expect("a temporary file");
+    std::fs::write(file.path(), observations).expect("a file can be written");
+    let path = file.path().display().to_string();
+    let recording = ESBC.observed_in(path.leak()).read(folder);
+    let receiver = recording.receiver(Corrections::ALL);
+    let config = Config::new(Motion::Static);
+    follow(
+        &recording,
+        recording.epochs(Some(ESBC.until)),
+        &receiver,
+        config,
+        Pass::default(),
+        || (),
+    )
+}
+
+#[test]
+fn streams_give_what_rinex_gives() {
+    let Some(folder) = folder_of("gnss") else { return };
+    let text = rinex(&folder);
+    let read = kestirim_gnss_files::Text::unpack("day.rnx", text.clone().into_bytes());
+    let observations = read.and_then(|text| Observations::parse(&text)).expect("observations");
+    let told = positions(&folder, text.as_bytes());
+    for (format, stream) in
+        [("RTCM", rtcm(&observations.epochs)), ("UBX", ubx(&observations.epochs))]
+    {
+        let found = positions(&folder, &stream);
+        assert_eq!(found.fixes.len(), told.fixes.len());
+        let away = |(a, b): (&kestirim_replay::gnss::Fix, &kestirim_replay::gnss::Fix)| {
+            assert_eq!(a.t, b.t);
+            (a.position - b.position).norm()
+        };
+        let away: Vec<_> = found.fixes.iter().zip(&told.fixes).map(away).collect();
+        let (settled, last) = (&away[120..], away.last().expect("a position"));
+        let most = settled.iter().copied().fold(0.0, f64::max);
+        println!("{format}: last {:.4} mm, most after an hour {:.4} mm", 1e3 * last, 1e3 * most);
+        assert!(*last < 1e-4 && most < 2.5e-4);
+    }
+}
