@@ -6,14 +6,22 @@ use serde::Serialize;
 
 use crate::{Error, Message};
 
-/// The version of the format, in every frame. A receiver reads its own only.
+/// The version of a frame on a line of one sender, in its first byte.
 pub const VERSION: u8 = 1;
 
-/// The longest frame, delimiters included, in bytes.
+/// The version of a frame that says who sends it ([`encode_from`]). A receiver reads both.
+pub const VERSION_OF_FLEETS: u8 = 2;
+
+/// The longest frame of either version, delimiters included, in bytes.
 pub const CAPACITY: usize = cobs::max_encoding_length(CONTENT) + 2 * size_of_val(&DELIMITER);
 
+/// The longest frame of version 1: no stack is taken for what is not sent.
+#[cfg(feature = "embedded-io")]
+pub(crate) const CAPACITY_OF_A_LINE: usize =
+    cobs::max_encoding_length(Envelope::POSTCARD_MAX_SIZE + CHECKSUM) + 2 * size_of_val(&DELIMITER);
+
 /// Bytes of the longest frame before they are stuffed.
-pub(crate) const CONTENT: usize = Envelope::POSTCARD_MAX_SIZE + CHECKSUM;
+pub(crate) const CONTENT: usize = EnvelopeOfFleets::POSTCARD_MAX_SIZE + CHECKSUM;
 
 pub(crate) const CHECKSUM: usize = size_of::<u32>();
 pub(crate) const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
@@ -26,6 +34,27 @@ struct Envelope {
     // Two plain bytes: a varint's length would change with the number.
     sequence: [u8; 2],
     message: Message,
+}
+
+/// The same in a fleet.
+#[derive(Serialize, MaxSize)]
+struct EnvelopeOfFleets {
+    version: u8,
+    device: [u8; 4],
+    boot: [u8; 4],
+    sequence: [u8; 4],
+    message: Message,
+}
+
+/// Who sends a frame, in a fleet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Origin {
+    /// Number of the device; no two have the same.
+    pub device: u32,
+    /// How often it was switched on: one more each time, kept in flash; or anything else that only grows, such as the
+    /// seconds of a clock that goes on.
+    pub boot: u32,
 }
 
 /// Writes a frame into the buffer and answers with the part that is to be sent.
@@ -41,9 +70,36 @@ pub fn encode<'a>(
 ) -> Result<&'a [u8], Error> {
     let envelope =
         Envelope { version: VERSION, sequence: sequence.to_le_bytes(), message: *message };
+    write(&envelope, buffer)
+}
+
+/// Writes a frame that says who sends it, for lines and ports that many devices share.
+///
+/// The sequence number is 0 after each start, and one more each time. Boot and sequence number together only ever grow: a
+/// sender whose number ends counts a boot.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_from<'a>(
+    origin: Origin,
+    message: &Message,
+    sequence: u32,
+    buffer: &'a mut [u8],
+) -> Result<&'a [u8], Error> {
+    let envelope = EnvelopeOfFleets {
+        version: VERSION_OF_FLEETS,
+        device: origin.device.to_le_bytes(),
+        boot: origin.boot.to_le_bytes(),
+        sequence: sequence.to_le_bytes(),
+        message: *message,
+    };
+    write(&envelope, buffer)
+}
+
+fn write<'a>(envelope: &impl Serialize, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
     // Postcard's own COBS flavour indexes its buffer, which links the panic machinery into an image.
     let line = Stuffed::new(buffer)?;
-    postcard::serialize_with_flavor(&envelope, CrcModifier::new(line, CRC.digest()))
+    postcard::serialize_with_flavor(envelope, CrcModifier::new(line, CRC.digest()))
         .map_err(|_| Error::BufferTooShort)
 }
 

@@ -1,17 +1,22 @@
 use cobs::{DecodeResult, DecoderState};
 
 use crate::Message;
-use crate::frame::{CHECKSUM, CONTENT, CRC, VERSION};
+use crate::frame::{CHECKSUM, CONTENT, CRC, Origin, VERSION, VERSION_OF_FLEETS};
 use crate::sequence::{Order, RESUMED_AFTER, Sequence};
 
 /// A message that arrived.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Frame {
-    /// The sender's count of frames.
-    pub sequence: u16,
-    /// Where that number stands among those before.
-    pub order: Order,
+    /// Who sent it; none if the frame does not say.
+    pub origin: Option<Origin>,
+    /// The sender's count of frames, of 16 bits if the frame does not say whose it is.
+    pub sequence: u32,
+    /// Where that number stands among those before it on the line; none of a frame that says who sent it, as a
+    /// line may have any number of those.
+    pub order: Option<Order>,
+    /// CRC-32 of the frame. Of two frames with one number it tells one that came twice from one of another sender.
+    pub checksum: u32,
     /// Content of the frame.
     pub message: Message,
 }
@@ -29,7 +34,7 @@ pub struct Counts {
     /// Frames of another version, or with a message that this receiver does not know.
     pub unknown: u32,
     /// Sequence numbers that are missing between those of the good frames: torn, corrupt or never arrived. One that
-    /// comes late, up to 127 numbers, is not lost.
+    /// comes late, up to 127 numbers, is not lost. Frames that say who sent them are not looked at: they are each device's.
     pub lost: u32,
     /// Good frames whose numbers came before, or do not follow: frames that came twice, or of another sender.
     pub foreign: u32,
@@ -106,18 +111,27 @@ impl Receiver {
             count(&mut self.counts.torn);
             return None;
         };
-        if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
+        let checksum = u32::from_le_bytes(*checksum);
+        if CRC.checksum(checked) != checksum {
             count(&mut self.counts.corrupt);
             return None;
         }
-        let Some((sequence, message)) = read(checked) else {
+        let Some((sender, message)) = read(checked) else {
             count(&mut self.counts.unknown);
             return None;
         };
         count(&mut self.counts.received);
-        let order = self.sequence.take(sequence);
-        self.counts.place(order);
-        Some(Frame { sequence, order, message })
+        Some(match sender {
+            Sender::OfTheLine(sequence) => {
+                let order = self.sequence.take(sequence);
+                self.counts.place(order);
+                let (sequence, order) = (sequence.into(), Some(order));
+                Frame { origin: None, sequence, order, checksum, message }
+            }
+            Sender::Device(origin, sequence) => {
+                Frame { origin: Some(origin), sequence, order: None, checksum, message }
+            }
+        })
     }
 }
 
@@ -136,14 +150,31 @@ impl Counts {
     }
 }
 
-/// Reads a frame whose checksum is right, if this version understands it to the last byte.
-fn read(checked: &[u8]) -> Option<(u16, Message)> {
-    let (&[version, low, high], message) = checked.split_first_chunk()?;
-    if version != VERSION {
-        return None;
-    }
+/// Who sent a frame, and its number.
+enum Sender {
+    OfTheLine(u16),
+    Device(Origin, u32),
+}
+
+/// Reads a frame whose checksum is right, if it is understood to the last byte.
+fn read(checked: &[u8]) -> Option<(Sender, Message)> {
+    let (&version, rest) = checked.split_first()?;
+    let (sender, message) = match version {
+        VERSION => {
+            let (&sequence, message) = rest.split_first_chunk()?;
+            (Sender::OfTheLine(u16::from_le_bytes(sequence)), message)
+        }
+        VERSION_OF_FLEETS => {
+            let (&device, rest) = rest.split_first_chunk()?;
+            let (&boot, rest) = rest.split_first_chunk()?;
+            let (&sequence, message) = rest.split_first_chunk()?;
+            let [device, boot, sequence] = [device, boot, sequence].map(u32::from_le_bytes);
+            (Sender::Device(Origin { device, boot }, sequence), message)
+        }
+        _ => return None,
+    };
     let (message, rest) = postcard::take_from_bytes(message).ok()?;
-    rest.is_empty().then_some((u16::from_le_bytes([low, high]), message))
+    rest.is_empty().then_some((sender, message))
 }
 
 fn count(counter: &mut u32) {

@@ -1,6 +1,7 @@
 use embedded_io::Write;
 
-use crate::{CAPACITY, Message, encode};
+use crate::frame::CAPACITY_OF_A_LINE;
+use crate::{CAPACITY, Message, Origin, encode, encode_from};
 
 /// Sends messages over a serial port and numbers them.
 #[derive(Debug)]
@@ -22,8 +23,46 @@ impl<W: Write> Transmitter<W> {
     pub fn send(&mut self, message: impl Into<Message>) -> Result<(), W::Error> {
         let sequence = self.next;
         self.next = sequence.wrapping_add(1);
-        let mut buffer = [0; CAPACITY];
+        let mut buffer = [0; CAPACITY_OF_A_LINE];
         match encode(&message.into(), sequence, &mut buffer) {
+            Ok(frame) => self.port.write_all(frame),
+            // Cannot be: the capacity is that of the longest message.
+            Err(_) => Ok(()),
+        }
+    }
+
+    /// The port, when nothing more is to be sent.
+    pub fn release(self) -> W {
+        self.port
+    }
+}
+
+/// Sends messages over a port that many devices share, numbers them and says whose they are.
+#[derive(Debug)]
+pub struct DeviceTransmitter<W> {
+    port: W,
+    origin: Origin,
+    next: u32,
+}
+
+impl<W: Write> DeviceTransmitter<W> {
+    /// A device that was just switched on: it begins with number 0.
+    pub const fn new(port: W, origin: Origin) -> Self {
+        Self { port, origin, next: 0 }
+    }
+
+    /// Sends a message. Its number is used up even if it fails, so that the receiver misses it.
+    ///
+    /// # Errors
+    /// The port's.
+    pub fn send(&mut self, message: impl Into<Message>) -> Result<(), W::Error> {
+        let (origin, sequence) = (self.origin, self.next);
+        self.next = sequence.wrapping_add(1);
+        if self.next == 0 {
+            self.origin.boot = origin.boot.saturating_add(1);
+        }
+        let mut buffer = [0; CAPACITY];
+        match encode_from(origin, &message.into(), sequence, &mut buffer) {
             Ok(frame) => self.port.write_all(frame),
             // Cannot be: the capacity is that of the longest message.
             Err(_) => Ok(()),

@@ -2,7 +2,8 @@
 
 use kestirim_telemetry::{
     CAPACITY, Counts, Error, Flight, Footprint, Frame, GlobalPosition, Health, Imu, Message, Order,
-    PathLoss, Position, Range, Receiver, State, VERSION, encode,
+    Origin, PathLoss, Position, Range, Receiver, State, VERSION, VERSION_OF_FLEETS, encode,
+    encode_from,
 };
 use proptest::array::{uniform2, uniform3, uniform4};
 use proptest::collection::vec;
@@ -60,6 +61,12 @@ fn frame(message: &Message, sequence: u16) -> Vec<u8> {
     encode(message, sequence, &mut [0; CAPACITY]).expect("the capacity is enough").to_vec()
 }
 
+fn of_device(device: u32, boot: u32, sequence: u32, message: &Message) -> Vec<u8> {
+    let origin = Origin { device, boot };
+    let frame = encode_from(origin, message, sequence, &mut [0; CAPACITY]).map(<[u8]>::to_vec);
+    frame.expect("the capacity is enough")
+}
+
 /// The messages that a receiver finds in pieces of a stream, and its counts.
 fn receive(stream: &[u8], piece: usize) -> (Vec<Frame>, Counts) {
     let mut receiver = Receiver::new();
@@ -82,9 +89,11 @@ fn vouched(content: &[u8]) -> Vec<u8> {
 #[test]
 fn the_longest_frame_fills_the_capacity() {
     let longest = GlobalPosition { time_us: u64::MAX, position: [1.0; 3], sigma: Some(1.0) };
-    assert_eq!(frame(&longest.into(), u16::MAX).len(), CAPACITY);
-    assert_eq!(CAPACITY, 50, "the README counts the same");
-    assert_eq!(frame(&health(0), 0).len(), CAPACITY - 35, "the shortest message has 5 bytes");
+    let longest = longest.into();
+    assert_eq!(of_device(u32::MAX, u32::MAX, u32::MAX, &longest).len(), CAPACITY);
+    assert_eq!(CAPACITY, 60, "the README counts the same");
+    assert_eq!(frame(&longest, u16::MAX).len(), CAPACITY - 10, "of version 1");
+    assert_eq!(frame(&health(0), 0).len(), CAPACITY - 45, "the shortest message has 5 bytes");
 }
 
 #[test]
@@ -93,6 +102,33 @@ fn a_frame_is_laid_out_as_documented() {
     let mut content = vec![VERSION, 0x34, 0x12];
     content.extend([1, 0xAC, 0x02, 2, 0x00, 0x00, 0x80, 0x3F]);
     assert_eq!(frame(&range.into(), 0x1234), vouched(&content));
+    let mut content = vec![VERSION_OF_FLEETS, 4, 3, 2, 1, 5, 0, 0, 0, 0x34, 0x12, 0, 0];
+    content.extend([1, 0xAC, 0x02, 2, 0x00, 0x00, 0x80, 0x3F]);
+    assert_eq!(of_device(0x0102_0304, 5, 0x1234, &range.into()), vouched(&content));
+}
+
+#[test]
+fn devices_share_a_line_with_a_sender_that_does_not_say_who_it_is() {
+    let stream: Vec<u8> = (0..100_u32)
+        .flat_map(|n| {
+            let device = |device: u32| of_device(device, 7, n * device, &health(n));
+            [device(1), frame(&health(n), n as u16), device(1000)].concat()
+        })
+        .collect();
+    let (frames, counts) = receive(&stream, 11);
+    assert_eq!(counts, Counts { received: 300, ..Counts::default() });
+    for (place, frame) in frames.iter().enumerate() {
+        let n = place as u32 / 3;
+        let expected = match place % 3 {
+            0 => (Some(Origin { device: 1, boot: 7 }), n, None),
+            1 => (None, n, Some(Order::Newest { missing: 0 })),
+            _ => (Some(Origin { device: 1000, boot: 7 }), 1000 * n, None),
+        };
+        assert_eq!((frame.origin, frame.sequence, frame.order), expected);
+        assert_eq!(frame.message, health(n));
+    }
+    let [a, b] = [1, 2].map(|n| receive(&of_device(1, 1, 5, &health(n)), 1).0[0].checksum);
+    assert_ne!(a, b, "of another sender with the same number");
 }
 
 #[test]
@@ -108,20 +144,24 @@ fn missing_numbers_are_counted() {
     let numbers = [65_533_u16, 65_535, 0, 3, 3, 1];
     let stream: Vec<u8> = numbers.iter().flat_map(|&number| frame(&health(0), number)).collect();
     let (frames, counts) = receive(&stream, 7);
-    assert_eq!(frames.iter().map(|frame| frame.sequence).collect::<Vec<_>>(), numbers);
+    assert_eq!(
+        frames.iter().map(|frame| frame.sequence).collect::<Vec<_>>(),
+        numbers.map(u32::from)
+    );
     // One before 65535, two before 3; the 3 comes twice, and the 1 late.
     assert_eq!(counts, Counts { received: 6, lost: 2, foreign: 1, ..Counts::default() });
 }
 
 #[test]
 fn what_is_not_known_is_counted_as_such() {
-    let mut other_version = vec![VERSION + 1, 0, 0];
+    let mut other_version = vec![VERSION_OF_FLEETS + 1, 0, 0];
     other_version.extend([8, 0, 0, 0, 0]);
     let other_message = [VERSION, 0, 0, 200, 0];
     let too_long_for_its_kind = [VERSION, 0, 0, 8, 0, 0, 0, 0, 0];
-    let stream = [&other_version[..], &other_message, &too_long_for_its_kind].map(vouched).concat();
-    let (frames, counts) = receive(&stream, 1);
-    assert_eq!((frames.len(), counts), (0, Counts { unknown: 3, ..Counts::default() }));
+    let without_number = [VERSION_OF_FLEETS, 0, 0, 0, 0, 0, 0, 0, 0, 8, 0, 0];
+    let stream = [&other_version[..], &other_message, &too_long_for_its_kind, &without_number];
+    let (frames, counts) = receive(&stream.map(vouched).concat(), 1);
+    assert_eq!((frames.len(), counts), (0, Counts { unknown: 4, ..Counts::default() }));
 }
 
 proptest! {
@@ -131,16 +171,14 @@ proptest! {
         let stream: Vec<u8> =
             sent.iter().enumerate().flat_map(|(i, message)| frame(message, number(i))).collect();
         let (frames, counts) = receive(&stream, piece);
-        let expected: Vec<Frame> = sent
+        let order = Some(Order::Newest { missing: 0 });
+        let expected: Vec<_> = sent
             .iter()
             .enumerate()
-            .map(|(i, &message)| Frame {
-                sequence: number(i),
-                order: Order::Newest { missing: 0 },
-                message,
-            })
+            .map(|(i, &message)| (None, u32::from(number(i)), order, message))
             .collect();
-        prop_assert_eq!(frames, expected);
+        let frames = frames.iter().map(|frame| (frame.origin, frame.sequence, frame.order, frame.message));
+        prop_assert_eq!(frames.collect::<Vec<_>>(), expected);
         prop_assert_eq!(counts, Counts { received: sent.len() as u32, ..Counts::default() });
     }
 
@@ -213,4 +251,19 @@ fn a_transmitter_numbers_its_frames() {
     let (frames, counts) = receive(&bytes[..bytes.len() - unused], 10);
     assert_eq!(frames.iter().map(|frame| frame.sequence).collect::<Vec<_>>(), [0, 1, 2]);
     assert_eq!((counts.received, counts.lost), (3, 0));
+}
+
+#[cfg(feature = "embedded-io")]
+#[test]
+fn a_devices_transmitter_numbers_its_frames_and_says_whose_they_are() {
+    let mut bytes = [0; 3 * CAPACITY];
+    let origin = Origin { device: 9, boot: 3 };
+    let mut transmitter = kestirim_telemetry::DeviceTransmitter::new(&mut bytes[..], origin);
+    for number in 0..3 {
+        transmitter.send(health(number)).expect("the slice is long enough");
+    }
+    let unused = transmitter.release().len();
+    let (frames, _) = receive(&bytes[..bytes.len() - unused], 10);
+    let said = frames.iter().map(|frame| (frame.origin, frame.sequence)).collect::<Vec<_>>();
+    assert_eq!(said, [0, 1, 2].map(|number| (Some(origin), number)));
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_telemetry::Receiver;
+use kestirim_telemetry::{Order, Receiver};
 
 use super::feed::Feed;
 use super::order::Sorter;
@@ -79,7 +79,8 @@ impl Decoder {
         // Those beyond are not even asked for.
         let wanted = self.most.saturating_sub(self.receiver.counts().received);
         for frame in self.receiver.frames(bytes).take(wanted as usize) {
-            self.sorter.take(frame, |message| self.feed.take(message, &mut state))?;
+            let order = frame.order.unwrap_or(Order::Newest { missing: 0 });
+            self.sorter.take(frame, order, |message| self.feed.take(message, &mut state))?;
         }
         Ok(self.receiver.counts().received < self.most)
     }

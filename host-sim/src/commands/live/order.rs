@@ -39,13 +39,14 @@ impl Default for Sorter {
 }
 
 impl Sorter {
-    /// Takes a frame in; what is due thereby goes to `sink`.
+    /// Takes a frame in that stands there among those before; what is due thereby goes to `sink`.
     pub(super) fn take<E>(
         &mut self,
         frame: Frame,
+        order: Order,
         mut sink: impl FnMut(&Message) -> Result<(), E>,
     ) -> Result<(), E> {
-        match frame.order {
+        match order {
             Order::Newest { missing } => {
                 self.leave_out();
                 self.newest += 1 + u64::from(missing);
@@ -115,7 +116,7 @@ impl Sorter {
         self.newest = self.due + u64::from(u16::MAX);
         let first = self.newest;
         for frame in std::mem::take(&mut self.foreign).into_iter().chain([last]) {
-            let behind = last.sequence.wrapping_sub(frame.sequence);
+            let behind = (last.sequence as u16).wrapping_sub(frame.sequence as u16);
             self.waiting.insert(first.saturating_sub(behind.into()), frame.message);
         }
         self.due = self.waiting.first_key_value().map_or(self.due, |(&number, _)| number);
@@ -162,7 +163,7 @@ mod tests {
             let mut buffer = [0; CAPACITY];
             let bytes = encode(&message.into(), number, &mut buffer).expect("it is long enough");
             for frame in receiver.frames(bytes) {
-                sorter.take(frame, &mut sink).unwrap();
+                sorter.take(frame, frame.order.expect("of a line"), &mut sink).unwrap();
             }
         }
         sorter.finish(&mut sink).unwrap();

@@ -4,8 +4,8 @@ use core::convert::Infallible;
 
 use embedded_io::{ErrorType, Write};
 use kestirim_telemetry::{
-    CAPACITY, Flight, Frames, GlobalPosition, Health, Message, Position, Receiver, Transmitter,
-    encode,
+    CAPACITY, DeviceTransmitter, Flight, Frames, GlobalPosition, Health, Message, Origin, Position,
+    Receiver, Transmitter, encode, encode_from,
 };
 
 use super::values::{any, call_each, keep, maybe, number, numbers, one_of, rounds, slice, whole};
@@ -45,12 +45,17 @@ fn message() -> Message {
     ])
 }
 
+fn origin() -> Origin {
+    Origin { device: whole(), boot: whole() }
+}
+
 fn frames() {
     let mut receivers = any([Receiver::new(), <Receiver as Default>::default()]);
     for receiver in &mut receivers {
         for _ in 0..rounds() {
             let mut buffer = [whole(); CAPACITY];
             keep(encode(&message(), whole(), any(&mut buffer)).is_ok());
+            keep(encode_from(origin(), &message(), whole(), any(&mut buffer)).is_ok());
             keep(Message::measured_us(&message()));
             keep(Receiver::push(receiver, whole()));
             let mut frames = any(Receiver::frames(receiver, slice(&buffer)));
@@ -67,6 +72,11 @@ fn transmitters() {
         keep(Transmitter::send(&mut transmitter, message()));
     }
     keep(Transmitter::release(transmitter).flush());
+    let mut transmitter = any(DeviceTransmitter::new(Port, origin()));
+    for _ in 0..rounds() {
+        keep(DeviceTransmitter::send(&mut transmitter, message()));
+    }
+    keep(DeviceTransmitter::release(transmitter).flush());
 }
 
 /// Calls it all.

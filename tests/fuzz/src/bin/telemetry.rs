@@ -1,7 +1,7 @@
-//! Any bytes to a receiver: as many frames as it counts, and a frame among them arrives.
+//! Any bytes to a receiver: as many frames as it counts, and a frame of either version among them arrives.
 #![no_main]
 
-use kestirim_telemetry::{CAPACITY, Health, Receiver, encode};
+use kestirim_telemetry::{CAPACITY, Health, Origin, Receiver, encode, encode_from};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -11,4 +11,8 @@ fuzz_target!(|bytes: &[u8]| {
     let mut buffer = [0; CAPACITY];
     let frame = encode(&sent, 7, &mut buffer).expect("it is long enough");
     assert_eq!(receiver.frames(frame).last().map(|frame| frame.message), Some(sent));
+    let origin = Origin { device: 1, boot: 2 };
+    let frame = encode_from(origin, &sent, 7, &mut buffer).expect("it is long enough");
+    let said = receiver.frames(frame).last().map(|frame| (frame.origin, frame.message));
+    assert_eq!(said, Some((Some(origin), sent)));
 });
