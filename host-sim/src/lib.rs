@@ -10,6 +10,7 @@
 pub mod commands;
 mod error;
 pub mod mcap;
+mod numbers;
 pub mod output;
 pub mod report;
 pub mod stream;

@@ -121,6 +121,13 @@ impl Settings {
         settings
     }
 
+    /// With one more that can be set.
+    #[must_use]
+    pub fn and(mut self, setting: Setting) -> Self {
+        self.table = self.table.iter().cloned().chain([setting]).collect();
+        self
+    }
+
     /// The table.
     pub fn table(&self) -> &[Setting] {
         &self.table

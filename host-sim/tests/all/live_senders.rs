@@ -15,7 +15,7 @@ use crate::program::{Desk, host_sim, json};
 use crate::sender::{frame, length, wait_for};
 
 /// A foot's samples.
-fn walk(seed: u64) -> Vec<Imu> {
+pub(crate) fn walk(seed: u64) -> Vec<Imu> {
     let mut rng = stream(seed, 0);
     let ideal = Scenario::draw(&mut rng).ideal_imu(100.0);
     let narrow = |vector: [f64; 3]| vector.map(|number| number as f32);
@@ -33,12 +33,18 @@ fn numbered(walk: &[Imu], first: usize) -> Vec<Vec<u8>> {
 }
 
 /// What the program makes of a recording.
-fn played(desk: &Desk, frames: &[Vec<u8>]) -> Value {
-    let file = desk.file("line.frames", frames.concat());
-    json(&host_sim(&["live", "--headless", "--file", &file, "--system", "pedestrian", "--json"]))
+pub(crate) fn played(desk: &Desk, frames: &[Vec<u8>]) -> Value {
+    played_with(desk, frames, &[])
 }
 
-fn warns(report: &Value, of: &str) -> bool {
+/// The same with more options.
+pub(crate) fn played_with(desk: &Desk, frames: &[Vec<u8>], more: &[&str]) -> Value {
+    let file = desk.file("line.frames", frames.concat());
+    let options = ["live", "--headless", "--file", &file, "--system", "pedestrian", "--json"];
+    json(&host_sim(&[&options, more].concat()))
+}
+
+pub(crate) fn warns(report: &Value, of: &str) -> bool {
     report["warnings"].as_array().expect("a list").iter().any(|it| it.to_string().contains(of))
 }
 

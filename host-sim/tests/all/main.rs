@@ -20,6 +20,7 @@ mod gnss_cli;
 mod gnss_recorded_cli;
 mod gnss_refusals_cli;
 mod live_cli;
+mod live_devices;
 mod live_senders;
 mod live_systems;
 mod outputs_cli;

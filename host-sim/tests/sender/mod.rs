@@ -9,7 +9,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use kestirim_telemetry::{CAPACITY, Counts, Message, Receiver, encode};
+use kestirim_telemetry::{CAPACITY, Counts, Message, Origin, Receiver, encode, encode_from};
 
 /// Bytes on the way: far less than any kernel keeps for a socket.
 const ON_THE_WAY: u64 = 32_000;
@@ -20,6 +20,18 @@ const FOREVER: Duration = Duration::from_secs(300);
 pub(crate) fn frame(message: impl Into<Message>, sequence: usize) -> Vec<u8> {
     let mut buffer = [0; CAPACITY];
     encode(&message.into(), sequence as u16, &mut buffer).expect("the capacity is enough").to_vec()
+}
+
+/// A frame of a device.
+pub(crate) fn frame_of(
+    device: u32,
+    boot: u32,
+    message: impl Into<Message>,
+    sequence: usize,
+) -> Vec<u8> {
+    let (origin, mut buffer) = (Origin { device, boot }, [0; CAPACITY]);
+    let frame = encode_from(origin, &message.into(), sequence as u32, &mut buffer);
+    frame.expect("the capacity is enough").to_vec()
 }
 
 /// Frames of all messages, numbered from 0.

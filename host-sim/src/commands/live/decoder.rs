@@ -1,36 +1,46 @@
-//! From bytes to the estimator and the state.
+//! From bytes to the estimators and the state.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_telemetry::{Order, Receiver};
+use kestirim_telemetry::{Frame, Origin, Receiver};
 
-use super::feed::Feed;
-use super::order::Sorter;
+use super::device::Device;
+use super::options::Following;
 use super::state::State;
 use crate::Error;
 use crate::system::{Answer, Plan};
 
-/// Makes messages of bytes, and tells how many.
+/// More devices are not followed: a sender may invent them.
+const MOST: usize = 4096;
+
+/// Makes messages of bytes, and tells how many. Each device that says who it is has an estimator of its own, and so have
+/// together those that do not say it.
 #[derive(Debug)]
 pub(super) struct Decoder {
     receiver: Receiver,
-    sorter: Sorter,
-    feed: Feed,
+    devices: BTreeMap<Option<u32>, Device>,
+    plan: Option<Arc<dyn Plan>>,
+    /// Which is shown in detail; the first that is heard, if nobody says it.
+    shown: Option<Option<u32>>,
     state: Arc<Mutex<State>>,
     most: u32,
 }
 
 impl Decoder {
-    /// With a fresh estimator. After the `most` frames no more is wanted.
+    /// With fresh estimators. After the `most` frames no more is wanted.
     pub(super) fn new(
-        plan: Option<Arc<dyn Plan>>,
+        following: &Following,
         state: Arc<Mutex<State>>,
         most: Option<u32>,
     ) -> Result<Self, Error> {
+        // What will not do is known before anything comes.
+        following.plan.as_deref().map(Plan::build).transpose()?;
         Ok(Self {
             receiver: Receiver::new(),
-            sorter: Sorter::default(),
-            feed: Feed::new(plan)?,
+            devices: BTreeMap::new(),
+            plan: following.plan.clone(),
+            shown: following.device.map(Some),
             state,
             most: most.unwrap_or(u32::MAX),
         })
@@ -44,8 +54,7 @@ impl Decoder {
     /// Takes in what was read; whether more is wanted.
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<bool, Error> {
         let more = self.decode(bytes)?;
-        // Nobody who looks on waits for what takes long.
-        self.feed.settle();
+        self.settle();
         self.show(bytes.len());
         Ok(more)
     }
@@ -54,40 +63,76 @@ impl Decoder {
     pub(super) fn finish(&mut self) -> Result<(), Error> {
         // A frame that only lacks its end is whole; any other piece of one is torn.
         self.decode(&[0])?;
-        {
-            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            self.sorter.finish(|message| self.feed.take(message, &mut state))?;
-        }
-        let finished = self.feed.finish();
+        self.each(Device::finish)?;
+        let finished: Result<(), Error> = self.devices.values_mut().try_for_each(Device::end);
         self.show(0);
         finished
     }
 
     /// Nothing comes for now.
     pub(super) fn pause(&mut self) -> Result<(), Error> {
-        {
-            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            self.sorter.release_all(|message| self.feed.take(message, &mut state))?;
-        }
-        self.feed.settle();
+        self.each(Device::pause)?;
+        self.settle();
         self.show(0);
         Ok(())
     }
 
-    fn decode(&mut self, bytes: &[u8]) -> Result<bool, Error> {
+    fn each(
+        &mut self,
+        mut act: impl FnMut(&mut Device, &mut State) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        self.devices.values_mut().try_for_each(|device| act(device, &mut state))
+    }
+
+    /// Nobody who looks on waits for what takes long.
+    fn settle(&mut self) {
+        self.devices.values_mut().filter(|device| device.is_news).for_each(Device::settle);
+    }
+
+    fn decode(&mut self, bytes: &[u8]) -> Result<bool, Error> {
+        let shared = Arc::clone(&self.state);
+        let mut state = shared.lock().unwrap_or_else(PoisonError::into_inner);
         // Those beyond are not even asked for.
-        let wanted = self.most.saturating_sub(self.receiver.counts().received);
-        for frame in self.receiver.frames(bytes).take(wanted as usize) {
-            let order = frame.order.unwrap_or(Order::Newest { missing: 0 });
-            self.sorter.take(frame, order, |message| self.feed.take(message, &mut state))?;
+        let wanted = self.most.saturating_sub(self.receiver.counts().received) as usize;
+        for frame in self.receiver.frames(bytes).take(wanted) {
+            let known = (&mut self.devices, &mut self.shown, &self.plan);
+            hear(known, frame, &mut state)?;
         }
         Ok(self.receiver.counts().received < self.most)
     }
 
     fn show(&mut self, bytes: usize) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.count(bytes, self.receiver.counts(), self.sorter.left_out());
-        self.feed.show(&mut state);
+        let mut counts = self.receiver.counts();
+        let lost = self.devices.values().map(Device::lost);
+        counts.lost = lost.fold(counts.lost, u32::saturating_add);
+        let left_out = self.devices.values().map(Device::left_out).sum();
+        state.count(bytes, counts, left_out);
+        state.shown = self.shown.flatten();
+        for (number, device) in self.devices.iter_mut().filter(|(_, device)| device.is_news) {
+            let row = device.show(&mut state);
+            if let Some(number) = number {
+                state.devices.insert(*number, row);
+            }
+        }
     }
+}
+
+/// The parts of a decoder that a frame changes.
+type Known<'a> =
+    (&'a mut BTreeMap<Option<u32>, Device>, &'a mut Option<Option<u32>>, &'a Option<Arc<dyn Plan>>);
+
+/// Takes a frame to its device.
+fn hear((devices, shown, plan): Known<'_>, frame: Frame, state: &mut State) -> Result<(), Error> {
+    let number = frame.origin.map(|Origin { device, .. }| device);
+    let is_shown = *shown.get_or_insert(number) == number;
+    if !devices.contains_key(&number) {
+        if devices.len() >= MOST {
+            state.beyond += 1;
+            return Ok(());
+        }
+        devices.insert(number, Device::new(plan.clone(), is_shown)?);
+    }
+    devices.get_mut(&number).map_or(Ok(()), |device| device.take(frame, state))
 }

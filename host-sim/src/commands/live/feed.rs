@@ -33,13 +33,24 @@ impl Feed {
         let outcome = match self.clock.judge(time_us) {
             Verdict::Odd => Outcome::Refused,
             Verdict::Anew => {
-                state.restart();
-                self.estimator = self.plan.as_deref().map(Plan::build).transpose()?;
+                self.rebuild(state)?;
                 self.measure(message)
             }
             Verdict::Fits => self.measure(message),
         };
         state.measure(time_us, message, outcome, self.estimator.as_deref());
+        Ok(())
+    }
+
+    /// The sender says that it was switched on again.
+    pub(super) fn begin_anew(&mut self, state: &mut State) -> Result<(), Error> {
+        self.clock = Clock::default();
+        self.rebuild(state)
+    }
+
+    fn rebuild(&mut self, state: &mut State) -> Result<(), Error> {
+        state.restart();
+        self.estimator = self.plan.as_deref().map(Plan::build).transpose()?;
         Ok(())
     }
 

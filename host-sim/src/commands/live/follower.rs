@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use super::Stopper;
 use super::decoder::Decoder;
+use super::options::Following;
 use super::state::State;
 use super::tape::{Piece, Reel};
 use crate::Error;
-use crate::system::Plan;
 
 /// Bytes that are read at once: about a millisecond's work.
 pub(super) const BATCH: usize = 1 << 14;
@@ -24,7 +24,7 @@ pub(super) struct Follower {
     pub(super) reel: Reel,
     /// The file that is being recorded.
     pub(super) disk: Option<File>,
-    pub(super) plan: Option<Arc<dyn Plan>>,
+    pub(super) following: Following,
     pub(super) state: Arc<Mutex<State>>,
     /// Frames that are enough.
     pub(super) most: Option<u32>,
@@ -44,7 +44,7 @@ impl Follower {
 
     fn follow(&mut self) -> Result<(), Error> {
         // An estimator stays with its thread.
-        let mut decoder = Decoder::new(self.plan.clone(), Arc::clone(&self.state), self.most)?;
+        let mut decoder = Decoder::new(&self.following, Arc::clone(&self.state), self.most)?;
         let mut buffer = vec![0; BATCH];
         let mut synced = Instant::now();
         let mut is_dirty = false;

@@ -1,6 +1,6 @@
 //! `host-sim live`: telemetry of a sender that is switched on, followed while it comes.
 //!
-//! `source` → `recorder` → file → `tape` → `follower` → `order` → `feed` → [`Online`](crate::system::Online) → `state` →
+//! `source` → `recorder` → file → `tape` → `follower` → `decoder` → `device` (`order` → `feed`) → [`Online`](crate::system::Online) → `state` →
 //! `picture`.
 //!
 //! One thread waits for bytes and does nothing but write them to the recording; the other reads them there,
@@ -10,6 +10,8 @@
 
 mod clock;
 mod decoder;
+mod device;
+mod devices;
 mod feed;
 mod follower;
 mod listener;
@@ -37,12 +39,13 @@ use std::time::{Duration, Instant};
 
 use clap::ArgMatches;
 
+pub use self::device::Row;
 use self::follower::Follower;
 use self::listener::Listener;
 use self::options::{Following, Stream};
 pub(super) use self::options::{command, complaint};
 use self::recorder::Recorder;
-pub use self::report::{Counts, Report};
+pub use self::report::{Counts, DeviceRow, Report};
 use self::source::Source;
 use self::state::State;
 use self::tape::{Reel, Tape};
@@ -147,8 +150,7 @@ impl Live {
             recording: PathBuf::new(),
         };
         // What will not do is known before anything is recorded.
-        let plan = following.plan.clone();
-        plan.as_deref().map(Plan::build).transpose()?;
+        following.plan.as_deref().map(Plan::build).transpose()?;
         let (reel, disk) = match &options.file {
             Some(path) => {
                 live.source = printable_path(path);
@@ -159,8 +161,8 @@ impl Live {
             None => live.listen(options, ignored)?,
         };
         let (state, most) = (Arc::clone(&live.state), options.frames);
-        let path = live.recording.clone();
-        let follower = Follower { reel, disk, plan, state, most, stop, path };
+        let (path, following) = (live.recording.clone(), following.clone());
+        let follower = Follower { reel, disk, following, state, most, stop, path };
         live.follower = Some(thread(|| follower.run())?);
         Ok(live)
     }

@@ -10,7 +10,7 @@ use clap::{Arg, ArgMatches, Args, Command};
 
 use crate::commands::arguments::{self, find};
 use crate::commands::serve;
-use crate::system::{AnySystem, Files, Panel, Plan, Setting, Settings};
+use crate::system::{AnySystem, Files, Panel, Plan, Setting, SettingValue, Settings};
 use crate::systems::ALL;
 use crate::{Error, output};
 
@@ -22,6 +22,14 @@ const CALIBRATE: &str = "calibrate";
 
 /// Where senders find this program if nobody says otherwise: on the same machine.
 const DEFAULT_ADDRESS: &str = "127.0.0.1:5775";
+
+/// The option, and the page's control, that chooses a device.
+const DEVICE: &str = "device";
+const DEVICE_HELP: &str = "number of the device that is shown in detail";
+
+fn is_number(text: &str) -> Result<(), String> {
+    text.parse::<u32>().map(|_| ()).map_err(|_| "expected a device's number".to_owned())
+}
 
 /// Options of a stream that have nothing to do with who sends it.
 #[derive(Debug, Clone, Args)]
@@ -42,6 +50,9 @@ pub struct Stream {
     /// [default: target/live/DATE-TIME.frames]
     #[arg(long, value_name = "NEW.frames")]
     pub record: Option<PathBuf>,
+    /// Which device is shown in detail, of several that say who they are [default: the first that is heard]
+    #[arg(long, value_name = "NUMBER")]
+    pub device: Option<u32>,
     /// End after this many seconds
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..))]
     pub seconds: Option<u64>,
@@ -75,6 +86,8 @@ pub struct Following {
     pub panels: &'static [Panel],
     /// What makes its estimator.
     pub plan: Option<Arc<dyn Plan>>,
+    /// Which device is shown in detail; none if that is the first one.
+    pub device: Option<u32>,
     /// Of what it is made.
     origin: Option<Origin>,
 }
@@ -89,7 +102,8 @@ struct Origin {
 
 impl Following {
     /// Nobody's estimator.
-    pub const NONE: Self = Self { name: NONE, panels: &Panel::ALL, plan: None, origin: None };
+    pub const NONE: Self =
+        Self { name: NONE, panels: &Panel::ALL, plan: None, device: None, origin: None };
 
     /// A system's.
     ///
@@ -105,12 +119,26 @@ impl Following {
         let plan =
             plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream (--system)")))?;
         let origin = Origin { system, settings: settings.clone(), files: files.clone() };
-        Ok(Self { name, panels: system.panels(), plan: Some(plan), origin: Some(origin) })
+        Ok(Self {
+            name,
+            panels: system.panels(),
+            plan: Some(plan),
+            device: None,
+            origin: Some(origin),
+        })
     }
 
-    /// What can be set, and what is.
-    pub(super) fn settings(&self) -> Settings {
-        self.origin.as_ref().map_or_else(|| Settings::new([]), |origin| origin.settings.clone())
+    /// What can be set, and what is; with several devices which one is shown, too.
+    pub(super) fn settings(&self, has_devices: bool) -> Settings {
+        let settings = self.origin.as_ref().map(|origin| origin.settings.clone());
+        let mut settings = settings.unwrap_or_else(|| Settings::new([]));
+        if has_devices {
+            settings = settings.and(Setting::text(DEVICE, DEVICE_HELP, "NUMBER", is_number));
+        }
+        if let Some(device) = self.device.filter(|_| has_devices) {
+            settings.give(vec![(DEVICE, SettingValue::Text(device.to_string()))]);
+        }
+        settings
     }
 
     /// The same with other settings.
@@ -118,9 +146,16 @@ impl Following {
     /// # Errors
     /// As [`Self::of`]; [`Error::Usage`] for settings that would change nothing.
     pub(super) fn with(&self, settings: &Settings) -> Result<Self, Error> {
-        let Some(Origin { system, files, .. }) = &self.origin else { return Ok(self.clone()) };
-        system.refuse_idle(settings)?;
-        Self::of(*system, settings, files)
+        let device = settings.text(DEVICE).and_then(|number| number.parse().ok()).or(self.device);
+        let settings = settings.without(|name| name == DEVICE);
+        let following = match &self.origin {
+            Some(Origin { system, files, .. }) => {
+                system.refuse_idle(&settings)?;
+                Self::of(*system, &settings, files)?
+            }
+            None => self.clone(),
+        };
+        Ok(Self { device, ..following })
     }
 }
 
@@ -140,14 +175,33 @@ pub(in crate::commands) fn command(arguments: &[OsString]) -> Command {
                 .default_value(NONE),
         );
     let Some(system) = named(arguments) else { return command.after_help(options_of_systems()) };
+    command
+        .next_help_heading(format!("Of --system {}", system.name()))
+        .args(followed(system))
+        .args(watches(system).then(calibrate))
+}
+
+/// Files and settings of a system, as far as they act on a stream.
+pub(in crate::commands) fn followed(system: &dyn AnySystem) -> Vec<Arg> {
     let settings = live_settings(system);
     let files = system.files().iter().filter(|field| field.in_live);
     let is_file = |name: &str| system.files().iter().any(|it| it.in_live && it.name == name);
-    command
-        .next_help_heading(format!("Of --system {}", system.name()))
-        .args(files.map(|field| field.argument(&settings)))
-        .args(settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments))
-        .args(watches(system).then(calibrate))
+    let others = settings.iter().filter(|it| !is_file(it.name)).flat_map(Setting::arguments);
+    files.map(|field| field.argument(&settings)).chain(others).collect()
+}
+
+/// What a command line gives of them.
+///
+/// # Errors
+/// Whatever is wrong with it.
+pub(in crate::commands) fn given(
+    system: &dyn AnySystem,
+    matches: &ArgMatches,
+) -> Result<(Settings, Files), Error> {
+    let mut settings = Settings::matched(live_settings(system), matches);
+    let files = Files::matched(system.files(), matches, &mut settings)?;
+    system.refuse_idle(&settings)?;
+    Ok((settings, files))
 }
 
 /// Whether a calibration of the system can be looked at while it is made.
@@ -184,10 +238,9 @@ fn options_of_systems() -> String {
 pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
     let stream = arguments::read::<Stream>(matches)?;
     let system = matches.get_one::<String>("system").and_then(|name| find(name));
-    let Some(system) = system else { return Ok((stream, Following::NONE)) };
-    let mut settings = Settings::matched(live_settings(system), matches);
-    let files = Files::matched(system.files(), matches, &mut settings)?;
-    system.refuse_idle(&settings)?;
+    let device = stream.device;
+    let Some(system) = system else { return Ok((stream, Following { device, ..Following::NONE })) };
+    let (settings, files) = given(system, matches)?;
     if let Ok(Some(to)) = matches.try_get_one::<PathBuf>(CALIBRATE) {
         let has_file = system.files().iter().any(|field| files.one(field.name).is_some());
         if has_file || !settings.arguments().is_empty() {
@@ -197,9 +250,9 @@ pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
         output::refuse_overwriting("--calibrate", Some(to), stream.file.as_ref())?;
         let (name, panels) = (system.name(), system.panels());
         let plan = system.calibration().and_then(|it| it.watch(to));
-        return Ok((stream, Following { name, panels, plan, origin: None }));
+        return Ok((stream, Following { name, panels, plan, device, origin: None }));
     }
-    Ok((stream, Following::of(system, &settings, &files)?))
+    Ok((stream, Following { device, ..Following::of(system, &settings, &files)? }))
 }
 
 /// A complaint about an option that another system has says so.
@@ -219,7 +272,8 @@ pub(in crate::commands) fn complaint(error: &clap::Error) -> Option<String> {
     (!systems.is_empty()).then(|| format!("--{name} is for --system {}", systems.join(" or ")))
 }
 
-fn followers() -> impl Iterator<Item = &'static dyn AnySystem> {
+/// Systems that follow a stream.
+pub(in crate::commands) fn followers() -> impl Iterator<Item = &'static dyn AnySystem> {
     ALL.iter().copied().filter(|system| !system.panels().is_empty())
 }
 

@@ -17,7 +17,7 @@ const SENDERS: Colour = Colour::Other(3);
 impl State {
     /// Numbers with their units, by name.
     pub(super) fn all_facts(&self) -> Vec<(String, String)> {
-        let counts = &self.counts;
+        let counts = self.totals();
         let mut facts = vec![
             ("frames received", counts.received.to_string()),
             ("lost on the way", counts.lost.to_string()),
@@ -28,6 +28,12 @@ impl State {
             ("measurements taken in", counts.taken.to_string()),
             ("refused", counts.refused.to_string()),
         ];
+        if !self.devices.is_empty() {
+            facts.push(("devices", self.devices.len().to_string()));
+        }
+        if let Some(shown) = self.shown {
+            facts.push(("shown in detail", format!("device {shown}")));
+        }
         if let Some(time_us) = self.time_us {
             facts.push(("sender's time", format!("{:.1} s", time_us as f64 * 1e-6)));
         }

@@ -1,10 +1,12 @@
 //! What is said at the end.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::device::Row;
 use crate::output;
 use crate::text::printable_path;
 
@@ -33,6 +35,26 @@ pub struct Counts {
     pub restarts: u32,
 }
 
+/// A device that says who it is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DeviceRow {
+    /// Its number.
+    pub device: u32,
+    /// What became of it.
+    #[serde(flatten)]
+    pub row: Row,
+}
+
+impl DeviceRow {
+    /// All, by their numbers.
+    pub(super) fn all(devices: &BTreeMap<u32, Row>) -> Vec<Self> {
+        devices.iter().map(|(&device, &row)| Self { device, row }).collect()
+    }
+}
+
+/// Devices that the terminal shows.
+const SHOWN: usize = 20;
+
 /// What `host-sim live` prints at its end.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
@@ -44,6 +66,9 @@ pub struct Report {
     pub recording: PathBuf,
     /// What became of it.
     pub counts: Counts,
+    /// Those that say who they are; the rest is of the one that is shown in detail.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub devices: Vec<DeviceRow>,
     /// Where the estimator ended, m.
     pub position: Option<[f64; 3]>,
     /// Of an aeroplane: angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch (rad) at its end.
@@ -82,6 +107,33 @@ impl fmt::Display for Report {
         if let Some(length) = self.path_length_m {
             row("path length", format!("{length:.2} m"));
         }
-        table.fmt(f)
+        table.fmt(f)?;
+        if self.devices.is_empty() { Ok(()) } else { self.devices(f) }
+    }
+}
+
+impl Report {
+    fn devices(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = output::table();
+        table.set_header([
+            "device",
+            "boot",
+            "frames",
+            "lost",
+            "of another",
+            "taken in",
+            "refused",
+            "position",
+        ]);
+        for DeviceRow { device, row } in self.devices.iter().take(SHOWN) {
+            let position = row.position;
+            let position = position.map(|[x, y, z]| format!("{x:.2} m, {y:.2} m, {z:.2} m"));
+            let counts = [*device, row.boot, row.received, row.lost, row.another].map(u64::from);
+            let counts = counts.into_iter().chain([row.taken, row.refused]);
+            table.add_row(counts.map(|it| it.to_string()).chain([position.unwrap_or_default()]));
+        }
+        write!(f, "\n{table}")?;
+        let more = self.devices.len().saturating_sub(SHOWN);
+        if more > 0 { write!(f, "\n… and {more} more devices (--json)") } else { Ok(()) }
     }
 }

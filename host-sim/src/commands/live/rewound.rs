@@ -88,7 +88,7 @@ impl Rewound {
         let file = File::open(path);
         Ok(Self {
             settings,
-            decoder: Decoder::new(following.plan, state, most)?,
+            decoder: Decoder::new(&following, state, most)?,
             file: file.map_err(|source| Error::Read { path: path.to_path_buf(), source })?,
             read: 0,
         })

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use kestirim_telemetry::VERSION_OF_FLEETS;
 use serial2::SerialPort;
 use socket2::{Domain, Protocol, Socket, Type};
 
@@ -66,7 +67,8 @@ impl Source {
         let read = match self {
             // An empty datagram is no end.
             Self::Udp(socket, senders, ignored) => socket.recv_from(buffer).map(|(count, from)| {
-                let taken = senders.takes(from, Instant::now());
+                let datagram = buffer.get(..count).unwrap_or_default();
+                let taken = says_who_sends(datagram) || senders.takes(from, Instant::now());
                 ignored.fetch_add(u64::from(!taken), Ordering::Relaxed);
                 Some(if taken { count } else { 0 })
             }),
@@ -96,6 +98,12 @@ impl Source {
             Self::Serial(_, device) => device.display().to_string(),
         }
     }
+}
+
+/// Whether a datagram begins with a frame that says who sends it: many such senders share a port.
+fn says_who_sends(datagram: &[u8]) -> bool {
+    // A delimiter, the place of the first zero, which is behind the version, and the version.
+    matches!(datagram, [0, zero, VERSION_OF_FLEETS, ..] if *zero >= 2)
 }
 
 fn bound(address: SocketAddr) -> io::Result<UdpSocket> {

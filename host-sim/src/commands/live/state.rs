@@ -1,5 +1,6 @@
 //! What there is to see, in bounded memory however long the stream.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -10,8 +11,9 @@ use kestirim_telemetry::{
 };
 use nalgebra::{Matrix3, Vector3};
 
+use super::device::Row;
 use super::options::Following;
-use super::report::{Counts, Report};
+use super::report::{Counts, DeviceRow, Report};
 use super::thinned::Thinned;
 use super::window::Window;
 use crate::figure::Series;
@@ -30,6 +32,13 @@ pub(super) struct State {
     pub(super) system: &'static str,
     pub(super) panels: &'static [Panel],
     pub(super) counts: Counts,
+    /// Those that say who they are, by number, and which of them is shown in detail.
+    pub(super) devices: BTreeMap<u32, Row>,
+    pub(super) shown: Option<u32>,
+    /// Frames of devices that were too many.
+    pub(super) beyond: u64,
+    /// Whether nothing is kept that is drawn.
+    is_brief: bool,
     /// Datagrams of a second sender, which nobody looked at.
     pub(super) ignored: Arc<AtomicU64>,
     /// The last time of the sender's clock, µs.
@@ -76,6 +85,10 @@ impl State {
             system: following.name,
             panels: following.panels,
             counts: Counts::default(),
+            devices: BTreeMap::new(),
+            shown: None,
+            beyond: 0,
+            is_brief: false,
             ignored: Arc::default(),
             time_us: None,
             health: None,
@@ -96,6 +109,11 @@ impl State {
             senders_states: Window::default(),
             origin: None,
         }
+    }
+
+    /// Of a device that is not shown in detail.
+    pub(super) fn brief() -> Self {
+        Self { is_brief: true, ..Self::new(&Following::NONE) }
     }
 
     /// So many more bytes were decoded; all frames together came to this, of which so many were left out.
@@ -139,6 +157,13 @@ impl State {
         let refused = outcome == Outcome::Refused;
         self.counts.taken += u64::from(outcome == Outcome::Taken);
         self.counts.refused += u64::from(refused);
+        if self.is_brief {
+            if !refused {
+                self.time_us = Some(time_us);
+                self.position = estimator.and_then(Online::position);
+            }
+            return;
+        }
         match *message {
             Message::Range(Range { anchor, range, .. }) => {
                 self.ranges.push(time_us, (anchor, range, refused));
@@ -165,7 +190,7 @@ impl State {
     }
 
     fn move_to(&mut self, position: Option<[f64; 3]>) {
-        if let Some([x, y, _]) = position.filter(|_| position != self.position) {
+        if let Some([x, y, _]) = position.filter(|_| !self.is_brief && position != self.position) {
             self.path.push([x, y]);
         }
         self.position = position;
@@ -181,6 +206,9 @@ impl State {
 
     /// What the sender says of itself.
     pub(super) fn tell(&mut self, message: &Message) {
+        if self.is_brief {
+            return;
+        }
         let believed = match *message {
             Message::Position(Position { position: [x, y, _], .. }) => {
                 push(&mut self.senders_path, [x, y].map(f64::from))
@@ -236,7 +264,7 @@ impl State {
         let ignored = (ignored > 0).then(|| {
             format!("{ignored} datagrams of a second sender were ignored: a port is for one sender (--udp)")
         });
-        let told = [anew, left_out, ignored].into_iter().flatten();
+        let told = [anew, left_out, ignored].into_iter().flatten().chain(self.shared_numbers());
         self.assumptions.iter().chain(&self.suspicions).cloned().chain(told).collect()
     }
 
@@ -246,6 +274,7 @@ impl State {
             facts: self.all_facts(),
             warnings: self.warnings(),
             figures: self.figures(),
+            tables: self.fleet().into_iter().collect(),
             ..Answer::default()
         }
     }
@@ -256,7 +285,8 @@ impl State {
             system: self.system,
             source,
             recording,
-            counts: self.counts,
+            counts: self.totals(),
+            devices: DeviceRow::all(&self.devices),
             position: self.position,
             state: self.states.last().copied(),
             path_length_m: self.path_length_m,

@@ -41,7 +41,8 @@ impl Viewed {
 
 impl Show for Viewed {
     fn settings(&self) -> Settings {
-        self.following.settings()
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        self.following.settings(!state.devices.is_empty())
     }
 
     fn bytes(&self) -> u64 {
@@ -50,7 +51,7 @@ impl Show for Viewed {
 
     fn answer(&self, settings: &Settings, moment: Moment) -> Result<Answer, Error> {
         let bytes = match moment {
-            Moment::Now if *settings == self.following.settings() => return Ok(self.now()),
+            Moment::Now if *settings == self.settings() => return Ok(self.now()),
             Moment::Now => self.bytes(),
             Moment::After(bytes) => bytes.min(self.bytes()),
         };

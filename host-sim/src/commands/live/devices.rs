@@ -1,0 +1,70 @@
+//! All devices of a line together.
+
+use super::device::Row;
+use super::report::Counts;
+use super::state::State;
+use crate::numbers::TOLD;
+use crate::system::Sheet;
+
+/// Devices that are named in warnings.
+const TOLD_DEVICES: usize = 5;
+
+impl State {
+    /// Which devices are two, as far as their numbers tell.
+    pub(super) fn shared_numbers(&self) -> impl Iterator<Item = String> {
+        let is_shared = |row: &Row| row.another >= TOLD;
+        let shared = self.devices.iter().filter(move |(_, row)| is_shared(row));
+        let told = shared.take(TOLD_DEVICES).map(|(number, row)| {
+            format!("device {number}: {} frames do not follow its numbers and were left out: two senders use this number, or \
+                     one does not count its boots", row.another)
+        });
+        let beyond = self.beyond;
+        let beyond = format!("{beyond} frames were left out: they are of too many devices");
+        told.chain((self.beyond > 0).then_some(beyond))
+    }
+
+    /// What became of all devices' frames together.
+    pub(super) fn totals(&self) -> Counts {
+        let mut totals = self.counts;
+        for (number, row) in &self.devices {
+            if Some(*number) != self.shown {
+                totals.taken += row.taken;
+                totals.refused += row.refused;
+                totals.restarts += row.restarts;
+            }
+        }
+        totals
+    }
+
+    /// All devices, if there are any that say who they are.
+    pub(super) fn fleet(&self) -> Option<Sheet> {
+        let number =
+            |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |it| format!("{it:.2}"));
+        let row = |(device, row): (&u32, &Row)| {
+            let [x, y, z] = [0, 1, 2].map(|axis| number(row.position.map(|it| it[axis])));
+            let time_s = row.time_us.map(|time_us| time_us as f64 * 1e-6);
+            let counts = [row.received, row.lost, row.another].map(|count| count.to_string());
+            let outcomes = [row.taken, row.refused].map(|count| count.to_string());
+            let place = [number(time_s), x, y, z, number(row.path_length_m)];
+            let first = [device.to_string(), row.boot.to_string()];
+            first.into_iter().chain(counts).chain(outcomes).chain(place).collect()
+        };
+        let header = [
+            "device",
+            "boot",
+            "frames",
+            "lost",
+            "of another",
+            "taken in",
+            "refused",
+            "time, s",
+            "x, m",
+            "y, m",
+            "z, m",
+            "path, m",
+        ];
+        let caption = "Each device has an estimator of its own; the setting device says which is shown in detail.";
+        let sheet = Sheet::new("live-devices", "Devices", &header).caption(caption);
+        (!self.devices.is_empty()).then(|| sheet.with(self.devices.iter().map(row)))
+    }
+}
