@@ -9,9 +9,11 @@ pub mod metrics;
 pub mod pedestrian;
 pub mod robot;
 mod scalar;
+mod stored;
 pub mod uav;
 
 pub use self::finding::Finding;
 pub use self::scalar::ScalarKind;
+pub use self::stored::{Number, Stored};
 #[cfg(feature = "serde")]
 pub use self::uav::KnownAirframe;

@@ -47,6 +47,11 @@ pub trait Online: Debug {
         None
     }
 
+    /// Standard deviation of a horizontal component of the position (m), of an estimator that knows it.
+    fn sigma_m(&self) -> Option<f64> {
+        None
+    }
+
     /// Angle of attack, pitch rate, airspeed and pitch now: rad, rad/s, m/s, rad.
     fn state(&self) -> Option<[f64; 4]> {
         None
@@ -70,6 +75,19 @@ pub trait Online: Debug {
     /// What is suspicious about the stream.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// All that it needs to go on elsewhere, to the bit.
+    ///
+    /// # Errors
+    /// Why it cannot be stored.
+    fn snapshot(&self) -> Result<Vec<u8>, String> {
+        Err("its estimator cannot be stored".to_owned())
+    }
+
+    /// Goes on as the one that was stored; none, and as before, if these bytes are no snapshot of such a one.
+    fn restore(&mut self, _snapshot: &[u8]) -> Option<()> {
+        None
     }
 }
 

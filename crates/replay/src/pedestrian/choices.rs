@@ -9,7 +9,7 @@ use kestirim_pedestrian::detector::{
 use kestirim_scalar::Scalar;
 
 use super::STANDARD_GRAVITY;
-use crate::ScalarKind;
+use crate::{Number, ScalarKind, Stored};
 
 /// Everything that can be chosen about a tracker.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -196,11 +196,11 @@ pub trait WithDetector<T: Scalar> {
     type Output;
 
     /// Does it.
-    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Self::Output;
+    fn with<D: StanceDetector<T> + Stored + Debug + 'static>(self, detector: D) -> Self::Output;
 }
 
 /// Does something with the detector that is chosen.
-pub fn with_detector<T: Scalar, W: WithDetector<T>>(options: &Options, work: W) -> W::Output {
+pub fn with_detector<T: Number, W: WithDetector<T>>(options: &Options, work: W) -> W::Output {
     let threshold = T::from_f64;
     match options.detector {
         DetectorKind::Adaptive => work.with(Adaptive::default()),

@@ -17,7 +17,7 @@ use super::trace::{Moment, OnlyAtStart, See, Updates};
 use super::{
     DetectorKind, Error, Options, Sample, SensorClass, TrackPoint, TrackerKind, sentences,
 };
-use crate::ScalarKind;
+use crate::{Number, ScalarKind};
 
 /// What a tracker makes of a walk, in the room frame.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -102,7 +102,7 @@ fn tracked(
     }
 }
 
-fn with_scalar<T: Scalar>(
+fn with_scalar<T: Number>(
     samples: &[Sample],
     options: &Options,
     updates: Updates,
@@ -114,7 +114,7 @@ fn with_scalar<T: Scalar>(
     }
 }
 
-fn with_navigator<T: Scalar, N: Navigator<T>>(
+fn with_navigator<T: Number, N: Navigator<T>>(
     samples: &[Sample],
     options: &Options,
     updates: Updates,

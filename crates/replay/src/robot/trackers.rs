@@ -23,7 +23,7 @@ pub use self::published::{Beginning, Noise};
 use self::recursive::Recursive;
 use self::wheeled::Wheeled;
 use super::{Dimensions, Error, Event, Range, Setup, TrackerKind};
-use crate::ScalarKind;
+use crate::{Number, ScalarKind};
 
 /// Something that follows a tag.
 pub trait Follow: Debug {
@@ -41,6 +41,16 @@ pub trait Follow: Debug {
 
     /// Variance of z, m², of a tracker that estimates it.
     fn height_variance(&self) -> Option<f64> {
+        None
+    }
+
+    /// All that it needs to go on elsewhere, to the bit; none if it cannot be stored.
+    fn snapshot(&self) -> Option<Vec<u8>> {
+        None
+    }
+
+    /// Goes on as the one that was stored; none, and as before, if that was no such tracker.
+    fn restore(&mut self, _snapshot: &[u8]) -> Option<()> {
         None
     }
 }
@@ -100,14 +110,14 @@ fn build_here(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
     }
 }
 
-fn with_scalar<T: Scalar>(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
+fn with_scalar<T: Number>(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
     match setup.dimensions {
         Dimensions::Two => in_dimensions::<T, 2, 4, 5>(setup),
         Dimensions::Three => in_dimensions::<T, 3, 6, 7>(setup),
     }
 }
 
-fn in_dimensions<T: Scalar, const D: usize, const N: usize, const WITH_BIAS: usize>(
+fn in_dimensions<T: Number, const D: usize, const N: usize, const WITH_BIAS: usize>(
     setup: &Setup,
 ) -> Result<Box<dyn Follow>, Error> {
     let (height, tuning) = (T::from_f64(setup.height_m), &setup.tuning);

@@ -9,6 +9,7 @@ use kestirim_pedestrian::{Ekf, Estimate, Lite, Navigator, Tracker};
 use kestirim_replay::pedestrian::{
     Options, TrackerKind, WithDetector, imu_sample, sentences, with_detector,
 };
+use kestirim_replay::{Number, Stored};
 use kestirim_scalar::{Components, Q12_20, Scalar};
 use kestirim_telemetry::{Imu, Message};
 
@@ -36,7 +37,7 @@ impl Plan for Walking {
 }
 
 impl Walking {
-    fn with_scalar<T: Scalar + 'static>(&self) -> Box<dyn Online> {
+    fn with_scalar<T: Number + 'static>(&self) -> Box<dyn Online> {
         let options = &self.options;
         match options.tracker {
             TrackerKind::Lite => with_detector(options, Built::<Lite<T>>(self, PhantomData)),
@@ -48,10 +49,12 @@ impl Walking {
 /// Builds a tracker around a detector.
 struct Built<'a, N>(&'a Walking, PhantomData<N>);
 
-impl<T: Scalar + 'static, N: Navigator<T> + Debug + 'static> WithDetector<T> for Built<'_, N> {
+impl<T: Number + 'static, N: Navigator<T> + Stored + Debug + 'static> WithDetector<T>
+    for Built<'_, N>
+{
     type Output = Box<dyn Online>;
 
-    fn with<D: StanceDetector<T> + Debug + 'static>(self, detector: D) -> Box<dyn Online> {
+    fn with<D: StanceDetector<T> + Stored + Debug + 'static>(self, detector: D) -> Box<dyn Online> {
         let tracker = Tracker::<T, N, D>::with_detector(self.0.options.config(), detector);
         let calibration = self.0.calibration.as_ref().map(calibration::cast);
         Box::new(Walker { tracker, calibration, last: None, strides: 0 })
@@ -67,7 +70,9 @@ struct Walker<T: Scalar, N, D> {
     strides: u32,
 }
 
-impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online for Walker<T, N, D> {
+impl<T: Number, N: Navigator<T> + Stored + Debug, D: StanceDetector<T> + Stored + Debug> Online
+    for Walker<T, N, D>
+{
     fn take(&mut self, message: &Message) -> Outcome {
         let Message::Imu(Imu { time_us, specific_force, angular_rate }) = *message else {
             return Outcome::NotMine;
@@ -118,5 +123,18 @@ impl<T: Scalar, N: Navigator<T> + Debug, D: StanceDetector<T> + Debug> Online fo
     fn warnings(&self) -> Vec<String> {
         // Whether a foot ever stood is not known before it did.
         if self.last.is_some() { sentences(self.tracker.warnings()) } else { Vec::new() }
+    }
+
+    fn snapshot(&self) -> Result<Vec<u8>, String> {
+        let tracker = self.tracker.stored().ok_or("this tracker cannot be stored")?;
+        Ok([&self.strides.to_le_bytes()[..], &tracker].concat())
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
+        let (strides, tracker) = snapshot.split_first_chunk()?;
+        self.tracker = Stored::restored(tracker)?;
+        // The next sample has the next estimate.
+        (self.strides, self.last) = (u32::from_le_bytes(*strides), None);
+        Some(())
     }
 }

@@ -76,6 +76,9 @@ impl Plan for Tag {
     }
 }
 
+/// A time that no clock shows, µs: in snapshots, of what has not begun.
+const NOT_BEGUN: u64 = u64::MAX;
+
 /// A tracker. Anchors are numbered from 0, in the order of their file.
 #[derive(Debug)]
 struct Followed {
@@ -130,5 +133,25 @@ impl Online for Followed {
 
     fn position(&self) -> Option<[f64; 3]> {
         self.tracker.position()
+    }
+
+    fn sigma_m(&self) -> Option<f64> {
+        self.tracker.spread().map(|[xx, _, yy]| (0.5 * (xx + yy)).sqrt())
+    }
+
+    fn snapshot(&self) -> Result<Vec<u8>, String> {
+        if self.finder.is_some() {
+            return Err("the tag's height is not known: expected --height".to_owned());
+        }
+        let tracker = self.tracker.snapshot().ok_or("this tracker cannot be stored (--tracker)")?;
+        let begun_us = self.begun_us.unwrap_or(NOT_BEGUN).to_le_bytes();
+        Ok([&begun_us[..], &tracker].concat())
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
+        let (begun_us, tracker) = snapshot.split_first_chunk()?;
+        self.tracker.restore(tracker)?;
+        self.begun_us = Some(u64::from_le_bytes(*begun_us)).filter(|&time| time != NOT_BEGUN);
+        Some(())
     }
 }

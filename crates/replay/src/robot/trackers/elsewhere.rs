@@ -51,4 +51,12 @@ impl Follow for Elsewhere {
     fn height_variance(&self) -> Option<f64> {
         self.tracker.height_variance()
     }
+
+    fn snapshot(&self) -> Option<Vec<u8>> {
+        self.tracker.snapshot()
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
+        self.tracker.restore(snapshot)
+    }
 }

@@ -5,6 +5,8 @@ use kestirim_uwb_tracker::{Config, DifferenceSample, DifferenceTracker};
 
 use super::{Follow, Reception, bias_variance, place, with_bias};
 use crate::robot::{Difference, Error, Event, MOST, Setup};
+use crate::stored::{behind, read};
+use crate::{Number, Stored};
 
 /// Takes in every difference by itself, N states with the clock; what it begins with is another tracker, for ranges, which
 /// is never asked once there is a difference.
@@ -39,7 +41,7 @@ impl<T: Scalar, const D: usize, const N: usize> Listening<T, D, N> {
     }
 }
 
-impl<T: Scalar, const D: usize, const N: usize> Follow for Listening<T, D, N> {
+impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         self.now_us = time_us;
         if let Event::Difference(Difference { anchors, metres, .. }) = *event {
@@ -76,5 +78,30 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Listening<T, D, N> {
             return Some(covariance.get(2, 2)?.to_f64() + self.bias_variance());
         }
         self.ranges.height_variance()
+    }
+
+    fn snapshot(&self) -> Option<Vec<u8>> {
+        // Most tags never listen.
+        let tracker = if self.listens { self.tracker.stored()? } else { Vec::new() };
+        let ranges = self.ranges.snapshot()?;
+        let numbers = [self.now_us, self.height_m.to_bits(), tracker.len() as u64];
+        Some(behind(numbers, &[tracker, ranges].concat()))
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
+        let ([now_us, height, length], rest) = read(snapshot)?;
+        let (tracker, ranges) = rest.split_at_checked(usize::try_from(length).ok()?)?;
+        let listens = !tracker.is_empty();
+        // What has listened is not as it was before.
+        if self.listens && !listens {
+            return None;
+        }
+        let tracker = if listens { Some(Stored::restored(tracker)?) } else { None };
+        self.ranges.restore(ranges)?;
+        if let Some(tracker) = tracker {
+            self.tracker = tracker;
+        }
+        (self.listens, self.now_us, self.height_m) = (listens, now_us, f64::from_bits(height));
+        Some(())
     }
 }

@@ -6,6 +6,8 @@ use nalgebra::SVector;
 
 use super::{Follow, Reception, of_the_plane, place, sample};
 use crate::robot::{Error, Event, Setup};
+use crate::stored::{behind, read};
+use crate::{Number, Stored};
 
 /// Which noise the filter works with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +39,7 @@ pub(super) struct Published<T: Scalar, const D: usize, const N: usize, const A: 
     height_m: f64,
 }
 
-impl<T: Scalar, const D: usize, const N: usize> Published<T, D, N> {
+impl<T: Number, const D: usize, const N: usize> Published<T, D, N> {
     /// The filter for as many anchors as there are.
     ///
     /// # Errors
@@ -74,7 +76,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Published<T, D, 
     }
 }
 
-impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Published<T, D, N, A> {
+impl<T: Number, const D: usize, const N: usize, const A: usize> Follow for Published<T, D, N, A> {
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         let number = T::from_f64;
         let taken = match *event {
@@ -107,5 +109,16 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Follow for Publi
 
     fn spread(&self) -> Option<[f64; 3]> {
         self.tracker.estimate().and_then(|estimate| of_the_plane(&estimate.covariance))
+    }
+
+    fn snapshot(&self) -> Option<Vec<u8>> {
+        Some(behind([self.height_m.to_bits()], &self.tracker.stored()?))
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
+        let ([height], tracker) = read(snapshot)?;
+        self.tracker = Stored::restored(tracker)?;
+        self.height_m = f64::from_bits(height);
+        Some(())
     }
 }

@@ -6,6 +6,8 @@ use nalgebra::SVector;
 
 use super::{Follow, Reception, bias_variance, place, sample, with_bias};
 use crate::robot::{Error, Event, Inertial, MOST, Setup, TrackerKind, Wheels};
+use crate::stored::{behind, read};
+use crate::{Number, Stored};
 
 /// Takes in every measurement by itself.
 #[derive(Debug)]
@@ -35,7 +37,7 @@ impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
     }
 }
 
-impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
+impl<T: Number, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     fn take(&mut self, time_us: u64, event: &Event) -> Reception {
         let number = T::from_f64;
         self.now_us = time_us;
@@ -80,5 +82,16 @@ impl<T: Scalar, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
     fn height_variance(&self) -> Option<f64> {
         let covariance = &self.tracker.estimate().filter(|_| D == 3)?.covariance;
         Some(covariance.get(2, 2)?.to_f64() + self.bias_variance())
+    }
+
+    fn snapshot(&self) -> Option<Vec<u8>> {
+        Some(behind([self.now_us, self.height_m.to_bits()], &self.tracker.stored()?))
+    }
+
+    fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
+        let ([now_us, height], tracker) = read(snapshot)?;
+        self.tracker = Stored::restored(tracker)?;
+        (self.now_us, self.height_m) = (now_us, f64::from_bits(height));
+        Some(())
     }
 }
