@@ -5,6 +5,8 @@ mod arguments;
 mod check;
 pub mod design;
 mod fetch_data;
+#[cfg(feature = "fleet")]
+mod fleet;
 mod list;
 pub mod live;
 mod made_for_it;
@@ -68,6 +70,7 @@ pub fn command(arguments: &[OsString]) -> Command {
                 .about("Explore recordings in the browser: thresholds and filters with sliders"),
         ))
         .subcommand(live::command(arguments))
+        .subcommands(fleets())
         .subcommand(FetchData::augment_args(Command::new("fetch-data").about(
             "Fetch the recordings that may be passed on from those who publish them, by curl or wget",
         )))
@@ -82,6 +85,14 @@ pub fn command(arguments: &[OsString]) -> Command {
                         .value_parser(value_parser!(Shell)),
                 ),
         )
+}
+
+/// What a program that was built without fleets lacks.
+fn fleets() -> Option<Command> {
+    #[cfg(feature = "fleet")]
+    return Some(fleet::command());
+    #[cfg(not(feature = "fleet"))]
+    None
 }
 
 fn examples(system: &dyn AnySystem) -> String {
@@ -121,6 +132,8 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
         "design" => read::<Design>(matches)?.run(),
         "serve" => read::<Serve>(matches)?.run(),
         "live" => live::run(matches),
+        #[cfg(feature = "fleet")]
+        "fleet" => fleet::run(matches),
         "fetch-data" => read::<FetchData>(matches)?.run(),
         "list" => output::print(&list::list()),
         _ => completions(matches),
@@ -156,6 +169,9 @@ fn completions(matches: &ArgMatches) -> Result<(), Error> {
 pub fn complaint(error: &clap::Error, arguments: &[OsString]) -> String {
     let is_live = arguments.get(1).is_some_and(|word| word == "live");
     let known = if is_live { live::complaint(error) } else { None };
+    if cfg!(not(feature = "fleet")) && arguments.get(1).is_some_and(|word| word == "fleet") {
+        return "this program was built without fleets (--features fleet)".to_owned();
+    }
     known.unwrap_or_else(|| sentence(error))
 }
 

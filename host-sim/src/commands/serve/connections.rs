@@ -17,7 +17,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 /// Answers whoever asks, until it is dropped.
 ///
 /// `axum::serve` waits for ever for a request that does not end.
-pub(super) async fn serve(listener: TcpListener, router: Router) {
+pub(in crate::commands) async fn serve(listener: TcpListener, router: Router) {
     let mut builder = Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(PATIENCE);
     loop {

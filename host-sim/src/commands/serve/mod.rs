@@ -26,6 +26,8 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::Notify;
 
+#[cfg(feature = "fleet")]
+pub(super) use self::connections::serve as answer;
 use self::guard::Guard;
 use self::key::Key;
 use self::sessions::Sessions;

@@ -1,0 +1,227 @@
+//! A state for each device: bytes, which an estimator wakes from and goes back to.
+//!
+//! An estimator with room for any number of anchors takes ten times the bytes of its snapshot. And what is stored at any
+//! moment is what a restart begins with: there is no other state.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use kestirim_telemetry::{
+    CAPACITY, Frame, Message, Origin, Position, Receiver, State, encode_from,
+};
+use serde::{Deserialize, Serialize};
+
+use super::counts::Counts;
+use super::transport::{Delivery, Estimate};
+use crate::Error;
+use crate::numbers::{Numbers, Place};
+use crate::system::{Online, Outcome, Plan};
+
+/// More devices are not followed: a sender may invent them.
+const MOST: usize = 1_000_000;
+
+/// What is known of a device.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Device {
+    numbers: Numbers,
+    pub(super) counts: Counts,
+    /// The estimator's snapshot; empty before it has begun.
+    state: Vec<u8>,
+}
+
+/// All devices, and how far the log was read for them.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Keyed {
+    /// Of the last message that was followed.
+    pub(super) position: u64,
+    pub(super) devices: BTreeMap<u32, Device>,
+    /// Messages that held no frame of a device, or pieces of some, or of devices that were too many.
+    pub(super) unreadable: u64,
+}
+
+/// Follows all devices with one estimator, which is one device's after the other.
+#[derive(Debug)]
+pub(super) struct Fleet {
+    pub(super) keyed: Keyed,
+    online: Box<dyn Online>,
+    /// The snapshot of an estimator that has not begun.
+    pub(super) fresh: Vec<u8>,
+}
+
+impl Fleet {
+    /// Without devices.
+    ///
+    /// # Errors
+    /// Whatever is wrong with settings and files; [`Error::Usage`] if the estimator cannot be stored.
+    pub(super) fn new(name: &str, plan: &Arc<dyn Plan>) -> Result<Self, Error> {
+        let mut online = plan.build()?;
+        let refused = |why| Error::Usage(format!("fleet {name}: {why}"));
+        let fresh = online.snapshot().map_err(refused)?;
+        let asleep = || refused("its estimator does not wake from its own snapshot".to_owned());
+        online.restore(&fresh).ok_or_else(asleep)?;
+        Ok(Self { keyed: Keyed::default(), online, fresh })
+    }
+
+    /// Follows what came; the estimates after it, of each device in their order.
+    ///
+    /// # Errors
+    /// If a device's snapshot is none, which cannot be.
+    pub(super) fn take(&mut self, deliveries: &[Delivery]) -> Result<Vec<Estimate>, Error> {
+        // An estimator wakes once for all that came of a device.
+        let mut heard = BTreeMap::<u32, Vec<Heard>>::new();
+        for delivery in deliveries {
+            self.keyed.position = delivery.position;
+            self.hear(&delivery.bytes, &mut heard);
+        }
+        let mut estimates = Vec::new();
+        for (number, frames) in heard {
+            self.follow(number, &frames, &mut estimates)?;
+        }
+        Ok(estimates)
+    }
+
+    fn hear(&mut self, bytes: &[u8], heard: &mut BTreeMap<u32, Vec<Heard>>) {
+        let mut receiver = Receiver::new();
+        let mut frames: Vec<_> = receiver.frames(bytes).collect();
+        // A frame that only lacks its end is whole; any other piece of one is torn.
+        frames.extend(receiver.push(0));
+        let kestirim_telemetry::Counts { torn, corrupt, unknown, .. } = receiver.counts();
+        let is_readable = torn + corrupt + unknown == 0
+            && !frames.is_empty()
+            && frames.iter().all(|frame| frame.origin.is_some());
+        self.keyed.unreadable += u64::from(!is_readable);
+        // From the last to the first: the first of a device that is met is its last one in this message.
+        let mut ended = Vec::new();
+        let mut of_message = Vec::with_capacity(frames.len());
+        for frame in frames.into_iter().rev() {
+            let Some(origin) = frame.origin else { continue };
+            let is_last = !ended.contains(&origin.device);
+            if is_last {
+                ended.push(origin.device);
+            }
+            of_message.push(Heard { origin, frame, is_last });
+        }
+        for one in of_message.into_iter().rev() {
+            heard.entry(one.origin.device).or_default().push(one);
+        }
+    }
+
+    fn follow(
+        &mut self,
+        number: u32,
+        frames: &[Heard],
+        estimates: &mut Vec<Estimate>,
+    ) -> Result<(), Error> {
+        let Some(first) = frames.first() else { return Ok(()) };
+        if self.keyed.devices.len() >= MOST && !self.keyed.devices.contains_key(&number) {
+            self.keyed.unreadable += 1;
+            return Ok(());
+        }
+        let mut is_new = false;
+        let device = self.keyed.devices.entry(number).or_insert_with(|| {
+            is_new = true;
+            let numbers = Numbers::from(first.origin, &first.frame);
+            Device { numbers, counts: Counts::default(), state: Vec::new() }
+        });
+        let state = if device.state.is_empty() { &self.fresh } else { &device.state };
+        wake(self.online.as_mut(), state)?;
+        let mut last = None;
+        for (place, Heard { origin, frame, is_last }) in frames.iter().enumerate() {
+            let is_first = is_new && place == 0;
+            let place = if is_first {
+                Place::Newest { missing: 0 }
+            } else {
+                device.numbers.take(*origin, frame)
+            };
+            if place.is_followed(&mut device.counts) {
+                if matches!(place, Place::Restarted { .. }) {
+                    wake(self.online.as_mut(), &self.fresh)?;
+                }
+                let outcome = self.online.take(&frame.message);
+                device.counts.taken += u64::from(outcome == Outcome::Taken);
+                device.counts.refused += u64::from(outcome == Outcome::Refused);
+                if outcome == Outcome::Taken {
+                    last = Some((*origin, frame));
+                }
+            }
+            if let Some((origin, frame)) = last.filter(|_| *is_last) {
+                let estimate = estimate(self.online.as_ref(), origin, frame);
+                device.counts.estimates += u64::from(estimate.is_some());
+                estimates.extend(estimate);
+                last = None;
+            }
+        }
+        device.state = self.online.snapshot().map_err(Error::Usage)?;
+        device.state.shrink_to_fit();
+        Ok(())
+    }
+
+    /// What became of everything.
+    pub(super) fn counts(&self) -> Counts {
+        let mut all = Counts::default();
+        self.keyed.devices.values().for_each(|device| all.add(&device.counts));
+        all
+    }
+
+    /// Bytes that the devices take.
+    pub(super) fn bytes(&self) -> usize {
+        let of = |device: &Device| device.state.capacity() + size_of::<(u32, Device)>();
+        self.keyed.devices.values().map(of).sum()
+    }
+}
+
+/// A frame of a message.
+#[derive(Debug)]
+struct Heard {
+    origin: Origin,
+    frame: Frame,
+    /// Whether it is the message's last of this device: after it there is an estimate.
+    is_last: bool,
+}
+
+impl Place {
+    /// Whether a frame is followed: it is newer than all before. What became of it is counted.
+    fn is_followed(self, counts: &mut Counts) -> bool {
+        match self {
+            Self::Newest { missing } => counts.lost += u64::from(missing),
+            Self::Restarted { missing } => {
+                counts.lost += u64::from(missing);
+                counts.restarts += 1;
+            }
+            // The log has an order: what is behind it was read before, or was put into it late.
+            Self::Late { .. } | Self::Twice => {
+                counts.dropped += 1;
+                return false;
+            }
+            Self::Another => {
+                counts.another += 1;
+                return false;
+            }
+        }
+        counts.frames += 1;
+        true
+    }
+}
+
+fn wake(online: &mut dyn Online, state: &[u8]) -> Result<(), Error> {
+    let refused = || Error::Usage("a stored state is none of this estimator".to_owned());
+    online.restore(state).ok_or_else(refused)
+}
+
+/// What the estimator knows after a frame, as a frame; nothing before it knows where anything is.
+fn estimate(online: &dyn Online, origin: Origin, frame: &Frame) -> Option<Estimate> {
+    let time_us = frame.message.measured_us()?;
+    let message: Message = match (online.position(), online.state()) {
+        (Some(position), _) => {
+            let position = position.map(|metres| metres as f32);
+            let sigma = online.sigma_m().map(|metres| metres as f32);
+            Position { time_us, position, sigma }.into()
+        }
+        (None, Some(state)) => State { time_us, state: state.map(|it| it as f32) }.into(),
+        (None, None) => return None,
+    };
+    let mut buffer = [0; CAPACITY];
+    let bytes = encode_from(origin, &message, frame.sequence, &mut buffer).ok()?.to_vec();
+    let Origin { device, boot } = origin;
+    Some(Estimate { device, id: format!("{device}-{boot}-{}", frame.sequence), frame: bytes })
+}

@@ -1,0 +1,87 @@
+//! `host-sim fleet`: an estimator a device, for any number of devices, behind a broker.
+//!
+//! `transport` (`nats`, `udp`) → `engine` → `keyed` → [`Online`](crate::system::Online); states go to `store`.
+
+mod counts;
+mod engine;
+mod keyed;
+mod metrics;
+mod nats;
+mod options;
+mod report;
+mod store;
+#[cfg(test)]
+mod tests;
+mod transport;
+mod udp;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::ArgMatches;
+
+use self::engine::Engine;
+use self::keyed::Fleet;
+use self::metrics::Metrics;
+use self::options::Options;
+pub(super) use self::options::command;
+use self::report::Report;
+use self::store::Store;
+use super::arguments::{chosen, read};
+use super::live::options::given;
+use crate::text::printable_path;
+use crate::{Error, output};
+
+/// Between two times that metrics are renewed: nobody asks more often.
+const BEAT: Duration = Duration::from_secs(1);
+
+/// Follows a fleet until somebody ends it.
+pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
+    let (system, matches) = chosen(matches)?;
+    let options = read::<Options>(matches)?;
+    let (settings, files) = given(system, matches)?;
+    let name = system.name();
+    let plan = system.online(&settings, &files)?;
+    let plan = plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream")))?;
+    let mut fleet = Fleet::new(name, &plan)?;
+    let store = Store::open(&options.state, name, settings.arguments(), &mut fleet)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let (transport, source) = options.transport(&stop)?;
+    let metrics = options.metrics.map(Metrics::serve).transpose()?;
+    let (known, folder) = (fleet.keyed.devices.len(), printable_path(&options.state));
+    output::warn(&format!("following {source}; {known} devices known, states in {folder}"));
+    if let Some(metrics) = &metrics {
+        output::warn(&format!("metrics: {}", metrics.address()));
+    }
+    let ended = Arc::clone(&stop);
+    // Without it Ctrl-C ends the program at once: it goes on where its states end even so.
+    let _ = ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed));
+    let mut engine = Engine::begin(fleet, store, transport, options.every())?;
+    let until = options.seconds.map(Duration::from_secs);
+    let (messages, seconds) = follow(&mut engine, metrics.as_ref(), &stop, until)?;
+    let report = Report::of((name, source), &engine.fleet, messages, seconds);
+    for warning in report.warnings() {
+        output::warn(&format!("warning: {warning}"));
+    }
+    output::show(&report, options.json)
+}
+
+/// How many messages came, and in how many seconds.
+fn follow(
+    engine: &mut Engine,
+    metrics: Option<&Metrics>,
+    stop: &AtomicBool,
+    until: Option<Duration>,
+) -> Result<(u64, f64), Error> {
+    let (begun, mut shown, mut messages) = (Instant::now(), None::<Instant>, 0);
+    while !stop.load(Ordering::Relaxed) && until.is_none_or(|until| begun.elapsed() < until) {
+        messages += engine.step()? as u64;
+        if shown.is_none_or(|shown| shown.elapsed() >= BEAT) {
+            metrics.inspect(|metrics| metrics.show(engine));
+            shown = Some(Instant::now());
+        }
+    }
+    engine.settle()?;
+    Ok((messages, begun.elapsed().as_secs_f64()))
+}

@@ -1,0 +1,211 @@
+//! NATS JetStream: a stream of frames, and one of estimates.
+//!
+//! The order of the stream is kept whatever happens: a consumer that the broker forgot, that skipped what was on its way
+//! when the connection broke, or that is another run's, is made anew behind the last message that was followed.
+
+use std::future::IntoFuture;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::sleep;
+use std::time::Duration;
+
+use async_nats::jetstream::consumer::{AckPolicy, DeliverPolicy, PullConsumer, pull};
+use async_nats::jetstream::message::PublishMessage;
+use async_nats::jetstream::{self, Context, Message, stream};
+use futures_util::StreamExt;
+use tokio::runtime::Runtime;
+use tokio::time::timeout;
+
+use super::transport::{Delivery, Estimate, Transport};
+use crate::Error;
+
+/// So long messages are waited for until what came is followed.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// Messages that are followed together.
+const BATCH: usize = 2000;
+/// Until a broker that does not answer is asked again.
+const SILENCE: Duration = Duration::from_secs(2);
+const PAUSE: Duration = Duration::from_millis(200);
+/// So long the broker knows the ids of estimates: no restart may take longer.
+const KNOWN: Duration = Duration::from_secs(600);
+
+/// What is read and written where.
+#[derive(Debug, Clone)]
+pub(super) struct Names {
+    /// The stream of frames, which is made if it is not there, and the subjects of those that are followed here.
+    pub(super) stream: String,
+    pub(super) subject: String,
+    /// The stream of estimates, made likewise; a device's subject is this name and its number.
+    pub(super) estimates: String,
+    /// Whoever reads the same subjects has the same.
+    pub(super) consumer: String,
+}
+
+/// A connection to a broker.
+#[derive(Debug)]
+pub(super) struct Nats {
+    runtime: Runtime,
+    context: Context,
+    names: Names,
+    consumer: Option<PullConsumer>,
+    /// Messages that this consumer has delivered.
+    delivered: u64,
+    /// The last message of the log that was delivered.
+    position: u64,
+    last: Option<Message>,
+    lag: Option<u64>,
+    /// Nobody wants to wait any longer.
+    stop: Arc<AtomicBool>,
+}
+
+impl Nats {
+    /// Connects, and makes the streams that are not there.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what the broker says.
+    pub(super) fn connect(url: &str, names: Names, stop: Arc<AtomicBool>) -> Result<Self, Error> {
+        let mut runtime = tokio::runtime::Builder::new_multi_thread();
+        let runtime = runtime.worker_threads(1).enable_all().build();
+        let runtime = runtime.map_err(|error| Error::Usage(format!("no threads: {error}")))?;
+        let connected = runtime.block_on(async {
+            let options = async_nats::ConnectOptions::new().name("host-sim fleet");
+            let client = options.request_timeout(Some(SILENCE)).connect(url).await?;
+            let mut context = jetstream::new(client);
+            context.set_timeout(SILENCE);
+            let (frames, estimates) = (names.stream.clone(), names.estimates.clone());
+            let made = |name: String| stream::Config {
+                subjects: vec![format!("{name}.>")],
+                name,
+                duplicate_window: KNOWN,
+                ..stream::Config::default()
+            };
+            context.get_or_create_stream(made(frames)).await?;
+            context.get_or_create_stream(made(estimates)).await?;
+            Ok::<_, async_nats::Error>(context)
+        });
+        let context = connected.map_err(|error| Error::Usage(format!("--nats {url}: {error}")))?;
+        let (consumer, last, lag) = (None, None, None);
+        Ok(Self { runtime, context, names, consumer, delivered: 0, position: 0, last, lag, stop })
+    }
+
+    /// A consumer that begins behind the last message that was followed.
+    async fn begin(&mut self) -> Result<(), async_nats::Error> {
+        let Names { stream, subject, consumer: name, .. } = &self.names;
+        let stream = self.context.get_stream(stream).await?;
+        // It may not be there.
+        let _ = stream.delete_consumer(name).await;
+        let config = pull::Config {
+            durable_name: Some(name.clone()),
+            filter_subject: subject.clone(),
+            deliver_policy: DeliverPolicy::ByStartSequence { start_sequence: self.position + 1 },
+            ack_policy: AckPolicy::All,
+            max_ack_pending: -1,
+            ..pull::Config::default()
+        };
+        self.consumer = Some(stream.create_consumer(config).await?);
+        self.delivered = 0;
+        Ok(())
+    }
+
+    /// What came meanwhile. Anything unusual, and the consumer is made anew.
+    async fn fetch(&mut self) -> Result<Vec<Delivery>, async_nats::Error> {
+        if self.consumer.is_none() {
+            self.begin().await?;
+        }
+        let mut deliveries = Vec::new();
+        let Some(consumer) = self.consumer.take() else { return Ok(deliveries) };
+        let mut messages =
+            consumer.batch().max_messages(BATCH).expires(PATIENCE).messages().await?;
+        while let Some(message) = timeout(SILENCE, messages.next()).await? {
+            let message = message?;
+            let info = message.info()?;
+            self.delivered += 1;
+            if info.consumer_sequence != self.delivered {
+                // What is missing was on its way when the connection broke.
+                return Ok(deliveries);
+            }
+            // What was not acknowledged in time comes again.
+            if info.stream_sequence > self.position {
+                self.position = info.stream_sequence;
+                self.lag = Some(info.pending);
+                let (position, bytes) = (self.position, message.payload.to_vec());
+                deliveries.push(Delivery { position, bytes });
+                self.last = Some(message);
+            }
+        }
+        self.consumer = Some(consumer);
+        Ok(deliveries)
+    }
+
+    /// Offers estimates to the broker; those that it has not confirmed are left.
+    async fn offer<'a>(
+        context: &Context,
+        subject: &str,
+        all: &[&'a Estimate],
+    ) -> Vec<&'a Estimate> {
+        let (mut offered, mut left) = (Vec::new(), Vec::new());
+        for &estimate in all {
+            let payload = estimate.frame.clone().into();
+            let publish = PublishMessage::build().message_id(&estimate.id).payload(payload);
+            let subject = format!("{subject}.{}", estimate.device);
+            match context.send_publish(subject, publish).await {
+                Ok(confirmed) => offered.push((estimate, confirmed)),
+                Err(_) => left.push(estimate),
+            }
+        }
+        for (estimate, confirmed) in offered {
+            if confirmed.into_future().await.is_err() {
+                left.push(estimate);
+            }
+        }
+        left
+    }
+}
+
+impl Transport for Nats {
+    fn resume(&mut self, position: u64) -> Result<(), Error> {
+        (self.position, self.consumer) = (position, None);
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<Vec<Delivery>, Error> {
+        let runtime = self.runtime.handle().clone();
+        let before = self.position;
+        let fetched = runtime.block_on(self.fetch());
+        fetched.or_else(|_| {
+            // What was received of it is asked for again.
+            (self.position, self.consumer) = (before, None);
+            sleep(PAUSE);
+            Ok(Vec::new())
+        })
+    }
+
+    fn publish(&mut self, estimates: &[Estimate]) -> Result<(), Error> {
+        let mut left: Vec<_> = estimates.iter().collect();
+        let (context, subject) = (&self.context, &self.names.estimates);
+        loop {
+            // One that was not confirmed may be stored behind later ones: its number tells where it stands.
+            left = self.runtime.block_on(Self::offer(context, subject, &left));
+            if left.is_empty() {
+                return Ok(());
+            }
+            if self.stop.load(Ordering::Relaxed) {
+                return Err(Error::Usage("the broker does not take the estimates".to_owned()));
+            }
+            sleep(PAUSE);
+        }
+    }
+
+    fn acknowledge(&mut self, position: u64) -> Result<(), Error> {
+        if let Some(message) = self.last.take() {
+            let is_it = message.info().is_ok_and(|info| info.stream_sequence == position);
+            // If it is lost, the next one acknowledges this one, too; and nobody goes by it but who looks at the broker.
+            let _ = is_it.then(|| self.runtime.block_on(message.ack()));
+        }
+        Ok(())
+    }
+
+    fn lag(&self) -> Option<u64> {
+        self.lag
+    }
+}

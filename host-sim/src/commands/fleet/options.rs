@@ -1,0 +1,103 @@
+//! What the command line of `host-sim fleet` can choose.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use clap::{Args, Command};
+
+use super::nats::{Names, Nats};
+use super::transport::Transport;
+use super::udp::Udp;
+use crate::Error;
+use crate::commands::live::options::{followed, followers};
+use crate::system::AnySystem;
+
+/// Options that have nothing to do with whose estimator it is.
+#[derive(Debug, Clone, Args)]
+pub(super) struct Options {
+    /// Follow a stream of NATS JetStream, such as nats://127.0.0.1:4222
+    #[arg(long, value_name = "URL", required_unless_present = "udp", conflicts_with = "udp")]
+    nats: Option<String>,
+    /// Listen to datagrams for this address instead: there is no log, and what is killed is not made again
+    #[arg(long, value_name = "ADDR:PORT")]
+    udp: Option<String>,
+    /// Where datagrams with estimates go
+    #[arg(long, value_name = "ADDR:PORT", requires = "udp")]
+    to: Option<SocketAddr>,
+    /// Stream of the frames; it is made of all subjects NAME.> if it is not there
+    #[arg(long, value_name = "NAME", default_value = "frames")]
+    stream: String,
+    /// Those of the stream that are followed here: one part of several, if there are more such programs [default: all]
+    #[arg(long, value_name = "SUBJECT")]
+    subject: Option<String>,
+    /// Stream of the estimates, made likewise: those of device 7 have the subject NAME.7
+    #[arg(long, value_name = "NAME", default_value = "estimates")]
+    estimates: String,
+    /// What the broker calls whoever follows these subjects
+    #[arg(long, value_name = "NAME", default_value = "kestirim")]
+    consumer: String,
+    /// Folder with the states of the devices; a program that begins goes on with those that are there
+    #[arg(long, value_name = "FOLDER", default_value = "target/fleet")]
+    pub(super) state: PathBuf,
+    /// Between two times that states are written to the disk, and the log is told
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = positive)]
+    every: f64,
+    /// Answer with metrics for Prometheus at http://ADDR:PORT/metrics
+    #[arg(long, value_name = "ADDR:PORT")]
+    pub(super) metrics: Option<SocketAddr>,
+    /// End after this many seconds
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) seconds: Option<u64>,
+    /// At the end print one JSON object instead of a table
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.0..=3600.0).contains(seconds));
+    seconds.ok_or_else(|| "expected seconds, up to 3600".to_owned())
+}
+
+impl Options {
+    /// Between two times that states are written.
+    pub(super) fn every(&self) -> Duration {
+        Duration::from_secs_f64(self.every)
+    }
+
+    /// The transport that was chosen, and what to call it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it cannot be had.
+    pub(super) fn transport(
+        &self,
+        stop: &Arc<AtomicBool>,
+    ) -> Result<(Box<dyn Transport>, String), Error> {
+        let Some(url) = &self.nats else {
+            let udp = Udp::bind(self.udp.as_deref().unwrap_or_default(), self.to)?;
+            let address = udp.address().map_or_else(String::new, |address| address.to_string());
+            return Ok((Box::new(udp), format!("UDP {address}")));
+        };
+        let subject = self.subject.clone().unwrap_or_else(|| format!("{}.>", self.stream));
+        let name = format!("{url}, {subject}");
+        let (stream, estimates) = (self.stream.clone(), self.estimates.clone());
+        let names = Names { stream, subject, estimates, consumer: self.consumer.clone() };
+        Ok((Box::new(Nats::connect(url, names, Arc::clone(stop))?), name))
+    }
+}
+
+/// The command, with the options of each system.
+pub(in crate::commands) fn command() -> Command {
+    let of = |system: &'static dyn AnySystem| {
+        let command = Command::new(system.name()).about(system.title());
+        let command = Options::augment_args(command).next_help_heading("Estimator");
+        command.args(followed(system))
+    };
+    Command::new("fleet")
+        .about("Follow any number of devices behind a broker, each with an estimator of its own")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands(followers().map(of))
+}
