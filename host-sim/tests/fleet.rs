@@ -167,7 +167,9 @@ async fn estimates(context: &Context) -> BTreeMap<u32, Vec<(u32, u64, [f32; 3])>
         let device = frame.origin.expect("a device").device;
         all.entry(device).or_default().push((frame.sequence, it.time_us, it.position));
     }
-    all.values_mut().for_each(|track| track.sort_by_key(|it| it.0));
+    for track in all.values_mut() {
+        track.sort_by_key(|it| it.0);
+    }
     all
 }
 

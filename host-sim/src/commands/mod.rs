@@ -39,7 +39,7 @@ const REPORT: &str = "target/report";
 
 /// The whole command line. The options of `live` are those of the system that `arguments` names.
 pub fn command(arguments: &[OsString]) -> Command {
-    Command::new("host-sim")
+    let command = Command::new("host-sim")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Estimators on synthetic and recorded streams")
         .long_about(
@@ -70,7 +70,6 @@ pub fn command(arguments: &[OsString]) -> Command {
                 .about("Explore recordings in the browser: thresholds and filters with sliders"),
         ))
         .subcommand(live::command(arguments))
-        .subcommands(fleets())
         .subcommand(FetchData::augment_args(Command::new("fetch-data").about(
             "Fetch the recordings that may be passed on from those who publish them, by curl or wget",
         )))
@@ -84,15 +83,10 @@ pub fn command(arguments: &[OsString]) -> Command {
                         .required(true)
                         .value_parser(value_parser!(Shell)),
                 ),
-        )
-}
-
-/// What a program that was built without fleets lacks.
-fn fleets() -> Option<Command> {
+        );
     #[cfg(feature = "fleet")]
-    return Some(fleet::command());
-    #[cfg(not(feature = "fleet"))]
-    None
+    let command = command.subcommand(fleet::command());
+    command
 }
 
 fn examples(system: &dyn AnySystem) -> String {

@@ -1,4 +1,4 @@
-//! NATS JetStream: a stream of frames, and one of estimates.
+//! NATS with its streams, `JetStream`: one stream of frames, and one of estimates.
 //!
 //! The order of the stream is kept whatever happens: a consumer that the broker forgot, that skipped what was on its way
 //! when the connection broke, or that is another run's, is made anew behind the last message that was followed.

@@ -15,11 +15,13 @@ use crate::Error;
 use crate::commands::live::options::{followed, followers};
 use crate::system::AnySystem;
 
+/// Of the option of that name.
+const NATS: &str = "Follow a stream of NATS JetStream, such as nats://127.0.0.1:4222";
+
 /// Options that have nothing to do with whose estimator it is.
 #[derive(Debug, Clone, Args)]
 pub(super) struct Options {
-    /// Follow a stream of NATS JetStream, such as nats://127.0.0.1:4222
-    #[arg(long, value_name = "URL", required_unless_present = "udp", conflicts_with = "udp")]
+    #[arg(long, value_name = "URL", help = NATS, required_unless_present = "udp", conflicts_with = "udp")]
     nats: Option<String>,
     /// Listen to datagrams for this address instead: there is no log, and what is killed is not made again
     #[arg(long, value_name = "ADDR:PORT")]

@@ -19,10 +19,10 @@ const MOST: usize = 4096;
 #[derive(Debug)]
 pub(super) struct Decoder {
     receiver: Receiver,
-    devices: BTreeMap<Option<u32>, Device>,
+    devices: BTreeMap<Sender, Device>,
     plan: Option<Arc<dyn Plan>>,
     /// Which is shown in detail; the first that is heard, if nobody says it.
-    shown: Option<Option<u32>>,
+    shown: Option<Sender>,
     state: Arc<Mutex<State>>,
     most: u32,
 }
@@ -40,7 +40,7 @@ impl Decoder {
             receiver: Receiver::new(),
             devices: BTreeMap::new(),
             plan: following.plan.clone(),
-            shown: following.device.map(Some),
+            shown: following.device.map(Sender::Device),
             state,
             most: most.unwrap_or(u32::MAX),
         })
@@ -109,30 +109,52 @@ impl Decoder {
         counts.lost = lost.fold(counts.lost, u32::saturating_add);
         let left_out = self.devices.values().map(Device::left_out).sum();
         state.count(bytes, counts, left_out);
-        state.shown = self.shown.flatten();
-        for (number, device) in self.devices.iter_mut().filter(|(_, device)| device.is_news) {
+        state.shown = self.shown.and_then(Sender::number);
+        for (sender, device) in self.devices.iter_mut().filter(|(_, device)| device.is_news) {
             let row = device.show(&mut state);
-            if let Some(number) = number {
-                state.devices.insert(*number, row);
+            if let Some(number) = sender.number() {
+                state.devices.insert(number, row);
             }
+        }
+    }
+}
+
+/// Who sends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Sender {
+    /// Those that do not say who they are.
+    Unnamed,
+    /// The device of this number.
+    Device(u32),
+}
+
+impl Sender {
+    fn of(frame: &Frame) -> Self {
+        frame.origin.map_or(Self::Unnamed, |Origin { device, .. }| Self::Device(device))
+    }
+
+    const fn number(self) -> Option<u32> {
+        match self {
+            Self::Unnamed => None,
+            Self::Device(number) => Some(number),
         }
     }
 }
 
 /// The parts of a decoder that a frame changes.
 type Known<'a> =
-    (&'a mut BTreeMap<Option<u32>, Device>, &'a mut Option<Option<u32>>, &'a Option<Arc<dyn Plan>>);
+    (&'a mut BTreeMap<Sender, Device>, &'a mut Option<Sender>, &'a Option<Arc<dyn Plan>>);
 
 /// Takes a frame to its device.
 fn hear((devices, shown, plan): Known<'_>, frame: Frame, state: &mut State) -> Result<(), Error> {
-    let number = frame.origin.map(|Origin { device, .. }| device);
-    let is_shown = *shown.get_or_insert(number) == number;
-    if !devices.contains_key(&number) {
+    let sender = Sender::of(&frame);
+    let is_shown = *shown.get_or_insert(sender) == sender;
+    if !devices.contains_key(&sender) {
         if devices.len() >= MOST {
             state.beyond += 1;
             return Ok(());
         }
-        devices.insert(number, Device::new(plan.clone(), is_shown)?);
+        devices.insert(sender, Device::new(plan.clone(), is_shown)?);
     }
-    devices.get_mut(&number).map_or(Ok(()), |device| device.take(frame, state))
+    devices.get_mut(&sender).map_or(Ok(()), |device| device.take(frame, state))
 }

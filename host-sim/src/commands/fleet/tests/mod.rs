@@ -104,7 +104,8 @@ fn killed_at_any_moment_every_track_is_that_of_the_devices_own_replay() {
             // Each time a little later; messages are received in other pieces.
             let (batch, calls_left) = (1 + kills % 4, 1 + kills % 11);
             let memory = Memory { broker: Arc::clone(&broker), next: 0, batch, calls_left };
-            let every = if kills % 3 == 0 { Duration::ZERO } else { Duration::from_micros(300) };
+            let every =
+                if kills.is_multiple_of(3) { Duration::ZERO } else { Duration::from_micros(300) };
             let begun = Engine::begin(fleet, store, Box::new(memory), every);
             let mut engine = begun.unwrap();
             let ended = loop {
