@@ -6,9 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use kestirim_telemetry::{
-    CAPACITY, Frame, Message, Origin, Position, Receiver, State, encode_from,
-};
+use kestirim_telemetry::{CAPACITY, Frame, Origin, Position, Receiver, encode_from};
 use serde::{Deserialize, Serialize};
 
 use super::counts::Counts;
@@ -208,18 +206,12 @@ fn wake(online: &mut dyn Online, state: &[u8]) -> Result<(), Error> {
     online.restore(state).ok_or_else(refused)
 }
 
-/// What the estimator knows after a frame, as a frame; nothing before it knows where anything is.
+/// Where the estimator is after a frame, as a frame; nothing before it knows that.
 fn estimate(online: &dyn Online, origin: Origin, frame: &Frame) -> Option<Estimate> {
     let time_us = frame.message.measured_us()?;
-    let message: Message = match (online.position(), online.state()) {
-        (Some(position), _) => {
-            let position = position.map(|metres| metres as f32);
-            let sigma = online.sigma_m().map(|metres| metres as f32);
-            Position { time_us, position, sigma }.into()
-        }
-        (None, Some(state)) => State { time_us, state: state.map(|it| it as f32) }.into(),
-        (None, None) => return None,
-    };
+    let position = online.position()?.map(|metres| metres as f32);
+    let sigma = online.sigma_m().map(|metres| metres as f32);
+    let message = Position { time_us, position, sigma }.into();
     let mut buffer = [0; CAPACITY];
     let bytes = encode_from(origin, &message, frame.sequence, &mut buffer).ok()?.to_vec();
     let Origin { device, boot } = origin;
