@@ -1,8 +1,7 @@
 //! Positions with what satellites broadcast, beside those with precise orbits and clocks.
 //!
-//! What nine satellites of GPS really broadcast on the evening of the day of ESBC stands in `gnss_broadcast/esbc_evening.rnx`.
-//! For the whole day, and with Galileo, ephemerides are fitted to the precise products: they show that the chain is right, and
-//! nothing of how far real satellites are off what they say.
+//! Ephemerides are fitted to the precise products of ESBC's day: they show that the chain is right, and nothing of how far
+//! real satellites are from what they say.
 //!
 //! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
@@ -21,10 +20,8 @@ use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 
 const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
-const EVENING: &str = include_str!("gnss_broadcast/esbc_evening.rnx");
-/// When the nine satellites' ephemerides hold and six of them at least are in view, s.
-const FROM: f64 = 72_000.0;
-const UNTIL: f64 = 78_000.0;
+/// Until when ephemerides are fitted, s.
+const UNTIL: f64 = 82_800.0;
 
 /// The observations of a station with a navigation file in place of products.
 fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recording {
@@ -66,17 +63,13 @@ fn off(broadcast: &Recording, precise: &Recording, epoch: &Epoch) -> Vec<f64> {
 fn followed(
     what: &str,
     recording: &Recording,
-    [from, until]: [f64; 2],
     motion: Motion,
     method: Method,
 ) -> (Followed, [f64; 3]) {
-    let epochs: Vec<_> = (recording.epochs(Some(until)).iter())
-        .filter(|epoch| recording.seconds(epoch) >= from)
-        .cloned()
-        .collect();
+    let epochs = recording.epochs(Some(UNTIL));
     let receiver = recording.receiver(Corrections::ALL);
     let pass = Pass { method, ..Pass::default() };
-    let found = follow(recording, &epochs, &receiver, Config::new(motion), pass, || ());
+    let found = follow(recording, epochs, &receiver, Config::new(motion), pass, || ());
     let truth = Vector3::from(ESBC.truth);
     let told = found.fixes.iter().zip(&found.deviations);
     let told: Vec<_> =
@@ -105,32 +98,6 @@ fn is_never_converged(followed: &Followed) {
 }
 
 #[test]
-fn an_evening_of_real_ephemerides() {
-    let Some(folder) = folder_of("gnss") else { return };
-    let (broadcast, precise) = (with_navigation(&folder, ESBC, EVENING), ESBC.read(&folder));
-    let all: Vec<f64> = (precise.epochs(Some(UNTIL)).iter())
-        .filter(|epoch| precise.seconds(epoch) >= FROM)
-        .flat_map(|epoch| off(&broadcast, &precise, epoch))
-        .collect();
-    println!(
-        "real ephemerides of GPS against precise products: {:.3} m, {} ranges",
-        rms(&all),
-        all.len()
-    );
-    assert!(all.len() > 1_000 && rms(&all) < 1.0);
-    let run = |what, motion, method| followed(what, &broadcast, [FROM, UNTIL], motion, method);
-    for (what, motion, method, most) in [
-        ("single", Motion::Static, Method::Single, 3.0),
-        ("static", Motion::Static, Method::Filter, 2.0),
-        ("kinematic", KINEMATIC, Method::Filter, 2.5),
-    ] {
-        let (found, [_, rms, ratio]) = run(what, motion, method);
-        assert!(found.fixes.len() >= 195 && rms < most && ratio < 1.0);
-        is_never_converged(&found);
-    }
-}
-
-#[test]
 fn a_day_of_fitted_ephemerides() {
     let Some(folder) = folder_of("gnss") else { return };
     let path = |name: &str| -> PathBuf { folder.join("esbc2020177_multi").join(name) };
@@ -146,7 +113,7 @@ fn a_day_of_fitted_ephemerides() {
     let navigation = fit::navigation(59_025, &orbits, &clocks, &antennas);
     let fitted = with_navigation(&folder, ESBC_MULTI, &navigation);
     let precise = ESBC_MULTI.read(&folder);
-    let all: Vec<f64> = (precise.epochs(Some(82_800.0)).iter().step_by(10))
+    let all: Vec<f64> = (precise.epochs(Some(UNTIL)).iter().step_by(10))
         .flat_map(|epoch| off(&fitted, &precise, epoch))
         .collect();
     println!(
@@ -155,7 +122,7 @@ fn a_day_of_fitted_ephemerides() {
         all.len()
     );
     assert!(all.len() > 4_000 && rms(&all) < 0.1);
-    let run = |what, motion, method| followed(what, &fitted, [0.0, 82_800.0], motion, method);
+    let run = |what, motion, method| followed(what, &fitted, motion, method);
     for (what, motion, method, most) in [
         ("single", Motion::Static, Method::Single, 2.0),
         ("static", Motion::Static, Method::Filter, 0.5),
