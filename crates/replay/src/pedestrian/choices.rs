@@ -29,8 +29,6 @@ pub struct Options {
     pub magnetometer: bool,
     /// Take back over each swing what its end corrected.
     pub smooth: bool,
-    /// The walk ends where it began: for [`Walk::close`](super::Walk::close), after what a magnetometer shows.
-    pub closed: bool,
     /// Number type of the estimator.
     pub scalar: ScalarKind,
 }
@@ -101,7 +99,6 @@ impl Default for Options {
             causal: false,
             magnetometer: true,
             smooth: false,
-            closed: false,
             scalar: ScalarKind::F32,
         }
     }

@@ -59,7 +59,7 @@ impl Report {
 
 fn warnings(fleet: &Fleet) -> Vec<String> {
     let devices = fleet.keyed.devices.iter();
-    let shared = devices.filter(|(_, device)| device.counts.another >= TOLD.into());
+    let shared = devices.filter(|(_, device)| device.counts.another >= u64::from(TOLD));
     let shared: Vec<_> = shared.map(|(number, _)| number.to_string()).collect();
     let named = shared.get(..shared.len().min(NAMED)).unwrap_or_default().join(", ");
     let more = if shared.len() > NAMED { ", …" } else { "" };

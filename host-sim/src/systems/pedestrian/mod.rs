@@ -131,7 +131,7 @@ impl System for Pedestrian {
     }
 
     fn track(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Track, Error> {
-        Track::of(recording, settings.number("rate"), &options(settings), detail)
+        Track::of(recording, settings, detail)
     }
 
     fn account(recording: &Recording, _: &Settings, track: &Track) -> Result<Account, Error> {

@@ -102,6 +102,11 @@ fn turns_back(settings: &Settings) -> bool {
         && !settings.is_on("causal")
 }
 
+/// Whether the walk is said to end where it began.
+pub(super) fn is_closed(settings: &Settings) -> bool {
+    settings.is_on("closed") && turns_back(settings)
+}
+
 /// As set.
 pub fn options(settings: &Settings) -> Options {
     let factor = settings.decided("factor");
@@ -124,7 +129,6 @@ pub fn options(settings: &Settings) -> Options {
         causal: settings.is_on("causal"),
         magnetometer: settings.is_on("magnetometer") && turns_back(settings),
         smooth: settings.is_on("smooth") && !settings.is_on("causal"),
-        closed: settings.is_on("closed") && turns_back(settings),
         scalar: settings.chosen("scalar"),
     }
 }

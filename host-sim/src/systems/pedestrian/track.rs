@@ -1,11 +1,12 @@
 //! Tracks a recording.
 
 use kestirim_pedestrian::SensorClass;
-use kestirim_replay::pedestrian::{self, Options, Trace, heading_rate, sensor_class, trace, walk};
+use kestirim_replay::pedestrian::{self, Trace, heading_rate, sensor_class, trace, walk};
 
 use super::recording::Recording;
+use super::settings::{is_closed, options};
 use crate::Error;
-use crate::system::Detail;
+use crate::system::{Detail, Settings};
 
 /// What the tracker made of a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,16 +18,12 @@ pub struct Track {
 }
 
 impl Track {
-    /// Tracks a recording, averaged down to a rate if one is given, Hz.
+    /// Tracks a recording as set.
     ///
     /// # Errors
     /// [`Error::File`] if no tracker takes the log, [`Error::Usage`] for a rate that it does not have.
-    pub fn of(
-        recording: &Recording,
-        rate_hz: Option<f64>,
-        options: &Options,
-        detail: Detail,
-    ) -> Result<Self, Error> {
+    pub fn of(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Self, Error> {
+        let (rate_hz, options) = (settings.number("rate"), options(settings));
         let averaged = rate_hz.map(|rate_hz| recording.at_rate(rate_hz)).transpose()?;
         let tracked = averaged.as_ref().unwrap_or(recording);
         let (samples, options) = (&tracked.log.samples, options.with_sensor(|| class_of(tracked)));
@@ -42,7 +39,7 @@ impl Track {
         if let Some(rate) = rate {
             trace.walk.turn_back(rate);
         }
-        if options.closed
+        if is_closed(settings)
             && let Err(refused) = trace.walk.close()
         {
             trace.walk.warnings.push(refused);
