@@ -141,7 +141,8 @@ impl<T: Scalar, const D: usize> Search<T, D> {
     #[inline(never)]
     fn settle(&mut self, solver: &Solver<T>, mut fix: Fix<T, D>) {
         // What is kept can be stored: no number is on a rail of fixed point.
-        fix.cost = fix.cost.min(T::MAX * T::HALF);
+        // On a rail of fixed point it could not be stored.
+        fix.cost = fix.cost.min(T::MAX - T::EPSILON);
         let inside = is_inside(solver, &fix.position);
         let Some(best) = &mut self.best else {
             self.best = Some(Found { inside, fix });
