@@ -78,13 +78,4 @@ impl Broadcast {
     pub(super) fn disowned(&self) -> impl Iterator<Item = u8> {
         self.disowned.iter().copied()
     }
-
-    /// From when to when any ephemeris holds, s since midnight.
-    pub(super) fn span(&self, midnight: GpsTime) -> [f64; 2] {
-        let all = self.satellites.values().flatten();
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], it| {
-            let at = it.time.since(midnight);
-            [first.min(at - it.holds), last.max(at + it.holds)]
-        })
-    }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use kestirim_gnss_files::{
-    Antennas, GpsTime as Time, Observations, Orbits, Signals, satellite_name,
+    Antennas, GpsTime as Time, Message, Navigation, Observations, Orbits, Signals, satellite_name,
 };
 use kestirim_gnss_ppp::{Correction, GpsTime};
 
@@ -65,6 +65,19 @@ pub(super) fn span(orbits: &Orbits, midnight: GpsTime) -> [f64; 2] {
     });
     times.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [first, last]| {
         [a.min(first), b.max(last)]
+    })
+}
+
+/// From when to when ephemerides hold, two hours around each, s since midnight.
+pub(super) fn span_of_broadcast(navigation: &Navigation, midnight: GpsTime) -> [f64; 2] {
+    const HOLDS: f64 = 7_200.0;
+    let all = navigation.satellites().flat_map(|number| {
+        let messages = [Message::Lnav, Message::Inav, Message::Fnav];
+        messages.into_iter().flat_map(move |message| navigation.satellite(number, message))
+    });
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], it| {
+        let at = model::time(it.time).since(midnight);
+        [first.min(at - HOLDS), last.max(at + HOLDS)]
     })
 }
 

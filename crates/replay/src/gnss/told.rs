@@ -95,7 +95,7 @@ impl Told {
                         ),
                     ));
                 }
-                let span = broadcast.span(midnight);
+                let span = coverage::span_of_broadcast(navigation, midnight);
                 let products = Products::of_broadcast(start, broadcast);
                 Served { products, left_out: BTreeSet::new(), span }
             }
