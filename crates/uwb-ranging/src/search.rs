@@ -140,7 +140,6 @@ impl<T: Scalar, const D: usize> Search<T, D> {
     /// Keeps the better of two fixes: one in the room, and else the one of smaller cost.
     #[inline(never)]
     fn settle(&mut self, solver: &Solver<T>, mut fix: Fix<T, D>) {
-        // What is kept can be stored: no number is on a rail of fixed point.
         // On a rail of fixed point it could not be stored.
         fix.cost = fix.cost.min(T::MAX - T::EPSILON);
         let inside = is_inside(solver, &fix.position);

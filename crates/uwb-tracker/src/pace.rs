@@ -24,6 +24,8 @@ impl Pace {
     pub(crate) const MOST_US: u32 = 8_000_000;
     /// An outage is not slowness: a longer interval counts as this one (µs).
     const LONGEST_US: u32 = 2_000_000;
+    /// A fast radio lets less than this pass between two ranges (µs).
+    const FAST_US: u32 = 110_000;
     /// So many rounds of all anchors are fresh: one may be missed.
     const ROUNDS: u32 = 2;
     /// No range yet.
@@ -75,6 +77,12 @@ impl Pace {
     pub(crate) fn collect(&mut self, time_us: u64, anchor: usize) -> bool {
         self.hear(time_us);
         self.last.replace(anchor) != Some(anchor)
+    }
+
+    /// How many times as long as with a fast radio the next range lets wait: a search that is not done within seconds would begin
+    /// again and again.
+    pub(crate) fn leisure(&self) -> usize {
+        1 + (self.mean_us / Self::FAST_US).min(20) as usize
     }
 
     /// Age beyond which a range is not used (µs).

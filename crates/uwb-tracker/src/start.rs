@@ -25,7 +25,8 @@ const LARGEST_COST: f64 = 12.0;
 /// After so many ranges without a position, ranges that contradict each other are accepted, too.
 const MOST_TRIES: u8 = 20;
 
-/// Residuals that a range has time for beside its own: of four anchors in five steps, of eight in two.
+/// Residuals that a range has time for beside its own: of four anchors in five steps, of eight in two. Slow radios leave
+/// [more](crate::pace::Pace::leisure).
 const WORK: usize = 20;
 /// Age of the ranges beyond which the tag may be anywhere (µs).
 const LONGEST_US: u64 = 3_000_000;
@@ -89,6 +90,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
         config: &Config<T>,
         links: &[Link<T>],
         (time_us, fresh_us): (u64, u64),
+        leisure: usize,
         may: bool,
     ) -> Option<Begun<T, N>> {
         let oldest_us = time_us.saturating_sub(fresh_us.min(LONGEST_US));
@@ -109,7 +111,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
             common_bias: (N > 2 * D).then_some(config.common_bias_sigma),
             huber: config.huber,
         };
-        let fix = match self.advance(&solver, accepts_all) {
+        let fix = match self.advance(&solver, WORK.saturating_mul(leisure), accepts_all) {
             Progress::Unfinished => return None,
             Progress::Found(fix) => fix,
             Progress::Nothing => {
@@ -139,10 +141,10 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
 
     /// Takes as many steps as a range has time for. Where all ranges contradict each other, the attempt goes on without the
     /// longest, unless they are accepted all the same.
-    fn advance(&mut self, solver: &Solver<T>, accepts_all: bool) -> Progress<T, D> {
+    fn advance(&mut self, solver: &Solver<T>, work: usize, accepts_all: bool) -> Progress<T, D> {
         let count = self.observations.len().saturating_sub(usize::from(self.leaves_out));
         let observations = self.observations.get(..count).unwrap_or_default();
-        let steps = WORK.checked_div(count).unwrap_or(1).max(1);
+        let steps = work.checked_div(count).unwrap_or(1).max(1);
         let fix = match self.search.advance(solver, observations, steps) {
             Ok(None) => return Progress::Unfinished,
             Ok(Some(fix)) => *fix,

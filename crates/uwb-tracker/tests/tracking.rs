@@ -354,3 +354,24 @@ fn impossible_trackers_are_refused() {
     assert_eq!(tracker.range(&sample(0, 0, 1.0)), Err(Error::NoSuchAnchor));
     assert_eq!(tracker.set_height(f32::INFINITY), Err(Error::NotFinite));
 }
+
+#[test]
+fn a_slow_radio_finds_a_position_among_ranges_that_contradict_each_other() {
+    // A range each 0.4 s, one anchor always behind something.
+    let mut found_after = Vec::new();
+    for place in 0..25_u32 {
+        let tag = [1.0 + 1.5 * f64::from(place % 5), 1.0 + f64::from(place / 5)];
+        let mut bench = Bench::<f64, 4>::new(Config::calibrated(1.0));
+        let found = (0..40_usize).find(|&count| {
+            bench.time_us += 400_000;
+            let anchor = count % 4;
+            let excess = if anchor == 1 { 6.0 } else { 0.0 };
+            let range = distance(CORNERS[anchor], [tag[0], tag[1], 1.0]) + excess;
+            let range = range + 0.05 * bench.noise();
+            bench.tracker.range(&sample(bench.time_us, anchor, range)).unwrap();
+            bench.tracker.position().is_some()
+        });
+        found_after.push(found.unwrap_or(99));
+    }
+    assert!(found_after.iter().all(|ranges| *ranges <= 12), "{found_after:?}");
+}

@@ -41,7 +41,7 @@ fn begun_after<const D: usize, const N: usize, const A: usize>(
 ) -> Option<(u32, Gaussian<f64, N>)> {
     let mut start = Start::<f64, D, A>::new();
     (1..=ranges).find_map(|range| {
-        let begun = start.go_on(config, links, (NOW_US, FRESH_US), true)?;
+        let begun = start.go_on(config, links, (NOW_US, FRESH_US), 1, true)?;
         assert_eq!(begun.time_us, NOW_US);
         Some((range, begun.estimate))
     })
@@ -123,7 +123,7 @@ fn an_attempt_belongs_to_the_ranges_that_it_began_with() {
     let before = links::<5>(&config, [0; 5], [0.0, 3.0, 0.0, 0.0, 0.0]);
     let mut start = Start::<f64, 2, 5>::new();
     let mut go_on = |links: &[Link<f64>; 5], time_us| {
-        start.go_on::<4>(&config, links, (time_us, FRESH_US), true)
+        start.go_on::<4>(&config, links, (time_us, FRESH_US), 1, true)
     };
     assert!(go_on(&before, NOW_US).is_none());
     // What was measured later is of another place.
@@ -143,10 +143,10 @@ fn an_attempt_of_ranges_that_are_old_by_now_is_given_up() {
     let config = Config::calibrated(1.0);
     let before = links::<5>(&config, [0; 5], [0.0, 3.0, 0.0, 0.0, 0.0]);
     let mut start = Start::<f64, 2, 5>::new();
-    assert!(start.go_on::<4>(&config, &before, (NOW_US, FRESH_US), true).is_none());
+    assert!(start.go_on::<4>(&config, &before, (NOW_US, FRESH_US), 1, true).is_none());
     assert!(start.is_on());
     let later_us = NOW_US + FRESH_US + 1;
-    assert!(start.go_on::<4>(&config, &before, (later_us, FRESH_US), true).is_none());
+    assert!(start.go_on::<4>(&config, &before, (later_us, FRESH_US), 1, true).is_none());
     assert!(!start.is_on(), "none is fresh");
     // Others are begun with.
     let mut fresh = links::<5>(&config, [0; 5], [0.0; 5]);
@@ -155,7 +155,7 @@ fn an_attempt_of_ranges_that_are_old_by_now_is_given_up() {
         link.hear(later_us, range);
     }
     let mut ranges =
-        (0..SOON).filter_map(|_| start.go_on::<4>(&config, &fresh, (later_us, FRESH_US), true));
+        (0..SOON).filter_map(|_| start.go_on::<4>(&config, &fresh, (later_us, FRESH_US), 1, true));
     assert_eq!(ranges.next().expect("a start").time_us, later_us);
 }
 

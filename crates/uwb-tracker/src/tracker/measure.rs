@@ -59,7 +59,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             link.hear(sample.time_us, range);
         }
         again &= self.pace.collect(sample.time_us, sample.anchor);
-        let started = self.begin(self.time_us, again);
+        let now_us = self.time_us;
+        let started = self.begin(now_us, again);
+        if started {
+            // Its ranges were of a moment before. What cannot be moved on now is with the next sample.
+            let _ = self.advance(now_us, None);
+        }
+        let started = started && self.estimate().is_some();
         let outcome = if started { Outcome::Started } else { Outcome::Collected };
         Report { outcome, innovation: None }
     }
@@ -69,10 +75,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     pub(super) fn begin(&mut self, now_us: u64, again: bool) -> bool {
         let heard = self.count_heard(now_us);
         let may = again || usize::from(heard) >= self.links.len();
-        let now = (now_us, self.pace.fresh_us());
+        let (now, leisure) = ((now_us, self.pace.fresh_us()), self.pace.leisure());
         let Place::Sought(start) = &mut self.place else { return false };
-        let Some(begun) = start.go_on(&self.config, &self.links, now, may) else { return false };
-        // It is of the time of its ranges: the next sample moves it on.
+        let Some(begun) = start.go_on(&self.config, &self.links, now, leisure, may) else {
+            return false;
+        };
+        // It is of the time of its ranges.
         (self.place, self.time_us) = (Place::Known(begun.estimate), begun.time_us);
         for link in &mut self.links {
             *link = link.begun(&self.config);

@@ -280,8 +280,9 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     fn begin(&mut self, again: bool) -> bool {
         let heard = count_heard(&self.links, &self.pace, self.time_us);
         let may = again || usize::from(heard) >= self.links.len();
-        let now = (self.time_us, self.pace.fresh_us());
-        let Some(begun) = self.start.go_on::<5>(&self.config, &self.links, now, may) else {
+        let (now, leisure) = ((self.time_us, self.pace.fresh_us()), self.pace.leisure());
+        let Some(begun) = self.start.go_on::<5>(&self.config, &self.links, now, leisure, may)
+        else {
             return false;
         };
         let biases = common_sigmas(self.config.common_bias_sigma / self.size, self.size);
