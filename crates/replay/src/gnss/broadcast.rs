@@ -1,6 +1,6 @@
 //! What satellites broadcast, as the filter wants it: a satellite's state at an instant, with its own word for how good it is.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use kestirim_gnss_files::{Message, Navigation, Signals};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
@@ -12,10 +12,43 @@ use super::products::Unusable;
 /// Ephemerides of the satellites that were observed.
 #[derive(Debug, Default)]
 pub struct Broadcast {
-    satellites: BTreeMap<u8, Vec<Ephemeris>>,
-    /// Those of which some ephemerides do not serve, as they say so themselves.
-    disowned: BTreeSet<u8>,
+    satellites: BTreeMap<u8, Own>,
     ionosphere: Option<Klobuchar>,
+}
+
+/// The ephemerides of one satellite, unhealthy ones among them: what came before those does not serve in their place.
+#[derive(Debug, Default)]
+struct Own {
+    /// Those of the message that is made for the carriers, and that tells their health.
+    first: Vec<Ephemeris>,
+    /// Those of another message, whose orbits are the same.
+    other: Vec<Ephemeris>,
+}
+
+impl Own {
+    /// The ephemeris that serves at a time: the nearest one, if the satellite does not call itself unhealthy in it.
+    fn at(&self, time: GpsTime) -> Option<&Ephemeris> {
+        let nearest = |of| Ephemeris::nearest(of, time);
+        let away = |it: &Ephemeris| time.since(it.time).abs();
+        let (first, other) = (nearest(&self.first), nearest(&self.other));
+        match (first.filter(|it| serves(it)), other.filter(|it| serves(it))) {
+            (Some(first), Some(other)) if away(other) < away(first) => Some(other),
+            (None, other) if first.is_none() => other,
+            (served, _) => served,
+        }
+    }
+
+    /// Whether the satellite is left out at some time.
+    fn is_disowned(&self) -> bool {
+        let is_judged = |it: &Ephemeris| self.first.iter().any(|first| first.holds_at(it.time));
+        let mut unhealthy = self.other.iter().filter(|it| !serves(it));
+        self.first.iter().any(|it| !serves(it)) || unhealthy.any(|it| !is_judged(it))
+    }
+}
+
+/// Whether an ephemeris tells an accuracy, as those of unhealthy satellites do not ([`model::ephemeris`]).
+const fn serves(ephemeris: &Ephemeris) -> bool {
+    ephemeris.accuracy.is_finite()
 }
 
 impl Broadcast {
@@ -27,20 +60,16 @@ impl Broadcast {
         };
         for (&satellite, signals) in signals {
             let carriers = model::carriers(signals.carriers);
-            // Where two tell the same, that which is made for the carriers.
-            let messages: &[Message] = match carriers {
-                Carriers::L1L2 => &[Message::Lnav],
-                Carriers::E1E5a => &[Message::Fnav, Message::Inav],
-                Carriers::E1E5b => &[Message::Inav],
+            let of = |message| {
+                let told = navigation.satellite(satellite, message).iter();
+                told.filter_map(|ephemeris| model::ephemeris(ephemeris, carriers)).collect()
             };
-            let all = messages.iter().flat_map(|message| navigation.satellite(satellite, *message));
-            let (serve, disowned): (Vec<_>, Vec<_>) = all
-                .map(|ephemeris| model::ephemeris(ephemeris, carriers))
-                .partition(Option::is_some);
-            if !disowned.is_empty() {
-                broadcast.disowned.insert(satellite);
-            }
-            broadcast.satellites.insert(satellite, serve.into_iter().flatten().collect());
+            let own = match carriers {
+                Carriers::L1L2 => Own { first: of(Message::Lnav), ..Own::default() },
+                Carriers::E1E5a => Own { first: of(Message::Fnav), other: of(Message::Inav) },
+                Carriers::E1E5b => Own { first: of(Message::Inav), ..Own::default() },
+            };
+            broadcast.satellites.insert(satellite, own);
         }
         broadcast
     }
@@ -54,8 +83,8 @@ impl Broadcast {
         code: f64,
     ) -> Result<(SatelliteState, f64), Unusable> {
         let sent = time.plus(-code / SPEED_OF_LIGHT);
-        let ephemerides = self.satellites.get(&satellite).ok_or(Unusable::NoOrbit)?;
-        let ephemeris = Ephemeris::nearest(ephemerides, sent).ok_or(Unusable::NoOrbit)?;
+        let own = self.satellites.get(&satellite).ok_or(Unusable::NoOrbit)?;
+        let ephemeris = own.at(sent).ok_or(Unusable::NoOrbit)?;
         let clock = ephemeris.clock_at(sent);
         let orbit = ephemeris.orbit_at(sent.plus(-clock));
         let state = SatelliteState {
@@ -76,6 +105,84 @@ impl Broadcast {
 
     /// Satellites that call themselves unhealthy, or tell no accuracy, at some time.
     pub(super) fn disowned(&self) -> impl Iterator<Item = u8> {
-        self.disowned.iter().copied()
+        self.satellites.iter().filter(|(_, own)| own.is_disowned()).map(|(satellite, _)| *satellite)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kestirim_gnss_files::{self as files, Carriers as Observed};
+
+    use super::*;
+
+    /// Of a healthy satellite at a second of a day.
+    fn told(message: Message, second: f64) -> files::Ephemeris {
+        let time = files::GpsTime::new(59_025, second);
+        files::Ephemeris {
+            message,
+            time,
+            clock_time: time,
+            clock: [second, 0.0, 0.0],
+            issue: 1,
+            root_of_axis: 5_440.6,
+            eccentricity: 1e-4,
+            mean_anomaly: 0.0,
+            mean_motion_correction: 0.0,
+            perigee: 0.0,
+            node: 0.0,
+            node_rate: 0.0,
+            inclination: 0.97,
+            inclination_rate: 0.0,
+            latitude_terms: [0.0; 2],
+            radius_terms: [0.0; 2],
+            inclination_terms: [0.0; 2],
+            group_delays: [0.0; 2],
+            accuracy: Some(3.12),
+            is_healthy: true,
+            fit: None,
+        }
+    }
+
+    fn unhealthy(message: Message, second: f64) -> files::Ephemeris {
+        files::Ephemeris { is_healthy: false, ..told(message, second) }
+    }
+
+    /// The time of the ephemeris that serves at a second, and whether the satellite is left out at times.
+    fn served(carriers: Observed, all: &[files::Ephemeris], second: f64) -> (Option<f64>, bool) {
+        let navigation = Navigation::of(all.iter().map(|it| (1, *it)));
+        let carriers = model::carriers(carriers);
+        let of = |message| {
+            let told = navigation.satellite(1, message).iter();
+            told.filter_map(|it| model::ephemeris(it, carriers)).collect::<Vec<_>>()
+        };
+        let [lnav, fnav, inav] = [Message::Lnav, Message::Fnav, Message::Inav].map(of);
+        let own = if lnav.is_empty() {
+            Own { first: fnav, other: inav }
+        } else {
+            Own { first: lnav, ..Own::default() }
+        };
+        let time = GpsTime::new_in_day(59_025, second);
+        (own.at(time).map(|it| it.time.second()), own.is_disowned())
+    }
+
+    #[test]
+    fn an_older_ephemeris_does_not_serve_in_place_of_an_unhealthy_one() {
+        let all = [told(Message::Lnav, 7_200.0), unhealthy(Message::Lnav, 14_384.0)];
+        assert_eq!(served(Observed::L1L2, &all, 9_000.0), (Some(7_200.0), true));
+        assert_eq!(served(Observed::L1L2, &all, 13_000.0), (None, true));
+        assert_eq!(served(Observed::L1L2, &all[..1], 13_000.0), (Some(7_200.0), false));
+    }
+
+    #[test]
+    fn what_is_said_on_e5a_counts_for_e5a() {
+        use Message::{Fnav, Inav};
+        let served = |all: &[_]| served(Observed::E1E5a, all, 9_000.0);
+        assert_eq!(served(&[unhealthy(Fnav, 7_200.0), told(Inav, 7_800.0)]), (None, true));
+        // E5b may be what is unhealthy.
+        let other = [told(Fnav, 7_200.0), unhealthy(Inav, 7_800.0)];
+        assert_eq!(served(&other), (Some(7_200.0), false));
+        assert_eq!(served(&other[1..]), (None, true));
+        let both = [told(Fnav, 7_200.0), told(Inav, 7_800.0)];
+        assert_eq!(served(&both), (Some(7_800.0), false));
     }
 }

@@ -43,8 +43,8 @@ const USUAL_FIT: f64 = 14_400.0;
 /// … and one of Galileo is not to be used when it is older, s (Galileo OS service definition).
 const OLDEST_GALILEO: f64 = 14_400.0;
 
-/// An ephemeris with the clock of two carriers; none of a satellite that calls itself unhealthy or tells no accuracy, and none of
-/// which the group delay between its own carriers and these is not told.
+/// An ephemeris with the clock of two carriers; none of which the group delay between its own carriers and these is not told. The
+/// accuracy is infinite where the satellite calls itself unhealthy or tells none: such an ephemeris must not be used.
 pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<Ephemeris> {
     let [first, second] = told.group_delays;
     let (delay, own) = match (carriers, told.message) {
@@ -60,7 +60,7 @@ pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<E
         Constellation::Galileo => OLDEST_GALILEO,
     };
     let [offset, drift, ageing] = told.clock;
-    let accuracy = told.accuracy.filter(|_| told.is_healthy)?;
+    let accuracy = told.accuracy.filter(|_| told.is_healthy).unwrap_or(f64::INFINITY);
     Some(Ephemeris {
         constellation,
         time: time(told.time),
