@@ -7,7 +7,8 @@ use crate::{Config, Error, Health, SatelliteObservation, SatelliteReport, Soluti
 use heapless::Vec;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{
-    Carriers, Constellation, Expected, Geodetic, GpsTime, Klobuchar, Receiver, SatelliteState, Site,
+    Carriers, Constellation, Expected, Geodetic, GpsTime, Klobuchar, Pattern, Receiver,
+    SatelliteState, Site,
 };
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement, Robust};
@@ -33,7 +34,7 @@ const STATES: usize = 5;
 
 /// The codes of one satellite in an epoch, and the satellite's state.
 #[derive(Clone, Copy, Debug)]
-pub struct CodeObservation {
+pub struct CodeObservation<'a> {
     /// Number of the satellite, which no other has.
     pub satellite: u8,
     /// The carriers on which it is observed.
@@ -44,11 +45,13 @@ pub struct CodeObservation {
     pub group_delay: f64,
     /// The satellite's state at the time of transmission.
     pub state: SatelliteState,
+    /// Its antenna on both carriers, where known: states of precise orbits are those of centres of mass.
+    pub antenna: Option<[Pattern<'a>; 2]>,
 }
 
-impl CodeObservation {
+impl<'a> CodeObservation<'a> {
     /// The same as an observation of which both codes are free of the ionosphere, or alike.
-    fn whole(&self) -> Option<SatelliteObservation<'static>> {
+    fn whole(&self) -> Option<SatelliteObservation<'a>> {
         let (range, _) = self.range()?;
         Some(SatelliteObservation {
             satellite: self.satellite,
@@ -57,7 +60,7 @@ impl CodeObservation {
             phase: [0.0; 2],
             lock_lost: false,
             state: self.state,
-            antenna: None,
+            antenna: self.antenna,
         })
     }
 
@@ -81,7 +84,7 @@ impl CodeObservation {
 pub fn single_point<const N: usize>(
     time: GpsTime,
     receiver: &Receiver<'_>,
-    codes: &[CodeObservation],
+    codes: &[CodeObservation<'_>],
     ionosphere: Option<&Klobuchar>,
     config: &Config,
 ) -> Result<Solution<N>, Error> {
@@ -131,13 +134,13 @@ impl<const N: usize> Epoch<N> {
         &mut self,
         time: GpsTime,
         receiver: &Receiver<'_>,
-        codes: &[CodeObservation],
+        codes: &[CodeObservation<'_>],
         ionosphere: Option<&Klobuchar>,
         config: &Config,
     ) {
         let site = Site::new(receiver, &self.place, time);
         let place = Geodetic::from_ecef(&self.place);
-        let system = |it: &CodeObservation| it.carriers.constellation();
+        let system = |it: &CodeObservation<'_>| it.carriers.constellation();
         let has_gps = codes.iter().any(|it| system(it) == Constellation::Gps);
         self.lines = collected(codes.iter().enumerate().filter_map(|(index, it)| {
             let before = codes.get(..index).unwrap_or(&[]);
@@ -145,7 +148,7 @@ impl<const N: usize> Epoch<N> {
                 return None;
             }
             let (range, is_alone) = it.range()?;
-            let expected = site.expect(&it.state, it.carriers, None, None)?;
+            let expected = site.expect(&it.state, it.carriers, it.antenna.as_ref(), None)?;
             let direction = expected.direction;
             if direction.elevation < config.elevation_mask {
                 return None;

@@ -4,7 +4,7 @@
 mod sky;
 
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{FREQUENCY, Geodetic, Klobuchar, Receiver, SatelliteState, Site};
+use kestirim_gnss_ppp::{FREQUENCY, Geodetic, Klobuchar, Pattern, Receiver, SatelliteState, Site};
 use kestirim_ppp_filter::{
     CodeObservation, Config, Error, Health, Motion, Solution, single_point, states,
 };
@@ -18,7 +18,7 @@ const IONOSPHERE: Klobuchar = Klobuchar {
 const GROUP_DELAY: f64 = -1.1e-8;
 
 /// The codes of all satellites; of L1 alone with the ionosphere in them if `alone`.
-fn codes(alone: bool) -> Vec<CodeObservation> {
+fn codes(alone: bool) -> Vec<CodeObservation<'static>> {
     let place = Geodetic::from_ecef(&sky::marker());
     let site = Site::new(&Receiver::default(), &sky::marker(), sky::START);
     let of = |it: &kestirim_ppp_filter::SatelliteObservation<'_>| {
@@ -37,12 +37,13 @@ fn codes(alone: bool) -> Vec<CodeObservation> {
             ],
             group_delay: GROUP_DELAY,
             state: it.state,
+            antenna: None,
         })
     };
     sky::observe(NOON, &sky::marker()).iter().filter_map(of).collect()
 }
 
-fn solve(codes: &[CodeObservation]) -> Result<Solution<{ states(32) }>, Error> {
+fn solve(codes: &[CodeObservation<'_>]) -> Result<Solution<{ states(32) }>, Error> {
     let config = Config::new(Motion::Static);
     single_point(sky::START, &Receiver::default(), codes, Some(&IONOSPHERE), &config)
 }
@@ -83,6 +84,26 @@ fn a_worse_accuracy_is_told() {
         .collect();
     let worse = solve(&worse).expect("a position");
     assert!(worse.covariance.trace() > 10.0 * good.covariance.trace());
+}
+
+#[test]
+fn antennas_of_satellites_count() {
+    let without = solve(&codes(false)).expect("a position");
+    // Two metres from the centre of mass towards the Earth.
+    let pattern = Pattern {
+        offset: [0.0, 0.0, 2.0],
+        first: 0.0,
+        step: 1.0,
+        mean: &[0.0; 2],
+        azimuth_step: 0.0,
+        by_azimuth: &[],
+    };
+    let with: Vec<_> = (codes(false).into_iter())
+        .map(|it| CodeObservation { antenna: Some([pattern; 2]), ..it })
+        .collect();
+    let with = solve(&with).expect("a position");
+    // All ranges are shorter by nearly as much, and so is what the clock makes of them.
+    assert!((with.clock - without.clock - 2.0).abs() < 0.5, "{} {}", with.clock, without.clock);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use kestirim_gnss_files::{self as files, Antenna, Antennas, Clocks, Observed, Orbits};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState};
+use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Pattern, SatelliteState};
 use kestirim_ppp_filter::{CodeObservation, SatelliteObservation};
 
 use super::broadcast::Broadcast;
@@ -129,7 +129,6 @@ impl Products {
             return Err(Unusable::Incomplete);
         };
         let (state, _) = self.state(observed.prn, time, first)?;
-        let antenna = self.satellites.get(usize::from(observed.prn));
         Ok(SatelliteObservation {
             satellite: observed.prn,
             carriers: carriers(observed.carriers),
@@ -137,9 +136,7 @@ impl Products {
             phase: [l1, l2],
             lock_lost: observed.loss_of_lock.contains(&true),
             state,
-            antenna: antenna
-                .and_then(|satellite| satellite.antenna.as_ref())
-                .and_then(|antenna| patterns(antenna, carriers(observed.carriers))),
+            antenna: self.antenna(observed),
         })
     }
 
@@ -147,7 +144,11 @@ impl Products {
     ///
     /// # Errors
     /// What is missing.
-    pub fn code(&self, time: GpsTime, observed: &Observed) -> Result<CodeObservation, Unusable> {
+    pub fn code(
+        &self,
+        time: GpsTime,
+        observed: &Observed,
+    ) -> Result<CodeObservation<'_>, Unusable> {
         let first = observed.code[0].ok_or(Unusable::Incomplete)?;
         let (state, group_delay) = self.state(observed.prn, time, first)?;
         Ok(CodeObservation {
@@ -156,7 +157,14 @@ impl Products {
             code: observed.code,
             group_delay,
             state,
+            antenna: self.antenna(observed),
         })
+    }
+
+    /// The antenna of an observed satellite, where known; what satellites broadcast needs none.
+    fn antenna(&self, observed: &Observed) -> Option<[Pattern<'_>; 2]> {
+        let satellite = self.satellites.get(usize::from(observed.prn))?;
+        patterns(satellite.antenna.as_ref()?, carriers(observed.carriers))
     }
 
     /// The state of a satellite when it sent what was received at `time` with a code of so many m, and by what its clock is ahead

@@ -66,7 +66,7 @@ fn position(
     recording: &Recording,
     epoch: &Epoch,
     receiver: &Receiver<'_>,
-    codes: &[CodeObservation],
+    codes: &[CodeObservation<'_>],
     config: &Config,
 ) -> Result<Solution<STATES_WITH_GALILEO>, Error> {
     let broadcast = recording.products().broadcast();
@@ -75,12 +75,12 @@ fn position(
 }
 
 /// The codes of an epoch; each satellite is told with what is missing of it.
-fn codes(
-    recording: &Recording,
+fn codes<'a>(
+    recording: &'a Recording,
     epoch: &Epoch,
     systems: Systems,
     mut tell: impl FnMut(u8, Option<Unusable>),
-) -> Vec<CodeObservation> {
+) -> Vec<CodeObservation<'a>> {
     let observed = epoch.satellites.iter().filter(|observed| systems.has(observed.prn));
     let codes = observed.filter_map(|observed| {
         let code = recording.products().code(epoch.time, observed);

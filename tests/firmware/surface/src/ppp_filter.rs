@@ -77,7 +77,8 @@ fn filters<const N: usize>() {
         SatelliteObservation { satellite, carriers, code, phase, lock_lost, state, antenna };
     let observations = any([observation; 4]);
     let code = [maybe(number()), maybe(number())];
-    let code = CodeObservation { satellite, carriers, code, group_delay: number(), state };
+    let group_delay = number();
+    let code = CodeObservation { satellite, carriers, code, group_delay, state, antenna };
     let ionosphere = Klobuchar { alpha: numbers(), beta: numbers() };
     let (codes, ionosphere) = (any([code; 5]), maybe(&ionosphere));
     let time = any(GpsTime::new(whole(), number()));
