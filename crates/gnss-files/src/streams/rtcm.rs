@@ -16,6 +16,8 @@ use crate::time::GpsTime;
 
 /// Half a week, ms: farther back time does not go.
 const HALF_WEEK: i64 = 302_400_000;
+/// The same in s.
+const HALF_WEEK_S: f64 = 302_400.0;
 /// Most cells of satellites and signals that a message of observations may have.
 const MOST_CELLS: u32 = 64;
 
@@ -67,8 +69,8 @@ struct Reader {
     stream: Stream,
     epochs: Vec<Epoch>,
     locks: Locks,
-    /// The first ephemerides' times, of GPS and of Galileo.
-    times: [Option<GpsTime>; 2],
+    /// Ephemerides of the weeks that were transmitted, each with the number of its satellite and the place of the epoch before it.
+    ephemerides: Vec<(usize, u8, Ephemeris)>,
 }
 
 /// The signals of a message of observations: satellites' rough ranges, and what is fine beside them, ms.
@@ -175,38 +177,86 @@ impl Reader {
     }
 
     fn ephemeris(&mut self, satellite: u8, ephemeris: Ephemeris) {
-        let of = usize::from(ephemeris.message != Of::Lnav);
-        self.times[of].get_or_insert(ephemeris.time);
-        self.stream.ephemerides.push((satellite, ephemeris));
+        self.ephemerides.push((self.epochs.len().saturating_sub(1), satellite, ephemeris));
     }
 
-    /// Gives the epochs their weeks.
+    /// Gives epochs and ephemerides their weeks.
     fn finish(self, text: &Text) -> Result<Stream, Error> {
-        let Self { mut stream, epochs, times: [gps, galileo], .. } = self;
-        let Some(near) = galileo.or(gps) else {
+        let Self { mut stream, epochs, ephemerides, .. } = self;
+        let seconds: Vec<_> = epochs.iter().map(|(time, _)| 1e-3 * *time as f64).collect();
+        // Weeks of Galileo are told without a doubt.
+        let near =
+            dated(&ephemerides, &seconds, true).or_else(|| dated(&ephemerides, &seconds, false));
+        let Some((place, near)) = near else {
             let problem = "expected a message that tells the week (1019, 1045 or 1046), found none";
             return if epochs.is_empty() { Ok(stream) } else { Err(text.error(problem)) };
         };
-        // Weeks of Galileo are told without a doubt.
-        for (_, ephemeris) in &mut stream.ephemerides {
-            ephemeris.time = rolled_to(ephemeris.time, near);
-            ephemeris.clock_time = rolled_to(ephemeris.clock_time, near);
-        }
+        let elapsed = elapsed(&epochs);
+        let since_first = elapsed.get(place).copied().unwrap_or_default();
+        let first = GpsTime::new(near.day(), near.second() - 1e-3 * since_first as f64);
         let mut last: Option<(GpsTime, i64)> = None;
-        for (milliseconds, satellites) in epochs {
+        for ((_, satellites), elapsed) in epochs.into_iter().zip(elapsed) {
             let time = match last {
-                None => time_of_week(near, 1e-3 * milliseconds as f64),
+                None => time_of_week(first, seconds.first().copied().unwrap_or_default()),
                 Some((before, last)) => {
-                    let back = milliseconds - last < -HALF_WEEK;
-                    let step = milliseconds - last + if back { 2 * HALF_WEEK } else { 0 };
-                    GpsTime::new(before.day(), before.second() + 1e-3 * step as f64)
+                    GpsTime::new(before.day(), before.second() + 1e-3 * (elapsed - last) as f64)
                 }
             };
-            last = Some((time, milliseconds));
+            last = Some((time, elapsed));
             stream.epochs.push((time, satellites));
+        }
+        for (place, satellite, mut ephemeris) in ephemerides {
+            let time = rolled_to(ephemeris.time, near);
+            let epoch = stream.epochs.get(place).map_or(time, |(epoch, _)| *epoch);
+            let time = in_week_of(time, epoch);
+            ephemeris.clock_time = time_of_week(time, second_of_week(ephemeris.clock_time));
+            ephemeris.time = time;
+            stream.ephemerides.push((satellite, ephemeris));
         }
         Ok(stream)
     }
+}
+
+/// The place of an epoch, and an instant near it, by the ephemerides of Galileo or of GPS; `seconds` are those of the epochs in
+/// their weeks. Some senders tell the week of the transmission, as satellites do, others that of the ephemeris: those are
+/// preferred of which both are the same.
+fn dated(
+    ephemerides: &[(usize, u8, Ephemeris)],
+    seconds: &[f64],
+    of_galileo: bool,
+) -> Option<(usize, GpsTime)> {
+    let of_system = || ephemerides.iter().filter(|(.., it)| (it.message != Of::Lnav) == of_galileo);
+    let second = |place: usize| seconds.get(place).copied();
+    let is_plain = |(place, _, it): &&(usize, u8, Ephemeris)| {
+        second(*place).is_none_or(|second| (second - second_of_week(it.time)).abs() < HALF_WEEK_S)
+    };
+    let (place, _, told) = of_system().find(is_plain).or_else(|| of_system().next())?;
+    let away = second(*place).map_or(0.0, |second| second - second_of_week(told.time));
+    Some((*place, GpsTime::new(told.time.day(), told.time.second() + away)))
+}
+
+/// ms from the first epoch to each.
+fn elapsed(epochs: &[Epoch]) -> Vec<i64> {
+    let mut before = epochs.first().map_or(0, |(time, _)| *time);
+    let mut elapsed = 0;
+    let steps = epochs.iter().map(|(time, _)| {
+        let step = *time - before;
+        before = *time;
+        elapsed += if step < -HALF_WEEK { step + 2 * HALF_WEEK } else { step };
+        elapsed
+    });
+    steps.collect()
+}
+
+/// The time of an ephemeris in the week in which it is within half a week of an epoch: the week told is at most one off.
+fn in_week_of(time: GpsTime, epoch: GpsTime) -> GpsTime {
+    let away = (epoch.since(time) / (2.0 * HALF_WEEK_S)).round().clamp(-1.0, 1.0);
+    GpsTime::new(time.day() + WEEK * away as i32, time.second())
+}
+
+/// Seconds since a week of GPS began.
+fn second_of_week(time: GpsTime) -> f64 {
+    f64::from((time.day() - GpsTime::EPOCH.day()).rem_euclid(WEEK)) * 86_400.0 + time.second()
 }
 
 /// The same time in the 1024 weeks that are nearest to another one.

@@ -44,11 +44,15 @@ fn second_of_week(time: crate::GpsTime) -> f32 {
     (f64::from((time.day() - 44_244).rem_euclid(7)) * 86_400.0 + time.second()) as f32
 }
 
-pub(super) fn ephemerides([(_, gps), (_, galileo)]: &[(u8, Ephemeris); 2]) -> Vec<u8> {
+pub(super) fn ephemerides(told: &[(u8, Ephemeris); 2]) -> Vec<u8> {
+    ephemerides_of_week(told, 2111)
+}
+
+fn ephemerides_of_week([(_, gps), (_, galileo)]: &[(u8, Ephemeris); 2], week: u16) -> Vec<u8> {
     let gps = told!(
         Msg1019T {
             gps_satellite_id: 1,
-            gps_week_number: 2111 % 1024,
+            gps_week_number: week % 1024,
             ura_index: 0,
             iode: 58,
             iodc: 58,
@@ -62,7 +66,7 @@ pub(super) fn ephemerides([(_, gps), (_, galileo)]: &[(u8, Ephemeris); 2]) -> Ve
     let galileo = told!(
         Msg1045T {
             gal_satellite_id: 1,
-            gal_week_number: 2111 - 1024,
+            gal_week_number: week - 1024,
             sisa_e1_e5a_index: 107,
             iodnav: 61,
             af1_s_s: galileo.clock[1],
@@ -147,4 +151,32 @@ fn observations_are_read_to_the_resolution_of_the_format() -> Result<(), Error> 
 fn a_stream_without_a_date_is_refused() {
     let complaint = Observations::parse(&text(observed(0, 0))).expect_err("no date");
     assert!(complaint.to_string().contains("tells the week"), "{complaint}");
+}
+
+#[test]
+fn an_ephemeris_for_the_next_week_is_not_a_week_early() -> Result<(), Error> {
+    // Told on Saturday evening for Sunday, 0 h; some senders tell the week of Sunday.
+    let sunday = crate::GpsTime::new(59_028, 0.0);
+    let plain = broadcast()?;
+    let next = plain
+        .map(|(satellite, it)| (satellite, Ephemeris { time: sunday, clock_time: sunday, ..it }));
+    let saturday = observed(603_000_000, 7);
+    let later = [plain[0], plain[1]].map(|(satellite, it)| {
+        let time = crate::GpsTime::new(59_027, 72_000.0);
+        (satellite, Ephemeris { time, clock_time: time, ..it })
+    });
+    for stream in [
+        [saturday.clone(), ephemerides_of_week(&next, 2111)].concat(),
+        [ephemerides_of_week(&next, 2111), saturday.clone()].concat(),
+        [saturday.clone(), ephemerides_of_week(&next, 2112), ephemerides(&later)].concat(),
+    ] {
+        let read = Navigation::parse(&[text(stream.clone())])?;
+        for (satellite, message) in [(1, Message::Lnav), (101, Message::Fnav)] {
+            let last = read.satellite(satellite, message).last().expect("an ephemeris");
+            assert_eq!((last.time, last.clock_time), (sunday, sunday));
+        }
+        let epoch = Observations::parse(&text(stream))?.epochs[0].time;
+        assert_eq!(epoch, crate::GpsTime::new(59_027, 84_600.0));
+    }
+    Ok(())
 }
