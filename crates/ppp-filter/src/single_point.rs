@@ -150,7 +150,9 @@ impl<const N: usize> Epoch<N> {
             let (range, is_alone) = it.range()?;
             let expected = site.expect(&it.state, it.carriers, it.antenna.as_ref(), None)?;
             let direction = expected.direction;
-            if direction.elevation < config.elevation_mask {
+            // So that one which is not a number is not above it.
+            let above = direction.elevation >= config.elevation_mask;
+            if !above {
                 return None;
             }
             let sine = libm::sin(direction.elevation);
