@@ -17,6 +17,9 @@ use crate::satellites::PerSatellite;
 use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
 
+/// What is said of a record that no satellite can have sent.
+const NO_ORBIT: &str = "this record's orbit is no ellipse: it is left out";
+
 /// What satellites broadcast about themselves, which are called by number: of GPS that of their name, of Galileo that and 100.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Navigation {
@@ -24,7 +27,7 @@ pub struct Navigation {
     messages: [PerSatellite<Ephemeris>; 3],
     /// Klobuchar's ionosphere as GPS broadcasts it: α in s, s per semicircle and so on, then β.
     pub ionosphere: Option<[[f64; 4]; 2]>,
-    /// How many records were passed over: other systems, other messages.
+    /// How many records were passed over: other systems, other messages, orbits that are none.
     pub skipped: usize,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
@@ -102,7 +105,10 @@ impl Navigation {
         self.ionosphere = stream.ionosphere.or(self.ionosphere);
         self.skipped += stream.skipped;
         self.warnings.extend(stream.warnings);
-        found.extend(stream.ephemerides);
+        let (orbits, others): (Vec<_>, Vec<_>) =
+            stream.ephemerides.into_iter().partition(|(_, ephemeris)| ephemeris.is_orbit());
+        self.skipped += others.len();
+        found.extend(orbits);
     }
 
     fn parse_file(&mut self, text: &Text, found: &mut Vec<(u8, Ephemeris)>) -> Result<(), Error> {
@@ -115,7 +121,14 @@ impl Navigation {
             let read = match Record::of(line, layout, &mut lines) {
                 Record::Ephemeris(number, message, numbers) => {
                     let ephemeris = Ephemeris::read(number, message, &numbers);
-                    ephemeris.map(|ephemeris| found.push((number, ephemeris)))
+                    ephemeris.map(|ephemeris| {
+                        if ephemeris.is_orbit() {
+                            found.push((number, ephemeris));
+                        } else {
+                            self.skipped += 1;
+                            self.warnings.push(line.warning(NO_ORBIT));
+                        }
+                    })
                 }
                 Record::Ionosphere(numbers) => {
                     numbers.ionosphere().map(|ionosphere| self.ionosphere = Some(ionosphere))

@@ -104,6 +104,12 @@ impl Ephemeris {
         fit: None,
     };
 
+    /// Whether the orbit is one: an ellipse with an axis.
+    pub(super) fn is_orbit(&self) -> bool {
+        let axis = self.root_of_axis;
+        (0.0..1.0).contains(&self.eccentricity) && axis > 0.0 && axis.is_finite()
+    }
+
     /// A satellite's ephemeris from the numbers of a record.
     pub(super) fn read(
         satellite: u8,

@@ -134,3 +134,20 @@ fn a_record_cut_off_is_left_out() -> Result<(), Error> {
     );
     Ok(())
 }
+
+#[test]
+fn an_orbit_that_is_none_is_left_out() -> Result<(), Error> {
+    for (from, to) in [
+        ("1.000394229777e-02", "1.000394229777e+00"),
+        ("1.000394229777e-02", "            -0.1  "),
+        (" 5.153707128525e+03", " 0.000000000000e+00"),
+        (" 5.153707128525e+03", "-5.153707128525e+03"),
+    ] {
+        let file = navigation_3().replace(from, to);
+        assert_ne!(file, navigation_3(), "{from}");
+        let read = Navigation::parse(&[text(file)])?;
+        assert_eq!((read.satellites().collect::<Vec<_>>(), read.skipped), (vec![101], 2));
+        assert!(sentences(&read.warnings)[0].ends_with("it is left out"));
+    }
+    Ok(())
+}
