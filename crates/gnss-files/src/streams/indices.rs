@@ -16,15 +16,30 @@ pub(super) fn ura(index: u8) -> Option<f64> {
     }
 }
 
-/// SISA of Galileo, m (OS SIS ICD, 5.1.12); none without a prediction.
+/// SISA of Galileo, m (OS SIS ICD, 5.1.12); none without a prediction, and none of index 0: no range is free of errors, and files
+/// with such an accuracy are read alike.
 #[cfg(feature = "rtcm")]
 pub(super) fn sisa(index: u8) -> Option<f64> {
     let above = |first: u8, step: f64| f64::from(index - first) * step;
     match index {
-        0..50 => Some(above(0, 0.01)),
+        1..50 => Some(above(0, 0.01)),
         50..75 => Some(0.5 + above(50, 0.02)),
         75..100 => Some(1.0 + above(75, 0.04)),
         100..=125 => Some(2.0 + above(100, 0.16)),
         _ => None,
+    }
+}
+
+#[cfg(all(test, feature = "rtcm"))]
+mod tests {
+    use super::sisa;
+
+    #[test]
+    fn steps_of_sisa() {
+        let told = [1, 49, 50, 75, 100, 107, 125].map(|index| sisa(index).expect("an accuracy"));
+        for (found, table) in told.into_iter().zip([0.01, 0.49, 0.5, 1.0, 2.0, 3.12, 6.0]) {
+            assert!((found - table).abs() < 1e-12, "{found} {table}");
+        }
+        assert_eq!([0, 126, 255].map(sisa), [None; 3]);
     }
 }
