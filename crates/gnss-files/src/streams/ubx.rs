@@ -57,8 +57,9 @@ pub(super) fn read(text: &Text) -> Stream {
 struct Reader {
     stream: Stream,
     locks: Locks,
-    /// Subframes in the order of the stream, of which the week is not known by themselves.
-    subframes: Vec<(u8, Subframe)>,
+    /// Subframes in the order of the stream, of which the week is not known by themselves, each with the place of the epoch before
+    /// it.
+    subframes: Vec<(usize, u8, Subframe)>,
 }
 
 impl Reader {
@@ -95,8 +96,9 @@ impl Reader {
         let is_lnav = message.gnss_id() == OF_GPS
             && message.reserved1() == L1
             && GPS.contains(&message.sv_id());
+        let place = self.stream.epochs.len().saturating_sub(1);
         match Subframe::of(message.dwrd().take(WORDS)) {
-            Some(subframe) if is_lnav => self.subframes.push((message.sv_id(), subframe)),
+            Some(subframe) if is_lnav => self.subframes.push((place, message.sv_id(), subframe)),
             _ => self.stream.skipped += 1,
         }
     }
@@ -104,9 +106,10 @@ impl Reader {
     /// Makes ephemerides of the subframes.
     fn finish(self) -> Stream {
         let Self { mut stream, subframes, .. } = self;
-        let Some(near) = stream.epochs.first().map(|(time, _)| *time) else { return stream };
         let mut collection = Collection::default();
-        for (satellite, subframe) in subframes {
+        for (place, satellite, subframe) in subframes {
+            // Without any epoch there is no week.
+            let Some(near) = stream.epochs.get(place).map(|(time, _)| *time) else { break };
             stream.ionosphere = lnav::ionosphere(&subframe).or(stream.ionosphere);
             if let Some(ephemeris) = collection.take(satellite, subframe, near) {
                 stream.ephemerides.push((satellite, ephemeris));

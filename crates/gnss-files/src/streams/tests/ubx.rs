@@ -16,6 +16,10 @@ fn frame(id: u8, held: &[u8]) -> Vec<u8> {
 
 /// G05 on both carriers and E02 on the first, as it was tracked for `lock` ms.
 pub(super) fn observed(second: f64, lock: u16) -> Vec<u8> {
+    observed_in_week(2111, second, lock)
+}
+
+fn observed_in_week(week: u16, second: f64, lock: u16) -> Vec<u8> {
     let signals = [
         (0, 5, 0, 21e6, 1.1e8, 7),
         (0, 5, 3, 21e6 + 3.0, 0.9e8, 7),
@@ -24,7 +28,7 @@ pub(super) fn observed(second: f64, lock: u16) -> Vec<u8> {
         (6, 2, 0, 19e6, 1.0e8, 7),
     ];
     let mut held = second.to_le_bytes().to_vec();
-    held.extend(2111_u16.to_le_bytes());
+    held.extend(week.to_le_bytes());
     held.extend([18, signals.len() as u8, 1, 1, 0, 0]);
     for (system, number, signal, code, phase, status) in signals {
         held.extend(f64::to_le_bytes(code));
@@ -166,5 +170,26 @@ fn a_damaged_message_is_left_out() -> Result<(), Error> {
     let observations = Observations::parse(&text(stream.concat()))?;
     assert_eq!(observations.epochs.len(), 2);
     assert!(observations.warnings[0].to_string().ends_with("1 damaged messages are left out"));
+    Ok(())
+}
+
+#[test]
+fn a_subframe_is_dated_by_the_epoch_before_it() -> Result<(), Error> {
+    let [(_, told), _] = broadcast()?;
+    let next = Ephemeris {
+        time: crate::GpsTime::new(told.time.day() + 7, told.time.second()),
+        issue: 59,
+        ..told
+    };
+    let stream = [
+        // Before any epoch: by the first.
+        subframes(&told),
+        observed(350_000.0, 1_000),
+        observed_in_week(2112, 360_000.0, 1_000),
+        subframes(&next),
+    ];
+    let read = Navigation::parse(&[text(stream.concat())])?;
+    let times: Vec<_> = read.satellite(1, Message::Lnav).iter().map(|it| it.time).collect();
+    assert_eq!(times, [told.time, next.time]);
     Ok(())
 }
