@@ -59,15 +59,28 @@ impl Stream {
     }
 }
 
+/// A week, ms.
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+const WEEK_MS: i64 = 604_800_000;
+
 /// Tells which phases were lost since they were observed before, by for how long they have been tracked.
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 #[derive(Debug, Default)]
-struct Locks(BTreeMap<(u8, Signal), u16>);
+struct Locks(BTreeMap<(u8, Signal), (i64, u32)>);
 
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 impl Locks {
-    /// Whether a phase was lost, of which the time (in any unit that grows with it) is `tracked` now.
-    fn lost(&mut self, satellite: u8, signal: Signal, tracked: u16) -> bool {
-        self.0.insert((satellite, signal), tracked).is_some_and(|before| tracked < before)
+    /// For longer than a message can tell.
+    const LONGEST: u32 = u32::MAX;
+
+    /// Whether a phase was lost, which at `time` (ms of the week) has been tracked for at least `tracked` ms: for less than before,
+    /// or not ever since it was observed before.
+    fn lost(&mut self, satellite: u8, signal: Signal, time: i64, tracked: u32) -> bool {
+        let before = self.0.insert((satellite, signal), (time, tracked));
+        before.is_some_and(|(then, before)| {
+            let elapsed = (time - then).rem_euclid(WEEK_MS);
+            let is_shorter = tracked != Self::LONGEST && i64::from(tracked) < elapsed;
+            tracked < before || is_shorter
+        })
     }
 }

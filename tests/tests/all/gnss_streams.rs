@@ -25,9 +25,19 @@ const SUNDAY: i32 = 59_021;
 /// What a message of UBX tells at most of how long a phase was tracked, ms.
 const LONGEST_LOCK: u16 = 64_500;
 
-/// How often a phase was told since it was lost, and how many cycles it is shifted by: a format tells phases near codes alone.
+/// Since when a phase has been tracked, s, and how many cycles it is shifted by: a format tells phases near codes alone.
 #[derive(Default)]
-struct Tracked(BTreeMap<(u8, usize), (u16, f64)>);
+struct Tracked(BTreeMap<(u8, usize), (f64, f64)>);
+
+/// A phase is told when it has been tracked for so long, s.
+const TRACKED_BEFORE: f64 = 1.0;
+
+/// The indicator of MSM7 of how long a phase was tracked (DF407), s.
+fn indicator(tracked: f64) -> u16 {
+    let milliseconds = (1e3 * tracked).round() as u32;
+    let step = milliseconds.max(32).ilog2() - 5;
+    (32 * step + (milliseconds >> step)).min(704) as u16
+}
 
 /// The observations as RINEX, without what streams do not tell: the antenna, and where it stands.
 fn rinex(folder: &Path) -> String {
@@ -52,6 +62,7 @@ fn rtcm(epochs: &[Epoch]) -> Vec<u8> {
     };
     let mut stream = frame(&Message::Msg1019(week));
     for epoch in epochs {
+        let begun = second_of_week(epoch) - TRACKED_BEFORE;
         let mut data = Msg1077Data::default();
         for observed in &epoch.satellites {
             let Some(code) = observed.code[0] else { continue };
@@ -68,19 +79,21 @@ fn rtcm(epochs: &[Epoch]) -> Vec<u8> {
                     continue;
                 };
                 let cycles_of = 1e-3 * FREQUENCY[band];
-                let place = tracked.0.entry((observed.prn, band)).or_insert((0, f64::INFINITY));
+                let place = tracked.0.entry((observed.prn, band)).or_insert((begun, f64::INFINITY));
                 let fine = |shift: f64| (phase + shift) / cycles_of - rough;
-                place.0 = if observed.loss_of_lock[band] { 0 } else { (place.0 + 1).min(704) };
+                if observed.loss_of_lock[band] {
+                    place.0 = begun;
+                }
                 let fits = fine(place.1).abs() < 0.003_5;
                 if !fits {
-                    *place = (0, (rough * cycles_of - phase).round());
+                    *place = (begun, (rough * cycles_of - phase).round());
                 }
                 data.signal_data.push(Msg1077Sig {
                     satellite_id: observed.prn,
                     signal_id: GpsSigId::new(band as u8 + 1, 'W'),
                     gnss_signal_fine_pseudorange_ext_ms: Some(milliseconds(code) - rough),
                     gnss_signal_fine_phaserange_ext_ms: Some(fine(place.1)),
-                    gnss_phaserange_lock_time_ext_ind: place.0,
+                    gnss_phaserange_lock_time_ext_ind: indicator(second_of_week(epoch) - place.0),
                     ..Msg1077Sig::default()
                 });
             }
@@ -102,18 +115,19 @@ fn ubx(epochs: &[Epoch]) -> Vec<u8> {
     let mut tracked = Tracked::default();
     let mut stream = Vec::new();
     for epoch in epochs {
+        let begun = second_of_week(epoch) - TRACKED_BEFORE;
         let mut signals = Vec::new();
         for observed in &epoch.satellites {
             for (band, signal) in [(0, 0), (1, 3)] {
                 let (Some(code), Some(phase)) = (observed.code[band], observed.phase[band]) else {
                     continue;
                 };
-                let (lock, _) = tracked.0.entry((observed.prn, band)).or_default();
-                *lock = if observed.loss_of_lock[band] {
-                    0
-                } else {
-                    lock.saturating_add(30_000).min(LONGEST_LOCK)
-                };
+                let (since, _) = tracked.0.entry((observed.prn, band)).or_insert((begun, 0.0));
+                if observed.loss_of_lock[band] {
+                    *since = begun;
+                }
+                let tracked = 1e3 * (second_of_week(epoch) - *since);
+                let lock = (tracked.round() as u32).min(LONGEST_LOCK.into()) as u16;
                 signals.extend(code.to_le_bytes());
                 signals.extend(phase.to_le_bytes());
                 signals.extend([0, 0, 0, 0, 0, observed.prn, signal, 0]);

@@ -75,7 +75,7 @@ struct Reader {
 
 /// The signals of a message of observations: satellites' rough ranges, and what is fine beside them, ms.
 macro_rules! cells {
-    ($reader:ident, $message:ident, $time:ident, $system:literal, $code:ident, $phase:ident, $lock:ident) => {{
+    ($reader:ident, $message:ident, $time:ident, $system:literal, $code:ident, $phase:ident, $lock:ident, $tracked:ident) => {{
         let data = &$message.data_segment;
         let rough = |satellite: u8| {
             let of = data.satellite_data.iter().find(|it| it.satellite_id == satellite)?;
@@ -85,7 +85,7 @@ macro_rules! cells {
         for cell in data.signal_data.iter() {
             let name = [b'0' + cell.signal_id.band(), cell.signal_id.attribute() as u8];
             let fine = [cell.$code, cell.$phase.filter(|_| cell.half_cycle_ambiguity_ind == 0)];
-            let lock = u16::from(cell.$lock);
+            let lock = $tracked(cell.$lock);
             $reader.cell(
                 i64::from($message.$time),
                 ($system, cell.satellite_id),
@@ -106,7 +106,8 @@ impl Reader {
                 b'G',
                 gnss_signal_fine_pseudorange_ms,
                 gnss_signal_fine_phaserange_ms,
-                gnss_phaserange_lock_time_ind
+                gnss_phaserange_lock_time_ind,
+                tracked_short
             ),
             Message::Msg1077(it) => cells!(
                 self,
@@ -115,7 +116,8 @@ impl Reader {
                 b'G',
                 gnss_signal_fine_pseudorange_ext_ms,
                 gnss_signal_fine_phaserange_ext_ms,
-                gnss_phaserange_lock_time_ext_ind
+                gnss_phaserange_lock_time_ext_ind,
+                tracked_long
             ),
             Message::Msg1094(it) => cells!(
                 self,
@@ -124,7 +126,8 @@ impl Reader {
                 b'E',
                 gnss_signal_fine_pseudorange_ms,
                 gnss_signal_fine_phaserange_ms,
-                gnss_phaserange_lock_time_ind
+                gnss_phaserange_lock_time_ind,
+                tracked_short
             ),
             Message::Msg1097(it) => cells!(
                 self,
@@ -133,7 +136,8 @@ impl Reader {
                 b'E',
                 gnss_signal_fine_pseudorange_ext_ms,
                 gnss_signal_fine_phaserange_ext_ms,
-                gnss_phaserange_lock_time_ext_ind
+                gnss_phaserange_lock_time_ext_ind,
+                tracked_long
             ),
             Message::Msg1019(it) => self.ephemeris(it.gps_satellite_id, gps(it)),
             Message::Msg1045(it) => self.ephemeris(GALILEO + it.gal_satellite_id, fnav(it)),
@@ -142,13 +146,14 @@ impl Reader {
         }
     }
 
-    /// Takes in a signal of a satellite: a rough range, a fine code and a fine phase, ms, and for how long that is tracked.
+    /// Takes in a signal of a satellite: a rough range, a fine code and a fine phase, ms, and for how many ms that
+    /// has been tracked at least.
     fn cell(
         &mut self,
         time: i64,
         (system, number): (u8, u8),
         [band, tracking]: [u8; 2],
-        (rough, [code, phase], lock): (Option<f64>, [Option<f64>; 2], u16),
+        (rough, [code, phase], lock): (Option<f64>, [Option<f64>; 2], u32),
     ) {
         let satellite = if system == b'E' { GALILEO.saturating_add(number) } else { number };
         let signal = |kind| Signal::new(system, &[kind, band, tracking]);
@@ -170,7 +175,7 @@ impl Reader {
             raw.push(Raw { signal: of_code, value, lock_lost: false });
         }
         if let Some(phase) = phase {
-            let lock_lost = self.locks.lost(satellite, of_phase, lock);
+            let lock_lost = self.locks.lost(satellite, of_phase, time, lock);
             let value = of_phase.frequency() * milliseconds(phase);
             raw.push(Raw { signal: of_phase, value, lock_lost });
         }
@@ -254,6 +259,25 @@ fn in_week_of(time: GpsTime, epoch: GpsTime) -> GpsTime {
     GpsTime::new(time.day() + WEEK * away as i32, time.second())
 }
 
+/// For how many ms at least a phase has been tracked, by the indicator of MSM4 (DF402) …
+const fn tracked_short(indicator: u8) -> u32 {
+    match indicator {
+        0 => 0,
+        1..=14 => 1 << (indicator + 4),
+        _ => Locks::LONGEST,
+    }
+}
+
+/// … and by that of MSM7 (DF407), whose steps double after every 32.
+const fn tracked_long(indicator: u16) -> u32 {
+    let step = indicator / 32;
+    match indicator {
+        0..64 => indicator as u32,
+        64..704 => (32 + (indicator % 32) as u32) << (step - 1),
+        _ => Locks::LONGEST,
+    }
+}
+
 /// Seconds since a week of GPS began.
 fn second_of_week(time: GpsTime) -> f64 {
     f64::from((time.day() - GpsTime::EPOCH.day()).rem_euclid(WEEK)) * 86_400.0 + time.second()
@@ -263,4 +287,19 @@ fn second_of_week(time: GpsTime) -> f64 {
 fn rolled_to(time: GpsTime, near: GpsTime) -> GpsTime {
     let away = f64::from(near.day() - time.day()) / f64::from(WEEK * ROLLOVER);
     GpsTime::new(time.day() + away.round() as i32 * WEEK * ROLLOVER, time.second())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indicators_of_lock_times() {
+        let short = [0, 1, 2, 14, 15].map(tracked_short);
+        assert_eq!(short, [0, 32, 64, 262_144, Locks::LONGEST]);
+        // The first of some rows of the table, and the last before it.
+        let long = [0, 63, 64, 95, 96, 160, 672, 703, 704].map(tracked_long);
+        let table = [0, 63, 64, 126, 128, 512, 33_554_432, 66_060_288, Locks::LONGEST];
+        assert_eq!(long, table);
+    }
 }

@@ -16,6 +16,8 @@ use crate::time::GpsTime;
 
 /// The longest message that is read, bytes: 255 signals.
 const LONGEST: usize = 8_192;
+/// What is told at most of how long a phase has been tracked, ms.
+const LONGEST_LOCK: u16 = 64_500;
 /// `gnssId` of GPS and of Galileo.
 const OF_GPS: u8 = 0;
 const OF_GALILEO: u8 = 2;
@@ -66,6 +68,7 @@ impl Reader {
     fn observations(&mut self, message: &RxmRawxRef<'_>) {
         let day = GpsTime::EPOCH.day() + WEEK * i32::from(message.week());
         let time = GpsTime::new(day, message.rcv_tow());
+        let milliseconds = (1e3 * message.rcv_tow()).round() as i64;
         let mut satellites: Vec<Signals> = Vec::new();
         for it in message.measurements() {
             // The driver's name of the signal: it was reserved before there were receivers of two carriers.
@@ -85,7 +88,11 @@ impl Reader {
             }
             // Half a cycle may be missing until it is told that none is.
             if status.contains(TrkStatFlags::CP_VALID | TrkStatFlags::HALF_CYCLE) {
-                let lock_lost = self.locks.lost(satellite, phase, it.lock_time());
+                let tracked = match it.lock_time() {
+                    LONGEST_LOCK.. => Locks::LONGEST,
+                    tracked => u32::from(tracked),
+                };
+                let lock_lost = self.locks.lost(satellite, phase, milliseconds, tracked);
                 raw.push(Raw { signal: phase, value: it.cp_mes(), lock_lost });
             }
         }

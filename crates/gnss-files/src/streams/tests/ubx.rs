@@ -163,6 +163,23 @@ fn observations_are_read_to_the_last_bit() -> Result<(), Error> {
 }
 
 #[test]
+fn a_loss_within_a_gap_is_seen() -> Result<(), Error> {
+    // Tracked for longer than before, but not since then; then for longer than can be told.
+    let stream = [
+        observed(604_790.0, 5_000),
+        observed_in_week(2112, 20.0, 29_000),
+        observed_in_week(2112, 40.0, 49_000),
+        observed_in_week(2112, 140.0, 64_500),
+        observed_in_week(2112, 240.0, 64_500),
+    ];
+    let observations = Observations::parse(&text(stream.concat()))?;
+    let lost: Vec<_> =
+        observations.epochs.iter().map(|it| it.satellites[0].loss_of_lock[0]).collect();
+    assert_eq!(lost, [false, true, false, false, false]);
+    Ok(())
+}
+
+#[test]
 fn a_damaged_message_is_left_out() -> Result<(), Error> {
     let mut second = observed(345_601.0, 2_000);
     second[40] ^= 1;
