@@ -45,9 +45,10 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let plan = system.online(&settings, &files)?;
     let plan = plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream")))?;
     let mut fleet = Fleet::new(name, &plan)?;
-    let store = Store::open(&options.state, name, settings.arguments(), &mut fleet)?;
     let stop = Arc::new(AtomicBool::new(false));
     let (transport, source) = options.transport(&stop)?;
+    let log = transport.log();
+    let store = Store::open(&options.state, name, settings.arguments(), log, &mut fleet)?;
     let metrics = options.metrics.map(Metrics::serve).transpose()?;
     let (known, folder) = (fleet.keyed.devices.len(), printable_path(&options.state));
     output::warn(&format!("following {source}; {known} devices known, states in {folder}"));

@@ -16,7 +16,7 @@ use futures_util::StreamExt;
 use tokio::runtime::Runtime;
 use tokio::time::timeout;
 
-use super::transport::{Delivery, Estimate, Transport};
+use super::transport::{Delivery, Estimate, Log, Transport};
 use crate::Error;
 
 /// So long messages are waited for until what came is followed.
@@ -47,6 +47,8 @@ pub(super) struct Nats {
     runtime: Runtime,
     context: Context,
     names: Names,
+    /// When the stream of frames was made.
+    created: String,
     consumer: Option<PullConsumer>,
     /// Messages that this consumer has delivered.
     delivered: u64,
@@ -79,13 +81,27 @@ impl Nats {
                 duplicate_window: KNOWN,
                 ..stream::Config::default()
             };
-            context.get_or_create_stream(made(frames)).await?;
+            let frames = context.get_or_create_stream(made(frames)).await?;
+            let created = frames.cached_info().created.to_string();
             context.get_or_create_stream(made(estimates)).await?;
-            Ok::<_, async_nats::Error>(context)
+            Ok::<_, async_nats::Error>((context, created))
         });
-        let context = connected.map_err(|error| Error::Usage(format!("--nats {url}: {error}")))?;
+        let failed = |error| Error::Usage(format!("--nats {url}: {error}"));
+        let (context, created) = connected.map_err(failed)?;
         let (consumer, last, lag) = (None, None, None);
-        Ok(Self { runtime, context, names, consumer, delivered: 0, position: 0, last, lag, stop })
+        let (delivered, position) = (0, 0);
+        Ok(Self {
+            runtime,
+            context,
+            names,
+            created,
+            consumer,
+            delivered,
+            position,
+            last,
+            lag,
+            stop,
+        })
     }
 
     /// A consumer that begins behind the last message that was followed.
@@ -163,6 +179,12 @@ impl Nats {
 }
 
 impl Transport for Nats {
+    fn log(&self) -> Log {
+        let Names { stream, subject, .. } = &self.names;
+        let name = format!("NATS, stream {stream}, subject {subject}");
+        Log { name, created: Some(self.created.clone()) }
+    }
+
     fn resume(&mut self, position: u64) -> Result<(), Error> {
         (self.position, self.consumer) = (position, None);
         Ok(())

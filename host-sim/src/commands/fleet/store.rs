@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::keyed::{Fleet, Keyed};
+use super::transport::Log;
 use crate::{Error, output};
 
 /// The file's name.
 const NAME: &str = "fleet.states";
 /// The first bytes of the file.
-const MAGIC: &[u8] = b"kestirim fleet 1\n";
+const MAGIC: &[u8] = b"kestirim fleet 2\n";
 const CHECKSUM: usize = size_of::<u32>();
 
 /// Whose states they are.
@@ -22,6 +23,8 @@ struct Owner {
     settings: Vec<String>,
     /// What an estimator begins with: where anchors are, and all that was set.
     fresh: Vec<u8>,
+    /// What they were read from.
+    log: Log,
 }
 
 /// A folder with the states of a fleet, for one program at a time.
@@ -36,11 +39,13 @@ impl Store {
     /// Opens the folder, and loads the states that are there.
     ///
     /// # Errors
-    /// If it cannot be had, another program has it, or what is in it are no states of this system with these settings.
+    /// If it cannot be had, another program has it, or what is in it are no states of this system with these settings
+    /// and from this log. In a log that was made anew they begin at its start.
     pub(super) fn open(
         folder: &Path,
         system: &str,
         settings: Vec<String>,
+        log: Log,
         fleet: &mut Fleet,
     ) -> Result<Self, Error> {
         let failed = |path: &Path, source| Error::Write { path: path.to_path_buf(), source };
@@ -56,7 +61,7 @@ impl Store {
         })?;
         forget_drafts(folder).map_err(|source| failed(folder, source))?;
         let (system, fresh) = (system.to_owned(), fleet.fresh.clone());
-        let owner = Owner { system, settings, fresh };
+        let owner = Owner { system, settings, fresh, log };
         let store = Self { path: folder.join(NAME), owner, _locked: locked };
         if let Some(keyed) = store.load()? {
             fleet.keyed = keyed;
@@ -90,10 +95,28 @@ impl Store {
         let whole = bytes.split_last_chunk::<CHECKSUM>();
         let whole = whole.filter(|(rest, sum)| crc32fast::hash(rest).to_le_bytes() == **sum);
         let states = whole.and_then(|(rest, _)| rest.strip_prefix(MAGIC));
-        let states = states.ok_or_else(|| refused("these are no states of a fleet"))?;
-        let (owner, keyed) = postcard::from_bytes::<(Owner, Keyed)>(states)
+        let states = states.ok_or_else(|| {
+            refused(
+                "these are no states of a fleet of this version; expected another folder (--state)",
+            )
+        })?;
+        let (owner, mut keyed) = postcard::from_bytes::<(Owner, Keyed)>(states)
             .map_err(|_| refused("states of another version; expected another folder (--state)"))?;
-        if owner != self.owner {
+        let (before, log) = (&owner.log, &self.owner.log);
+        if before.name != log.name {
+            let (before, now) = (&before.name, &log.name);
+            return Err(refused(&format!(
+                "states of what came from {before}; expected those from {now}, or another folder (--state)"
+            )));
+        }
+        if before.created != log.created {
+            output::warn(&format!(
+                "warning: {} was made anew since its states were written: it is followed from its start",
+                log.name
+            ));
+            keyed.position = 0;
+        }
+        if owner != (Owner { log: before.clone(), ..self.owner.clone() }) {
             let problem = "states of another system, or with other settings, files or version; expected another folder (--state)";
             return Err(refused(problem));
         }

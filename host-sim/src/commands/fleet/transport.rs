@@ -2,7 +2,18 @@
 
 use std::fmt::Debug;
 
+use serde::{Deserialize, Serialize};
+
 use crate::Error;
+
+/// Which log it is: a position means nothing in another.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Log {
+    /// What messages come from: transport, stream and subject.
+    pub(super) name: String,
+    /// When it was made, of a log that can be deleted and made anew under its name.
+    pub(super) created: Option<String>,
+}
 
 /// What came, with its place in the log from which it came.
 #[derive(Debug, Clone)]
@@ -27,6 +38,9 @@ pub(super) struct Estimate {
 ///
 /// Another broker is another implementation, and nothing else.
 pub(super) trait Transport: Debug {
+    /// Which log positions belong to.
+    fn log(&self) -> Log;
+
     /// Begins, or begins anew, behind this position, and acknowledges all up to there; 0 is before the first message.
     ///
     /// # Errors

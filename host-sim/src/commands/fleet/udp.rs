@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
-use super::transport::{Delivery, Estimate, Transport};
+use super::transport::{Delivery, Estimate, Log, Transport};
 use crate::Error;
 
 /// So long messages are waited for.
@@ -45,6 +45,10 @@ impl Udp {
 }
 
 impl Transport for Udp {
+    fn log(&self) -> Log {
+        Log { name: "UDP".to_owned(), created: None }
+    }
+
     fn resume(&mut self, position: u64) -> Result<(), Error> {
         self.position = position;
         Ok(())

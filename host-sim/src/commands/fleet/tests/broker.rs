@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use crate::Error;
-use crate::commands::fleet::transport::{Delivery, Estimate, Transport};
+use crate::commands::fleet::transport::{Delivery, Estimate, Log, Transport};
 
 /// A broker in memory: it outlives those who are killed.
 #[derive(Debug, Default)]
@@ -39,6 +39,10 @@ fn killed<T>() -> Result<T, Error> {
 }
 
 impl Transport for Memory {
+    fn log(&self) -> Log {
+        Log { name: "memory".to_owned(), created: None }
+    }
+
     fn resume(&mut self, position: u64) -> Result<(), Error> {
         assert!(
             position >= self.broker.lock().unwrap().acknowledged,

@@ -13,12 +13,16 @@ use self::streams::{Maker, plans};
 use super::engine::Engine;
 use super::keyed::Fleet;
 use super::store::Store;
-use super::transport::{Delivery, Estimate};
+use super::transport::{Delivery, Estimate, Log};
 use crate::system::{Outcome, Plan};
 
 const DEVICES: u32 = 7;
 const MESSAGES: u64 = 60;
 const FRAMES: u64 = 8;
+
+fn log_of(name: &str, created: Option<&str>) -> Log {
+    Log { name: name.to_owned(), created: created.map(str::to_owned) }
+}
 
 fn frame(device: u32, boot: u32, sequence: u64, message: &Message) -> Vec<u8> {
     let origin = Origin { device, boot };
@@ -100,7 +104,8 @@ fn killed_at_any_moment_every_track_is_that_of_the_devices_own_replay() {
         let mut kills = 0_usize;
         let counts = loop {
             let mut fleet = Fleet::new(name, &plan).unwrap();
-            let store = Store::open(folder.path(), name, Vec::new(), &mut fleet).unwrap();
+            let store = Store::open(folder.path(), name, Vec::new(), log_of("a", None), &mut fleet);
+            let store = store.unwrap();
             // Each time a little later; messages are received in other pieces.
             let (batch, calls_left) = (1 + kills % 4, 1 + kills % 11);
             let memory = Memory { broker: Arc::clone(&broker), next: 0, batch, calls_left };
@@ -147,7 +152,8 @@ fn states_of_another_estimator_and_torn_ones_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let open = |name: &str, plan: &Arc<dyn Plan>| {
         let mut fleet = Fleet::new(name, plan).unwrap();
-        Store::open(folder.path(), name, Vec::new(), &mut fleet).map(|store| (store, fleet))
+        let log = log_of("a", None);
+        Store::open(folder.path(), name, Vec::new(), log, &mut fleet).map(|store| (store, fleet))
     };
     {
         let (store, mut fleet) = open(first, plan).unwrap();
@@ -166,6 +172,28 @@ fn states_of_another_estimator_and_torn_ones_are_refused() {
         std::fs::write(&path, &whole[..length]).unwrap();
         assert!(open(first, plan).is_err(), "{length} bytes");
     }
+}
+
+#[test]
+fn a_position_is_of_one_log_and_one_that_was_made_anew_is_followed_from_its_start() {
+    let plans = plans();
+    let (name, plan, message) = &plans[0];
+    let folder = tempfile::tempdir().unwrap();
+    let open = |log: Log| {
+        let mut fleet = Fleet::new(name, plan).unwrap();
+        Store::open(folder.path(), name, Vec::new(), log, &mut fleet).map(|store| (store, fleet))
+    };
+    {
+        let (store, mut fleet) = open(log_of("a", Some("noon"))).unwrap();
+        let bytes = frame(3, 1, 0, &message(plan.as_ref(), 3, 0));
+        fleet.take(&[Delivery { position: 9, bytes }]).unwrap();
+        store.write(&fleet.keyed).unwrap();
+    }
+    let refused = open(log_of("b", Some("noon"))).unwrap_err().to_string();
+    assert!(refused.contains("came from a; expected those from b"), "{refused}");
+    assert_eq!(open(log_of("a", Some("noon"))).unwrap().1.keyed.position, 9);
+    let (_, anew) = open(log_of("a", Some("one"))).unwrap();
+    assert_eq!((anew.keyed.position, anew.keyed.devices.len()), (0, 1));
 }
 
 #[test]
