@@ -83,7 +83,8 @@ impl Nats {
             };
             let frames = context.get_or_create_stream(made(frames)).await?;
             let created = frames.cached_info().created.to_string();
-            context.get_or_create_stream(made(estimates)).await?;
+            let estimates = context.get_or_create_stream(made(estimates)).await?;
+            knows_long_enough(&estimates.cached_info().config)?;
             Ok::<_, async_nats::Error>((context, created))
         });
         let failed = |error| Error::Usage(format!("--nats {url}: {error}"));
@@ -178,6 +179,19 @@ impl Nats {
     }
 }
 
+/// Whether a stream that was there before knows the ids of its messages as long as is needed.
+fn knows_long_enough(config: &stream::Config) -> Result<(), String> {
+    let (name, found) = (&config.name, config.duplicate_window);
+    if found >= KNOWN {
+        return Ok(());
+    }
+    Err(format!(
+        "stream {name} knows message ids for {} s (duplicate_window); expected at least {} s",
+        found.as_secs_f64(),
+        KNOWN.as_secs_f64()
+    ))
+}
+
 impl Transport for Nats {
     fn log(&self) -> Log {
         let Names { stream, subject, .. } = &self.names;
@@ -229,5 +243,22 @@ impl Transport for Nats {
 
     fn lag(&self) -> Option<u64> {
         self.lag
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stream_that_forgets_ids_too_early_is_refused() {
+        let config = |seconds| stream::Config {
+            name: "estimates".to_owned(),
+            duplicate_window: Duration::from_secs(seconds),
+            ..stream::Config::default()
+        };
+        assert_eq!(knows_long_enough(&config(600)), Ok(()));
+        let refused = knows_long_enough(&config(120)).unwrap_err();
+        assert!(refused.contains("for 120 s") && refused.contains("600 s"), "{refused}");
     }
 }

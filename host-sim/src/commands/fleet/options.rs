@@ -45,7 +45,7 @@ pub(super) struct Options {
     #[arg(long, value_name = "FOLDER", default_value = "target/fleet")]
     pub(super) state: PathBuf,
     /// Between two times that states are written to the disk, and the log is told
-    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = interval)]
     every: f64,
     /// Answer with metrics for Prometheus at http://ADDR:PORT/metrics
     #[arg(long, value_name = "ADDR:PORT")]
@@ -58,9 +58,12 @@ pub(super) struct Options {
     pub(super) json: bool,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds| (0.0..=3600.0).contains(seconds));
-    seconds.ok_or_else(|| "expected seconds, up to 3600".to_owned())
+/// Far less than the broker knows the ids of estimates: what was made since the last states is made again.
+const LONGEST_S: f64 = 60.0;
+
+fn interval(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.0..=LONGEST_S).contains(seconds));
+    seconds.ok_or_else(|| format!("expected seconds, up to {LONGEST_S}"))
 }
 
 impl Options {
