@@ -41,6 +41,8 @@ pub(super) struct Keyed {
 #[derive(Debug)]
 pub(super) struct Fleet {
     pub(super) keyed: Keyed,
+    /// The system's: estimates of two may go to one stream.
+    name: String,
     online: Box<dyn Online>,
     /// The snapshot of an estimator that has not begun.
     pub(super) fresh: Vec<u8>,
@@ -57,7 +59,7 @@ impl Fleet {
         let fresh = online.snapshot().map_err(refused)?;
         let asleep = || refused("its estimator does not wake from its own snapshot".to_owned());
         online.restore(&fresh).ok_or_else(asleep)?;
-        Ok(Self { keyed: Keyed::default(), online, fresh })
+        Ok(Self { keyed: Keyed::default(), name: name.to_owned(), online, fresh })
     }
 
     /// Follows what came; the estimates after it, of each device in their order.
@@ -143,7 +145,7 @@ impl Fleet {
                 }
             }
             if let Some((origin, frame)) = last.filter(|_| *is_last) {
-                let estimate = estimate(self.online.as_ref(), origin, frame);
+                let estimate = estimate(&self.name, self.online.as_ref(), origin, frame);
                 device.counts.estimates += u64::from(estimate.is_some());
                 estimates.extend(estimate);
                 last = None;
@@ -207,7 +209,7 @@ fn wake(online: &mut dyn Online, state: &[u8]) -> Result<(), Error> {
 }
 
 /// Where the estimator is after a frame, as a frame; nothing before it knows that.
-fn estimate(online: &dyn Online, origin: Origin, frame: &Frame) -> Option<Estimate> {
+fn estimate(name: &str, online: &dyn Online, origin: Origin, frame: &Frame) -> Option<Estimate> {
     let time_us = frame.message.measured_us()?;
     let position = online.position()?.map(|metres| metres as f32);
     let sigma = online.sigma_m().map(|metres| metres as f32);
@@ -215,5 +217,6 @@ fn estimate(online: &dyn Online, origin: Origin, frame: &Frame) -> Option<Estima
     let mut buffer = [0; CAPACITY];
     let bytes = encode_from(origin, &message, frame.sequence, &mut buffer).ok()?.to_vec();
     let Origin { device, boot } = origin;
-    Some(Estimate { device, id: format!("{device}-{boot}-{}", frame.sequence), frame: bytes })
+    let id = format!("{name}-{device}-{boot}-{}", frame.sequence);
+    Some(Estimate { device, id, frame: bytes })
 }

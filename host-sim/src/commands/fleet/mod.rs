@@ -46,7 +46,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let plan = plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream")))?;
     let mut fleet = Fleet::new(name, &plan)?;
     let stop = Arc::new(AtomicBool::new(false));
-    let (transport, source) = options.transport(&stop)?;
+    let (transport, source) = options.transport(name, &stop)?;
     let log = transport.log();
     let store = Store::open(&options.state, name, settings.arguments(), log, &mut fleet)?;
     let metrics = options.metrics.map(Metrics::serve).transpose()?;

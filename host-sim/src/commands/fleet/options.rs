@@ -38,9 +38,9 @@ pub(super) struct Options {
     /// Stream of the estimates, made likewise: those of device 7 have the subject NAME.7
     #[arg(long, value_name = "NAME", default_value = "estimates")]
     estimates: String,
-    /// What the broker calls whoever follows these subjects
-    #[arg(long, value_name = "NAME", default_value = "kestirim")]
-    consumer: String,
+    /// What the broker calls whoever follows these subjects [default: kestirim-SYSTEM]
+    #[arg(long, value_name = "NAME")]
+    consumer: Option<String>,
     /// Folder with the states of the devices; a program that begins goes on with those that are there
     #[arg(long, value_name = "FOLDER", default_value = "target/fleet")]
     pub(super) state: PathBuf,
@@ -78,6 +78,7 @@ impl Options {
     /// [`Error::Usage`] if it cannot be had.
     pub(super) fn transport(
         &self,
+        system: &str,
         stop: &Arc<AtomicBool>,
     ) -> Result<(Box<dyn Transport>, String), Error> {
         let Some(url) = &self.nats else {
@@ -88,7 +89,8 @@ impl Options {
         let subject = self.subject.clone().unwrap_or_else(|| format!("{}.>", self.stream));
         let name = format!("{url}, {subject}");
         let (stream, estimates) = (self.stream.clone(), self.estimates.clone());
-        let names = Names { stream, subject, estimates, consumer: self.consumer.clone() };
+        let consumer = self.consumer.clone().unwrap_or_else(|| format!("kestirim-{system}"));
+        let names = Names { stream, subject, estimates, consumer };
         Ok((Box::new(Nats::connect(url, names, Arc::clone(stop))?), name))
     }
 }

@@ -28,7 +28,7 @@ pub(super) struct Delivery {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Estimate {
     pub(super) device: u32,
-    /// Of no other estimate, and the same if it is made again: device, boot and number of the frame after which it was made.
+    /// Of no other estimate, and the same if it is made again: system, device, boot and number of the frame after which it was made.
     pub(super) id: String,
     /// A frame of the same device and number.
     pub(super) frame: Vec<u8>,
