@@ -34,8 +34,11 @@ impl Decoder {
         state: Arc<Mutex<State>>,
         most: Option<u32>,
     ) -> Result<Self, Error> {
-        // What will not do is known before anything comes.
-        following.plan.as_deref().map(Plan::build).transpose()?;
+        // What will not do is known before anything comes, and what the sender is to do is told.
+        if let Some(estimator) = following.plan.as_deref().map(Plan::build).transpose()? {
+            let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
+            state.show(estimator.as_ref());
+        }
         Ok(Self {
             receiver: Receiver::new(),
             devices: BTreeMap::new(),

@@ -108,6 +108,8 @@ impl Device {
 
     /// Nothing comes for now.
     pub(super) fn pause(&mut self, shown: &mut State) -> Result<(), Error> {
+        // What waited may go on now, and what takes long has time.
+        self.is_news = true;
         let state = self.brief.as_deref_mut().unwrap_or(shown);
         self.sorter.release_all(|message| self.feed.take(message, state))
     }
