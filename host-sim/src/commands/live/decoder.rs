@@ -20,7 +20,7 @@ const MOST: usize = 4096;
 pub(super) struct Decoder {
     receiver: Receiver,
     devices: BTreeMap<Sender, Device>,
-    plan: Option<Arc<dyn Plan>>,
+    plans: Plans,
     /// Which is shown in detail; the first that is heard, if nobody says it.
     shown: Option<Sender>,
     state: Arc<Mutex<State>>,
@@ -42,7 +42,10 @@ impl Decoder {
         Ok(Self {
             receiver: Receiver::new(),
             devices: BTreeMap::new(),
-            plan: following.plan.clone(),
+            plans: Plans {
+                shown: following.plan.clone(),
+                others: following.plan_of_others().cloned(),
+            },
             shown: following.device.map(Sender::Device),
             state,
             most: most.unwrap_or(u32::MAX),
@@ -67,7 +70,11 @@ impl Decoder {
         // A frame that only lacks its end is whole; any other piece of one is torn.
         self.decode(&[0])?;
         self.each(Device::finish)?;
-        let finished: Result<(), Error> = self.devices.values_mut().try_for_each(Device::end);
+        let mut finished = Ok(());
+        // All of them, whatever is wrong with one.
+        for device in self.devices.values_mut() {
+            finished = finished.and(device.end());
+        }
         self.show(0);
         finished
     }
@@ -99,7 +106,7 @@ impl Decoder {
         // Those beyond are not even asked for.
         let wanted = self.most.saturating_sub(self.receiver.counts().received) as usize;
         for frame in self.receiver.frames(bytes).take(wanted) {
-            let known = (&mut self.devices, &mut self.shown, &self.plan);
+            let known = (&mut self.devices, &mut self.shown, &self.plans);
             hear(known, frame, &mut state)?;
         }
         Ok(self.receiver.counts().received < self.most)
@@ -144,12 +151,18 @@ impl Sender {
     }
 }
 
+/// What makes estimators: of the device that is shown, and of the others.
+#[derive(Debug)]
+struct Plans {
+    shown: Option<Arc<dyn Plan>>,
+    others: Option<Arc<dyn Plan>>,
+}
+
 /// The parts of a decoder that a frame changes.
-type Known<'a> =
-    (&'a mut BTreeMap<Sender, Device>, &'a mut Option<Sender>, &'a Option<Arc<dyn Plan>>);
+type Known<'a> = (&'a mut BTreeMap<Sender, Device>, &'a mut Option<Sender>, &'a Plans);
 
 /// Takes a frame to its device.
-fn hear((devices, shown, plan): Known<'_>, frame: Frame, state: &mut State) -> Result<(), Error> {
+fn hear((devices, shown, plans): Known<'_>, frame: Frame, state: &mut State) -> Result<(), Error> {
     let sender = Sender::of(&frame);
     let is_shown = *shown.get_or_insert(sender) == sender;
     if !devices.contains_key(&sender) {
@@ -157,6 +170,7 @@ fn hear((devices, shown, plan): Known<'_>, frame: Frame, state: &mut State) -> R
             state.beyond += 1;
             return Ok(());
         }
+        let plan = if is_shown { &plans.shown } else { &plans.others };
         devices.insert(sender, Device::new(plan.clone(), is_shown)?);
     }
     devices.get_mut(&sender).map_or(Ok(()), |device| device.take(frame, state))

@@ -141,6 +141,12 @@ impl Following {
         settings
     }
 
+    /// What makes the estimators of devices that are not shown; none while a calibration is made: it writes one file,
+    /// which is that of the device that is shown.
+    pub(super) fn plan_of_others(&self) -> Option<&Arc<dyn Plan>> {
+        self.plan.as_ref().filter(|_| self.origin.is_some())
+    }
+
     /// The same with other settings.
     ///
     /// # Errors
