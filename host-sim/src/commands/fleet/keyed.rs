@@ -3,7 +3,7 @@
 //! An estimator with room for any number of anchors takes ten times the bytes of its snapshot. And what is stored at any
 //! moment is what a restart begins with: there is no other state.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use kestirim_telemetry::{CAPACITY, Frame, Origin, Position, Receiver, encode_from};
@@ -91,14 +91,11 @@ impl Fleet {
             && frames.iter().all(|frame| frame.origin.is_some());
         self.keyed.unreadable += u64::from(!is_readable);
         // From the last to the first: the first of a device that is met is its last one in this message.
-        let mut ended = Vec::new();
+        let mut ended = BTreeSet::new();
         let mut of_message = Vec::with_capacity(frames.len());
         for frame in frames.into_iter().rev() {
             let Some(origin) = frame.origin else { continue };
-            let is_last = !ended.contains(&origin.device);
-            if is_last {
-                ended.push(origin.device);
-            }
+            let is_last = ended.insert(origin.device);
             of_message.push(Heard { origin, frame, is_last });
         }
         for one in of_message.into_iter().rev() {
@@ -112,12 +109,10 @@ impl Fleet {
         frames: &[Heard],
         estimates: &mut Vec<Estimate>,
     ) -> Result<(), Error> {
-        let Some(first) = frames.first() else { return Ok(()) };
-        if self.keyed.devices.len() >= MOST && !self.keyed.devices.contains_key(&number) {
-            self.keyed.unreadable += 1;
-            return Ok(());
-        }
         let mut is_new = false;
+        let begun = if self.keyed.devices.contains_key(&number) { 0 } else { self.begun(frames)? };
+        let frames = frames.get(begun..).unwrap_or_default();
+        let Some(first) = frames.first() else { return Ok(()) };
         let device = self.keyed.devices.entry(number).or_insert_with(|| {
             is_new = true;
             let numbers = Numbers::from(first.origin, &first.frame);
@@ -154,6 +149,22 @@ impl Fleet {
         device.state = self.online.snapshot().map_err(Error::Usage)?;
         device.state.shrink_to_fit();
         Ok(())
+    }
+
+    /// The first frame of a new device that the estimator takes, or behind the last: others give it no place.
+    fn begun(&mut self, frames: &[Heard]) -> Result<usize, Error> {
+        if self.keyed.devices.len() >= MOST {
+            self.keyed.unreadable += 1;
+            return Ok(frames.len());
+        }
+        for (place, Heard { frame, .. }) in frames.iter().enumerate() {
+            // Anew for each, as if it came alone: what is refused leaves no trace.
+            wake(self.online.as_mut(), &self.fresh)?;
+            if self.online.take(&frame.message) == Outcome::Taken {
+                return Ok(place);
+            }
+        }
+        Ok(frames.len())
     }
 
     /// What became of everything.

@@ -23,6 +23,8 @@ use crate::Error;
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Messages that are followed together.
 const BATCH: usize = 2000;
+/// Bytes of them, and one message more of the longest that the broker takes.
+const BATCH_BYTES: usize = 1 << 24;
 /// Until a broker that does not answer is asked again.
 const SILENCE: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(200);
@@ -47,6 +49,8 @@ pub(super) struct Nats {
     runtime: Runtime,
     context: Context,
     names: Names,
+    /// Bytes that are asked for at once.
+    most_bytes: usize,
     /// When the stream of frames was made.
     created: String,
     consumer: Option<PullConsumer>,
@@ -72,6 +76,7 @@ impl Nats {
         let connected = runtime.block_on(async {
             let options = async_nats::ConnectOptions::new().name("host-sim fleet");
             let client = options.request_timeout(Some(SILENCE)).connect(url).await?;
+            let most_bytes = BATCH_BYTES.saturating_add(client.server_info().max_payload);
             let mut context = jetstream::new(client);
             context.set_timeout(SILENCE);
             let (frames, estimates) = (names.stream.clone(), names.estimates.clone());
@@ -85,16 +90,17 @@ impl Nats {
             let created = frames.cached_info().created.to_string();
             let estimates = context.get_or_create_stream(made(estimates)).await?;
             knows_long_enough(&estimates.cached_info().config)?;
-            Ok::<_, async_nats::Error>((context, created))
+            Ok::<_, async_nats::Error>((context, created, most_bytes))
         });
         let failed = |error| Error::Usage(format!("--nats {url}: {error}"));
-        let (context, created) = connected.map_err(failed)?;
+        let (context, created, most_bytes) = connected.map_err(failed)?;
         let (consumer, last, lag) = (None, None, None);
         let (delivered, position) = (0, 0);
         Ok(Self {
             runtime,
             context,
             names,
+            most_bytes,
             created,
             consumer,
             delivered,
@@ -131,10 +137,14 @@ impl Nats {
         }
         let mut deliveries = Vec::new();
         let Some(consumer) = self.consumer.take() else { return Ok(deliveries) };
-        let mut messages =
-            consumer.batch().max_messages(BATCH).expires(PATIENCE).messages().await?;
+        let batch = consumer.batch().max_messages(BATCH).max_bytes(self.most_bytes);
+        let mut messages = batch.expires(PATIENCE).messages().await?;
         while let Some(message) = timeout(SILENCE, messages.next()).await? {
-            let message = message?;
+            let message = match message {
+                // The next one is beyond the bytes that were asked for.
+                Err(error) if error.to_string().contains("MaxBytes") => break,
+                message => message?,
+            };
             let info = message.info()?;
             self.delivered += 1;
             if info.consumer_sequence != self.delivered {

@@ -6,7 +6,7 @@ mod streams;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use kestirim_telemetry::{CAPACITY, Message, Origin, Receiver, encode_from};
+use kestirim_telemetry::{CAPACITY, Health, Message, Origin, Receiver, encode_from};
 
 use self::broker::{Broker, Memory};
 use self::streams::{Maker, plans};
@@ -217,4 +217,13 @@ fn holes_are_counted_and_another_sender_is_told() {
     let mut fleet = Fleet::new(name, plan).unwrap();
     fleet.take(&[Delivery { position: 1, bytes: b"noise".to_vec() }]).unwrap();
     assert_eq!((fleet.keyed.unreadable, fleet.keyed.devices.len()), (1, 0));
+    // What no estimator takes gives a device no place; what it takes does, from there on.
+    let health = Health { time_us: 0, accepted: 0, rejected: 0, failed: 0 }.into();
+    let bytes = frame(8, 0, 0, &health);
+    fleet.take(&[Delivery { position: 2, bytes }]).unwrap();
+    assert_eq!((fleet.keyed.devices.len(), fleet.counts().frames), (0, 0));
+    let bytes = [frame(8, 0, 1, &health), frame(8, 0, 5, &message(plan.as_ref(), 8, 0))].concat();
+    fleet.take(&[Delivery { position: 3, bytes }]).unwrap();
+    assert_eq!((fleet.keyed.devices.len(), fleet.counts().frames), (1, 1));
+    assert_eq!((fleet.counts().lost, fleet.counts().taken), (0, 1));
 }
