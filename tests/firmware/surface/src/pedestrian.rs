@@ -110,7 +110,7 @@ fn looks_back<T: Scalar, N: Navigator<T> + Debug>() {
 
 fn doubts<T: Scalar>() {
     let sensor = one_of([SensorClass::Industrial, SensorClass::Consumer]);
-    keep((sensor.heading_rate::<T>(), sensor.stride_scale::<T>()));
+    keep((SensorClass::heading_rate::<T>(sensor), SensorClass::stride_scale::<T>(sensor)));
     let mut uncertainty = any(PathUncertainty::<T>::new(sensor));
     let (length, duration, heading_change) = (number(), number(), number());
     let stride =
