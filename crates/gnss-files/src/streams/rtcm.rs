@@ -1,23 +1,23 @@
 //! RTCM 3: observations (MSM4 and MSM7 of GPS and Galileo) and ephemerides (1019, 1045, 1046).
 
 mod ephemerides;
+mod lock_times;
+mod weeks;
 
 use rtcm_rs::prelude::*;
 
-use self::ephemerides::{ROLLOVER, WEEK, fnav, gps, inav};
+use self::ephemerides::{fnav, gps, inav};
+use self::lock_times::{tracked_long, tracked_short};
+use self::weeks::{dated, elapsed, in_week_of, rolled_to, second_of_week};
 use super::{Locks, Signals, Stream};
 use crate::biases::SPEED_OF_LIGHT;
 use crate::error::Error;
 use crate::fields::GALILEO;
-use crate::navigation::{Ephemeris, Message as Of, time_of_week};
+use crate::navigation::{Ephemeris, time_of_week};
 use crate::observations::{Raw, Signal};
 use crate::text::Text;
 use crate::time::GpsTime;
 
-/// Half a week, ms: farther back time does not go.
-const HALF_WEEK: i64 = 302_400_000;
-/// The same in s.
-const HALF_WEEK_S: f64 = 302_400.0;
 /// Most cells of satellites and signals that a message of observations may have.
 const MOST_CELLS: u32 = 64;
 
@@ -219,87 +219,5 @@ impl Reader {
             stream.ephemerides.push((satellite, ephemeris));
         }
         Ok(stream)
-    }
-}
-
-/// The place of an epoch, and an instant near it, by the ephemerides of Galileo or of GPS; `seconds` are those of the epochs in
-/// their weeks. Some senders tell the week of the transmission, as satellites do, others that of the ephemeris: those are
-/// preferred of which both are the same.
-fn dated(
-    ephemerides: &[(usize, u8, Ephemeris)],
-    seconds: &[f64],
-    of_galileo: bool,
-) -> Option<(usize, GpsTime)> {
-    let of_system = || ephemerides.iter().filter(|(.., it)| (it.message != Of::Lnav) == of_galileo);
-    let second = |place: usize| seconds.get(place).copied();
-    let is_plain = |(place, _, it): &&(usize, u8, Ephemeris)| {
-        second(*place).is_none_or(|second| (second - second_of_week(it.time)).abs() < HALF_WEEK_S)
-    };
-    let (place, _, told) = of_system().find(is_plain).or_else(|| of_system().next())?;
-    let away = second(*place).map_or(0.0, |second| second - second_of_week(told.time));
-    Some((*place, GpsTime::new(told.time.day(), told.time.second() + away)))
-}
-
-/// ms from the first epoch to each.
-fn elapsed(epochs: &[Epoch]) -> Vec<i64> {
-    let mut before = epochs.first().map_or(0, |(time, _)| *time);
-    let mut elapsed = 0;
-    let steps = epochs.iter().map(|(time, _)| {
-        let step = *time - before;
-        before = *time;
-        elapsed += if step < -HALF_WEEK { step + 2 * HALF_WEEK } else { step };
-        elapsed
-    });
-    steps.collect()
-}
-
-/// The time of an ephemeris in the week in which it is within half a week of an epoch: the week told is at most one off.
-fn in_week_of(time: GpsTime, epoch: GpsTime) -> GpsTime {
-    let away = (epoch.since(time) / (2.0 * HALF_WEEK_S)).round().clamp(-1.0, 1.0);
-    GpsTime::new(time.day() + WEEK * away as i32, time.second())
-}
-
-/// For how many ms at least a phase has been tracked, by the indicator of MSM4 (DF402) …
-const fn tracked_short(indicator: u8) -> u32 {
-    match indicator {
-        0 => 0,
-        1..=14 => 1 << (indicator + 4),
-        _ => Locks::LONGEST,
-    }
-}
-
-/// … and by that of MSM7 (DF407), whose steps double after every 32.
-const fn tracked_long(indicator: u16) -> u32 {
-    let step = indicator / 32;
-    match indicator {
-        0..64 => indicator as u32,
-        64..704 => (32 + (indicator % 32) as u32) << (step - 1),
-        _ => Locks::LONGEST,
-    }
-}
-
-/// Seconds since a week of GPS began.
-fn second_of_week(time: GpsTime) -> f64 {
-    f64::from((time.day() - GpsTime::EPOCH.day()).rem_euclid(WEEK)) * 86_400.0 + time.second()
-}
-
-/// The same time in the 1024 weeks that are nearest to another one.
-fn rolled_to(time: GpsTime, near: GpsTime) -> GpsTime {
-    let away = f64::from(near.day() - time.day()) / f64::from(WEEK * ROLLOVER);
-    GpsTime::new(time.day() + away.round() as i32 * WEEK * ROLLOVER, time.second())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn indicators_of_lock_times() {
-        let short = [0, 1, 2, 14, 15].map(tracked_short);
-        assert_eq!(short, [0, 32, 64, 262_144, Locks::LONGEST]);
-        // The first of some rows of the table, and the last before it.
-        let long = [0, 63, 64, 95, 96, 160, 672, 703, 704].map(tracked_long);
-        let table = [0, 63, 64, 126, 128, 512, 33_554_432, 66_060_288, Locks::LONGEST];
-        assert_eq!(long, table);
     }
 }
