@@ -9,6 +9,7 @@ mod metrics;
 mod nats;
 mod options;
 mod report;
+mod silence;
 mod store;
 #[cfg(test)]
 mod tests;
@@ -46,7 +47,9 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let plan = plan.ok_or_else(|| Error::Usage(format!("{name} follows no stream")))?;
     let mut fleet = Fleet::new(name, &plan)?;
     let stop = Arc::new(AtomicBool::new(false));
-    let (transport, source) = options.transport(name, &stop)?;
+    let seconds = options.seconds.map(Duration::from_secs);
+    let until = seconds.and_then(|seconds| Instant::now().checked_add(seconds));
+    let (transport, source) = options.transport(name, (&stop, until))?;
     let log = transport.log();
     let store = Store::open(&options.state, name, settings.arguments(), log, &mut fleet)?;
     let metrics = options.metrics.map(Metrics::serve).transpose()?;
@@ -59,7 +62,6 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     // Without it Ctrl-C ends the program at once: it goes on where its states end even so.
     let _ = ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed));
     let mut engine = Engine::begin(fleet, store, transport, options.every())?;
-    let until = options.seconds.map(Duration::from_secs);
     let (messages, seconds) = follow(&mut engine, metrics.as_ref(), &stop, until)?;
     let report = Report::of((name, source), &engine.fleet, messages, seconds);
     for warning in report.warnings() {
@@ -73,10 +75,10 @@ fn follow(
     engine: &mut Engine,
     metrics: Option<&Metrics>,
     stop: &AtomicBool,
-    until: Option<Duration>,
+    until: Option<Instant>,
 ) -> Result<(u64, f64), Error> {
     let (begun, mut shown, mut messages) = (Instant::now(), None::<Instant>, 0);
-    while !stop.load(Ordering::Relaxed) && until.is_none_or(|until| begun.elapsed() < until) {
+    while !stop.load(Ordering::Relaxed) && until.is_none_or(|until| Instant::now() < until) {
         messages += engine.step()? as u64;
         if shown.is_none_or(|shown| shown.elapsed() >= BEAT) {
             metrics.inspect(|metrics| metrics.show(engine));

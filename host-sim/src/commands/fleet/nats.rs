@@ -7,17 +7,19 @@ use std::future::IntoFuture;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use async_nats::jetstream::consumer::{AckPolicy, DeliverPolicy, PullConsumer, pull};
 use async_nats::jetstream::message::PublishMessage;
 use async_nats::jetstream::{self, Context, Message, stream};
 use futures_util::StreamExt;
+use futures_util::future::join_all;
 use tokio::runtime::Runtime;
 use tokio::time::timeout;
 
+use super::silence::Silence;
 use super::transport::{Delivery, Estimate, Log, Transport};
-use crate::Error;
+use crate::{Error, output};
 
 /// So long messages are waited for until what came is followed.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -60,8 +62,11 @@ pub(super) struct Nats {
     position: u64,
     last: Option<Message>,
     lag: Option<u64>,
-    /// Nobody wants to wait any longer.
-    stop: Arc<AtomicBool>,
+    /// Whether the stream was deleted and made anew meanwhile.
+    is_another: bool,
+    silence: Silence,
+    /// Nobody wants to wait any longer, or longer than until then.
+    stop: (Arc<AtomicBool>, Option<Instant>),
 }
 
 impl Nats {
@@ -69,7 +74,11 @@ impl Nats {
     ///
     /// # Errors
     /// [`Error::Usage`] with what the broker says.
-    pub(super) fn connect(url: &str, names: Names, stop: Arc<AtomicBool>) -> Result<Self, Error> {
+    pub(super) fn connect(
+        url: &str,
+        names: Names,
+        stop: (Arc<AtomicBool>, Option<Instant>),
+    ) -> Result<Self, Error> {
         let mut runtime = tokio::runtime::Builder::new_multi_thread();
         let runtime = runtime.worker_threads(1).enable_all().build();
         let runtime = runtime.map_err(|error| Error::Usage(format!("no threads: {error}")))?;
@@ -107,6 +116,8 @@ impl Nats {
             position,
             last,
             lag,
+            is_another: false,
+            silence: Silence::begin(Instant::now()),
             stop,
         })
     }
@@ -115,6 +126,10 @@ impl Nats {
     async fn begin(&mut self) -> Result<(), async_nats::Error> {
         let Names { stream, subject, consumer: name, .. } = &self.names;
         let stream = self.context.get_stream(stream).await?;
+        self.is_another = stream.cached_info().created.to_string() != self.created;
+        if self.is_another {
+            return Err("another stream".into());
+        }
         // It may not be there.
         let _ = stream.delete_consumer(name).await;
         let config = pull::Config {
@@ -171,21 +186,23 @@ impl Nats {
         all: &[&'a Estimate],
     ) -> Vec<&'a Estimate> {
         let (mut offered, mut left) = (Vec::new(), Vec::new());
-        for &estimate in all {
+        for (place, &estimate) in all.iter().enumerate() {
             let payload = estimate.frame.clone().into();
             let publish = PublishMessage::build().message_id(&estimate.id).payload(payload);
             let subject = format!("{subject}.{}", estimate.device);
-            match context.send_publish(subject, publish).await {
-                Ok(confirmed) => offered.push((estimate, confirmed)),
-                Err(_) => left.push(estimate),
-            }
+            let Ok(confirmed) = context.send_publish(subject, publish).await else {
+                // Nor would it take the next ones, each after a while.
+                left.extend(all.iter().skip(place));
+                break;
+            };
+            offered.push((estimate, confirmed));
         }
-        for (estimate, confirmed) in offered {
-            if confirmed.into_future().await.is_err() {
-                left.push(estimate);
-            }
-        }
-        left
+        // Together: a broker that is silent is waited for once.
+        let confirmed = offered.into_iter().map(|(estimate, confirmed)| async move {
+            confirmed.into_future().await.is_err().then_some(estimate)
+        });
+        let unconfirmed = join_all(confirmed).await.into_iter().flatten();
+        unconfirmed.chain(left).collect()
     }
 }
 
@@ -217,13 +234,27 @@ impl Transport for Nats {
     fn receive(&mut self) -> Result<Vec<Delivery>, Error> {
         let runtime = self.runtime.handle().clone();
         let before = self.position;
-        let fetched = runtime.block_on(self.fetch());
-        fetched.or_else(|_| {
-            // What was received of it is asked for again.
-            (self.position, self.consumer) = (before, None);
-            sleep(PAUSE);
-            Ok(Vec::new())
-        })
+        let (deliveries, why) = match runtime.block_on(self.fetch()) {
+            Ok(deliveries) => (deliveries, None),
+            Err(_) if self.is_another => {
+                let stream = &self.names.stream;
+                return Err(Error::Usage(format!(
+                    "stream {stream} was deleted and made anew; expected to be begun again, then it is followed from its start"
+                )));
+            }
+            Err(error) => {
+                // What was received of it is asked for again.
+                (self.position, self.consumer) = (before, None);
+                sleep(PAUSE);
+                (Vec::new(), Some(error.to_string()))
+            }
+        };
+        if !deliveries.is_empty() {
+            self.silence = Silence::begin(Instant::now());
+        } else if let Some(told) = self.silence.goes_on(Instant::now(), why.as_deref()) {
+            output::warn(&format!("warning: {}: {told}", self.log().name));
+        }
+        Ok(deliveries)
     }
 
     fn publish(&mut self, estimates: &[Estimate]) -> Result<(), Error> {
@@ -235,7 +266,9 @@ impl Transport for Nats {
             if left.is_empty() {
                 return Ok(());
             }
-            if self.stop.load(Ordering::Relaxed) {
+            let (stop, until) = &self.stop;
+            let is_over = until.is_some_and(|until| Instant::now() >= until);
+            if is_over || stop.load(Ordering::Relaxed) {
                 return Err(Error::Usage("the broker does not take the estimates".to_owned()));
             }
             sleep(PAUSE);

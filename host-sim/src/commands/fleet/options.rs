@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Command};
 
@@ -72,14 +72,14 @@ impl Options {
         Duration::from_secs_f64(self.every)
     }
 
-    /// The transport that was chosen, and what to call it.
+    /// The transport that was chosen, and what to call it; it waits for nothing longer than told.
     ///
     /// # Errors
     /// [`Error::Usage`] if it cannot be had.
     pub(super) fn transport(
         &self,
         system: &str,
-        stop: &Arc<AtomicBool>,
+        (stop, until): (&Arc<AtomicBool>, Option<Instant>),
     ) -> Result<(Box<dyn Transport>, String), Error> {
         let Some(url) = &self.nats else {
             let udp = Udp::bind(self.udp.as_deref().unwrap_or_default(), self.to)?;
@@ -91,7 +91,7 @@ impl Options {
         let (stream, estimates) = (self.stream.clone(), self.estimates.clone());
         let consumer = self.consumer.clone().unwrap_or_else(|| format!("kestirim-{system}"));
         let names = Names { stream, subject, estimates, consumer };
-        Ok((Box::new(Nats::connect(url, names, Arc::clone(stop))?), name))
+        Ok((Box::new(Nats::connect(url, names, (Arc::clone(stop), until))?), name))
     }
 }
 
