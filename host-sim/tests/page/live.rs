@@ -71,5 +71,7 @@ fn a_stream_is_shown_while_it_comes() {
         "[...document.querySelectorAll('#facts dd')].every(d => d.textContent !== {now})"
     ));
     assert_eq!(received(), all);
+    // Nothing is kept of a stream that could be undone.
+    assert_eq!(page.evaluate("document.getElementById('undo').checkVisibility()"), false);
     assert_quiet(&page, server.place());
 }
