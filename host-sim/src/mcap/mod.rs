@@ -1,6 +1,7 @@
 //! Streams as an MCAP file, which Foxglove, `PlotJuggler` and Rerun open: <https://mcap.dev>.
 
 mod clock;
+mod foxglove;
 mod place;
 mod schema;
 
@@ -83,17 +84,18 @@ impl<'a> Channels<'a> {
     fn new(file: &mut Draft<'_>, stream: &'a Stream) -> McapResult<Self> {
         let layout = Layout::new(&stream.topic, &stream.columns);
         let rows = channel(file, &stream.topic, layout.name(), &layout.file_descriptor_set())?;
-        let place =
-            match (Place::among(&stream.columns), place::pose_schema(), place::path_schema()) {
-                (Some(place), Some(pose), Some(path)) => {
-                    let poses =
-                        channel(file, &format!("{}/pose", stream.topic), &pose.name, &pose.data)?;
-                    let paths =
-                        channel(file, &format!("{}/path", stream.topic), &path.name, &path.data)?;
-                    Some((place, poses, paths))
-                }
-                _ => None,
-            };
+        let mut drawn = |under: &str, schema: foxglove::Schema| {
+            let topic = format!("{}/{under}", stream.topic);
+            channel(file, &topic, schema.name, schema.descriptors)
+        };
+        let place = match Place::among(&stream.columns) {
+            Some(place) => Some((
+                place,
+                drawn("pose", foxglove::POSE_IN_FRAME)?,
+                drawn("path", foxglove::SCENE_UPDATE)?,
+            )),
+            None => None,
+        };
         Ok(Self { stream, layout, rows, place, sequence: 0 })
     }
 

@@ -1,10 +1,9 @@
-use foxglove::messages::{
-    Color, LinePrimitive, Point3, Pose, PoseInFrame, Quaternion, SceneEntity, SceneUpdate,
-    Timestamp, Vector3, line_primitive,
-};
-use foxglove::{Encode, Schema};
 use prost::Message;
+use prost_types::Timestamp;
 
+use super::foxglove::{
+    Color, LinePrimitive, Pose, PoseInFrame, Quaternion, SceneEntity, SceneUpdate, Vector3,
+};
 use crate::figure::Colour;
 
 /// The frame that all places are in.
@@ -35,7 +34,7 @@ impl Place {
         Some([value(self.x)?, value(self.y)?, z])
     }
 
-    /// The place of a row as a message of [`pose_schema`].
+    /// The place of a row as a `foxglove.PoseInFrame`.
     pub(super) fn pose(self, time: u64, values: &[f64]) -> Option<Vec<u8>> {
         let [x, y, z] = self.of(values)?;
         let position = Some(Vector3 { x, y, z });
@@ -48,7 +47,7 @@ impl Place {
         Some(pose.encode_to_vec())
     }
 
-    /// The places of all rows as a message of [`path_schema`]: a line, interrupted where there is no place.
+    /// The places of all rows as a `foxglove.SceneUpdate`: a line, interrupted where there is no place.
     pub(super) fn path(self, time: u64, id: &str, rows: &[(f64, Vec<f64>)]) -> Vec<u8> {
         let places: Vec<_> = rows.iter().map(|(_, values)| self.of(values)).collect();
         let stretches = places.split(Option::is_none).filter(|stretch| stretch.len() > 1);
@@ -57,9 +56,8 @@ impl Place {
             frame_id: FRAME.to_owned(),
             id: id.to_owned(),
             lines: stretches.map(|stretch| line(stretch.iter().flatten(), colour_of(id))).collect(),
-            ..SceneEntity::default()
         };
-        SceneUpdate { entities: vec![entity], ..SceneUpdate::default() }.encode_to_vec()
+        SceneUpdate { entities: vec![entity] }.encode_to_vec()
     }
 }
 
@@ -71,27 +69,14 @@ fn colour_of(topic: &str) -> Colour {
 fn line<'a>(places: impl Iterator<Item = &'a [f64; 3]>, colour: Colour) -> LinePrimitive {
     let [r, g, b] = colour.rgb().map(|part| f64::from(part) / 255.0);
     LinePrimitive {
-        r#type: line_primitive::Type::LineStrip.into(),
         thickness: 2.0,
-        // As many pixels at any distance.
         scale_invariant: true,
-        points: places.map(|&[x, y, z]| Point3 { x, y, z }).collect(),
+        points: places.map(|&[x, y, z]| Vector3 { x, y, z }).collect(),
         color: Some(Color { r, g, b, a: 1.0 }),
-        ..LinePrimitive::default()
     }
 }
 
 fn stamp(time: u64) -> Timestamp {
     const SECOND: u64 = 1_000_000_000;
-    Timestamp::new((time / SECOND) as u32, (time % SECOND) as u32)
-}
-
-/// Describes the messages of [`Place::pose`].
-pub(super) fn pose_schema() -> Option<Schema> {
-    PoseInFrame::get_schema()
-}
-
-/// Describes the messages of [`Place::path`].
-pub(super) fn path_schema() -> Option<Schema> {
-    SceneUpdate::get_schema()
+    Timestamp { seconds: (time / SECOND) as i64, nanos: (time % SECOND) as i32 }
 }

@@ -96,6 +96,14 @@ fn places_are_poses_and_one_path_with_a_gap_where_there_is_none() {
         .map(|line| nested(line.as_message().unwrap(), "points").as_list().unwrap().len());
     assert_eq!(lengths.collect::<Vec<_>>(), [40, 59]);
     assert_eq!(nested(path, "entities.0.lines.1.points.0.x"), Value::F64(41.0 / 3.0));
+    assert_eq!(nested(path, "entities.0.lines.1.color.a"), Value::F64(1.0));
+    assert_eq!(nested(path, "entities.0.lines.1.type"), Value::EnumNumber(0));
+    assert_eq!(nested(path, "entities.0.lines.1.thickness"), Value::F64(2.0));
+    assert_eq!(nested(path, "entities.0.lines.1.scale_invariant"), Value::Bool(true));
+    assert_eq!(nested(path, "entities.0.id"), Value::String("/walker/estimate".to_owned()));
+    assert_eq!(nested(path, "entities.0.timestamp.nanos"), Value::I32(0));
+    assert_eq!(nested(pose, "pose.orientation.w"), Value::F64(1.0));
+    assert_eq!(nested(pose, "frame_id"), Value::String("world".to_owned()));
 }
 
 #[test]
