@@ -3,6 +3,7 @@
 mod archive;
 mod arguments;
 mod check;
+mod datagrams;
 pub mod design;
 mod fetch_data;
 #[cfg(feature = "fleet")]

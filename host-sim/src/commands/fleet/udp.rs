@@ -1,18 +1,14 @@
 //! Datagrams: no log, so what comes while nobody listens is lost, and what is killed is not made again.
 
-use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::transport::{Delivery, Estimate, Log, Transport};
 use crate::Error;
+use crate::commands::datagrams::{self, LONGEST, PATIENCE, is_silence};
 
-/// So long messages are waited for.
-const PATIENCE: Duration = Duration::from_millis(100);
 /// Messages that are followed together.
 const BATCH: usize = 2000;
-/// No datagram is longer.
-const LONGEST: usize = 1 << 16;
 
 /// A port to which all devices send.
 #[derive(Debug)]
@@ -30,11 +26,7 @@ impl Udp {
     /// # Errors
     /// [`Error::Usage`] if it cannot be had.
     pub(super) fn bind(address: &str, to: Option<SocketAddr>) -> Result<Self, Error> {
-        let socket = UdpSocket::bind(address).and_then(|socket| {
-            socket.set_read_timeout(Some(PATIENCE))?;
-            Ok(socket)
-        });
-        let socket = socket.map_err(|error| Error::Usage(format!("--udp {address}: {error}")))?;
+        let socket = datagrams::listen(address)?;
         Ok(Self { socket, to, position: 0, buffer: vec![0; LONGEST] })
     }
 
@@ -63,11 +55,7 @@ impl Transport for Udp {
                     let bytes = self.buffer.get(..count).unwrap_or_default().to_vec();
                     deliveries.push(Delivery { position: self.position, bytes });
                 }
-                Err(error)
-                    if matches!(
-                        error.kind(),
-                        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-                    ) => {}
+                Err(error) if is_silence(&error) => {}
                 Err(source) => return Err(Error::Read { path: "UDP".into(), source }),
             }
         }

@@ -122,8 +122,9 @@ impl Decoder {
         state.shown = self.shown.and_then(Sender::number);
         for (sender, device) in self.devices.iter_mut().filter(|(_, device)| device.is_news) {
             let row = device.show(&mut state);
-            if let Some(number) = sender.number() {
-                state.devices.insert(number, row);
+            match sender {
+                Sender::Device(number) => drop(state.devices.insert(*number, row)),
+                Sender::Unnamed => state.unnamed = (self.shown != Some(*sender)).then_some(row),
             }
         }
     }

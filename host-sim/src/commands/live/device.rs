@@ -85,7 +85,8 @@ impl Device {
                         self.row.lost = self.row.lost.saturating_add(missing);
                         self.sorter.release_all(|message| self.feed.take(message, state))?;
                         self.feed.begin_anew(state)?;
-                        Order::Newest { missing: 0 }
+                        // Its first frames may have been overtaken, too.
+                        Order::Newest { missing: u16::try_from(missing).unwrap_or(u16::MAX) }
                     }
                     Place::Late { behind } => {
                         self.row.lost = self.row.lost.saturating_sub(1);

@@ -26,12 +26,11 @@ impl State {
     /// What became of all devices' frames together.
     pub(super) fn totals(&self) -> Counts {
         let mut totals = self.counts;
-        for (number, row) in &self.devices {
-            if Some(*number) != self.shown {
-                totals.taken += row.taken;
-                totals.refused += row.refused;
-                totals.restarts += row.restarts;
-            }
+        let others = self.devices.iter().filter(|(number, _)| Some(**number) != self.shown);
+        for row in others.map(|(_, row)| row).chain(&self.unnamed) {
+            totals.taken += row.taken;
+            totals.refused += row.refused;
+            totals.restarts += row.restarts;
         }
         totals
     }

@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use super::Stopper;
 use super::recorder::Recorder;
-use super::source::{LONGEST, Source};
+use super::source::Source;
 use super::tape::Tape;
 use crate::Error;
+use crate::commands::datagrams::LONGEST;
 
 /// Who listens.
 #[derive(Debug)]

@@ -1,26 +1,17 @@
 //! Where bytes come from.
 
-use std::io::{self, ErrorKind};
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use kestirim_telemetry::VERSION_OF_FLEETS;
 use serial2::SerialPort;
-use socket2::{Domain, Protocol, Socket, Type};
 
 use super::senders::Senders;
 use crate::Error;
-use crate::text::printable;
-
-/// Whoever waits for bytes looks up this often, to see whether it is to stop.
-const PATIENCE: Duration = Duration::from_millis(100);
-/// What the kernel is asked to keep while this program is busy elsewhere; it gives what it is allowed to.
-const KERNEL_BYTES: usize = 4 << 20;
-/// No datagram is longer.
-pub(super) const LONGEST: usize = 1 << 16;
+use crate::commands::datagrams::{self, PATIENCE, is_silence};
 
 /// A line that is listened to.
 #[derive(Debug)]
@@ -34,13 +25,7 @@ pub(super) enum Source {
 impl Source {
     /// Listens to datagrams for this address; those of a second sender are counted in `ignored`.
     pub(super) fn udp(address: &str, ignored: Arc<AtomicU64>) -> Result<Self, Error> {
-        let failed =
-            |error: &io::Error| Error::Usage(format!("--udp {}: {error}", printable(address)));
-        let mut addresses = address.to_socket_addrs().map_err(|error| failed(&error))?;
-        let nobody = || io::Error::new(ErrorKind::NotFound, "nobody has this address");
-        let resolved = addresses.next().ok_or_else(nobody).map_err(|error| failed(&error))?;
-        let socket = bound(resolved).map_err(|error| failed(&error))?;
-        Ok(Self::Udp(socket, Senders::default(), ignored))
+        Ok(Self::Udp(datagrams::listen(address)?, Senders::default(), ignored))
     }
 
     /// Listens to a serial port.
@@ -76,14 +61,7 @@ impl Source {
         };
         match read {
             Ok(count) => Ok(count.map(|count| &buffer[..count])),
-            Err(error)
-                if matches!(
-                    error.kind(),
-                    ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-                ) =>
-            {
-                Ok(Some(&[]))
-            }
+            Err(error) if is_silence(&error) => Ok(Some(&[])),
             Err(source) => Err(Error::Read { path: self.name().into(), source }),
         }
     }
@@ -104,15 +82,6 @@ impl Source {
 fn says_who_sends(datagram: &[u8]) -> bool {
     // A delimiter, the place of the first zero, which is behind the version, and the version.
     matches!(datagram, [0, zero, VERSION_OF_FLEETS, ..] if *zero >= 2)
-}
-
-fn bound(address: SocketAddr) -> io::Result<UdpSocket> {
-    let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
-    // Less than asked for is less room, and no reason not to listen.
-    let _ = socket.set_recv_buffer_size(KERNEL_BYTES);
-    socket.set_read_timeout(Some(PATIENCE))?;
-    socket.bind(&address.into())?;
-    Ok(socket.into())
 }
 
 #[cfg(test)]

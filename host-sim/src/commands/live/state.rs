@@ -35,6 +35,8 @@ pub(super) struct State {
     /// Those that say who they are, by number, and which of them is shown in detail.
     pub(super) devices: BTreeMap<u32, Row>,
     pub(super) shown: Option<u32>,
+    /// Those together that do not say who they are, if they are not shown in detail.
+    pub(super) unnamed: Option<Row>,
     /// Frames of devices that were too many.
     pub(super) beyond: u64,
     /// Whether nothing is kept that is drawn.
@@ -87,6 +89,7 @@ impl State {
             counts: Counts::default(),
             devices: BTreeMap::new(),
             shown: None,
+            unnamed: None,
             beyond: 0,
             is_brief: false,
             ignored: Arc::default(),
