@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::moment;
+use crate::number;
 use crate::text::Text;
 
 /// How many lines are looked at to tell the dialect.
@@ -114,7 +115,8 @@ impl Dialect {
         }
     }
 
-    fn separates(self, byte: u8) -> bool {
+    /// Whether a byte stands between fields.
+    pub(crate) fn separates(self, byte: u8) -> bool {
         match self.separator {
             Separator::Comma => byte == b',',
             Separator::Semicolon => byte == b';',
@@ -164,7 +166,7 @@ impl Dialect {
         if !self.decimal_comma || !field.contains(&b',') {
             // A point beside decimal commas groups thousands, or is one of two ways in one table.
             let plain = !self.decimal_comma || !field.contains(&b'.');
-            return fast_float2::parse(field).ok().filter(|_| plain);
+            return number::whole(field).filter(|_| plain);
         }
         let mut copy = [0; LONGEST];
         let copy = copy.get_mut(..field.len())?;
@@ -172,36 +174,7 @@ impl Dialect {
         let at = field.iter().position(|&byte| byte == b',')?;
         let between_digits = at > 0 && field.get(at + 1).is_some_and(u8::is_ascii_digit);
         copy[at] = b'.';
-        fast_float2::parse(copy).ok().filter(|_| between_digits && !field.contains(&b'.'))
-    }
-
-    /// Reads the first number of `rest` as [`Self::number`] would, if it is written without quotation marks and ends with a
-    /// separator or the line: what follows the separator, none at the line's end.
-    pub(crate) fn next_number(self, rest: &[u8]) -> Option<(f64, Option<&[u8]>)> {
-        let rest = rest.trim_ascii_start();
-        let (number, length) = if self.decimal_comma {
-            let end = rest.iter().position(|&byte| self.separates(byte)).unwrap_or(rest.len());
-            (self.number(rest[..end].trim_ascii())?, end)
-        } else {
-            fast_float2::parse_partial::<f64, _>(rest).ok()?
-        };
-        let mut after = &rest[length..];
-        if self.separator == Separator::Blanks {
-            let next = after.trim_ascii_start();
-            return match (next.is_empty(), next.len() < after.len()) {
-                (true, _) => Some((number, None)),
-                (false, true) => Some((number, Some(next))),
-                (false, false) => None,
-            };
-        }
-        while let [b' ', more @ ..] = after {
-            after = more;
-        }
-        match after {
-            [] => Some((number, None)),
-            [byte, next @ ..] if self.separates(*byte) => Some((number, Some(next))),
-            _ => None,
-        }
+        number::whole(copy).filter(|_| between_digits && !field.contains(&b'.'))
     }
 }
 
@@ -275,16 +248,5 @@ mod tests {
             assert_eq!(point.number(text.as_bytes()), None, "{text}");
             assert_eq!(comma.number(text.as_bytes()), None, "{text}");
         }
-    }
-
-    #[test]
-    fn the_quick_way_reads_the_same() {
-        let comma = Dialect::new(Separator::Comma, false);
-        assert_eq!(comma.next_number(b" 1.5 ,2"), Some((1.5, Some(&b"2"[..]))));
-        assert_eq!(comma.next_number(b"2"), Some((2.0, None)));
-        assert_eq!(comma.next_number(b"2 3,4"), None);
-        let blanks = Dialect::new(Separator::Blanks, false);
-        assert_eq!(blanks.next_number(b"1 \t2"), Some((1.0, Some(&b"2"[..]))));
-        assert_eq!(blanks.next_number(b"1,2"), None);
     }
 }

@@ -5,6 +5,7 @@ use crate::dialect::Dialect;
 use crate::error::Error;
 use crate::layout::{Kind, Layout};
 use crate::moment;
+use crate::row::Row;
 use crate::text::{Line, Text};
 
 /// A column of a [`Table`].
@@ -149,24 +150,23 @@ impl Table {
     ///
     /// # Errors
     /// The number of fields, if it is not that of the columns.
-    fn read_row(&self, dialect: Dialect, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
-        let mut rest = Some(line);
-        for (column, value) in self.columns.iter().zip(row.iter_mut()) {
-            let next = match (column.kind, rest) {
-                (Kind::Number, Some(rest)) => dialect.next_number(rest),
-                _ => None,
+    fn read_row(&self, dialect: Dialect, line: &[u8], values: &mut [f64]) -> Result<(), usize> {
+        let mut row = Row::new(dialect, line);
+        for (column, value) in self.columns.iter().zip(values.iter_mut()) {
+            let number = if column.kind == Kind::Number { row.number() } else { None };
+            *value = match number {
+                Some(number) => number,
+                None => match row.field() {
+                    Some(field) => value_of(dialect, column.kind, field).unwrap_or(f64::NAN),
+                    None => return self.read_fields(dialect, line, values),
+                },
             };
-            let Some((number, after)) = next else { return self.read_fields(dialect, line, row) };
-            (*value, rest) = (number, after);
         }
         // A separator may end the line.
-        match rest {
-            None | Some([]) => Ok(()),
-            Some(_) => self.read_fields(dialect, line, row),
-        }
+        if row.is_at_end() { Ok(()) } else { self.read_fields(dialect, line, values) }
     }
 
-    /// As [`Self::read_row`], for fields that are not all plain numbers.
+    /// As [`Self::read_row`], for fields in quotation marks, and where the number of fields is another one.
     fn read_fields(&self, dialect: Dialect, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
         let fields = dialect.fields(line);
         let width = self.columns.len();
@@ -191,7 +191,11 @@ fn value_of(dialect: Dialect, kind: Kind, field: &[u8]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use rand_core::{Rng, SeedableRng};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
     use super::*;
+    use crate::dialect::Separator;
 
     fn read(text: &str) -> Table {
         Table::read(&Text::new(text.as_bytes()).unwrap()).unwrap()
@@ -228,5 +232,38 @@ mod tests {
         assert_eq!(read("# t, x\n1 2\n3 4\n").columns[1].name, "x");
         assert_eq!(read("1 2\n3 4\n").columns[1].name, "2");
         assert_eq!(read("a b c\n1 2\n").other_header.unwrap().1, ["a", "b", "c"]);
+    }
+
+    #[test]
+    fn any_line_is_read_as_its_list_of_fields() {
+        const LETTERS: &[u8] = b"1234567890,,,;;;\t\t   ..--e\"x:";
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
+        let of_width = |width| {
+            let mut table = read("a,b,c,d\n1,2,10:00:00,x\n");
+            table.columns.truncate(width);
+            table
+        };
+        let tables = [1, 2, 3, 4].map(of_width);
+        let bits = |row: [f64; 4]| row.map(f64::to_bits);
+        let mut whole = 0;
+        for round in 0..300_000 {
+            let separators =
+                [Separator::Comma, Separator::Semicolon, Separator::Tab, Separator::Blanks];
+            let dialect = Dialect::new(separators[round % 4], round % 8 > 3);
+            let length = 1 + rng.next_u32() as usize % 16;
+            let letter = |_| LETTERS[rng.next_u32() as usize % LETTERS.len()];
+            let line: Vec<_> = (0..length).map(letter).collect();
+            let line = line.trim_ascii();
+            let table = &tables[rng.next_u32() as usize % 4];
+            let (mut quick, mut slow) = ([0.0; 4], [0.0; 4]);
+            let found = table.read_row(dialect, line, &mut quick);
+            let shown = String::from_utf8_lossy(line);
+            assert_eq!(found, table.read_fields(dialect, line, &mut slow), "{dialect}: {shown:?}");
+            if found.is_ok() {
+                whole += 1;
+                assert_eq!(bits(quick), bits(slow), "{dialect}: {shown:?}");
+            }
+        }
+        assert!(whole > 10_000, "{whole}");
     }
 }

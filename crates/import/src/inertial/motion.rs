@@ -175,10 +175,10 @@ impl Stretch {
         let mut turn = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (mut sum, mut duration) = ([0.0; 3], 0.0);
         for &(time, rate, force) in &self.steps {
-            let half = axes.of(rate).map(|x| 0.5 * x * scale * time);
-            turn = turned_by(turn, half);
+            let half = turn_of(axes.of(rate).map(|x| 0.5 * x * scale * time));
+            turn = half.map(|column| apply(turn, column));
             let force = apply(turn, force);
-            turn = turned_by(turn, half);
+            turn = half.map(|column| apply(turn, column));
             for axis in 0..3 {
                 sum[axis] += force[axis] * time;
             }
@@ -194,19 +194,18 @@ impl Stretch {
     }
 }
 
-/// A turn followed by a turn vector in the body's frame.
-fn turned_by(turn: [[f64; 3]; 3], [x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
+/// The columns of the turn by a vector.
+fn turn_of([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     let angle = length_of([x, y, z]);
     let (sine, cosine) = angle.sin_cos();
     // Rodrigues: 1 + s·[v] + c·[v]².
     let (s, c) =
         if angle > 1e-6 { (sine / angle, (1.0 - cosine) / (angle * angle)) } else { (1.0, 0.5) };
-    let columns = [
+    [
         [1.0 - c * (y * y + z * z), s * z + c * x * y, -s * y + c * x * z],
         [-s * z + c * x * y, 1.0 - c * (x * x + z * z), s * x + c * y * z],
         [s * y + c * x * z, -s * x + c * y * z, 1.0 - c * (x * x + y * y)],
-    ];
-    columns.map(|column| apply(turn, column))
+    ]
 }
 
 fn apply(columns: [[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
