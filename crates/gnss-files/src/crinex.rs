@@ -1,17 +1,23 @@
 //! Hatanaka compression of observations: CRINEX 1.0 and 3.0.
 //!
 //! Lines are stored as what changed since the epoch before: texts character by character, numbers as
-//! differences of some order since an arc began.
+//! differences of some order since an arc began. Each observable of a satellite has an arc of its own: those that nobody
+//! reads need not be followed.
 
 mod arcs;
+mod systems;
 
 use self::arcs::{Satellite, repair};
+use self::systems::Systems;
 use crate::error::Error;
 use crate::fields::integer;
 use crate::text::{Line, Lines, Text};
 
 /// More satellites or observables than any file has.
 const MOST: usize = 999;
+
+/// Observables of a satellite in a line of RINEX 2.
+const IN_A_LINE: usize = 5;
 
 /// Line in place of an epoch that was cut off.
 const CUT: &[u8] = b"> cut off";
@@ -21,8 +27,8 @@ pub(crate) fn is_compressed(bytes: &[u8]) -> bool {
     bytes.get(60..).is_some_and(|label| label.starts_with(b"CRINEX VERS"))
 }
 
-/// The RINEX file as it was, without the receiver's clock offsets, which nothing here needs. An epoch that was
-/// cut off at the end of the file is only marked.
+/// The RINEX file as it was, without what nothing here needs: the receiver's clock offsets, and all observables but codes
+/// and phases of GPS and Galileo, which are blank. An epoch that was cut off at the end of the file is only marked.
 ///
 /// # Errors
 /// The line of the compressed file, and what was expected there.
@@ -72,8 +78,7 @@ pub(crate) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> 
 struct Decoder {
     compact_version: i32,
     version: i32,
-    /// Number of observables of each satellite system, by its letter; of RINEX 2 that of letter 0.
-    observables: Vec<(u8, usize)>,
+    systems: Systems,
     /// The line of the epoch before.
     epoch: Vec<u8>,
     satellites: Vec<Satellite>,
@@ -81,24 +86,10 @@ struct Decoder {
 }
 
 impl Decoder {
-    /// Copies a line of a header, and counts its observables.
+    /// Copies a line of a header, and takes what it says of observables.
     fn copy(&mut self, line: &Line<'_>) -> Result<(), Error> {
         self.put(line.bytes);
-        let (system, from, to) = match line.label() {
-            b"# / TYPES OF OBSERV" => (0, 0, 6),
-            b"SYS / # / OBS TYPES" => (line.column(0), 3, 6),
-            _ => return Ok(()),
-        };
-        if line.columns(from, to).is_empty() {
-            return Ok(());
-        }
-        let count = line.count("how many observables there are", from, to)?;
-        if count > MOST {
-            return Err(line.expected("a possible number of observables"));
-        }
-        self.observables.retain(|(other, _)| *other != system);
-        self.observables.push((system, count));
-        Ok(())
+        self.systems.take(line)
     }
 
     fn put(&mut self, line: &[u8]) {
@@ -145,19 +136,21 @@ impl Decoder {
         lines.expect("the receiver's clock offset")?;
         let mut before = std::mem::take(&mut self.satellites);
         for i in 0..count {
-            let name = self.epoch[list + 3 * i..][..3].try_into().unwrap_or_default();
+            let name: [u8; 3] = self.epoch[list + 3 * i..][..3].try_into().unwrap_or_default();
             let line = lines.expect("a satellite's observations")?;
+            let system = self.systems.of(if old { 0 } else { name[0] });
+            let used =
+                system.ok_or_else(|| line.error("expected a satellite system of the header"))?;
+            if !used.contains(&true) || (old && !matches!(name[0], b'G' | b' ')) {
+                self.put_blank(name, used.len());
+                continue;
+            }
             let known = before.iter().position(|satellite| satellite.name == name);
             let mut satellite = match known {
                 Some(place) => before.swap_remove(place),
                 None => Satellite { name, arcs: Vec::new(), flags: Vec::new() },
             };
-            let system = if old { 0 } else { name[0] };
-            let observables = self.observables.iter().find(|(other, _)| *other == system);
-            let (_, observables) = observables
-                .ok_or_else(|| line.error("expected a satellite system of the header"))?;
-            satellite.arcs.resize(*observables, None);
-            satellite.step(&line, self.compact_version)?;
+            satellite.step(&line, used, self.compact_version)?;
             self.put_satellite(&satellite, &line)?;
             self.satellites.push(satellite);
         }
@@ -186,23 +179,37 @@ impl Decoder {
         Ok(())
     }
 
+    /// Writes the lines of a satellite of so many observables without them.
+    fn put_blank(&mut self, name: [u8; 3], observables: usize) {
+        if self.version >= 3 {
+            self.out.extend_from_slice(&name);
+        }
+        end_line(&mut self.out);
+        if self.version < 3 {
+            self.out.extend((0..observables.saturating_sub(1) / IN_A_LINE).map(|_| b'\n'));
+        }
+    }
+
     fn put_satellite(&mut self, satellite: &Satellite, line: &Line<'_>) -> Result<(), Error> {
-        let in_a_line = if self.version < 3 { 5 } else { usize::MAX };
+        let in_a_line = if self.version < 3 { IN_A_LINE } else { usize::MAX };
         if self.version >= 3 {
             self.out.extend_from_slice(&satellite.name);
         }
-        for (i, (arc, flags)) in satellite.arcs.iter().zip(satellite.flags.chunks(2)).enumerate() {
+        for (i, (arc, flags)) in
+            satellite.arcs.iter().zip(satellite.flags.as_chunks::<2>().0).enumerate()
+        {
             if i > 0 && i % in_a_line == 0 {
                 end_line(&mut self.out);
             }
-            let field = match arc {
-                Some(arc) => arc
-                    .field()
-                    .ok_or_else(|| line.error("expected observations of at most 14 characters"))?,
-                None => [b' '; 14],
-            };
-            self.out.extend_from_slice(&field);
-            self.out.extend_from_slice(flags);
+            let begin = self.out.len();
+            self.out.resize(begin + 16, b' ');
+            if let Some(arc) = arc {
+                let (field, flags_of_it) = self.out[begin..].split_at_mut(14);
+                if !arc.write(field) {
+                    return Err(line.error("expected observations of at most 14 characters"));
+                }
+                flags_of_it.copy_from_slice(flags);
+            }
         }
         end_line(&mut self.out);
         Ok(())

@@ -27,13 +27,22 @@ pub(super) struct Arc {
 }
 
 impl Satellite {
-    /// Takes the line of the next epoch.
-    pub(super) fn step(&mut self, line: &Line<'_>, compact_version: i32) -> Result<(), Error> {
+    /// Takes the line of the next epoch, of which some observables are `used`: the others are not known.
+    pub(super) fn step(
+        &mut self,
+        line: &Line<'_>,
+        used: &[bool],
+        compact_version: i32,
+    ) -> Result<(), Error> {
+        self.arcs.resize(used.len(), None);
         let mut rest = line.bytes;
-        for arc in &mut self.arcs {
-            let length = memchr::memchr(b' ', rest).unwrap_or(rest.len());
-            let field = &rest[..length];
-            rest = rest.get(length + 1..).unwrap_or_default();
+        for (arc, used) in self.arcs.iter_mut().zip(used) {
+            let length = rest.iter().position(|&byte| byte == b' ').unwrap_or(rest.len());
+            let (field, after) = rest.split_at(length);
+            rest = after.get(1..).unwrap_or_default();
+            if !used {
+                continue;
+            }
             *arc = match field {
                 [] => None,
                 [order @ b'0'..=b'5', b'&', value @ ..] => {
@@ -79,30 +88,43 @@ impl Arc {
         self
     }
 
-    /// The number, thousandths, as 14 characters; none if they do not fit.
-    pub(super) fn field(&self) -> Option<[u8; 14]> {
+    /// Writes the number, thousandths, as 14 characters over blanks, unless it does not fit.
+    pub(super) fn write(&self, field: &mut [u8]) -> bool {
         let thousandths = self.differences[0];
-        let mut field = [b' '; 14];
-        let mut left = thousandths.unsigned_abs();
+        let left = thousandths.unsigned_abs();
         if left > if thousandths < 0 { LARGEST_VALUE / 10 } else { LARGEST_VALUE } {
-            return None;
+            return false;
         }
-        let mut place = 14;
-        while left > 0 || place > 9 {
+        let (mut whole, behind) = (left / 1000, left % 1000);
+        let [hundreds, tens_and_ones] = [behind / 100, behind % 100].map(|it| PAIRS[it as usize]);
+        field[10..].copy_from_slice(&[b'.', hundreds[1], tens_and_ones[0], tens_and_ones[1]]);
+        let mut place = 10;
+        while whole > 9 {
+            place -= 2;
+            field[place..place + 2].copy_from_slice(&PAIRS[(whole % 100) as usize]);
+            whole /= 100;
+        }
+        if whole > 0 || place == 10 {
             place -= 1;
-            if place == 10 {
-                field[place] = b'.';
-            } else {
-                field[place] = b'0' + (left % 10) as u8;
-                left /= 10;
-            }
+            field[place] = b'0' + whole as u8;
         }
         if thousandths < 0 {
             field[place - 1] = b'-';
         }
-        Some(field)
+        true
     }
 }
+
+/// The digits of the numbers below a hundred.
+const PAIRS: [[u8; 2]; 100] = {
+    let mut pairs = [*b"00"; 100];
+    let mut number = 0;
+    while number < 100 {
+        pairs[number] = [b'0' + number as u8 / 10, b'0' + number as u8 % 10];
+        number += 1;
+    }
+    pairs
+};
 
 /// Takes over what changed in a text: a blank changes nothing, `&` stands for a blank.
 pub(super) fn repair(text: &mut Vec<u8>, changes: &[u8]) {

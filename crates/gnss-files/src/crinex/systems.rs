@@ -1,0 +1,63 @@
+//! Which observables satellites have, and which of them are of use.
+
+use super::MOST;
+use crate::error::Error;
+use crate::fields::blank_separated;
+use crate::observations::Signal;
+use crate::text::Line;
+
+/// The observables of each satellite system, by its letter; of RINEX 2 those of all, by letter 0.
+#[derive(Debug, Default)]
+pub(super) struct Systems(Vec<System>);
+
+#[derive(Debug)]
+struct System {
+    letter: u8,
+    /// How many were named so far.
+    named: usize,
+    /// Of each whether it is of use.
+    used: Vec<bool>,
+}
+
+impl Systems {
+    /// Takes a line of a header.
+    ///
+    /// # Errors
+    /// [`Error::Line`] if it says that there are more observables than there can be.
+    pub(super) fn take(&mut self, line: &Line<'_>) -> Result<(), Error> {
+        let (letter, from, to) = match line.label() {
+            b"# / TYPES OF OBSERV" => (0, 0, 6),
+            b"SYS / # / OBS TYPES" => (line.column(0), 3, 6),
+            _ => return Ok(()),
+        };
+        // A list that goes on has no number.
+        if !line.columns(from, to).is_empty() {
+            let count = line.count("how many observables there are", from, to)?;
+            if count > MOST {
+                return Err(line.expected("a possible number of observables"));
+            }
+            self.0.retain(|system| system.letter != letter);
+            self.0.push(System { letter, named: 0, used: vec![false; count] });
+        }
+        if let Some(system) = self.0.last_mut() {
+            blank_separated(line.columns(6, 60)).for_each(|code| system.name(code));
+        }
+        Ok(())
+    }
+
+    /// Of each observable of a system whether it is of use; none if the header does not know the system.
+    pub(super) fn of(&self, letter: u8) -> Option<&[bool]> {
+        self.0.iter().find(|system| system.letter == letter).map(|system| &*system.used)
+    }
+}
+
+impl System {
+    fn name(&mut self, code: &[u8]) {
+        // Those of RINEX 2 are of GPS.
+        let letter = if self.letter == 0 { b'G' } else { self.letter };
+        if let Some(used) = self.used.get_mut(self.named) {
+            *used = Signal::new(letter, code).is_some();
+        }
+        self.named += 1;
+    }
+}
