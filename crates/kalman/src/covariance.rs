@@ -1,3 +1,4 @@
+use crate::gaussian::MANY;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -215,11 +216,33 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         result
     }
 
+    /// P hᵀ of a row whose indices are below N, by the columns of P.
+    pub(crate) fn times(&self, row: &[(usize, T)]) -> [T; N] {
+        let mut sums = [T::accumulator(); N];
+        for &(index, value) in row {
+            let columns = self.lower.data.0.iter();
+            for (sum, column) in sums.iter_mut().zip(columns).take(index) {
+                let entry = column.get(index).copied().unwrap_or(T::ZERO);
+                *sum = T::mac(*sum, value, entry);
+            }
+            let column = self.lower.data.0.get(index).and_then(|column| column.get(index..));
+            let (entries, sums) = (column.unwrap_or_default(), sums.get_mut(index..));
+            for (sum, &entry) in sums.unwrap_or_default().iter_mut().zip(entries) {
+                *sum = T::mac(*sum, value, entry);
+            }
+        }
+        sums.map(T::finish)
+    }
+
     /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
     #[inline(always)]
     pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
         self.absorb_rounding();
         for column in 0..N {
+            // Of many states some have nothing to do with what is measured, as ambiguities of satellites that are not seen.
+            if N >= MANY && g[column] == T::ZERO {
+                continue;
+            }
             for row in column..N {
                 self.lower.data.0[column][row] -= gain[row] * g[column];
             }

@@ -3,6 +3,9 @@ use crate::{Covariance, Error, Innovation, Linear, Observation, Process, SparseR
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
+/// From so many states on P is gone through by its columns, of which most are long: fewer looks at bounds, the same sums.
+pub(crate) const MANY: usize = 17;
+
 /// A state estimate: mean x and covariance P of N states.
 ///
 /// For an error-state filter the mean is the error, zero between injections.
@@ -253,6 +256,9 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// P hᵀ of a row that the state covers.
     #[inline(always)]
     fn cross_covariance(&self, row: &[(usize, T)]) -> [T; N] {
+        if N >= MANY {
+            return self.covariance.times(row);
+        }
         let mut cross = [T::ZERO; N];
         for (i, cross) in cross.iter_mut().enumerate() {
             let mut sum = T::accumulator();

@@ -83,8 +83,15 @@ impl Kepler {
         let Self { eccentricity, along, across, anomaly } = *self;
         let rate = Self::rate();
         let mean = anomaly + rate * second;
-        // Each turn multiplies the error by the eccentricity.
-        let eccentric = (0..10).fold(mean, |eccentric, _| mean + eccentricity * eccentric.sin());
+        // Each turn multiplies the error by the eccentricity, until nothing changes any more.
+        let mut eccentric = mean;
+        for _ in 0..10 {
+            let before = eccentric;
+            eccentric = mean + eccentricity * before.sin();
+            if eccentric == before {
+                break;
+            }
+        }
         let (sine, cosine) = eccentric.sin_cos();
         let minor = (1.0 - eccentricity * eccentricity).sqrt();
         let speed = SEMI_MAJOR_M * rate / (1.0 - eccentricity * cosine);

@@ -21,6 +21,8 @@ use crate::random::{normal, uniform};
 
 /// Lowest elevation at which the receiver tracks, rad.
 const HORIZON: f64 = 0.087;
+/// So far below, rad, nobody need know when the signal was sent: in a tenth of a second a satellite moves by 10⁻⁵ rad.
+const FAR_BELOW: f64 = HORIZON - 1e-3;
 /// Nothing is seen of a satellite in this share of the epochs …
 const MISSING: f64 = 0.002;
 /// … and for this share of these the receiver loses its phase, and says so.
@@ -138,10 +140,10 @@ impl Station {
         let satellites = (1..).zip(&services.0).filter_map(|(prn, spacecraft)| {
             let path = self.path(&instant, spacecraft);
             let channel = &mut self.channels[usize::from(prn) - 1];
-            if path.direction.elevation < HORIZON {
+            let Some(path) = path.filter(|path| path.direction.elevation >= HORIZON) else {
                 *channel = None;
                 return None;
-            }
+            };
             let channel = channel.get_or_insert_with(|| Channel::draw(rng));
             if uniform(rng) < MISSING {
                 if uniform(rng) < LOST {
@@ -155,26 +157,35 @@ impl Station {
         Epoch { time, power_failure: false, satellites: satellites.collect() }
     }
 
-    /// The signal's path, in the frame that does not rotate.
-    fn path(&self, instant: &Instant, spacecraft: &Spacecraft) -> Path {
+    /// The signal's path, in the frame that does not rotate; none of a satellite that is far below the horizon.
+    fn path(&self, instant: &Instant, spacecraft: &Spacecraft) -> Option<Path> {
         let received = instant.tag - instant.clock;
         let receiver = carried_along(&instant.antenna, -received);
+        let direction_of = |sight: &Vector3<f64>| Direction::of(sight, &self.place);
         let mut flight = 0.07;
+        let mut motion = spacecraft.orbit.at(received - flight);
+        let towards = carried_along(&motion.position, received) - instant.antenna;
+        if direction_of(&towards.normalize()).elevation < FAR_BELOW {
+            return None;
+        }
         for _ in 0..4 {
-            let satellite = spacecraft.orbit.at(received - flight).position;
-            flight = (satellite - receiver).norm() / SPEED_OF_LIGHT;
+            let before = flight;
+            flight = (motion.position - receiver).norm() / SPEED_OF_LIGHT;
+            if flight == before {
+                break;
+            }
+            motion = spacecraft.orbit.at(received - flight);
         }
         let sent = received - flight;
-        let motion = spacecraft.orbit.at(sent);
         let satellite = carried_along(&motion.position, received);
         let sight = (satellite - instant.antenna).normalize();
-        let direction = Direction::of(&sight, &self.place);
+        let direction = direction_of(&sight);
         let ahead = spacecraft.clock.at(sent) + motion.relativity;
         let range = (motion.position - receiver).norm()
             + SPEED_OF_LIGHT * (instant.clock - ahead)
             + shapiro_delay(&motion.position, &receiver)
             + if direction.elevation < HORIZON { 0.0 } else { self.air.delay(direction) };
-        Path { range, direction, sight, satellite }
+        Some(Path { range, direction, sight, satellite })
     }
 }
 
