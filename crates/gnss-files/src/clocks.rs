@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::{Error, Warning};
-use crate::fields::{blank_separated, decimal, integer, satellite};
+use crate::fields::{blank_separated, decimal, first_field, integer, satellite};
 use crate::satellites::PerSatellite;
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
@@ -85,6 +85,7 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
     let mut lines = text.lines();
     header(text, &mut lines, &mut clocks.wide_lanes)?;
     let mut samples = PerSatellite::default();
+    let mut dated = None;
     while let Some(line) = lines.next() {
         if lines.is_at_end() && !text.ends_with_line_break() {
             clocks.warnings.push(line.warning("the file ends within this line, which is left out"));
@@ -92,8 +93,8 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
         }
         match line.bytes {
             [b'A', b'S', b' ', b'G' | b'E' | b' ', ..] => {
-                let (prn, sample) =
-                    record(line.bytes).ok_or_else(|| line.expected("a satellite's clock"))?;
+                let (prn, sample) = record(line.bytes, &mut dated)
+                    .ok_or_else(|| line.expected("a satellite's clock"))?;
                 if sample.bias.abs() < NO_BIAS {
                     samples.push(prn, sample);
                 }
@@ -164,20 +165,45 @@ fn time_system(line: &Line<'_>) -> Result<(), Error> {
     }
 }
 
-/// Columns differ between versions, the order of the fields does not.
-fn record(bytes: &[u8]) -> Option<(u8, ClockSample)> {
-    let mut fields = blank_separated(bytes).skip(1);
-    let prn = match fields.next()? {
-        b"G" => satellite(fields.next()?)?,
-        name => satellite(name)?,
+/// A date and time as it is written, and what it means.
+type Dated<'a> = Option<(&'a [u8], GpsTime)>;
+
+/// Columns differ between versions, the order of the fields does not. The satellites of an epoch have one date: it is read
+/// once.
+fn record<'a>(bytes: &'a [u8], dated: &mut Dated<'a>) -> Option<(u8, ClockSample)> {
+    let (_, rest) = first_field(bytes)?;
+    let (prn, rest) = match first_field(rest)? {
+        (b"G", rest) => first_field(rest)?,
+        named => named,
     };
-    let mut calendar = [0; 5];
-    for field in &mut calendar {
-        *field = integer(fields.next()?)?;
-    }
-    let time = GpsTime::from_calendar(calendar, decimal(fields.next()?)?)?;
-    let bias = fields.nth(1).filter(|field| is_whole(field))?;
+    let prn = satellite(prn)?;
+    let known = dated.as_ref().and_then(|(date, time)| {
+        let rest = rest.strip_prefix(*date)?;
+        rest.first().is_none_or(u8::is_ascii_whitespace).then_some((*time, rest))
+    });
+    let (time, rest) = match known {
+        Some(known) => known,
+        None => {
+            let (time, behind) = date(rest)?;
+            *dated = Some((rest.get(..rest.len() - behind.len())?, time));
+            (time, behind)
+        }
+    };
+    let (_, rest) = first_field(rest)?;
+    let (bias, _) = first_field(rest).filter(|(field, _)| is_whole(field))?;
     Some((prn, ClockSample { time, bias: decimal(bias)? }))
+}
+
+/// The date and time that a text begins with, and what follows it.
+fn date(text: &[u8]) -> Option<(GpsTime, &[u8])> {
+    let (mut calendar, mut rest) = ([0; 5], text);
+    for number in &mut calendar {
+        let field;
+        (field, rest) = first_field(rest)?;
+        *number = integer(field)?;
+    }
+    let (second, rest) = first_field(rest)?;
+    Some((GpsTime::from_calendar(calendar, decimal(second)?)?, rest))
 }
 
 /// Whether a number in the format E19.12 is there to the end of its exponent: a line that was cut off holds the

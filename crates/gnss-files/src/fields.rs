@@ -12,6 +12,30 @@ const POWERS: [f64; 23] = [
 /// None if there is anything else, or if it is beyond all doubles.
 pub(crate) fn decimal(field: &[u8]) -> Option<f64> {
     let (negative, digits) = signed(field);
+    let magnitude = plain(digits).or_else(|| with_exponent(digits))?;
+    Some(if negative { -magnitude } else { magnitude })
+}
+
+/// A number of so few digits that these and the power of ten are doubles: their quotient is rounded once.
+#[inline]
+fn plain(digits: &[u8]) -> Option<f64> {
+    let (mut mantissa, mut point) = (0_u64, None);
+    for (place, &byte) in digits.iter().enumerate() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if byte == b'.' && point.is_none() {
+            point = Some(place);
+        } else {
+            return None;
+        }
+    }
+    let count = digits.len() - usize::from(point.is_some());
+    let power = POWERS.get(point.map_or(0, |point| digits.len() - 1 - point))?;
+    ((1..=19).contains(&count) && mantissa < EXACT).then(|| mantissa as f64 / power)
+}
+
+fn with_exponent(digits: &[u8]) -> Option<f64> {
     let (mut mantissa, mut count, mut decimals, mut exponent) = (0_u64, 0, None, 0);
     for (i, &byte) in digits.iter().enumerate() {
         match byte {
@@ -32,15 +56,14 @@ pub(crate) fn decimal(field: &[u8]) -> Option<f64> {
     }
     let scale = exponent.checked_sub(decimals.map_or(0, |before| count - before))?;
     let power = POWERS.get(scale.unsigned_abs() as usize);
-    let magnitude = match power {
+    match power {
         // Two doubles without error make a result rounded once.
         Some(power) if count <= 19 && mantissa < EXACT => {
             let mantissa = mantissa as f64;
-            if scale < 0 { mantissa / power } else { mantissa * power }
+            Some(if scale < 0 { mantissa / power } else { mantissa * power })
         }
-        _ => slowly(digits)?,
-    };
-    Some(if negative { -magnitude } else { magnitude })
+        _ => slowly(digits),
+    }
 }
 
 fn slowly(digits: &[u8]) -> Option<f64> {
@@ -73,6 +96,14 @@ fn signed(field: &[u8]) -> (bool, &[u8]) {
         Some(digits) => (true, digits),
         None => (false, field.strip_prefix(b"+").unwrap_or(field)),
     }
+}
+
+/// The first field between blanks, and what follows it.
+pub(crate) fn first_field(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let begin = bytes.iter().position(|byte| !byte.is_ascii_whitespace())?;
+    let rest = bytes.get(begin..)?;
+    let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+    rest.split_at_checked(end)
 }
 
 /// The fields between blanks.

@@ -160,10 +160,11 @@ impl<'a> Line<'a> {
         from: usize,
         to: usize,
     ) -> Result<Option<f64>, Error> {
-        if self.columns(from, to).is_empty() {
+        let field = self.columns(from, to);
+        if field.is_empty() {
             return Ok(None);
         }
-        self.finite(what, from, to).map(Some)
+        self.finite_of(field, what, to).map(Some)
     }
 
     /// The finite number between two columns, which ends in the last one, as Fortran writes it: of one that a file cut
@@ -172,7 +173,10 @@ impl<'a> Line<'a> {
     /// # Errors
     /// [`Error::Line`] if there is anything else, or if the line ends within the number.
     pub(crate) fn finite(&self, what: &str, from: usize, to: usize) -> Result<f64, Error> {
-        let field = self.columns(from, to);
+        self.finite_of(self.columns(from, to), what, to)
+    }
+
+    fn finite_of(&self, field: &[u8], what: &str, to: usize) -> Result<f64, Error> {
         if !field.is_empty() && self.bytes.len() < to {
             let end = self.bytes.len();
             return Err(self.error(format!(
