@@ -87,6 +87,7 @@ fn tables(folder: &Path) -> anyhow::Result<()> {
     let peers = [
         ("csv + fast-float2", Some(fastest(|| peers::csv(&walk)))),
         ("polars", peers::polars(&path)),
+        ("digits alone", Some(fastest(|| peers::digits(&walk)))),
     ];
     let table =
         fastest(|| Table::read(&kestirim_import::Text::new(&walk)?).map(|table| table.lines.len()));

@@ -18,6 +18,22 @@ pub(crate) fn csv(bytes: &[u8]) -> anyhow::Result<usize> {
     Ok(columns.first().map_or(0, Vec::len))
 }
 
+/// The digits of a table are looked at, and nothing is kept: the sum of all fields without their signs and points. No reader
+/// can be much quicker that goes from byte to byte.
+pub(crate) fn digits(bytes: &[u8]) -> u64 {
+    let (mut sum, mut number) = (0_u64, 0_u64);
+    for byte in bytes {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+        } else if !matches!(byte, b'.' | b'-') {
+            sum = sum.wrapping_add(number);
+            number = 0;
+        }
+    }
+    sum
+}
+
 /// Seconds of the processor in which polars reads a table from memory, on one thread; none if it is not installed.
 pub(crate) fn polars(path: &Path) -> Option<f64> {
     const PROGRAM: &str = "import sys, time, polars
