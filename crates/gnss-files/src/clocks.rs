@@ -181,13 +181,12 @@ fn record<'a>(bytes: &'a [u8], dated: &mut Dated<'a>) -> Option<(u8, ClockSample
         let rest = rest.strip_prefix(*date)?;
         rest.first().is_none_or(u8::is_ascii_whitespace).then_some((*time, rest))
     });
-    let (time, rest) = match known {
-        Some(known) => known,
-        None => {
-            let (time, behind) = date(rest)?;
-            *dated = Some((rest.get(..rest.len() - behind.len())?, time));
-            (time, behind)
-        }
+    let (time, rest) = if let Some(known) = known {
+        known
+    } else {
+        let (time, behind) = date(rest)?;
+        *dated = Some((rest.get(..rest.len() - behind.len())?, time));
+        (time, behind)
     };
     let (_, rest) = first_field(rest)?;
     let (bias, _) = first_field(rest).filter(|(field, _)| is_whole(field))?;
