@@ -140,7 +140,9 @@ fn gnss_files(day: &str, files: &Files) -> anyhow::Result<()> {
         Ok(())
     };
     read("observations", std::slice::from_ref(&files.obs), &|texts| {
-        texts.iter().for_each(|text| drop(black_box(Observations::parse(text))));
+        for text in texts {
+            drop(black_box(Observations::parse(text)));
+        }
     })?;
     read("orbits", &files.sp3, &|texts| drop(black_box(Orbits::parse(texts))))?;
     read("clocks", &files.clk, &|texts| drop(black_box(Clocks::parse(texts))))
@@ -176,7 +178,7 @@ fn station_day(day: &str, files: &Files) -> anyhow::Result<()> {
             total / (all + solved)
         ),
         Some(None) => {
-            println!("    RTKLIB: SKIPPED, rnx2rtkp is not installed or finds no positions")
+            println!("    RTKLIB: SKIPPED, rnx2rtkp is not installed or finds no positions");
         }
         None => {}
     }
