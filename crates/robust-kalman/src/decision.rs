@@ -60,6 +60,12 @@ impl<T: Scalar> Decision<T> {
         matches!(self.reason, Reason::DownWeighted | Reason::Rejected)
     }
 
+    /// Whether it was judged and stands out: more than its inner threshold.
+    #[inline(always)]
+    pub(crate) fn is_suspect(&self) -> bool {
+        self.reason == Reason::Agrees && self.statistic > self.thresholds.0
+    }
+
     /// Whether its residual can be compared with others, and it kept its full weight.
     #[inline(always)]
     pub(crate) fn counts(&self) -> bool {

@@ -25,9 +25,22 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
     ) -> T {
         for (measurement, decision) in epoch.measurements.iter().zip(&mut *decisions) {
             if !decision.was_treated() {
-                self.standardise(epoch, measurement, decision);
+                let left = measurement.variance - measurement.spread(epoch.posterior);
+                decision.residual = measurement.left(epoch.prior, epoch.posterior);
+                self.standardise(measurement, left, decision);
             }
         }
+        self.compare(passed, known, decisions)
+    }
+
+    /// The statistics of all that hold v/√Qᵥ, with σ̂0 if it is known already. Returns σ̂0.
+    #[inline(never)] // After a pass and after a release: the code is there once.
+    pub(crate) fn compare(
+        &self,
+        passed: &Passed<T>,
+        known: Option<T>,
+        decisions: &mut [Decision<T>],
+    ) -> T {
         let scale = known.unwrap_or_else(|| self.scale.of_residuals(passed, decisions));
         let divisor = scale.divisor();
         for decision in &mut *decisions {
@@ -52,16 +65,15 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
         scale
     }
 
-    /// v/√Qᵥ with Qᵥ = R − h P⁺ hᵀ, if enough of R is left.
-    fn standardise<const N: usize>(
+    /// v/√Qᵥ of a residual v with Qᵥ = R − h P⁺ hᵀ, if enough of R is left.
+    #[inline(always)]
+    pub(crate) fn standardise(
         &self,
-        epoch: &Epoch<'_, '_, T, N>,
         measurement: &Measurement<'_, T>,
+        left: T,
         decision: &mut Decision<T>,
     ) {
         let variance = measurement.variance;
-        let left = variance - measurement.spread(epoch.posterior);
-        decision.residual = measurement.left(epoch.prior, epoch.posterior);
         decision.redundancy = (left / variance).max(T::ZERO);
         if left > self.least_redundancy * variance {
             decision.standardised = decision.residual / left.sqrt();
@@ -73,15 +85,16 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
         }
     }
 
+    /// The weight that a judged measurement is to have instead of its full one.
+    pub(crate) fn lighter(&self, decision: &Decision<T>) -> Option<T> {
+        let judged = decision.reason == Reason::Agrees;
+        let weight = || self.weight.factor(decision.statistic, decision.thresholds);
+        judged.then(weight).filter(|&weight| !(weight >= T::ONE))
+    }
+
     /// Gives a judged measurement its weight. Returns whether that changed.
     pub(crate) fn treat(&self, decision: &mut Decision<T>) -> bool {
-        if decision.reason != Reason::Agrees {
-            return false;
-        }
-        let weight = self.weight.factor(decision.statistic, decision.thresholds);
-        if weight >= T::ONE {
-            return false;
-        }
+        let Some(weight) = self.lighter(decision) else { return false };
         decision.weight = weight;
         let down_weighted = weight > T::ZERO;
         decision.reason = if down_weighted { Reason::DownWeighted } else { Reason::Rejected };

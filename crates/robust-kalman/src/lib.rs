@@ -13,6 +13,7 @@ mod scale;
 mod student;
 mod update;
 mod weight;
+mod worst_first;
 
 pub use adaptive::{Adaptive, Block, Discrepancy, Order};
 pub use bias::{Jump, MOST_STATES};

@@ -10,8 +10,8 @@ pub enum Reweighting {
     Never,
     /// All at once, after the first pass.
     OneShot,
-    /// The worst one alone, then everything is computed anew, until none exceeds the inner threshold. Each
-    /// measurement is treated once.
+    /// The worst one alone, then the others are judged anew, until none exceeds the inner threshold. Each
+    /// measurement is treated once, for the cost of an update; the last judgement is of everything computed anew.
     WorstFirst {
         /// Largest number of measurements that are treated.
         #[cfg_attr(feature = "serde", serde(with = "limit"))]

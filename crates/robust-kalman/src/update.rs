@@ -3,6 +3,7 @@
 use crate::bias::{Bias, Jump};
 use crate::judge::Epoch;
 use crate::pass::{Passed, pass};
+use crate::worst_first::Judged;
 use crate::{Adaptive, Block, Decision, Discrepancy, Error, Measurement, Order, Reason};
 use crate::{Reweighting, Robust, Summary, WeightFunction};
 use kestirim_kalman::Gaussian;
@@ -41,7 +42,7 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
         let passed = run.pass(decisions)?;
         let nis = passed.nis;
         let judged = match &self.adaptive {
-            None => Judged { scale: run.reweight(passed, decisions)?, ..Judged::default() },
+            None => Adapted { scale: run.reweight(passed, decisions)?, ..Adapted::default() },
             Some(adaptive) => run.adapt(adaptive, passed, decisions)?,
         };
         // A measurement without noise of a state that barely moves it: what fixed point keeps of the gain may take
@@ -96,14 +97,14 @@ impl<T: Scalar> Adaptive<T> {
     }
 }
 
-/// Result of judging an epoch.
-struct Judged<T> {
+/// Result of judging an epoch and its prediction.
+struct Adapted<T> {
     scale: T,
     discrepancy: T,
     factor: T,
 }
 
-impl<T: Scalar> Default for Judged<T> {
+impl<T: Scalar> Default for Adapted<T> {
     fn default() -> Self {
         Self { scale: T::ONE, discrepancy: T::ZERO, factor: T::ONE }
     }
@@ -117,18 +118,18 @@ fn many_are_off<T: Scalar>(decisions: &[Decision<T>]) -> bool {
 }
 
 /// An epoch while its measurements are judged.
-struct Run<'a, 'b, T: Scalar, W, const N: usize> {
-    robust: &'a Robust<T, W>,
+pub(crate) struct Run<'a, 'b, T: Scalar, W, const N: usize> {
+    pub(crate) robust: &'a Robust<T, W>,
     prior: Gaussian<T, N>,
-    posterior: Gaussian<T, N>,
-    measurements: &'a [Measurement<'b, T>],
+    pub(crate) posterior: Gaussian<T, N>,
+    pub(crate) measurements: &'a [Measurement<'b, T>],
     /// Present while the adaptive factor needs it.
     bias: Option<Bias<T, N>>,
     passes: usize,
 }
 
 impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
-    fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
+    pub(crate) fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
         self.passes += 1;
         if let Some(bias) = &mut self.bias {
             *bias = Bias::new(&self.prior, bias.block());
@@ -139,7 +140,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
     /// Judges and weights until nothing is left to be treated. Returns σ̂0.
     fn reweight(&mut self, passed: Passed<T>, decisions: &mut [Decision<T>]) -> Result<T, Error> {
         let known = self.robust.scale.of_innovations(&self.epoch(), decisions);
-        let mut scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
+        let scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
         match self.robust.reweighting {
             Reweighting::Never => {}
             Reweighting::OneShot => {
@@ -152,15 +153,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
                 }
             }
             Reweighting::WorstFirst { most } => {
-                // Each round treats one that was not treated before: no more rounds than measurements.
-                for _ in 0..most.min(decisions.len()) {
-                    let Some(worst) = worst(decisions) else { break };
-                    if !self.robust.treat(worst) {
-                        break;
-                    }
-                    let passed = self.pass(decisions)?;
-                    scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
-                }
+                return self.worst_first(most, Judged { passed, known, scale }, decisions);
             }
         }
         Ok(scale)
@@ -172,8 +165,8 @@ impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
         adaptive: &Adaptive<T>,
         passed: Passed<T>,
         decisions: &mut [Decision<T>],
-    ) -> Result<Judged<T>, Error> {
-        let mut judged = Judged::default();
+    ) -> Result<Adapted<T>, Error> {
+        let mut judged = Adapted::default();
         let unweighted = self.discrepancy(adaptive, decisions);
         let mut dynamics_first = adaptive.order == Order::BeforeWeights;
         if !dynamics_first {
@@ -200,7 +193,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
         Ok(judged)
     }
 
-    fn epoch(&self) -> Epoch<'_, 'b, T, N> {
+    pub(crate) fn epoch(&self) -> Epoch<'_, 'b, T, N> {
         Epoch { prior: &self.prior, posterior: &self.posterior, measurements: self.measurements }
     }
 
@@ -229,10 +222,4 @@ impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
         self.prior.covariance.inflate(block.first, block.count, factor.recip())?;
         Ok(())
     }
-}
-
-/// The measurement that stands out most of those that were judged.
-fn worst<T: Scalar>(decisions: &mut [Decision<T>]) -> Option<&mut Decision<T>> {
-    let judged = decisions.iter_mut().filter(|decision| decision.reason == Reason::Agrees);
-    judged.reduce(|worst, other| if other.statistic > worst.statistic { other } else { worst })
 }

@@ -1,0 +1,122 @@
+//! One outlier after the other, each at the cost of one update.
+
+use crate::pass::Passed;
+use crate::update::Run;
+use crate::{Decision, Error, Reason, WeightFunction};
+use kestirim_scalar::{Components, Scalar};
+
+/// Epoch whose measurements were judged.
+pub(crate) struct Judged<T> {
+    pub(crate) passed: Passed<T>,
+    /// σ̂0 if it is that of the innovations.
+    pub(crate) known: Option<T>,
+    /// σ̂0.
+    pub(crate) scale: T,
+}
+
+/// What was released from the estimate since the last pass.
+#[derive(Clone, Copy, PartialEq)]
+enum Released {
+    None,
+    DownWeighted,
+    Rejected,
+}
+
+impl<T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, '_, T, W, N> {
+    /// Treats the worst alone, again and again. While others are suspected it is only released from the
+    /// estimate, which is one update; when none is left, everything is computed anew and judged once more.
+    pub(crate) fn worst_first(
+        &mut self,
+        most: usize,
+        mut judged: Judged<T>,
+        decisions: &mut [Decision<T>],
+    ) -> Result<T, Error> {
+        // Each is treated once.
+        let mut treatable = most.min(decisions.len());
+        let mut released = Released::None;
+        loop {
+            let suspects = decisions.iter().filter(|decision| decision.is_suspect()).count();
+            let worst = worst(decisions).filter(|_| treatable > 0);
+            let place = worst.and_then(|index| decisions.get_mut(index));
+            let weight = place.as_ref().and_then(|decision| self.robust.lighter(decision));
+            if let (Some(index), Some(place), Some(weight)) = (worst, place, weight) {
+                let rejected = weight <= T::ZERO;
+                // What pulled hard leaves rounding behind, which a weight would show.
+                if rejected || released != Released::Rejected {
+                    self.robust.treat(place);
+                    treatable -= 1;
+                    let next = suspects > 1 && treatable > 0;
+                    if next && self.release(index, &mut judged.passed, decisions)? {
+                        judged.scale = self.robust.compare(&judged.passed, judged.known, decisions);
+                        released =
+                            if rejected { Released::Rejected } else { Released::DownWeighted };
+                        continue;
+                    }
+                }
+            } else if released == Released::None {
+                return Ok(judged.scale);
+            }
+            judged.passed = self.pass(decisions)?;
+            let Judged { passed, known, .. } = &judged;
+            judged.scale = self.robust.judge(&self.epoch(), passed, *known, decisions);
+            released = Released::None;
+        }
+    }
+
+    /// Takes what a treated measurement has lost of its weight out of the estimate, and from the residuals
+    /// and redundancies of the others what follows. R/γ instead of R is as if a measurement of the variance
+    /// −R/(1 − γ) had come, too: its S is negative, P grows. Returns whether that was possible.
+    fn release(
+        &mut self,
+        index: usize,
+        passed: &mut Passed<T>,
+        decisions: &mut [Decision<T>],
+    ) -> Result<bool, Error> {
+        let treated = self.measurements.get(index).zip(decisions.get(index).copied());
+        let Some((measurement, Decision { weight, residual, .. })) = treated else {
+            return Ok(false);
+        };
+        let row = measurement.row;
+        let weighed = self.posterior.weigh_entries(row, residual, measurement.variance)?;
+        let left = measurement.variance / (T::ONE - weight) - weighed.spread();
+        // Rounding is magnified by R over this: where little is left, a pass is more exact.
+        if left * T::from_f64(8.0) <= measurement.variance {
+            return Ok(false);
+        }
+        let root = left.sqrt().divisor();
+        let pull = residual.divided_by(root);
+        let mut step = *weighed.cross_covariance();
+        for (step, mean) in step.iter_mut().zip(self.posterior.mean.as_array_mut()) {
+            *step = step.divided_by(root);
+            *mean -= *step * pull;
+        }
+        self.posterior.covariance.add_outer(&step.into());
+        passed.nis -= pull * pull;
+        passed.used -= usize::from(weight <= T::ZERO).min(passed.used);
+        for (measurement, decision) in self.measurements.iter().zip(decisions) {
+            if decision.counts() {
+                let mut shown = T::accumulator();
+                for &(index, value) in measurement.row {
+                    shown = T::mac(shown, value, step.get(index).copied().unwrap_or(T::ZERO));
+                }
+                let shown = T::finish(shown);
+                decision.residual += shown * pull;
+                let left = decision.redundancy * measurement.variance - shown * shown;
+                self.robust.standardise(measurement, left, decision);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The index of the measurement that stands out most of those that were judged.
+fn worst<T: Scalar>(decisions: &[Decision<T>]) -> Option<usize> {
+    let all = decisions.iter().enumerate();
+    let judged = all.filter(|(_, decision)| decision.reason == Reason::Agrees);
+    let worst = judged.reduce(
+        |worst, other| {
+            if other.1.statistic > worst.1.statistic { other } else { worst }
+        },
+    );
+    worst.map(|(index, _)| index)
+}
