@@ -1,8 +1,13 @@
 #![no_std]
 #![doc = include_str!("../README.md")]
 
+#[cfg(feature = "vectors")]
+extern crate std;
+
+pub mod vectors;
+
 /// √x, rounded to the nearest number; of zero that zero, of what is below it NaN (IEEE 754).
-#[inline]
+#[inline(always)] // A kernel for vectors must not be left for it.
 pub fn sqrt(x: f32) -> f32 {
     of_processor(x)
 }
@@ -22,7 +27,17 @@ fn of_processor(x: f32) -> f32 {
     f32::from_bits(bits)
 }
 
-#[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+/// Intrinsics, not libm's assembler: a loop over them becomes vector instructions.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+#[allow(unsafe_code)] // As above.
+fn of_processor(x: f32) -> f32 {
+    use core::arch::x86_64::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
+    // SAFETY: every x86-64 has SSE.
+    unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) }
+}
+
+#[cfg(not(any(target_arch = "x86_64", all(target_arch = "arm", target_abi = "eabihf"))))]
 #[inline(always)]
 fn of_processor(x: f32) -> f32 {
     libm::sqrtf(x)

@@ -6,6 +6,7 @@ mod error;
 #[cfg(feature = "serde")]
 pub mod generator;
 mod kld;
+mod likelihood;
 mod mode;
 mod moments;
 mod movement;
@@ -15,6 +16,8 @@ mod point_mass;
 mod random;
 mod region;
 mod resample;
+#[cfg(test)]
+mod same_bits;
 mod sequence;
 #[cfg(feature = "serde")]
 mod snapshot;
@@ -23,6 +26,7 @@ mod weights;
 
 pub use error::Error;
 pub use kld::kld_count;
+pub use likelihood::Likelihood;
 pub use moments::Moments;
 pub use offspring::offspring;
 pub use particles::Particles;

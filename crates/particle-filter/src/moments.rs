@@ -1,3 +1,4 @@
+use kestirim_arithmetic::vectors::{Kernel, Vectors};
 use kestirim_scalar::Scalar;
 
 use crate::blocks::{BLOCK, Points};
@@ -24,6 +25,11 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
     /// Moments of weighted points.
     #[inline(always)]
     pub(crate) fn of<const N: usize>(weights: &Weights<T, N>, points: &impl Points<T, D>) -> Self {
+        Vectors::widest().run(Looking { weights, points })
+    }
+
+    #[inline(always)]
+    fn looked<const N: usize>(weights: &Weights<T, N>, points: &impl Points<T, D>) -> Self {
         let share = weights.sum().recip();
         let (centre, reach) = extent(weights, points);
         let mean = mean(weights, points, centre);
@@ -84,6 +90,23 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
             }
         }
         covariance
+    }
+}
+
+/// The moments of some points.
+pub(crate) struct Looking<'a, T, P, const D: usize, const N: usize> {
+    pub(crate) weights: &'a Weights<T, N>,
+    pub(crate) points: &'a P,
+}
+
+impl<T: Scalar, P: Points<T, D>, const D: usize, const N: usize> Kernel
+    for Looking<'_, T, P, D, N>
+{
+    type Output = Moments<T, D>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        Moments::looked(self.weights, self.points)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::moments::mean;
 use crate::offspring;
 use crate::sequence::{Steps, placed};
 use crate::weights::Weights;
-use crate::{Error, Moments, Region, Resample, Start, Update};
+use crate::{Error, Likelihood, Moments, Region, Resample, Start, Update};
 
 /// A weighted cloud of up to N states of D coordinates.
 ///
@@ -132,6 +132,16 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
     #[inline(always)]
     pub fn update(&mut self, log_likelihood: impl Fn([T; D]) -> T) -> Result<Update<T>, Error> {
         self.weights.update(&self.states, log_likelihood)
+    }
+
+    /// [`Particles::update`] by a likelihood that is inlined: on the widest vectors of the processor where feature
+    /// `vectors` is on, with the same result on all.
+    ///
+    /// # Errors
+    /// As [`Particles::update`].
+    #[inline(always)]
+    pub fn weigh(&mut self, likelihood: &impl Likelihood<T, D>) -> Result<Update<T>, Error> {
+        self.weights.weigh(&self.states, likelihood)
     }
 
     /// Replaces the particles by their offspring, of equal weight.

@@ -5,7 +5,7 @@ use crate::moments::bounds;
 use crate::particles::check;
 use crate::sequence::{Steps, lattice_point, placed};
 use crate::weights::{Weights, never};
-use crate::{Error, Moments, Region, Update};
+use crate::{Error, Likelihood, Moments, Region, Update};
 
 /// A posterior on up to N fixed points: the golden lattice in a box of D dimensions.
 ///
@@ -95,6 +95,16 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
     #[inline(always)]
     pub fn update(&mut self, log_likelihood: impl Fn([T; D]) -> T) -> Result<Update<T>, Error> {
         self.weights.update(&Lattice::new(&self.region, self.len()), log_likelihood)
+    }
+
+    /// [`PointMass::update`] by a likelihood that is inlined: on the widest vectors of the processor where feature
+    /// `vectors` is on, with the same result on all.
+    ///
+    /// # Errors
+    /// As [`PointMass::update`].
+    #[inline(always)]
+    pub fn weigh(&mut self, likelihood: &impl Likelihood<T, D>) -> Result<Update<T>, Error> {
+        self.weights.weigh(&Lattice::new(&self.region, self.len()), likelihood)
     }
 
     /// A lattice over the box around all weights that are more than exp(−`depth`) of the largest, with a point's

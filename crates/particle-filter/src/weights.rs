@@ -1,7 +1,9 @@
+use kestirim_arithmetic::vectors::{Kernel, Vectors};
 use kestirim_scalar::Scalar;
 
-use crate::Error;
 use crate::blocks::{BLOCK, Block, Points, gather};
+use crate::likelihood::Closure;
+use crate::{Error, Likelihood};
 
 /// Lanes of a sum, which make vector instructions of it and the same rounding everywhere.
 const LANES: usize = 4;
@@ -123,6 +125,28 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         points: &impl Points<T, D>,
         log_likelihood: impl Fn([T; D]) -> T,
     ) -> Result<Update<T>, Error> {
+        self.multiply(points, &Closure(log_likelihood))
+    }
+
+    /// The same on the widest vectors of the processor.
+    ///
+    /// # Errors
+    /// As [`Weights::update`].
+    #[inline(always)]
+    pub(crate) fn weigh<const D: usize>(
+        &mut self,
+        points: &impl Points<T, D>,
+        likelihood: &impl Likelihood<T, D>,
+    ) -> Result<Update<T>, Error> {
+        Vectors::widest().run(Weighing { weights: self, points, likelihood })
+    }
+
+    #[inline(always)]
+    fn multiply<const D: usize>(
+        &mut self,
+        points: &impl Points<T, D>,
+        likelihood: &impl Likelihood<T, D>,
+    ) -> Result<Update<T>, Error> {
         let never = never::<T>();
         let mut room = [[T::ZERO; BLOCK]; D];
         let (mut largest, mut base) = (never, 0);
@@ -130,7 +154,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
             let block = points.load(base, logs.len(), &mut room);
             let mut fresh = [never; BLOCK];
             for (index, (slot, &log)) in fresh.iter_mut().zip(logs).enumerate() {
-                let gain = log_likelihood(gather(&block, index));
+                let gain = likelihood.logarithm(gather(&block, index));
                 let value = log + gain;
                 *slot = if gain.is_finite() && value.is_finite() { value } else { never };
             }
@@ -207,6 +231,27 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
             self.sums(&Nowhere, |weight, []| [[(weight, T::ONE), (weight, weight)]]);
         self.sum = sum;
         self.square_sum = square_sum;
+    }
+}
+
+/// An update on the widest vectors.
+pub(crate) struct Weighing<'a, T, P, L, const D: usize, const N: usize> {
+    pub(crate) weights: &'a mut Weights<T, N>,
+    pub(crate) points: &'a P,
+    pub(crate) likelihood: &'a L,
+}
+
+impl<T, P, L, const D: usize, const N: usize> Kernel for Weighing<'_, T, P, L, D, N>
+where
+    T: Scalar,
+    P: Points<T, D>,
+    L: Likelihood<T, D>,
+{
+    type Output = Result<Update<T>, Error>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.weights.multiply(self.points, self.likelihood)
     }
 }
 

@@ -11,6 +11,7 @@ mod locator;
 mod orbit;
 mod published;
 mod search;
+mod seen;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod thinned;

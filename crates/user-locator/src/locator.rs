@@ -1,9 +1,10 @@
 use heapless::Vec;
 use kestirim_air_to_ground::{Channel, Likelihood, Measurement};
-use kestirim_particle_filter::{Moments, PointMass, Region, Update};
+use kestirim_particle_filter::{Likelihood as _, Moments, PointMass, Region, Update};
 use kestirim_scalar::Scalar;
 
 use crate::level_step::health;
+use crate::seen::Seen;
 use crate::{Error, Health};
 
 /// Depth below the largest log-density, 10, beyond which points are given up when the lattice is laid anew.
@@ -65,8 +66,7 @@ where
     /// # Errors
     /// [`Error::Filter`] if nothing in the region explains it; then nothing has changed.
     pub fn measure(&mut self, measurement: &Measurement<T>) -> Result<Update<T>, Error> {
-        let channel = &self.channel;
-        let update = self.posterior.update(|state| log_likelihood(channel, measurement, &state))?;
+        let update = self.posterior.weigh(&Seen { channel: &self.channel, measurement })?;
         if self.measurements.push(*measurement).is_err() {
             self.unstored = self.unstored.saturating_add(1);
         }
@@ -83,10 +83,9 @@ where
                 return;
             }
             let Some(mut finer) = self.posterior.finer(T::from_f64(DEPTH)) else { return };
-            let channel = &self.channel;
             for measurement in &self.measurements {
                 // One at a time over all points, which is vector instructions, not all at a point.
-                if finer.update(|state| log_likelihood(channel, measurement, &state)).is_err() {
+                if finer.weigh(&Seen { channel: &self.channel, measurement }).is_err() {
                     // A lattice that cannot be laid anew is still a posterior.
                     return;
                 }
@@ -136,19 +135,6 @@ where
     }
 }
 
-#[inline(always)]
-fn log_likelihood<T: Scalar, C: Likelihood<T>, const D: usize>(
-    channel: &C,
-    measurement: &Measurement<T>,
-    state: &[T; D],
-) -> T {
-    let place = [state[0], state[1]];
-    match state.get(2) {
-        Some(&level) => channel.log_likelihood(&measurement.less(level), place),
-        None => channel.log_likelihood(measurement, place),
-    }
-}
-
 /// The logarithm of the posterior's density, without a constant.
 #[inline(always)]
 fn log_posterior<T: Scalar, C: Likelihood<T>, const D: usize>(
@@ -158,7 +144,7 @@ fn log_posterior<T: Scalar, C: Likelihood<T>, const D: usize>(
 ) -> T {
     let mut sum = T::ZERO;
     for measurement in measurements {
-        sum += log_likelihood(channel, measurement, state);
+        sum += Seen { channel, measurement }.logarithm(*state);
     }
     sum
 }

@@ -4,6 +4,7 @@ use kestirim_scalar::Scalar;
 use rand_core::Rng;
 
 use crate::Error;
+use crate::seen::Seen;
 
 /// Parameters of the published filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,8 +86,7 @@ impl<T: Scalar, const L: usize> PublishedLocator<T, L> {
         measurement: &Measurement<T>,
         rng: &mut R,
     ) -> Result<Update<T>, Error> {
-        let channel = &self.channel;
-        let update = self.particles.update(|user| channel.log_likelihood(measurement, user))?;
+        let update = self.particles.weigh(&Seen { channel: &self.channel, measurement })?;
         if update.effective
             < self.settings.threshold * T::from_binary(self.particles.len() as i32, 0)
         {

@@ -8,6 +8,7 @@ use kestirim_scalar::Scalar;
 use rand_core::Rng;
 
 use crate::Error;
+use crate::seen::Seen;
 
 /// Motion model of a user, and the threshold of the filter's divergence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,9 +191,7 @@ where
         measurement: &Measurement<T>,
         rng: &mut R,
     ) -> Result<Update<T>, Error> {
-        let channel = &self.channel;
-        let update =
-            self.particles.update(|[x, y, ..]| channel.log_likelihood(measurement, [x, y]))?;
+        let update = self.particles.weigh(&Seen { channel: &self.channel, measurement })?;
         self.judge(update.log_evidence, rng);
         if self.particles.effective() < T::from_binary(self.particles.len() as i32, 0) * T::HALF {
             self.particles.resample(Resampler::Systematic, rng)?;

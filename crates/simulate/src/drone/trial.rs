@@ -1,6 +1,7 @@
 //! One trial of a user who stays: all filters on the same measurements.
 
-use kestirim_particle_filter::PointMass;
+use kestirim_air_to_ground::{Channel, Measurement};
+use kestirim_particle_filter::{Likelihood, PointMass};
 use kestirim_replay::ScalarKind;
 use kestirim_scalar::{Q16_16, Scalar};
 
@@ -111,6 +112,19 @@ struct Found {
     credible: bool,
 }
 
+/// A path loss: how likely it is with the user at a place.
+struct Loss<'a> {
+    channel: &'a Channel<f32>,
+    measurement: &'a Measurement<f32>,
+}
+
+impl Likelihood<f32, 2> for Loss<'_> {
+    #[inline(always)]
+    fn logarithm(&self, user: [f32; 2]) -> f32 {
+        self.channel.log_likelihood(self.measurement, user)
+    }
+}
+
 impl Flight<'_> {
     /// Error of the thesis' filter, and how many measurements it refused.
     fn by_published<T: Scalar, const L: usize>(&self, filter: PublishedFilter) -> (f64, u32) {
@@ -135,7 +149,7 @@ impl Flight<'_> {
         let weigh = |mut posterior: PointMass<f32, 2, DENSE>| {
             for measurement in self.measurements() {
                 // What nothing explains is left out.
-                let _ = posterior.update(|user| channel.log_likelihood(&measurement, user));
+                let _ = posterior.weigh(&Loss { channel: &channel, measurement: &measurement });
             }
             posterior
         };

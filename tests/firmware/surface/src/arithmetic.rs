@@ -1,6 +1,7 @@
 //! Everything of `kestirim-arithmetic`.
 
 use kestirim_arithmetic::sqrt;
+use kestirim_arithmetic::vectors::{Kernel, Vectors};
 
 use super::values::{any, call_each, keep};
 
@@ -8,7 +9,24 @@ fn roots() {
     keep(sqrt(any(2.0)));
 }
 
+/// Anything to be run on vectors.
+struct Work;
+
+impl Kernel for Work {
+    type Output = f32;
+
+    fn run(self) -> f32 {
+        any(1.0)
+    }
+}
+
+fn vectors() {
+    keep(Vectors::all().count());
+    keep(Vectors::run(Vectors::widest(), Work));
+    keep(Kernel::run(Work));
+}
+
 /// Calls it all.
 pub fn run() {
-    call_each([roots]);
+    call_each([roots, vectors]);
 }

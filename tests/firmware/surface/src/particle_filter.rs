@@ -1,7 +1,7 @@
 //! Everything of `kestirim-particle-filter`.
 
 use kestirim_particle_filter::{
-    IntegerWeights, Moments, Multinomial, Particles, PointMass, Region, Resample, Resampler,
+    IntegerWeights, Likelihood, Moments, Multinomial, Particles, PointMass, Region, Resample, Resampler,
     Residual, Start, Stratified, Systematic, kld_count, offspring,
 };
 use kestirim_scalar::{Q16_16, Scalar};
@@ -27,6 +27,15 @@ fn start() -> Start {
 fn weight<T: Scalar, const D: usize>(state: [T; D]) -> T {
     keep(state);
     number()
+}
+
+/// The same, inlined.
+struct Weight;
+
+impl<T: Scalar, const D: usize> Likelihood<T, D> for Weight {
+    fn logarithm(&self, state: [T; D]) -> T {
+        weight(state)
+    }
 }
 
 /// Where a particle goes.
@@ -102,6 +111,7 @@ fn steps<T: Scalar, const D: usize, const N: usize>() {
         Particles::predict::<2, _>(any(&mut cloud), moved, &mut AnyRng);
         Particles::jitter(any(&mut cloud), &numbers(), &mut AnyRng);
         try_on(&mut cloud, |cloud| Particles::update(cloud, weight));
+        try_on(&mut cloud, |cloud| Particles::weigh(cloud, &Weight));
         try_on(&mut cloud, |cloud| Particles::resample(cloud, resampler(), &mut AnyRng));
         try_on(&mut cloud, |cloud| {
             Particles::resample_to(cloud, whole(), resampler(), &mut AnyRng)
@@ -117,6 +127,7 @@ fn points<T: Scalar, const D: usize, const N: usize>() {
     keep(PointMass::<T, D, N>::new(&region));
     let Ok(mut mass) = any(PointMass::<T, D, N>::with_count(whole(), &region)) else { return };
     try_on(&mut mass, |mass| PointMass::update(mass, weight));
+    try_on(&mut mass, |mass| PointMass::weigh(mass, &Weight));
     keep(PointMass::len(&mass));
     keep(PointMass::is_empty(&mass));
     keep(PointMass::region(&mass));
