@@ -79,6 +79,39 @@ pub struct Adaptive<T> {
     pub order: Order,
 }
 
+/// A choice of the adaptive factor: at run time, or a type.
+pub trait AnyFactor<T> {
+    /// Whether there may be one.
+    const POSSIBLE: bool;
+
+    /// The factor, if there is one.
+    fn choice(&self) -> Option<Adaptive<T>>;
+}
+
+impl<T: Scalar> AnyFactor<T> for Option<Adaptive<T>> {
+    const POSSIBLE: bool = true;
+
+    #[inline(always)]
+    fn choice(&self) -> Option<Adaptive<T>> {
+        *self
+    }
+}
+
+/// No adaptive factor, as a type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NoFactor;
+
+impl<T> AnyFactor<T> for NoFactor {
+    const POSSIBLE: bool = false;
+
+    #[inline(always)]
+    fn choice(&self) -> Option<Adaptive<T>> {
+        None
+    }
+}
+
 impl<T: Scalar> Adaptive<T> {
     /// Defaults: the block's own discrepancy between 3 and 8, as it is sharper than the published one; no
     /// factor below 0.05.

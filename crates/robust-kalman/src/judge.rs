@@ -2,7 +2,7 @@
 
 use crate::pass::Passed;
 use crate::student::whole;
-use crate::{Decision, Measurement, Reason, Robust, WeightFunction};
+use crate::{AnyFactor, AnyScale, Decision, Measurement, Reason, Robust, WeightFunction};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
@@ -13,7 +13,7 @@ pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
     pub(crate) measurements: &'a [Measurement<'b, T>],
 }
 
-impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
+impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T, W, S, A> {
     /// ṽ and the statistic of every measurement that was not treated yet, with σ̂0 if it is known already.
     /// Returns σ̂0.
     pub(crate) fn judge<const N: usize>(
@@ -41,7 +41,7 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
         known: Option<T>,
         decisions: &mut [Decision<T>],
     ) -> T {
-        let scale = known.unwrap_or_else(|| self.scale.of_residuals(passed, decisions));
+        let scale = known.unwrap_or_else(|| self.scale.choice().of_residuals(passed, decisions));
         let divisor = scale.divisor();
         for decision in &mut *decisions {
             if decision.counts() {

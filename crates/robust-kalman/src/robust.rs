@@ -1,4 +1,7 @@
-use crate::{Adaptive, Block, Descent, Discrepancy, Igg3, Scale, TTest, Weight, WeightFunction};
+use crate::{
+    Adaptive, AnyFactor, AnyScale, Block, Descent, Discrepancy, Igg3, NoFactor, Scale, TTest,
+};
+use crate::{UnitScale, Weight, WeightFunction};
 use kestirim_scalar::Scalar;
 
 /// Iteration of the robust weights.
@@ -41,21 +44,22 @@ mod limit {
 }
 
 /// A robust, and maybe adaptive, Kalman update for any measurements: how it finds outliers and what it
-/// does about them. The five constructors are the five published filters; W is the weight function.
+/// does about them. The five constructors are the five published filters; W is the weight function, S the scale,
+/// A the adaptive factor, each chosen at run time unless [`Robust::lean`] makes it a type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Robust<T, W = Weight<T>> {
+pub struct Robust<T, W = Weight<T>, S = Scale<T>, A = Option<Adaptive<T>>> {
     /// Weight function.
     pub weight: W,
     /// Scale of the residuals, σ̂0.
-    pub scale: Scale<T>,
+    pub scale: S,
     /// Iteration of the weights.
     pub reweighting: Reweighting,
     /// Qᵥ/R up to which a measurement is not judged. Such a residual shows next to nothing of an error.
     pub least_redundancy: T,
     /// The adaptive factor, if there is one.
-    pub adaptive: Option<Adaptive<T>>,
+    pub adaptive: A,
 }
 
 impl<T: Scalar> Robust<T> {
@@ -116,21 +120,30 @@ impl<T: Scalar> Robust<T> {
     }
 }
 
-impl<T: Scalar, W> Robust<T, W> {
+impl<T: Scalar, W, S, A> Robust<T, W, S, A> {
     /// The same filter with another weight function.
     #[must_use]
-    pub fn with_weight<V: WeightFunction<T>>(self, weight: V) -> Robust<T, V> {
+    pub fn with_weight<V: WeightFunction<T>>(self, weight: V) -> Robust<T, V, S, A> {
         let Self { scale, reweighting, least_redundancy, adaptive, .. } = self;
+        Robust { weight, scale, reweighting, least_redundancy, adaptive }
+    }
+
+    /// The same filter with another weight function, σ̂0 = 1 and no adaptive factor, all of them types: what they
+    /// have no use for takes no flash.
+    #[must_use]
+    pub fn lean<V: WeightFunction<T>>(self, weight: V) -> Robust<T, V, UnitScale, NoFactor> {
+        let Self { reweighting, least_redundancy, .. } = self;
+        let (scale, adaptive) = (UnitScale, NoFactor);
         Robust { weight, scale, reweighting, least_redundancy, adaptive }
     }
 }
 
-impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
+impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T, W, S, A> {
     pub(crate) fn is_valid(&self) -> bool {
         self.weight.is_valid()
-            && self.scale.is_valid()
+            && self.scale.choice().is_valid()
             && T::ZERO <= self.least_redundancy
             && self.least_redundancy < T::ONE
-            && self.adaptive.is_none_or(|adaptive| adaptive.is_valid())
+            && self.adaptive.choice().is_none_or(|adaptive| adaptive.is_valid())
     }
 }

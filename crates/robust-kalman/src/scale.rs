@@ -33,6 +33,7 @@ pub enum Scale<T> {
 
 impl<T: Scalar> Scale<T> {
     /// Scale from the innovations, before anything is judged: σ̂0 for the whole epoch, if it comes from them.
+    #[inline(always)]
     pub(crate) fn of_innovations<const N: usize>(
         &self,
         epoch: &Epoch<'_, '_, T, N>,
@@ -48,6 +49,7 @@ impl<T: Scalar> Scale<T> {
     }
 
     /// σ̂0 after a pass, from decisions that hold v/√Qᵥ.
+    #[inline(always)]
     pub(crate) fn of_residuals(&self, passed: &Passed<T>, decisions: &[Decision<T>]) -> T {
         let estimate = match *self {
             Self::Epoch if passed.used > 0 => (passed.nis / whole(passed.used)).sqrt(),
@@ -65,6 +67,32 @@ impl<T: Scalar> Scale<T> {
             }
             Self::Unit | Self::Epoch => true,
         }
+    }
+}
+
+/// A choice of σ̂0: at run time, or a type.
+pub trait AnyScale<T> {
+    /// Which it is.
+    fn choice(&self) -> Scale<T>;
+}
+
+impl<T: Scalar> AnyScale<T> for Scale<T> {
+    #[inline(always)]
+    fn choice(&self) -> Scale<T> {
+        *self
+    }
+}
+
+/// [`Scale::Unit`] as a type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct UnitScale;
+
+impl<T> AnyScale<T> for UnitScale {
+    #[inline(always)]
+    fn choice(&self) -> Scale<T> {
+        Scale::Unit
     }
 }
 

@@ -4,12 +4,14 @@ use crate::bias::{Bias, Jump};
 use crate::judge::Epoch;
 use crate::pass::{Passed, pass};
 use crate::worst_first::Judged;
-use crate::{Adaptive, Block, Decision, Discrepancy, Error, Measurement, Order, Reason};
+use crate::{
+    Adaptive, AnyFactor, AnyScale, Block, Decision, Discrepancy, Error, Measurement, Order, Reason,
+};
 use crate::{Reweighting, Robust, Summary, WeightFunction};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
+impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T, W, S, A> {
     /// Takes the measurements of an epoch into a predicted estimate, with a decision about each.
     ///
     /// The innovations are those at the prediction. `decisions` needs a place for each measurement; what
@@ -27,13 +29,14 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
         if !self.is_valid() {
             return Err(Error::InvalidConfiguration);
         }
-        if let Some(adaptive) = &self.adaptive {
+        let adaptive = self.adaptive.choice();
+        if let Some(adaptive) = &adaptive {
             adaptive.block.check::<N>()?;
         }
         decisions.fill(Decision::NONE);
         let mut run = Run {
             robust: self,
-            bias: self.adaptive.and_then(|adaptive| adaptive.bias(estimate)),
+            bias: adaptive.and_then(|adaptive| adaptive.bias(estimate)),
             prior: *estimate,
             posterior: *estimate,
             measurements,
@@ -41,7 +44,7 @@ impl<T: Scalar, W: WeightFunction<T>> Robust<T, W> {
         };
         let passed = run.pass(decisions)?;
         let nis = passed.nis;
-        let judged = match &self.adaptive {
+        let judged = match &adaptive {
             None => Adapted { scale: run.reweight(passed, decisions)?, ..Adapted::default() },
             Some(adaptive) => run.adapt(adaptive, passed, decisions)?,
         };
@@ -118,8 +121,8 @@ fn many_are_off<T: Scalar>(decisions: &[Decision<T>]) -> bool {
 }
 
 /// An epoch while its measurements are judged.
-pub(crate) struct Run<'a, 'b, T: Scalar, W, const N: usize> {
-    pub(crate) robust: &'a Robust<T, W>,
+pub(crate) struct Run<'a, 'b, T: Scalar, W, S, A, const N: usize> {
+    pub(crate) robust: &'a Robust<T, W, S, A>,
     prior: Gaussian<T, N>,
     pub(crate) posterior: Gaussian<T, N>,
     pub(crate) measurements: &'a [Measurement<'b, T>],
@@ -128,18 +131,21 @@ pub(crate) struct Run<'a, 'b, T: Scalar, W, const N: usize> {
     passes: usize,
 }
 
-impl<'b, T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, 'b, T, W, N> {
+impl<'b, T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: usize>
+    Run<'_, 'b, T, W, S, A, N>
+{
     pub(crate) fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
         self.passes += 1;
-        if let Some(bias) = &mut self.bias {
-            *bias = Bias::new(&self.prior, bias.block());
+        let mut bias = self.bias.as_mut().filter(|_| A::POSSIBLE);
+        if let Some(bias) = &mut bias {
+            **bias = Bias::new(&self.prior, bias.block());
         }
-        pass(&self.prior, &mut self.posterior, self.measurements, decisions, self.bias.as_mut())
+        pass(&self.prior, &mut self.posterior, self.measurements, decisions, bias)
     }
 
     /// Judges and weights until nothing is left to be treated. Returns σ̂0.
     fn reweight(&mut self, passed: Passed<T>, decisions: &mut [Decision<T>]) -> Result<T, Error> {
-        let known = self.robust.scale.of_innovations(&self.epoch(), decisions);
+        let known = self.robust.scale.choice().of_innovations(&self.epoch(), decisions);
         let scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
         match self.robust.reweighting {
             Reweighting::Never => {}

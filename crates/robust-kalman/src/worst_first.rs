@@ -2,7 +2,7 @@
 
 use crate::pass::Passed;
 use crate::update::Run;
-use crate::{Decision, Error, Reason, WeightFunction};
+use crate::{AnyFactor, AnyScale, Decision, Error, Reason, WeightFunction};
 use kestirim_scalar::{Components, Scalar};
 
 /// Epoch whose measurements were judged.
@@ -22,7 +22,9 @@ enum Released {
     Rejected,
 }
 
-impl<T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, '_, T, W, N> {
+impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: usize>
+    Run<'_, '_, T, W, S, A, N>
+{
     /// Treats the worst alone, again and again. While others are suspected it is only released from the
     /// estimate, which is one update; when none is left, everything is computed anew and judged once more.
     pub(crate) fn worst_first(
@@ -46,7 +48,7 @@ impl<T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, '_, T, W, N> {
                     self.robust.treat(place);
                     treatable -= 1;
                     let next = suspects > 1 && treatable > 0;
-                    if next && self.release(index, &mut judged.passed, decisions)? {
+                    if next && self.release(index, &mut judged.passed, decisions) {
                         judged.scale = self.robust.compare(&judged.passed, judged.known, decisions);
                         released =
                             if rejected { Released::Rejected } else { Released::DownWeighted };
@@ -66,28 +68,36 @@ impl<T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, '_, T, W, N> {
     /// Takes what a treated measurement has lost of its weight out of the estimate, and from the residuals
     /// and redundancies of the others what follows. R/γ instead of R is as if a measurement of the variance
     /// −R/(1 − γ) had come, too: its S is negative, P grows. Returns whether that was possible.
+    #[inline(never)] // Where nothing is wrong, its registers are not in the way.
     fn release(
         &mut self,
         index: usize,
         passed: &mut Passed<T>,
         decisions: &mut [Decision<T>],
-    ) -> Result<bool, Error> {
+    ) -> bool {
         let treated = self.measurements.get(index).zip(decisions.get(index).copied());
-        let Some((measurement, Decision { weight, residual, .. })) = treated else {
-            return Ok(false);
+        let Some((measurement, Decision { weight, residual, redundancy, .. })) = treated else {
+            return false;
         };
-        let row = measurement.row;
-        let weighed = self.posterior.weigh_entries(row, residual, measurement.variance)?;
-        let left = measurement.variance / (T::ONE - weight) - weighed.spread();
+        // R/(1 − γ) − h P⁺ hᵀ.
+        let variance = measurement.variance;
+        let left = variance / (T::ONE - weight) - (variance - redundancy * variance);
         // Rounding is magnified by R over this: where little is left, a pass is more exact.
-        if left * T::from_f64(8.0) <= measurement.variance {
-            return Ok(false);
+        if left * T::from_f64(8.0) <= variance {
+            return false;
         }
         let root = left.sqrt().divisor();
         let pull = residual.divided_by(root);
-        let mut step = *weighed.cross_covariance();
-        for (step, mean) in step.iter_mut().zip(self.posterior.mean.as_array_mut()) {
-            *step = step.divided_by(root);
+        let mut step = [T::ZERO; N];
+        for (state, (step, mean)) in
+            step.iter_mut().zip(self.posterior.mean.as_array_mut()).enumerate()
+        {
+            let mut cross = T::accumulator();
+            for &(index, value) in measurement.row {
+                let entry = self.posterior.covariance.get(index, state).unwrap_or(T::ZERO);
+                cross = T::mac(cross, value, entry);
+            }
+            *step = T::finish(cross).divided_by(root);
             *mean -= *step * pull;
         }
         self.posterior.covariance.add_outer(&step.into());
@@ -105,7 +115,7 @@ impl<T: Scalar, W: WeightFunction<T>, const N: usize> Run<'_, '_, T, W, N> {
                 self.robust.standardise(measurement, left, decision);
             }
         }
-        Ok(true)
+        true
     }
 }
 

@@ -1,8 +1,8 @@
 //! Everything of `kestirim-particle-filter`.
 
 use kestirim_particle_filter::{
-    IntegerWeights, Likelihood, Moments, Multinomial, Particles, PointMass, Region, Resample, Resampler,
-    Residual, Start, Stratified, Systematic, kld_count, offspring,
+    IntegerWeights, Likelihood, Moments, Multinomial, Particles, PointMass, Region, Resample,
+    Resampler, Residual, Start, Stratified, Systematic, kld_count, offspring,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 

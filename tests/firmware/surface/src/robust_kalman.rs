@@ -2,8 +2,9 @@
 
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_robust_kalman::{
-    Adaptive, Block, Decision, Descent, Discrepancy, Error, Huber, Igg3, Measurement, Order,
-    Reweighting, Robust, Scale, TTest, Weight, WeightFunction, jump, student_quantile,
+    Adaptive, AnyFactor, AnyScale, Block, Decision, Descent, Discrepancy, Error, Huber, Igg3,
+    Measurement, Order, Reweighting, Robust, Scale, TTest, Weight, WeightFunction, jump,
+    student_quantile,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -58,7 +59,10 @@ fn presets<T: Scalar>() {
     keep::<Robust<T>>(Robust::t_test());
     keep::<Robust<T>>(Robust::iterative_igg3());
     keep::<Robust<T>>(Robust::adaptive(block()));
-    keep::<Robust<T>>(Robust::published(any(robust())));
+    let robust = any(robust::<T>());
+    keep(AnyScale::<T>::choice(&robust.scale));
+    keep(AnyFactor::<T>::choice(&robust.adaptive));
+    keep::<Robust<T>>(Robust::published(robust));
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
 }
 
@@ -91,6 +95,10 @@ fn updates<T: Scalar, const N: usize, const K: usize, const M: usize>() {
     keep(Robust::update(&robust(), any(&mut estimate), measurements, decisions));
     let huber = Robust::with_weight(robust(), any(Huber { k: number() }));
     keep(Robust::update(&huber, any(&mut estimate), measurements, decisions));
+    let lean = Robust::lean(robust(), any(Huber { k: number() }));
+    keep(AnyScale::<T>::choice(&lean.scale));
+    keep(AnyFactor::<T>::choice(&lean.adaptive));
+    keep(Robust::update(&lean, any(&mut estimate), measurements, decisions));
     keep(jump(&estimate, measurements, block()));
 }
 

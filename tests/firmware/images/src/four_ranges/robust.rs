@@ -1,7 +1,9 @@
 //! The common scenario with the robust filter that treats the worst range first.
 
 use kestirim_kalman::Gaussian;
-use kestirim_robust_kalman::{Decision, Measurement, Robust as Weights};
+use kestirim_robust_kalman::{
+    Decision, Descent, Igg3, Measurement, NoFactor, Robust as Weights, UnitScale,
+};
 use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::ExpectedRange;
 use support::Class;
@@ -13,7 +15,7 @@ use crate::stream::Ranges;
 /// The robust filter.
 pub struct Robust<T: Scalar> {
     scenario: Scenario<T>,
-    weights: Weights<T>,
+    weights: Weights<T, Igg3<T>, UnitScale, NoFactor>,
     estimate: Gaussian<T, 4>,
     decisions: [Decision<T>; 4],
 }
@@ -22,9 +24,11 @@ impl<T: Scalar> Default for Robust<T> {
     fn default() -> Self {
         let scenario = Scenario::default();
         let estimate = scenario.estimate();
+        let (k0, k1) = (T::from_f64(2.5), T::from_f64(6.0));
+        let igg3 = Igg3 { k0, k1, descent: Descent::Squared };
         Self {
             scenario,
-            weights: Weights::iterative_igg3(),
+            weights: Weights::iterative_igg3().lean(igg3),
             estimate,
             decisions: [Decision::NONE; 4],
         }
