@@ -66,6 +66,13 @@ impl<T: Scalar> Decision<T> {
         self.reason == Reason::Agrees && self.statistic > self.thresholds.0
     }
 
+    /// Leaves it this weight below one.
+    #[inline(never)] // All at once and one by one: the code is there once.
+    pub(crate) fn lose(&mut self, weight: T) {
+        self.weight = weight;
+        self.reason = if weight > T::ZERO { Reason::DownWeighted } else { Reason::Rejected };
+    }
+
     /// Whether its residual can be compared with others, and it kept its full weight.
     #[inline(always)]
     pub(crate) fn counts(&self) -> bool {

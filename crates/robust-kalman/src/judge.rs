@@ -16,6 +16,7 @@ pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
 impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T, W, S, A> {
     /// ṽ and the statistic of every measurement that was not treated yet, with σ̂0 if it is known already.
     /// Returns σ̂0.
+    #[inline(never)] // Before, among and after passes: the code is there once.
     pub(crate) fn judge<const N: usize>(
         &self,
         epoch: &Epoch<'_, '_, T, N>,
@@ -34,7 +35,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
     }
 
     /// The statistics of all that hold v/√Qᵥ, with σ̂0 if it is known already. Returns σ̂0.
-    #[inline(never)] // After a pass and after a release: the code is there once.
+    #[inline(never)] // So it is here …
     pub(crate) fn compare(
         &self,
         passed: &Passed<T>,
@@ -66,7 +67,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
     }
 
     /// v/√Qᵥ of a residual v with Qᵥ = R − h P⁺ hᵀ, if enough of R is left.
-    #[inline(always)]
+    #[inline(never)] // … and here.
     pub(crate) fn standardise(
         &self,
         measurement: &Measurement<'_, T>,
@@ -94,11 +95,11 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
 
     /// Gives a judged measurement its weight. Returns whether that changed.
     pub(crate) fn treat(&self, decision: &mut Decision<T>) -> bool {
-        let Some(weight) = self.lighter(decision) else { return false };
-        decision.weight = weight;
-        let down_weighted = weight > T::ZERO;
-        decision.reason = if down_weighted { Reason::DownWeighted } else { Reason::Rejected };
-        true
+        let weight = self.lighter(decision);
+        if let Some(weight) = weight {
+            decision.lose(weight);
+        }
+        weight.is_some()
     }
 }
 

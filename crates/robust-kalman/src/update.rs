@@ -134,6 +134,7 @@ pub(crate) struct Run<'a, 'b, T: Scalar, W, S, A, const N: usize> {
 impl<'b, T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: usize>
     Run<'_, 'b, T, W, S, A, N>
 {
+    #[inline(never)] // Called at several places.
     pub(crate) fn pass(&mut self, decisions: &mut [Decision<T>]) -> Result<Passed<T>, Error> {
         self.passes += 1;
         let mut bias = self.bias.as_mut().filter(|_| A::POSSIBLE);

@@ -45,7 +45,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
                 let rejected = weight <= T::ZERO;
                 // What pulled hard leaves rounding behind, which a weight would show.
                 if rejected || released != Released::Rejected {
-                    self.robust.treat(place);
+                    place.lose(weight);
                     treatable -= 1;
                     let next = suspects > 1 && treatable > 0;
                     if next && self.release(index, &mut judged.passed, decisions) {
@@ -89,9 +89,8 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
         let root = left.sqrt().divisor();
         let pull = residual.divided_by(root);
         let mut step = [T::ZERO; N];
-        for (state, (step, mean)) in
-            step.iter_mut().zip(self.posterior.mean.as_array_mut()).enumerate()
-        {
+        let mean = self.posterior.mean.as_array_mut();
+        for (state, (step, mean)) in step.iter_mut().zip(mean).enumerate() {
             let mut cross = T::accumulator();
             for &(index, value) in measurement.row {
                 let entry = self.posterior.covariance.get(index, state).unwrap_or(T::ZERO);
