@@ -27,8 +27,8 @@ pub(crate) fn is_compressed(bytes: &[u8]) -> bool {
     bytes.get(60..).is_some_and(|label| label.starts_with(b"CRINEX VERS"))
 }
 
-/// The RINEX file as it was, without what nothing here needs: the receiver's clock offsets, and all observables but codes
-/// and phases of GPS and Galileo, which are blank. An epoch that was cut off at the end of the file is only marked.
+/// The RINEX file as it was, but for what nothing here needs, which is blank: the receiver's clock offsets, flags without an
+/// observation, and observables other than the codes and phases of GPS and Galileo that can be used. An epoch that was cut off at the end of the file is only marked.
 ///
 /// # Errors
 /// The line of the compressed file, and what was expected there.
@@ -89,7 +89,7 @@ impl Decoder {
     /// Copies a line of a header, and takes what it says of observables.
     fn copy(&mut self, line: &Line<'_>) -> Result<(), Error> {
         self.put(line.bytes);
-        self.systems.take(line)
+        self.systems.take(line, self.version)
     }
 
     fn put(&mut self, line: &[u8]) {
@@ -142,6 +142,10 @@ impl Decoder {
             let used =
                 system.ok_or_else(|| line.error("expected a satellite system of the header"))?;
             if !used.contains(&true) || (old && !matches!(name[0], b'G' | b' ')) {
+                // What it holds is not looked at, but a line that was lost is missed.
+                if matches!(line.column(0), b'>' | b'&') {
+                    return Err(line.expected("a satellite's observations"));
+                }
                 self.put_blank(name, used.len());
                 continue;
             }

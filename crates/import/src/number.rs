@@ -1,4 +1,4 @@
-//! Decimal numbers as logs mostly write them: a sign, up to 15 digits, a point.
+//! Decimal numbers as logs mostly write them: a sign, digits that make an integer below 2⁵³, a point.
 
 /// Below this every integer is a double.
 const EXACT: u64 = 1 << 53;

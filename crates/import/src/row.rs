@@ -26,8 +26,8 @@ impl<'a> Row<'a> {
         !self.has_more || self.at == self.line.len()
     }
 
-    /// The next number as [`Dialect::number`] would read it, if it is written with a decimal point and without quotation
-    /// marks; otherwise nothing is taken.
+    /// The next number as [`Dialect::number`] would read it, if the dialect has decimal points and no quotation mark
+    /// stands here; otherwise nothing is taken.
     #[inline(always)]
     pub(crate) fn number(&mut self) -> Option<f64> {
         if self.dialect.decimal_comma || !self.has_more {
@@ -59,7 +59,7 @@ impl<'a> Row<'a> {
         };
         match self.line.get(next) {
             None => (self.at, self.has_more) = (next, false),
-            Some(_) if are_blanks && next > end => self.at = next,
+            Some(_) if are_blanks && self.dialect.separates(self.line[end]) => self.at = next,
             Some(&byte) if !are_blanks && self.dialect.separates(byte) => self.at = next + 1,
             Some(_) => return false,
         }

@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn any_line_is_read_as_its_list_of_fields() {
-        const LETTERS: &[u8] = b"1234567890,,,;;;\t\t   ..--e\"x:";
+        const LETTERS: &[u8] = b"1234567890,,,;;;\t\t   ..--+eE\"x:\r\x0c";
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
         let of_width = |width| {
             let mut table = read("a,b,c,d\n1,2,10:00:00,x\n");

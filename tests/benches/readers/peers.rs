@@ -87,5 +87,6 @@ pub(crate) fn rtklib(files: &Files, nav: &Path) -> Option<[f64; 2]> {
     let total = best(&[])?;
     let positions = std::fs::read_to_string(out).ok()?;
     let found = positions.lines().filter(|line| !line.starts_with('%')).count();
-    (found > 2_000).then_some([read, total])
+    // Of an epoch every 30 s.
+    (found * 10 > 2_880 * 9).then_some([read, total])
 }

@@ -20,18 +20,18 @@ struct System {
 }
 
 impl Systems {
-    /// Takes a line of a header.
+    /// Takes a line of the header of a version of RINEX.
     ///
     /// # Errors
     /// [`Error::Line`] if it says that there are more observables than there can be.
-    pub(super) fn take(&mut self, line: &Line<'_>) -> Result<(), Error> {
+    pub(super) fn take(&mut self, line: &Line<'_>, version: i32) -> Result<(), Error> {
         let (letter, from, to) = match line.label() {
-            b"# / TYPES OF OBSERV" => (0, 0, 6),
-            b"SYS / # / OBS TYPES" => (line.column(0), 3, 6),
+            b"# / TYPES OF OBSERV" if version < 3 => (0, 0, 6),
+            b"SYS / # / OBS TYPES" if version >= 3 => (line.column(0), 3, 6),
             _ => return Ok(()),
         };
-        // A list that goes on has no number.
-        if !line.columns(from, to).is_empty() {
+        // A list that goes on names no system, or in RINEX 2 has no number.
+        if letter != b' ' && !line.columns(from, to).is_empty() {
             let count = line.count("how many observables there are", from, to)?;
             if count > MOST {
                 return Err(line.expected("a possible number of observables"));
@@ -59,5 +59,22 @@ impl System {
             *used = Signal::new(letter, code).is_some();
         }
         self.named += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::{header, text};
+
+    #[test]
+    fn a_list_goes_on_even_if_its_number_stands_there_again() {
+        let types = |list: &str| header(list, "SYS / # / OBS TYPES");
+        let file = text(types("G    4 C1C D1C L1C") + &types("     4 C2W"));
+        let mut systems = Systems::default();
+        for line in file.lines() {
+            systems.take(&line, 3).unwrap();
+        }
+        assert_eq!(systems.of(b'G'), Some(&[true, false, true, true][..]));
     }
 }

@@ -68,6 +68,13 @@ fn a_file_cut_off_keeps_whole_epochs() {
 }
 
 #[test]
+fn a_lost_line_of_a_satellite_that_is_not_read_is_missed() {
+    let file = compressed_3().replacen("3&19000000000 \n", "", 1);
+    let error = Text::unpack(Path::new("f"), file.into_bytes()).unwrap_err().to_string();
+    assert!(error.contains("expected a satellite's observations"), "{error}");
+}
+
+#[test]
 fn other_versions_are_refused() {
     let file = compressed_3().replacen("3.0 ", "2.0 ", 1);
     let error = Text::unpack(Path::new("f"), file.into_bytes()).unwrap_err().to_string();
