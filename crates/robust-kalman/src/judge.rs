@@ -88,9 +88,11 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
 
     /// The weight that a judged measurement is to have instead of its full one.
     pub(crate) fn lighter(&self, decision: &Decision<T>) -> Option<T> {
-        let judged = decision.reason == Reason::Agrees;
-        let weight = || self.weight.factor(decision.statistic, decision.thresholds);
-        judged.then(weight).filter(|&weight| !(weight >= T::ONE))
+        if decision.reason != Reason::Agrees {
+            return None;
+        }
+        let weight = self.weight.factor(decision.statistic, decision.thresholds);
+        if weight >= T::ONE { None } else { Some(weight) }
     }
 
     /// Gives a judged measurement its weight. Returns whether that changed.

@@ -40,9 +40,9 @@ impl<T: Scalar> Case<T> {
             let phase = index % 2 == 1;
             let sigma = if phase { 0.1 } else { 0.3 };
             let place = (index * 37) % MEASUREMENTS;
-            let size = if place % 3 == 0 { 4.0 } else { 15.0 };
+            let size = if place.is_multiple_of(3) { 4.0 } else { 15.0 };
             let off = if place < outliers { size * (1.3 + noise().abs()) } else { 0.0 };
-            let sign = if index % 3 == 0 { -1.0 } else { 1.0 };
+            let sign = if index.is_multiple_of(3) { -1.0 } else { 1.0 };
             let own = if phase { 5 + index / 2 } else { 4 };
             let row = [(0, noise()), (1, noise()), (2, noise()), (3, 1.0), (own, 0.7)];
             rows.push(row.map(|(index, value)| (index, T::from_f64(value))));
