@@ -4,6 +4,8 @@
 #[cfg(feature = "vectors")]
 extern crate std;
 
+#[cfg(any(test, all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32"))))]
+mod soft;
 pub mod vectors;
 
 /// √x, rounded to the nearest number; of zero that zero, of what is below it NaN (IEEE 754).
@@ -37,7 +39,14 @@ fn of_processor(x: f32) -> f32 {
     unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) }
 }
 
-#[cfg(not(any(target_arch = "x86_64", all(target_arch = "arm", target_abi = "eabihf"))))]
+#[cfg(all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32")))]
+use soft::sqrt as of_processor;
+
+#[cfg(not(any(
+    target_arch = "x86_64",
+    all(target_arch = "arm", target_abi = "eabihf"),
+    all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32"))
+)))]
 #[inline(always)]
 fn of_processor(x: f32) -> f32 {
     libm::sqrtf(x)

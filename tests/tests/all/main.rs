@@ -3,6 +3,7 @@
 
 mod any_input;
 mod apps_on_target;
+mod arithmetic_on_target;
 mod common_scenario;
 mod drone_environments;
 mod drone_figures;

@@ -1,0 +1,30 @@
+//! Single precision for Cortex-M0 and M0+, which have no floating-point unit: the routines of Arm's run-time ABI that compilers
+//! call for it. Numbers of everyday size are served in assembler, all others by [`every_case`].
+//!
+//! Weak symbols, as the compiler's own are, behind which these stand in the order of linking: whoever brings others that
+//! are not weak, such as those in a chip's ROM, gets those.
+
+use super::every_case;
+
+extern "C" fn add(a: u32, b: u32) -> u32 {
+    every_case::add(a, b)
+}
+
+extern "C" fn multiply(a: u32, b: u32) -> u32 {
+    every_case::multiply(a, b)
+}
+
+extern "C" fn divide(a: u32, b: u32) -> u32 {
+    every_case::divide(a, b)
+}
+
+#[allow(unsafe_code)] // Symbols with the names that compilers call; and carries, which Rust does not have.
+mod routines {
+    // SAFETY: the routines keep to the procedure call standard: they change r0 to r3, r12 and the flags alone, leave the stack
+    // as it was, and touch no memory; every branch stays within its routine or calls a function of that standard. The
+    // compiler's routines of these names compute the same.
+    core::arch::global_asm!(include_str!("add.s"), every_case = sym super::add);
+    core::arch::global_asm!(include_str!("multiply.s"), every_case = sym super::multiply);
+    core::arch::global_asm!(include_str!("divide.s"), every_case = sym super::divide);
+    core::arch::global_asm!(include_str!("compare.s"));
+}

@@ -1,0 +1,14 @@
+//! Single precision in integers, for processors without a floating-point unit.
+
+#[cfg(all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32")))]
+mod armv6m;
+mod every_case;
+#[cfg(test)]
+#[allow(dead_code)] // Of its operations, which an image computes, too.
+mod pairs;
+mod root;
+#[cfg(test)]
+mod tests;
+
+#[cfg(not(test))]
+pub(crate) use root::sqrt;

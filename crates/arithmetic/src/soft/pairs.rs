@@ -1,0 +1,93 @@
+//! Pairs of numbers that arithmetic is tested on: on the host, and by the image `arithmetic` under an emulator, which
+//! includes this file and draws the same.
+
+/// Bits of numbers at the edges: of exponents, of what can be represented, of rounding.
+pub(crate) fn edges() -> impl Iterator<Item = u32> + Clone {
+    const EXPONENTS: [u32; 22] = [
+        0, 1, 2, 24, 25, 26, 27, 63, 64, 102, 103, 104, 126, 127, 128, 150, 151, 191, 192, 253,
+        254, 255,
+    ];
+    const FRACTIONS: [u32; 12] = [
+        0, 1, 2, 0x0f_ffff, 0x2a_aaaa, 0x35_04f3, 0x3f_ffff, 0x40_0000, 0x40_0001, 0x55_5555,
+        0x7f_fffe, 0x7f_ffff,
+    ];
+    EXPONENTS.into_iter().flat_map(|exponent| {
+        FRACTIONS
+            .into_iter()
+            .flat_map(move |fraction| [0, 1].map(|sign| sign << 31 | exponent << 23 | fraction))
+    })
+}
+
+/// Pairs at random, the same for the same seed.
+#[derive(Debug)]
+pub(crate) struct Pairs {
+    a: u32,
+    b: u32,
+    c: u32,
+    counter: u32,
+}
+
+impl Pairs {
+    /// The pairs of a seed.
+    pub(crate) fn new(seed: u32) -> Self {
+        let mut pairs = Self { a: seed, b: 0, c: 0x9e37_79b9, counter: 1 };
+        for _ in 0..12 {
+            pairs.draw();
+        }
+        pairs
+    }
+
+    /// Chris Doty-Humphrey's sfc32, which has no multiplication: the emulated processor draws as many as it computes with.
+    fn draw(&mut self) -> u32 {
+        let sum = self.a.wrapping_add(self.b).wrapping_add(self.counter);
+        self.counter = self.counter.wrapping_add(1);
+        self.a = self.b ^ self.b >> 9;
+        self.b = self.c.wrapping_add(self.c << 3);
+        self.c = self.c.rotate_left(21).wrapping_add(sum);
+        sum
+    }
+
+    /// The bits of the next two: in a quarter of all cases any bits, otherwise exponents of up to 31 apart; in half of all few
+    /// digits, which make ties and exact results.
+    pub(crate) fn pair(&mut self) -> (u32, u32) {
+        let (mut a, mut b, shape) = (self.draw(), self.draw(), self.draw());
+        if shape & 3 != 0 {
+            let near = (a >> 23).wrapping_add(shape >> 8 & 63).wrapping_sub(32) & 0xff;
+            b = b & 0x807f_ffff | near << 23;
+        }
+        if shape & 4 != 0 {
+            a &= u32::MAX << (shape >> 16 & 15);
+            b &= u32::MAX << (shape >> 20 & 31);
+        }
+        (a, b)
+    }
+}
+
+/// What is done with each pair.
+pub(crate) const OPERATIONS: [&str; 7] =
+    ["sum", "difference", "product", "quotient", "root", "order", "integers"];
+
+/// For each operation what all results together amount to: another number if one bit of one differs. All NaN are alike.
+pub(crate) fn digests(
+    pairs: impl Iterator<Item = (u32, u32)>,
+    sqrt: fn(f32) -> f32,
+) -> [u32; OPERATIONS.len()] {
+    let mut digests = [0_u32; OPERATIONS.len()];
+    for (bits_of_a, bits_of_b) in pairs {
+        let (a, b) = (f32::from_bits(bits_of_a), f32::from_bits(bits_of_b));
+        let integers =
+            (bits_of_b as i32) as f32 + bits_of_b as f32 + (a as i32 ^ a as u32 as i32) as f32;
+        let results = [a + b, a - b, a * b, a / b, sqrt(a), order(a, b), integers];
+        for (digest, result) in digests.iter_mut().zip(results) {
+            let bits = if result.is_nan() { 0x7fc0_0000 } else { result.to_bits() };
+            *digest = (digest.rotate_left(5) ^ bits).wrapping_mul(0x9e37_79b1);
+        }
+    }
+    digests
+}
+
+/// All comparisons in one number.
+fn order(a: f32, b: f32) -> f32 {
+    let answers = [a < b, a <= b, a > b, a >= b, a == b, a != b, a.is_nan()];
+    f32::from_bits(answers.iter().fold(0, |bits, &answer| bits << 1 | u32::from(answer)))
+}
