@@ -170,7 +170,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let row = row.entries();
         Self::covers(row)?;
         let cross = self.cross_covariance(row);
-        let weights = Weights::new(innovation, spread(row, &cross), variance)?;
+        let weights = Weights::for_update(innovation, spread(row, &cross), variance)?;
         self.take_in(&weights, &cross)
     }
 
@@ -238,7 +238,8 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     #[cfg_attr(for_size, inline(never))]
     #[cfg_attr(not(for_size), inline(always))]
     fn update_at(&mut self, index: usize, innovation: T, variance: T) -> Result<Weights<T>, Error> {
-        let weights = Weights::new(innovation, self.covariance.known(index, index), variance)?;
+        let weights =
+            Weights::for_update(innovation, self.covariance.known(index, index), variance)?;
         let cross = core::array::from_fn(|other| self.covariance.known(index, other));
         let mut gain = [T::ZERO; N];
         self.move_mean(&weights, &cross, &mut gain)?;

@@ -29,7 +29,17 @@ pub(crate) struct Weights<T: Scalar> {
 impl<T: Scalar> Weights<T> {
     #[inline(always)]
     pub(crate) fn new(innovation: T, spread: T, noise: T) -> Result<Self, Error> {
-        if !innovation.is_finite() {
+        if innovation.is_finite() {
+            Self::for_update(innovation, spread, noise)
+        } else {
+            Err(Error::NotFinite)
+        }
+    }
+
+    /// The same where the mean is moved at once: an innovation that is not finite makes it so, which is looked at then.
+    #[inline(always)]
+    pub(crate) fn for_update(innovation: T, spread: T, noise: T) -> Result<Self, Error> {
+        if !(T::SPREADS || innovation.is_finite()) {
             return Err(Error::NotFinite);
         }
         // Rounding can leave h P hᵀ a trifle below zero.
@@ -141,11 +151,8 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
 #[inline(always)]
 fn checked_divisor<T: Scalar>(spread: T, noise: T) -> Result<T::Divisor, Error> {
     let variance = spread + noise;
-    if !variance.is_finite() {
-        return Err(Error::NotFinite);
-    }
-    if noise < T::ZERO || variance <= T::ZERO {
-        return Err(Error::NotPositive);
+    if noise < T::ZERO || !variance.is_positive() {
+        return Err(if variance.is_finite() { Error::NotPositive } else { Error::NotFinite });
     }
     Ok(variance.divisor())
 }

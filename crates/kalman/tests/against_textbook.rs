@@ -149,6 +149,14 @@ fn each_error_has_its_cause() {
     let before = estimate;
     let row = SparseRow::new([(0, 1.0)]);
     assert_eq!(estimate.update(&row, f32::NAN, 1.0), Err(Error::NotFinite));
+    for infinity in [f32::INFINITY, f32::NEG_INFINITY] {
+        assert_eq!(estimate.update(&row, infinity, 1.0), Err(Error::NotFinite));
+        // … even where nothing is to be learnt.
+        let mut known = Gaussian::new(estimate.mean, Covariance::zero());
+        let before = known;
+        assert_eq!(known.update(&row, infinity, 1.0), Err(Error::NotFinite));
+        assert_eq!(known, before);
+    }
     assert_eq!(estimate.update(&row, 0.0, f32::INFINITY), Err(Error::NotFinite));
     assert_eq!(estimate.update(&row, 0.0, -0.5), Err(Error::NotPositive));
     assert_eq!(estimate.update(&SparseRow::new([(4, 1.0)]), 0.0, 1.0), Err(Error::IndexOutOfRange));

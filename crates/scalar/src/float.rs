@@ -9,8 +9,12 @@ fn power_of_two(exponent: i32) -> f32 {
     f32::from_bits(((exponent.clamp(-126, 127) + 127) as u32) << 23)
 }
 
+/// Whether arithmetic is likely to be the processor's own: what is right either way is chosen by it.
+const HAS_SINGLE: bool = HAS_DOUBLE || cfg!(target_abi = "eabihf");
+const HAS_DOUBLE: bool = cfg!(not(any(target_arch = "arm", target_arch = "riscv32")));
+
 macro_rules! impl_scalar_for_float {
-    ($float:ident, $sqrt:path, $root:path, $hypot:path, $sin_cos:path, $atan2:path, $exp:path, $ln:path) => {
+    ($float:ident, $has_unit:expr, $sqrt:path, $root:path, $hypot:path, $sin_cos:path, $atan2:path, $exp:path, $ln:path) => {
         impl Scalar for $float {
             type Accumulator = $float;
             type Divisor = $float;
@@ -23,6 +27,7 @@ macro_rules! impl_scalar_for_float {
             const EPSILON: Self = $float::EPSILON;
             const MIN: Self = $float::MIN;
             const MAX: Self = $float::MAX;
+            const SPREADS: bool = true;
 
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
@@ -49,10 +54,19 @@ macro_rules! impl_scalar_for_float {
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }
+            #[inline]
+            fn is_positive(self) -> bool {
+                // Bits of positive numbers are between those of zero and infinity: one comparison.
+                self.to_bits().wrapping_sub(1) < $float::INFINITY.to_bits() - 1
+            }
             #[inline(always)]
             fn all_finite(values: &[Self]) -> bool {
-                // Zero times what is not finite is NaN: a sum and one comparison for all.
-                values.iter().fold(0.0, |sum: $float, value| sum + value * 0.0) == 0.0
+                if $has_unit {
+                    // Zero times what is not finite is NaN: a sum and one comparison for all. −0 + x is x, and no addition.
+                    values.iter().fold(-0.0, |sum: $float, value| sum + value * 0.0) == 0.0
+                } else {
+                    values.iter().all(|value| value.is_finite())
+                }
             }
             #[inline]
             fn abs(self) -> Self {
@@ -149,6 +163,7 @@ macro_rules! impl_scalar_for_float {
 // a thousand particles does not become vector instructions. Those are our own.
 impl_scalar_for_float!(
     f32,
+    HAS_SINGLE,
     kestirim_arithmetic::sqrt,
     kestirim_arithmetic::sqrt,
     single::hypot,
@@ -159,6 +174,7 @@ impl_scalar_for_float!(
 );
 impl_scalar_for_float!(
     f64,
+    HAS_DOUBLE,
     libm::sqrt,
     double::root,
     libm::hypot,

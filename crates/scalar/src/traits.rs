@@ -47,6 +47,8 @@ pub trait Scalar:
     const MIN: Self;
     /// The largest value: the upper rail.
     const MAX: Self;
+    /// Whether sums and products with what is not finite are not finite either: true of floats; fixed point may leave a rail.
+    const SPREADS: bool;
 
     /// The nearest value; out of range saturates. NaN becomes NaN, or the lower rail in fixed point.
     ///
@@ -69,6 +71,12 @@ pub trait Scalar:
 
     /// False for NaN and infinities; for the two rails in fixed point.
     fn is_finite(self) -> bool;
+
+    /// Whether it is finite and more than zero.
+    #[inline]
+    fn is_positive(self) -> bool {
+        self.is_finite() && self > Self::ZERO
+    }
 
     /// Whether all of them are finite.
     #[inline(always)]

@@ -292,3 +292,21 @@ fn a_rounding_bounds_what_arithmetic_loses() {
     assert_eq!(Q12_20::from_f64(-3.0).rounding(4).to_bits(), 8);
     assert!(Q12_20::MIN.rounding(u16::MAX) > Q12_20::ZERO);
 }
+
+fn check_is_positive<T: Scalar>(numbers: &[T]) {
+    for &x in numbers {
+        assert_eq!(x.is_positive(), x.is_finite() && x > T::ZERO, "{x:?}");
+        let all = [T::ONE, x, T::ONE];
+        assert_eq!(T::all_finite(&all), x.is_finite(), "{x:?}");
+    }
+}
+
+#[test]
+fn positive_and_finite_in_one_question() {
+    let floats = [0.0, 1e-45, f32::MIN_POSITIVE, 1.0, f32::MAX, f32::INFINITY, f32::NAN];
+    check_is_positive(&floats.map(|x| -x));
+    check_is_positive(&floats);
+    check_is_positive(&floats.map(f64::from));
+    let [low, high] = [Q12_20::MIN, Q12_20::MAX];
+    check_is_positive(&[low, -Q12_20::EPSILON, Q12_20::ZERO, Q12_20::EPSILON, high]);
+}

@@ -52,6 +52,7 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     const EPSILON: Self = Self(1);
     const MIN: Self = Self(i32::MIN);
     const MAX: Self = Self(i32::MAX);
+    const SPREADS: bool = false;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
@@ -109,6 +110,10 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     #[inline]
     fn is_finite(self) -> bool {
         self.0 != i32::MIN && self.0 != i32::MAX
+    }
+    #[inline]
+    fn is_positive(self) -> bool {
+        self.0 > 0 && self.0 != i32::MAX
     }
     #[inline]
     fn abs(self) -> Self {

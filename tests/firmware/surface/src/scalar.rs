@@ -15,6 +15,7 @@ fn functions<T: Scalar>() {
     keep::<T>(Scalar::from_binary(whole(), whole()));
     keep(Scalar::to_binary(number::<T>(), whole()));
     keep(Scalar::is_finite(number::<T>()));
+    keep(Scalar::is_positive(number::<T>()));
     keep(<T as Scalar>::all_finite(slice(&[T::ONE; 9])));
     keep(Scalar::abs(number::<T>()));
     keep(Scalar::min(number::<T>(), number()));
