@@ -63,31 +63,51 @@ impl Pairs {
     }
 }
 
-/// What is done with each pair.
-pub(crate) const OPERATIONS: [&str; 7] =
-    ["sum", "difference", "product", "quotient", "root", "order", "integers"];
+/// A name and what is done with a pair.
+pub(crate) type Operation = (&'static str, fn(f32, f32) -> f32);
 
-/// For each operation what all results together amount to: another number if one bit of one differs. All NaN are alike.
-pub(crate) fn digests(
-    pairs: impl Iterator<Item = (u32, u32)>,
-    sqrt: fn(f32) -> f32,
-) -> [u32; OPERATIONS.len()] {
-    let mut digests = [0_u32; OPERATIONS.len()];
-    for (bits_of_a, bits_of_b) in pairs {
-        let (a, b) = (f32::from_bits(bits_of_a), f32::from_bits(bits_of_b));
-        let integers =
-            (bits_of_b as i32) as f32 + bits_of_b as f32 + (a as i32 ^ a as u32 as i32) as f32;
-        let results = [a + b, a - b, a * b, a / b, sqrt(a), order(a, b), integers];
-        for (digest, result) in digests.iter_mut().zip(results) {
-            let bits = if result.is_nan() { 0x7fc0_0000 } else { result.to_bits() };
-            *digest = (digest.rotate_left(5) ^ bits).wrapping_mul(0x9e37_79b1);
-        }
-    }
-    digests
+/// What a processor without a floating-point unit calls routines for; but for the root, whose function is given.
+pub(crate) const fn operations(root: fn(f32, f32) -> f32) -> [Operation; 7] {
+    [
+        ("sum", |a, b| a + b),
+        ("difference", |a, b| a - b),
+        ("product", |a, b| a * b),
+        ("quotient", |a, b| a / b),
+        ("root", root),
+        ("order", order),
+        ("integers", integers),
+    ]
 }
 
 /// All comparisons in one number.
 fn order(a: f32, b: f32) -> f32 {
     let answers = [a < b, a <= b, a > b, a >= b, a == b, a != b, a.is_nan()];
     f32::from_bits(answers.iter().fold(0, |bits, &answer| bits << 1 | u32::from(answer)))
+}
+
+/// From integers and to integers.
+fn integers(a: f32, b: f32) -> f32 {
+    let bits = b.to_bits();
+    (bits as i32) as f32 + bits as f32 + ((a as i32) ^ (a as u32 as i32)) as f32
+}
+
+/// What all results together amount to: another number if one bit of one differs. All NaN are alike.
+pub(crate) fn digest(
+    pairs: impl Iterator<Item = (u32, u32)>,
+    operation: fn(f32, f32) -> f32,
+) -> u32 {
+    pairs.fold(0, |digest: u32, (a, b)| {
+        let result = operation(f32::from_bits(a), f32::from_bits(b));
+        let bits = if result.is_nan() { 0x7fc0_0000 } else { result.to_bits() };
+        (digest.rotate_left(5) ^ bits).wrapping_mul(0x9e37_79b1)
+    })
+}
+
+/// The same for so many pairs at random of a seed; of none, for all pairs of edges.
+pub(crate) fn digest_of(seed: u32, count: u32, operation: fn(f32, f32) -> f32) -> u32 {
+    if count == 0 {
+        return digest(edges().flat_map(|a| edges().map(move |b| (a, b))), operation);
+    }
+    let mut pairs = Pairs::new(seed);
+    digest((0..count).map(|_| pairs.pair()), operation)
 }

@@ -113,7 +113,9 @@ __aeabi_fmul:
     lsrs r0, r0, #31
     lsls r0, r0, #31
     pop  {{r4, r5, pc}}
-22: bl   {every_case}
+22: sub  sp, #4                 @ The stack is to be a multiple of 8.
+    bl   {every_case}
+    add  sp, #4
     pop  {{r4, r5, pc}}
     .size __aeabi_fmul, . - __aeabi_fmul
     .popsection
