@@ -97,11 +97,10 @@ fn the_common_scenario_is_within_its_bars() {
         let Some(row) = ours(scalar, target, Profile::Speed) else { return };
         assert!(row.instructions_mean <= most, "{row}");
     };
-    takes_at_most(720.0, "f32", &CORTEX_M4F);
-    takes_at_most(56_000.0, "f32", &CORTEX_M0);
+    takes_at_most(600.0, "f32", &CORTEX_M4F);
     for scalar in ["q8.24", "q12.20", "q16.16"] {
-        takes_at_most(18_500.0, scalar, &CORTEX_M0);
-        takes_at_most(6_900.0, scalar, &RV32IMC);
+        takes_at_most(11_200.0, scalar, &CORTEX_M0);
+        takes_at_most(4_700.0, scalar, &RV32IMC);
         if let Some(fixed) = ours(scalar, &CORTEX_M0, Profile::Speed) {
             assert!(fixed.jitter() <= 0.01, "{fixed}");
         }
@@ -112,6 +111,22 @@ fn the_common_scenario_is_within_its_bars() {
     if let Some(small) = ours("f32", &CORTEX_M4F, Profile::Size) {
         assert!(small.instructions_mean <= 3_300.0, "{small}");
         assert!(small.flash_bytes <= 2_300 && small.stack_bytes <= 260, "{small}");
+    }
+}
+
+/// With the routines of `kestirim-arithmetic`; with the compiler's it would be 2.6 to 2.9 times as much.
+#[test]
+fn single_precision_without_a_unit_for_it_is_within_its_bars() {
+    let (rows, _) = measured();
+    let bars = [
+        ("ekf4-ranges4", 15_200.0),
+        ("ahrs", 4_400.0),
+        ("pedestrian-lite", 9_700.0),
+        ("pedestrian-ekf", 18_900.0),
+    ];
+    for (name, most) in bars {
+        let Some(row) = row(rows, name, "f32", &CORTEX_M0, Profile::Speed) else { return };
+        assert!(row.instructions_mean <= most, "{row}");
     }
 }
 
