@@ -1,10 +1,13 @@
 #![no_std]
+// Such a crate stays out of link-time optimisation, in which weak symbols and those of the same names that are not would
+// meet in one object, where they are an error.
+#![cfg_attr(all(feature = "soft-float", armv6m), no_builtins)]
 #![doc = include_str!("../README.md")]
 
-#[cfg(feature = "vectors")]
+#[cfg(all(feature = "vectors", target_arch = "x86_64"))]
 extern crate std;
 
-#[cfg(any(test, all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32"))))]
+#[cfg(any(test, all(feature = "soft-float", armv6m)))]
 mod soft;
 pub mod vectors;
 
@@ -30,22 +33,22 @@ fn of_processor(x: f32) -> f32 {
 }
 
 /// Intrinsics, not libm's assembler: a loop over them becomes vector instructions.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
 #[inline(always)]
 #[allow(unsafe_code)] // As above.
 fn of_processor(x: f32) -> f32 {
     use core::arch::x86_64::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
-    // SAFETY: every x86-64 has SSE.
+    // SAFETY: compiled only for processors that have SSE.
     unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) }
 }
 
-#[cfg(all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32")))]
+#[cfg(all(feature = "soft-float", armv6m))]
 use soft::sqrt as of_processor;
 
 #[cfg(not(any(
-    target_arch = "x86_64",
+    all(target_arch = "x86_64", target_feature = "sse2"),
     all(target_arch = "arm", target_abi = "eabihf"),
-    all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32"))
+    all(feature = "soft-float", armv6m)
 )))]
 #[inline(always)]
 fn of_processor(x: f32) -> f32 {

@@ -47,7 +47,9 @@ impl Vectors {
     #[inline]
     fn present() -> [Option<Self>; 3] {
         use std::arch::is_x86_feature_detected as has;
-        let avx512 = has!("avx512f") && has!("avx512dq") && has!("avx512vl");
+        // A compiler takes what these bring with them for given.
+        let wider = has!("avx2") && has!("fma") && has!("f16c");
+        let avx512 = wider && has!("avx512f") && has!("avx512dq") && has!("avx512vl");
         [
             Some(Self(Kind::Compiled)),
             has!("avx2").then_some(Self(Kind::Avx2)),

@@ -123,7 +123,7 @@ fn many_are_off<T: Scalar>(decisions: &[Decision<T>]) -> bool {
 /// An epoch while its measurements are judged.
 pub(crate) struct Run<'a, 'b, T: Scalar, W, S, A, const N: usize> {
     pub(crate) robust: &'a Robust<T, W, S, A>,
-    prior: Gaussian<T, N>,
+    pub(crate) prior: Gaussian<T, N>,
     pub(crate) posterior: Gaussian<T, N>,
     pub(crate) measurements: &'a [Measurement<'b, T>],
     /// Present while the adaptive factor needs it.

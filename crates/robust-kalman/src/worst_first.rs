@@ -22,6 +22,11 @@ enum Released {
     Rejected,
 }
 
+/// Largest error of the residuals of all others, σ, that a release may leave behind.
+const MOST_LEFT: f64 = 1.0 / 1024.0;
+/// Least share of the sum of squares that remains: below it rounding would be all of it.
+const LEAST_NIS: f64 = 1.0 / 1024.0;
+
 impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: usize>
     Run<'_, '_, T, W, S, A, N>
 {
@@ -67,7 +72,8 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
 
     /// Takes what a treated measurement has lost of its weight out of the estimate, and from the residuals
     /// and redundancies of the others what follows. R/γ instead of R is as if a measurement of the variance
-    /// −R/(1 − γ) had come, too: its S is negative, P grows. Returns whether that was possible.
+    /// −R/(1 − γ) had come, too: its S is negative, P grows. Returns whether that was possible, and exact enough: what
+    /// is treated is never judged again.
     #[inline(never)] // Where nothing is wrong, its registers are not in the way.
     fn release(
         &mut self,
@@ -83,11 +89,16 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
         let variance = measurement.variance;
         let left = variance / (T::ONE - weight) - (variance - redundancy * variance);
         // Rounding is magnified by R over this: where little is left, a pass is more exact.
-        if left * T::from_f64(8.0) <= variance {
+        if !(left.is_finite() && left * T::from_f64(8.0) > variance) {
             return false;
         }
         let root = left.sqrt().divisor();
         let pull = residual.divided_by(root);
+        let nis = passed.nis - pull * pull;
+        let (largest, least) = (T::from_f64(MOST_LEFT), T::from_f64(LEAST_NIS));
+        if !(pull.abs() * self.rounding() < largest && nis > passed.nis * least) {
+            return false;
+        }
         let mut step = [T::ZERO; N];
         let mean = self.posterior.mean.as_array_mut();
         for (state, (step, mean)) in step.iter_mut().zip(mean).enumerate() {
@@ -100,7 +111,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
             *mean -= *step * pull;
         }
         self.posterior.covariance.add_outer(&step.into());
-        passed.nis -= pull * pull;
+        passed.nis = nis;
         passed.used -= usize::from(weight <= T::ZERO).min(passed.used);
         for (measurement, decision) in self.measurements.iter().zip(decisions) {
             if decision.counts() {
@@ -115,6 +126,21 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
             }
         }
         true
+    }
+}
+
+impl<T: Scalar, W, S, A, const N: usize> Run<'_, '_, T, W, S, A, N> {
+    /// Relative error of the posterior covariance: that of N sums, magnified where much became little. Fixed point, whose
+    /// step is the same for large and small numbers, is left to passes.
+    fn rounding(&self) -> T {
+        if !T::SPREADS {
+            return T::MAX;
+        }
+        let variances = self.prior.covariance.variances();
+        let left = self.posterior.covariance.variances();
+        let shares = variances.iter().zip(left.iter()).map(|(&before, &after)| before / after);
+        let most = shares.fold(T::ONE, |most, share| if share <= most { most } else { share });
+        most * T::EPSILON * T::from_f64(N as f64)
     }
 }
 

@@ -48,7 +48,7 @@ pub trait Scalar:
     /// The largest value: the upper rail.
     const MAX: Self;
     /// Whether sums and products with what is not finite are not finite either: true of floats; fixed point may leave a rail.
-    const SPREADS: bool;
+    const SPREADS: bool = false;
 
     /// The nearest value; out of range saturates. NaN becomes NaN, or the lower rail in fixed point.
     ///

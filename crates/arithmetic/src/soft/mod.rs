@@ -1,6 +1,6 @@
 //! Single precision in integers, for processors without a floating-point unit.
 
-#[cfg(all(feature = "soft-float", target_arch = "arm", not(target_has_atomic = "32")))]
+#[cfg(all(feature = "soft-float", armv6m))]
 mod armv6m;
 mod every_case;
 #[cfg(test)]

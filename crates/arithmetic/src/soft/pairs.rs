@@ -81,14 +81,15 @@ pub(crate) const fn operations(root: fn(f32, f32) -> f32) -> [Operation; 7] {
 
 /// All comparisons in one number.
 fn order(a: f32, b: f32) -> f32 {
-    let answers = [a < b, a <= b, a > b, a >= b, a == b, a != b, a.is_nan()];
+    let answers = [a < b, a <= b, a > b, a >= b, a == b, a != b, a.partial_cmp(&b).is_none()];
     f32::from_bits(answers.iter().fold(0, |bits, &answer| bits << 1 | u32::from(answer)))
 }
 
-/// From integers and to integers.
+/// From integers and to integers, all of their bits.
 fn integers(a: f32, b: f32) -> f32 {
-    let bits = b.to_bits();
-    (bits as i32) as f32 + bits as f32 + ((a as i32) ^ (a as u32 as i32)) as f32
+    let (bits, whole) = (b.to_bits(), a as i32 as u32);
+    let back = (bits as i32 as f32).to_bits() ^ (bits as f32).to_bits().rotate_left(13);
+    f32::from_bits(whole ^ (a as u32).rotate_left(7) ^ back)
 }
 
 /// What all results together amount to: another number if one bit of one differs. All NaN are alike.

@@ -5,7 +5,7 @@ mod counted;
 use counted::{Counted, operations};
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Descent, Measurement, Reason, Robust, Scale};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::SVector;
 
 /// Position, clock, zenith delay and an ambiguity for each of forty satellites, of which a code and a phase are
@@ -142,7 +142,9 @@ fn check_same<T: Scalar>(published: bool, tolerance: f64) {
             let variance = estimate.covariance.variances()[state].to_f64().sqrt() / deviation;
             assert!((variance - 1.0).abs() < tolerance, "seed {seed}: σ is {variance} of its own");
         }
-        assert!(summary.passes <= 5, "seed {seed}: {} passes", summary.passes);
+        // Single precision is too coarse here for most releases.
+        let most = if T::EPSILON.to_f64() < 1e-10 { 5 } else { MEASUREMENTS };
+        assert!(summary.passes <= most, "seed {seed}: {} passes", summary.passes);
     }
 }
 
@@ -156,6 +158,37 @@ fn released_measurements_are_as_if_everything_had_been_computed_anew() {
 fn so_they_are_where_the_scale_is_that_of_the_epoch() {
     assert_eq!(Robust::<f64>::iterative_igg3().published().scale, Scale::Epoch);
     check_same::<f64>(true, 1e-9);
+}
+
+/// One gross outlier pulls all others with it: they are not to be treated for it.
+fn check_gross<T: Scalar>(predicted: f64, off: f64) {
+    for seed in 1..=40 {
+        let mut case = Case::<T>::new(seed, 0);
+        let variances = SVector::<T, STATES>::repeat(T::from_f64(predicted));
+        case.predicted.covariance = Covariance::from_variances(&variances.into());
+        let place = (seed * 7) as usize % MEASUREMENTS;
+        case.innovations[place] += T::from_f64(off);
+        let mut decisions = [Decision::NONE; MEASUREMENTS];
+        let mut estimate = case.predicted;
+        let summary = Robust::iterative_igg3()
+            .update(&mut estimate, &case.epoch(), &mut decisions)
+            .expect("an update");
+        let treated = summary.rejected + summary.down_weighted;
+        let (_, weights) = by_passes(&case, false);
+        let expected = weights.iter().filter(|&&weight| weight < T::ONE).count();
+        println!("seed {seed}: {treated} treated, {expected} by passes");
+        assert!(treated <= expected, "seed {seed}: {treated} treated instead of {expected}");
+    }
+}
+
+#[test]
+fn a_gross_outlier_takes_no_good_measurement_with_it() {
+    check_gross::<f64>(1.0, 1e4);
+    check_gross::<f64>(1e10, 1e4);
+    check_gross::<f32>(1.0, 1e3);
+    check_gross::<f32>(1e4, 100.0);
+    check_gross::<Q16_16>(1.0, 20.0);
+    check_gross::<Q12_20>(1.0, 20.0);
 }
 
 /// Operations of an update, number of treated measurements.

@@ -52,7 +52,6 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     const EPSILON: Self = Self(1);
     const MIN: Self = Self(i32::MIN);
     const MAX: Self = Self(i32::MAX);
-    const SPREADS: bool = false;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

@@ -1,4 +1,4 @@
-@ a + b and a − b: r0 and r1 in, r0 out; changes r2, r3, r12 and the flags.
+@ a + b and a − b: r0 and r1 in, r0 out; changes r1, r2, r3, r12 and the flags.
 @
 @ The number of greater magnitude, with exponent e, goes to r0; d is the difference of the exponents. Fractions stand at the top
 @ of a word, 9 bits below them guard; the leading one of r0's number would be bit 32. What is shifted out of the lesser
@@ -9,15 +9,6 @@
     .pushsection .text.__aeabi_fadd,"ax",%progbits
     .p2align 2
     .thumb
-
-    .weak __aeabi_frsub
-    .type __aeabi_frsub,%function
-    .thumb_func
-__aeabi_frsub:
-    movs r3, #1
-    lsls r3, r3, #31
-    eors r0, r3
-    b    1f
 
     .weak __aeabi_fsub
     .type __aeabi_fsub,%function

@@ -20,9 +20,9 @@ extern "C" fn divide(a: u32, b: u32) -> u32 {
 
 #[allow(unsafe_code)] // Symbols with the names that compilers call; and carries, which Rust does not have.
 mod routines {
-    // SAFETY: the routines keep to the procedure call standard: they change r0 to r3, r12 and the flags alone, leave the stack
-    // as it was, and touch no memory; every branch stays within its routine or calls a function of that standard. The
-    // compiler's routines of these names compute the same.
+    // SAFETY: the routines keep to the procedure call standard: they change r0 to r3, r12 and the flags alone, and leave the
+    // stack as it was; every branch stays within its file or calls a function of that standard. The compiler's routines
+    // of these names compute the same.
     core::arch::global_asm!(include_str!("add.s"), every_case = sym super::add);
     core::arch::global_asm!(include_str!("multiply.s"), every_case = sym super::multiply);
     core::arch::global_asm!(include_str!("divide.s"), every_case = sym super::divide);

@@ -1,0 +1,9 @@
+//! Tells the crate whether it is compiled for a Cortex-M0 or M0+, which no condition of the language does.
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(armv6m)");
+    if std::env::var("TARGET").is_ok_and(|target| target.starts_with("thumbv6m-")) {
+        println!("cargo::rustc-cfg=armv6m");
+    }
+}
