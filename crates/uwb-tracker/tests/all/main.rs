@@ -1,0 +1,10 @@
+//! Tests of the crate from outside, in one program: less is compiled and linked.
+
+mod anything;
+mod common;
+mod differences;
+mod height;
+mod published;
+mod single_parts;
+mod tracking;
+mod wheels;
