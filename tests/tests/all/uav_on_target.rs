@@ -76,8 +76,9 @@ fn a_filter_of_nine_states_on_a_cortex_m4f() -> Result<()> {
 #[test]
 fn cortex_m0() -> Result<()> {
     if let Some([single, fixed]) = costs(&CORTEX_M0)? {
-        assert!(4 * fixed < single, "{fixed} instructions in fixed point, {single} in f32");
-        assert!(fixed <= 2_000, "{fixed} instructions");
+        // With the compiler's arithmetic in place of `kestirim-arithmetic`'s it was 9,857 in `f32`.
+        assert!(single <= 3_900, "{single} instructions");
+        assert!(fixed <= 1_500, "{fixed} instructions");
     }
     Ok(())
 }
