@@ -3,8 +3,8 @@
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_robust_kalman::{
     Adaptive, AnyFactor, AnyScale, Block, Decision, Descent, Discrepancy, Error, Huber, Igg3,
-    Measurement, Order, Reweighting, Robust, Scale, TTest, Weight, WeightFunction, jump,
-    student_quantile,
+    Measurement, NoFactor, Order, Reweighting, Robust, Scale, TTest, UnitScale, Weight,
+    WeightFunction, jump, student_quantile,
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
@@ -96,8 +96,8 @@ fn updates<T: Scalar, const N: usize, const K: usize, const M: usize>() {
     let huber = Robust::with_weight(robust(), any(Huber { k: number() }));
     keep(Robust::update(&huber, any(&mut estimate), measurements, decisions));
     let lean = Robust::lean(robust(), any(Huber { k: number() }));
-    keep(AnyScale::<T>::choice(&lean.scale));
-    keep(AnyFactor::<T>::choice(&lean.adaptive));
+    keep(AnyScale::<T>::choice(&UnitScale));
+    keep(AnyFactor::<T>::choice(&NoFactor));
     keep(Robust::update(&lean, any(&mut estimate), measurements, decisions));
     keep(jump(&estimate, measurements, block()));
 }
