@@ -81,7 +81,7 @@ pub struct Adaptive<T> {
 
 /// A choice of the adaptive factor: at run time, or a type.
 pub trait AnyFactor<T> {
-    /// Whether there may be one.
+    /// Whether there may be one; where not, it is not asked for.
     const POSSIBLE: bool;
 
     /// The factor, if there is one.

@@ -29,7 +29,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
         if !self.is_valid() {
             return Err(Error::InvalidConfiguration);
         }
-        let adaptive = self.adaptive.choice();
+        let adaptive = self.adaptive.choice().filter(|_| A::POSSIBLE);
         if let Some(adaptive) = &adaptive {
             adaptive.block.check::<N>()?;
         }
