@@ -128,6 +128,7 @@ fn points<T: Scalar, const D: usize, const N: usize>() {
     let Ok(mut mass) = any(PointMass::<T, D, N>::with_count(whole(), &region)) else { return };
     try_on(&mut mass, |mass| PointMass::update(mass, weight));
     try_on(&mut mass, |mass| PointMass::weigh(mass, &Weight));
+    keep(Likelihood::<T, 2>::logarithm(&Weight, numbers()));
     keep(PointMass::len(&mass));
     keep(PointMass::is_empty(&mass));
     keep(PointMass::region(&mass));
