@@ -115,14 +115,20 @@ impl Dialect {
         }
     }
 
+    /// The bytes that stand between fields, of which most dialects have one.
+    const fn separators(self) -> [u8; 2] {
+        match self.separator {
+            Separator::Comma => [b','; 2],
+            Separator::Semicolon => [b';'; 2],
+            Separator::Tab => [b'\t'; 2],
+            Separator::Blanks => [b' ', b'\t'],
+        }
+    }
+
     /// Whether a byte stands between fields.
     pub(crate) fn separates(self, byte: u8) -> bool {
-        match self.separator {
-            Separator::Comma => byte == b',',
-            Separator::Semicolon => byte == b';',
-            Separator::Tab => byte == b'\t',
-            Separator::Blanks => byte == b' ' || byte == b'\t',
-        }
+        let [one, other] = self.separators();
+        byte == one || byte == other
     }
 
     /// The fields of a line, without surrounding blanks and quotation marks; of more than 1000 the first ones.
@@ -157,20 +163,8 @@ impl Dialect {
             let after = rest[end..].iter().position(|&byte| self.separates(byte));
             return (field, after.map_or(rest.len(), |after| end + after));
         }
-        let end = self.end_of_field(rest);
+        let end = rest.iter().position(|&byte| self.separates(byte)).unwrap_or(rest.len());
         (Cow::Borrowed(rest[..end].trim_ascii()), end)
-    }
-
-    /// Where the first separator stands, or the end.
-    fn end_of_field(self, rest: &[u8]) -> usize {
-        let one = |separator: u8| rest.iter().position(|&byte| byte == separator);
-        let end = match self.separator {
-            Separator::Comma => one(b','),
-            Separator::Semicolon => one(b';'),
-            Separator::Tab => one(b'\t'),
-            Separator::Blanks => rest.iter().position(|&byte| byte == b' ' || byte == b'\t'),
-        };
-        end.unwrap_or(rest.len())
     }
 
     /// What a field holds, if it is a number; it may be infinite or not a number.
