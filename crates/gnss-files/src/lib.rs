@@ -17,6 +17,7 @@ mod satellites;
 mod streams;
 mod text;
 mod time;
+mod unserved;
 
 #[cfg(test)]
 mod mutations;

@@ -16,6 +16,7 @@ use crate::fields::{blank_separated, decimal};
 use crate::satellites::PerSatellite;
 use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
+use crate::unserved::Unserved;
 
 /// What is said of a record that no satellite can have sent.
 const NO_ORBIT: &str = "this record's orbit is no ellipse: it is left out";
@@ -29,6 +30,8 @@ pub struct Navigation {
     pub ionosphere: Option<[[f64; 4]; 2]>,
     /// How many records were passed over: other systems, other messages, orbits that are none.
     pub skipped: usize,
+    /// Of which satellites files have ephemerides whose systems are not served; none of RINEX 2 and of streams.
+    pub unserved: Vec<Warning>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
@@ -114,6 +117,7 @@ impl Navigation {
     fn parse_file(&mut self, text: &Text, found: &mut Vec<(u8, Ephemeris)>) -> Result<(), Error> {
         let mut lines = text.lines();
         let layout = self.header(text, &mut lines)?;
+        let mut unserved = Unserved::default();
         while let Some(line) = lines.next() {
             if line.bytes.trim_ascii().is_empty() {
                 continue;
@@ -135,6 +139,7 @@ impl Navigation {
                 }
                 Record::Other => {
                     self.skipped += 1;
+                    layout.sender(&line).into_iter().for_each(|name| unserved.note(name));
                     Ok(())
                 }
             };
@@ -146,6 +151,7 @@ impl Navigation {
                 read => read?,
             }
         }
+        self.unserved.extend(unserved.sentence().map(|it| text.warning(it)));
         Ok(())
     }
 

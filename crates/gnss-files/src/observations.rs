@@ -2,6 +2,7 @@
 
 mod body;
 mod header;
+mod names;
 mod record;
 mod signals;
 

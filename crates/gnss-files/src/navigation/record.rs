@@ -42,6 +42,19 @@ impl Layout {
         if self.version < 3 { 3 } else { 4 }
     }
 
+    /// The name of the satellite that sent the ephemeris that begins with a line, where files tell its system by a
+    /// letter; none of Galileo, of which other messages are read.
+    pub(super) fn sender(self, line: &Line<'_>) -> Option<[u8; 3]> {
+        let from = match self.version {
+            ..3 => return None,
+            3 => 0,
+            _ if line.bytes.starts_with(b"> EPH ") => 6,
+            _ => return None,
+        };
+        let name = [0, 1, 2].map(|place| line.column(from + place));
+        (name[0] != b'E').then_some(name)
+    }
+
     fn satellite(self, line: &Line<'_>) -> Option<u8> {
         match self.system {
             Some(b'E') => satellite(&[b"E", line.columns(0, 2)].concat()),

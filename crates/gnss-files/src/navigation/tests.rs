@@ -11,6 +11,8 @@ fn satellites_of_gps_and_galileo_are_read() -> Result<(), Error> {
     let navigation = Navigation::parse(&[text(navigation_3())])?;
     assert_eq!(navigation.satellites().collect::<Vec<_>>(), [1, 101]);
     assert_eq!(navigation.skipped, 1);
+    let [unserved] = &navigation.unserved[..] else { panic!("GLONASS is told of") };
+    assert!(unserved.to_string().ends_with("of GLONASS (1) are in the file, but are not read"));
     let [gps] = navigation.satellite(1, Message::Lnav) else { panic!("one ephemeris") };
     assert_eq!(gps.time, GpsTime::new(59_025, 14_400.0));
     assert_eq!((gps.clock_time, gps.issue), (gps.time, 58));
@@ -42,11 +44,13 @@ fn satellites_of_gps_and_galileo_are_read() -> Result<(), Error> {
 fn version_4_tells_the_same() -> Result<(), Error> {
     let [third, fourth] = [navigation_3(), navigation_4()]
         .map(|file| Navigation::parse(&[text(file)]).expect("a whole file"));
-    assert_eq!(fourth.messages, third.messages);
+    assert_eq!((&fourth.messages, &fourth.unserved), (&third.messages, &third.unserved));
     assert_eq!((fourth.ionosphere, fourth.skipped), (third.ionosphere, 2));
     // Of other messages of the same satellite nothing is made.
     let other = navigation_4().replace("EPH E01 FNAV", "EPH E01 CNAV");
-    assert_eq!(Navigation::parse(&[text(other)])?.satellites().collect::<Vec<_>>(), [1]);
+    let other = Navigation::parse(&[text(other)])?;
+    assert_eq!(other.satellites().collect::<Vec<_>>(), [1]);
+    assert_eq!(other.unserved, third.unserved, "no other system is passed over");
     Ok(())
 }
 

@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 
 use super::header::Header;
+use super::names::{Named, names, satellite};
 use super::record::{Epoch, Observations, Observed};
 use super::signals::{Raw, Seen, Signals};
 use crate::biases::Biases;
 use crate::error::{Error, Warning};
-use crate::fields::{self, gps_satellite};
 use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
 use crate::time::{GpsTime, full_year};
+use crate::unserved::Unserved;
 
 /// The epochs of a file with all their signals.
 #[derive(Debug, Default)]
@@ -23,6 +24,7 @@ pub(super) struct Body {
     moved: bool,
     backwards: usize,
     doubled: usize,
+    unserved: Unserved,
     warnings: Vec<Warning>,
 }
 
@@ -128,7 +130,13 @@ impl Body {
                 satellite(name, old).ok_or_else(|| line.expected("a satellite's observations"))?;
             let start = self.raw.len();
             self.observations(named, line, lines)?;
-            let Named::Known(prn) = named else { continue };
+            let prn = match named {
+                Named::Known(prn) => prn,
+                Named::Other(name) => {
+                    self.unserved.note(name);
+                    continue;
+                }
+            };
             if self.records[first..].iter().any(|&(other, _)| other == prn) {
                 self.doubled += 1;
                 self.raw.truncate(start);
@@ -252,49 +260,8 @@ impl Body {
             antenna_delta_hen,
             epochs,
             signals,
+            unserved: self.unserved.sentence().map(|it| text.warning(it)),
             warnings: self.warnings,
         }
-    }
-}
-
-/// The satellites of an epoch of RINEX 2: twelve in a line.
-fn names<'a>(line: &Line<'a>, lines: &mut Lines<'a>, count: usize) -> Result<Vec<[u8; 3]>, Error> {
-    let mut names = Vec::with_capacity(count.min(999));
-    let mut line = *line;
-    for i in 0..count {
-        if i > 0 && i % 12 == 0 {
-            line = lines.expect("further satellites of the epoch")?;
-        }
-        let column = 32 + 3 * (i % 12);
-        let name = [0, 1, 2].map(|place| line.column(column + place));
-        if satellite(name, true).is_none() {
-            return Err(line.expected("the satellites of an epoch"));
-        }
-        names.push(name);
-    }
-    Ok(names)
-}
-
-/// Meaning of a satellite's name.
-#[derive(Debug, Clone, Copy)]
-enum Named {
-    /// A satellite of GPS or Galileo, by its number.
-    Known(u8),
-    Other,
-}
-
-impl Named {
-    const fn is_galileo(self) -> bool {
-        matches!(self, Self::Known(number) if number >= fields::GALILEO)
-    }
-}
-
-/// The satellite of a name, if it is one. RINEX 2 has the same observables for all systems: those are of GPS here.
-fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
-    match name {
-        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
-        [b'E', ..] if !old => fields::satellite(&name).map(Named::Known),
-        [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other),
-        _ => None,
     }
 }

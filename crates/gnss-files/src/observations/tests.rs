@@ -9,6 +9,8 @@ fn complaint(file: &str) -> String {
     sentence
 }
 
+const NOT_READ: &str = "file: satellites of GLONASS (1) are in the file, but are not read";
+
 #[test]
 fn rinex_3_is_read() -> Result<(), Error> {
     let observations = Observations::parse(&text(observations_3()))?;
@@ -18,6 +20,8 @@ fn rinex_3_is_read() -> Result<(), Error> {
     assert_eq!(observations.approximate_position, Some([4_000_000.1, 2e5, 4.9e6]));
     assert_eq!(observations.antenna_delta_hen, [1.5, 0.2, -0.1]);
     assert_eq!(sentences(&observations.warnings), [""; 0]);
+    let unserved = observations.unserved.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(unserved, [NOT_READ]);
     let epochs = &observations.epochs;
     let seconds: Vec<_> = epochs.iter().map(|epoch| epoch.time.second()).collect();
     assert_eq!(seconds, [0.0, 30.0, 60.0]);
@@ -56,6 +60,8 @@ fn rinex_2_is_read() -> Result<(), Error> {
     // P1 is missing once; C1 does not step in.
     assert_eq!(second.satellites[0].code, [None, Some(20_000_101.0)]);
     assert_eq!(sentences(&observations.warnings), [""; 0]);
+    let unserved = observations.unserved.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(unserved, [NOT_READ]);
     Ok(())
 }
 

@@ -94,7 +94,7 @@ impl Recording {
         };
         let of_loading = loading.as_ref().map_or(&[][..], |loading| &loading.warnings);
         let told = observations.warnings.iter().chain(satellites.warnings());
-        let told = told.chain(&antennas.warnings).chain(of_loading);
+        let told = told.chain(&antennas.warnings).chain(of_loading).chain(&observations.unserved);
         let mut warnings: Vec<_> = told.map(|warning| (None, warning.to_string())).collect();
         let midnight = GpsTime::new(start.day(), 0.0);
         let antex = paths.antex.first().map_or_else(String::new, |path| printable(path));

@@ -57,7 +57,7 @@ impl Told {
             Self::Precise(orbits, clocks) => {
                 (&orbits.warnings[..], clocks.as_ref().map_or(&[][..], |clocks| &clocks.warnings))
             }
-            Self::Broadcast(navigation) => (&navigation.warnings[..], &[][..]),
+            Self::Broadcast(navigation) => (&navigation.warnings[..], &navigation.unserved[..]),
         };
         one.iter().chain(other)
     }

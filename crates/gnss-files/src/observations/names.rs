@@ -1,0 +1,52 @@
+//! Names of satellites.
+
+use crate::error::Error;
+use crate::fields::{self, gps_satellite};
+use crate::text::{Line, Lines};
+
+/// The satellites of an epoch of RINEX 2: twelve in a line.
+pub(super) fn names<'a>(
+    line: &Line<'a>,
+    lines: &mut Lines<'a>,
+    count: usize,
+) -> Result<Vec<[u8; 3]>, Error> {
+    let mut names = Vec::with_capacity(count.min(999));
+    let mut line = *line;
+    for i in 0..count {
+        if i > 0 && i % 12 == 0 {
+            line = lines.expect("further satellites of the epoch")?;
+        }
+        let column = 32 + 3 * (i % 12);
+        let name = [0, 1, 2].map(|place| line.column(column + place));
+        if satellite(name, true).is_none() {
+            return Err(line.expected("the satellites of an epoch"));
+        }
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// Meaning of a satellite's name.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Named {
+    /// A satellite of GPS or Galileo, by its number.
+    Known(u8),
+    /// One of another system.
+    Other([u8; 3]),
+}
+
+impl Named {
+    pub(super) const fn is_galileo(self) -> bool {
+        matches!(self, Self::Known(number) if number >= fields::GALILEO)
+    }
+}
+
+/// The satellite of a name, if it is one. RINEX 2 has the same observables for all systems: those are of GPS here.
+pub(super) fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
+    match name {
+        [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
+        [b'E', ..] if !old => fields::satellite(&name).map(Named::Known),
+        [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other(name)),
+        _ => None,
+    }
+}
