@@ -53,6 +53,21 @@ fn observations_are_read_whole() {
 }
 
 #[test]
+fn satellites_that_are_not_read_are_told_of() {
+    let Some(folder) = folder_of("gnss") else { return };
+    let unserved = |name: &str| {
+        let read = Observations::read(folder.join(name)).expect("a recording can be read");
+        read.unserved.map(|warning| warning.to_string())
+    };
+    let wettzell = "wettzell2020177_multi/WTZR00DEU_R_20201770000_01D_30S_MO_120epoch.rnx.gz";
+    let told = unserved(wettzell).expect("four other systems");
+    let counts =
+        "of GLONASS (10), BeiDou (8), NavIC (4), SBAS (3) are in the file, but are not read";
+    assert!(told.ends_with(counts), "{told}");
+    assert_eq!(unserved("esbc2020177/esbc_gps.rnx.gz"), None);
+}
+
+#[test]
 fn orbits_of_days_are_put_together() {
     let Some(folder) = folder_of("gnss") else { return };
     let files = ["igs14813", "igs14811", "igs14812"];
