@@ -1,3 +1,5 @@
+use core::array::from_fn;
+
 use crate::{Covariance, Gaussian, Process};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::SMatrix;
@@ -22,52 +24,52 @@ impl<T: Scalar, const N: usize, const M: usize, const K: usize> Process<T, N>
     #[inline]
     fn advance(&self, estimate: &mut Gaussian<T, N>) {
         const { assert!(M <= K && K <= N, "states that move are among those that move them") };
-        let f = self.rows.as_columns();
-        let p = estimate.covariance.to_matrix();
-        let p = p.as_columns();
+        let Gaussian { mean, covariance } = estimate;
+        let (f, q) = (self.rows.as_columns(), self.noise);
+        // F P, as it is before anything is written.
         let mut moved = [[T::ZERO; M]; N];
-        for (moved, column) in moved.iter_mut().zip(p) {
-            for (row, moved) in moved.iter_mut().enumerate() {
-                let mut sum = T::accumulator();
-                for k in 0..K {
-                    sum = T::mac(sum, f[k][row], column[k]);
-                }
-                *moved = T::finish(sum);
-            }
+        for (state, moved) in moved.iter_mut().enumerate() {
+            *moved = self.moved(&from_fn(|k| covariance.at(k, state)));
         }
-        let mut next = SMatrix::<T, N, N>::zeros();
-        let lower = next.as_columns_mut();
         for column in 0..M {
             for row in column..M {
                 let mut sum = T::accumulator();
                 for k in 0..K {
                     sum = T::mac(sum, f[k][column], moved[k][row]);
                 }
-                lower[column][row] = T::finish(sum);
+                *covariance.entry(row, column) = T::finish(sum) + q.at(row, column);
             }
             for row in M..N {
-                lower[column][row] = moved[row][column] * self.fading[row];
+                let faded = moved[row][column] * self.fading[row];
+                *covariance.entry(row, column) = faded + q.at(row, column);
             }
         }
         for column in M..N {
             for row in column..N {
-                lower[column][row] = p[column][row] * (self.fading[column] * self.fading[row]);
+                let entry = covariance.entry(row, column);
+                *entry = *entry * (self.fading[column] * self.fading[row]) + q.at(row, column);
             }
         }
-        estimate.covariance = Covariance::from_lower_triangle(&next);
-        estimate.covariance.add(self.noise);
-        let before = *estimate.mean.as_array();
-        let mean = estimate.mean.as_array_mut();
-        for row in 0..M {
+        let mean = mean.as_array_mut();
+        let moved = self.moved(&from_fn(|k| mean[k]));
+        for row in 0..N {
+            mean[row] = if row < M { moved[row] } else { mean[row] * self.fading[row] };
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize, const M: usize, const K: usize> Driven<'_, T, N, M, K> {
+    /// F times a column of K.
+    #[inline(always)]
+    fn moved(&self, column: &[T; K]) -> [T; M] {
+        let f = self.rows.as_columns();
+        from_fn(|row| {
             let mut sum = T::accumulator();
             for k in 0..K {
-                sum = T::mac(sum, f[k][row], before[k]);
+                sum = T::mac(sum, f[k][row], column[k]);
             }
-            mean[row] = T::finish(sum);
-        }
-        for row in M..N {
-            mean[row] = before[row] * self.fading[row];
-        }
+            T::finish(sum)
+        })
     }
 }
 

@@ -1,3 +1,5 @@
+use crate::innovation::Weights;
+use crate::{Error, Gaussian, Weighed};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
@@ -40,5 +42,32 @@ impl<T, const K: usize> AsRef<[(usize, T)]> for SparseRow<T, K> {
     #[inline(always)]
     fn as_ref(&self) -> &[(usize, T)] {
         &self.entries
+    }
+}
+
+impl<T: Scalar, const N: usize> Gaussian<T, N> {
+    /// [`Gaussian::weigh`] for a row that is known at run time alone: ∂h/∂x for each state, of which zeros cost next to
+    /// nothing.
+    ///
+    /// # Errors
+    /// As [`Gaussian::update`].
+    #[inline(always)]
+    pub fn weigh_row(
+        &self,
+        row: &[T; N],
+        innovation: T,
+        variance: T,
+    ) -> Result<Weighed<T, N>, Error> {
+        let mut sums = [T::accumulator(); N];
+        for (index, &value) in row.iter().enumerate() {
+            if value != T::ZERO {
+                for (other, sum) in sums.iter_mut().enumerate() {
+                    *sum = T::mac(*sum, value, self.covariance.at(index, other));
+                }
+            }
+        }
+        let cross = sums.map(T::finish);
+        let weights = Weights::new(innovation, T::dot(row, &cross), variance)?;
+        Ok(Weighed { weights, cross })
     }
 }

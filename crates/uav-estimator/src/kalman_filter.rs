@@ -1,6 +1,8 @@
 use core::array::from_fn;
 
-use kestirim_kalman::{Covariance, Gaussian, Innovation, LinearObservation, SparseRow, Weighed};
+use kestirim_kalman::{
+    Covariance, Gaussian, Innovation, Linear, LinearObservation, Process, SparseRow, Weighed,
+};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -150,12 +152,9 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         if !input.iter().copied().all(f64::is_finite) {
             return Err(Error::NotFinite);
         }
-        let mut next = self.state;
-        next.predict(&transition.a, &transition.noise)?;
-        let input = input.map(T::from_f64);
-        add_inputs(next.mean.as_array_mut(), &transition.b, &input)?;
-        self.state = next;
-        Ok(())
+        let process = Linear { f: &transition.a, q: &transition.noise };
+        let input = &input.map(T::from_f64);
+        Ok(self.state.advance(&Forced { process, b: &transition.b, input })?)
     }
 
     /// Takes in the outputs that were measured, and answers with what each said beyond what was expected of it: the
@@ -235,18 +234,23 @@ fn units() -> (SMatrix<f64, 4, 4>, SMatrix<f64, 4, 4>) {
     (SMatrix::from_diagonal(&units), SMatrix::from_diagonal(&units.map(f64::recip)))
 }
 
-/// Adds B u to the first four states.
-#[inline(always)]
-pub(crate) fn add_inputs<T: Scalar, const N: usize>(
-    means: &mut [T; N],
-    b: &SMatrix<T, 4, 2>,
-    input: &SVector<T, 2>,
-) -> Result<(), Error> {
-    let [elevator, throttle] = b.as_columns();
-    for (mean, (&elevator, &throttle)) in means.iter_mut().zip(elevator.iter().zip(throttle)) {
-        *mean += T::dot(&[elevator, throttle], input.as_array());
+/// A process of the states, and inputs on top of it, so that the estimate is looked at, and kept, once.
+pub(crate) struct Forced<'a, T, Q> {
+    pub(crate) process: Q,
+    pub(crate) b: &'a SMatrix<T, 4, 2>,
+    pub(crate) input: &'a SVector<T, 2>,
+}
+
+impl<T: Scalar, const N: usize, Q: Process<T, N>> Process<T, N> for Forced<'_, T, Q> {
+    #[inline(always)]
+    fn advance(&self, estimate: &mut Gaussian<T, N>) {
+        self.process.advance(estimate);
+        let [elevator, throttle] = self.b.as_columns();
+        let parts = elevator.iter().zip(throttle);
+        for (mean, (&elevator, &throttle)) in estimate.mean.as_array_mut().iter_mut().zip(parts) {
+            *mean += T::dot(&[elevator, throttle], self.input.as_array());
+        }
     }
-    if T::all_finite(means) { Ok(()) } else { Err(Error::NotFinite) }
 }
 
 /// The power of two below a size; 1 where there is none.

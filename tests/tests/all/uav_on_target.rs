@@ -63,9 +63,9 @@ fn costs(target: &'static Target) -> Result<Option<[u64; 2]>> {
 fn a_filter_of_nine_states_on_a_cortex_m4f() -> Result<()> {
     let Some(images) = Images::of(&CORTEX_M4F, Profile::Speed)? else { return Ok(()) };
     let flight = fly(&uav::plant(0.01));
-    let (mut filter, transition) = augmented_model::filter(0.01)?;
+    let (mut filter, transition, scales) = augmented_model::filter(0.01)?;
     let step = |&[u0, u1, y0, y1, y2]: &[f32; 5]| {
-        augmented_model::step(&mut filter, &transition, [u0, u1], [y0, y1, y2])
+        augmented_model::step(&mut filter, &transition, &scales, [u0, u1], [y0, y1, y2])
     };
     let states = flight.iter().map(step).collect::<Result<Vec<_>, _>>()?;
     let host: Vec<_> = states.chunks_exact(50).map(|chunk| chunk[49]).collect();

@@ -94,6 +94,16 @@ fn rejections_are_counted() {
 }
 
 #[test]
+fn a_row_of_all_states_weighs_as_its_entries() {
+    let all = estimate().weigh_row(&[2.0, -1.5], 0.7, 1.0);
+    assert_eq!(all, estimate().weigh_entries(&[(0, 2.0), (1, -1.5)], 0.7, 1.0));
+    let second = estimate().weigh_row(&[0.0, -1.5], 0.7, 1.0);
+    assert_eq!(second, estimate().weigh_entries(&[(1, -1.5)], 0.7, 1.0));
+    assert_eq!(second.expect("a measurement").cross_covariance(), &[-0.75, -1.5]);
+    assert_eq!(estimate().weigh_row(&[1.0, 0.0], f64::NAN, 1.0), Err(Error::NotFinite));
+}
+
+#[test]
 fn another_noise_weighs_as_if_it_had_been_the_first() {
     let row = SparseRow::new([(0, 1.0), (1, -0.5)]);
     let weighed = estimate().weigh(&row, 0.7, 1.0).and_then(|it| it.with_noise(4.0));

@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{AugmentedModel, AugmentedStep, Output, Reference};
 use crate::Error;
-use crate::kalman_filter::{UNITS, add_inputs, power_of_two};
+use crate::kalman_filter::{Forced, UNITS, power_of_two};
 
 /// V among the states.
 const AIRSPEED: usize = 2;
@@ -195,12 +195,9 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         input: &SVector<T, 2>,
     ) -> Result<(), Error> {
         let AugmentedTransition { rows, b, fading, noise } = transition;
-        let mut next = self.state;
         let fading = &self.bounded(fading.as_array());
-        next.advance(&Driven { rows, fading, noise })?;
-        add_inputs(next.mean.as_array_mut(), b, input)?;
-        self.state = next;
-        Ok(())
+        let process = Driven { rows, fading, noise };
+        Ok(self.state.advance(&Forced { process, b, input })?)
     }
 
     /// What is left of each state after a step; less of one whose variance hardly fits the scalar.
@@ -251,13 +248,12 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
     ) -> Result<[Option<Innovation<T>>; P], Error> {
         let mut next = self.state;
         let mut innovations = [None; P];
-        for output in 0..P {
-            let Some(measured) = measured[output] else { continue };
-            let row = &self.rows[output];
-            let (expected, entries, count) = row.linearised::<K>(next.mean.as_array(), input);
-            let entries = entries.get(..count).unwrap_or_default();
-            let weighed = next.weigh_entries(entries, measured - expected, row.variance)?;
-            innovations[output] = Some(correct(&mut next, &weighed, output)?);
+        let outputs = self.rows.iter().zip(measured).zip(&mut innovations).enumerate();
+        for (output, ((row, measured), innovation)) in outputs {
+            let Some(measured) = *measured else { continue };
+            let (expected, derivatives) = row.linearised::<K>(next.mean.as_array(), input);
+            let weighed = next.weigh_row(&derivatives, measured - expected, row.variance)?;
+            *innovation = Some(correct(&mut next, &weighed, output)?);
         }
         self.state = next;
         Ok(innovations)
@@ -304,33 +300,17 @@ impl<T: Scalar, const N: usize> Row<T, N> {
             && T::all_finite(&[self.variance, steady, relative])
     }
 
-    /// What is expected of these states, and the derivatives that are not zero, with their number.
+    /// What is expected of these states, and its derivatives by them.
     #[inline(always)]
-    fn linearised<const K: usize>(
-        &self,
-        mean: &[T; N],
-        input: &SVector<T, 2>,
-    ) -> (T, [(usize, T); N], usize) {
+    fn linearised<const K: usize>(&self, mean: &[T; N], input: &SVector<T, 2>) -> (T, [T; N]) {
         let parts = self.parts.as_array();
-        let mut entries = [(0, T::ZERO); N];
-        let mut count = 0;
         let mut of_the_air = T::accumulator();
         let mut beside = T::accumulator();
-        for (state, (&part, &mean)) in parts.iter().zip(mean).enumerate() {
-            // The airspeed's part of what goes with its square may be zero, and its derivative is not.
-            let is_scaled = self.pressure.is_some() && state == AIRSPEED;
-            if part == T::ZERO && !is_scaled {
-                continue;
-            }
-            if state < K {
-                of_the_air = T::mac(of_the_air, part, mean);
-            } else {
-                beside = T::mac(beside, part, mean);
-            }
-            if let Some(entry) = entries.get_mut(count) {
-                *entry = (state, part);
-            }
-            count += 1;
+        for state in 0..K.min(N) {
+            of_the_air = T::mac(of_the_air, parts[state], mean[state]);
+        }
+        for state in K..N {
+            beside = T::mac(beside, parts[state], mean[state]);
         }
         let [direct, throttle] = *self.direct.as_array();
         let [elevator_now, throttle_now] = *input.as_array();
@@ -338,19 +318,18 @@ impl<T: Scalar, const N: usize> Row<T, N> {
         let of_the_air = T::finish(T::mac(of_the_air, throttle, throttle_now));
         let beside = T::finish(beside);
         let Some((steady, relative)) = self.pressure else {
-            return (of_the_air + beside, entries, count);
+            return (of_the_air + beside, *parts);
         };
         let ratio = T::ONE + mean.get(AIRSPEED).copied().unwrap_or(T::ZERO) * relative;
         let square = ratio * ratio;
         let whole = steady + of_the_air;
-        for (state, part) in &mut entries {
-            if *state < K {
-                *part *= square;
-            }
-            if *state == AIRSPEED {
-                *part += T::TWO * ratio * relative * whole;
-            }
+        let mut derivatives = *parts;
+        for part in derivatives.iter_mut().take(K) {
+            *part *= square;
         }
-        (square * whole - steady + beside, entries, count)
+        if let Some(part) = derivatives.get_mut(AIRSPEED) {
+            *part += T::TWO * ratio * relative * whole;
+        }
+        (square * whole - steady + beside, derivatives)
     }
 }

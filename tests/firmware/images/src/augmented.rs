@@ -12,7 +12,7 @@ const SAMPLES_A_STATE: u32 = 50;
 
 /// Replays a flight at 100 Hz, and tells the host what the observer's images tell.
 pub fn run() {
-    let Ok((filter, transition)) = filter(0.01) else {
+    let Ok((filter, transition, scales)) = filter(0.01) else {
         fail("a model that fits");
     };
     let mut filter = black_box(filter);
@@ -23,7 +23,7 @@ pub fn run() {
     let mut samples = 0_u32;
     let mut state = [0; 4];
     for (_, Flight { inputs, outputs }) in Stream::<Flight>::of(&open()) {
-        meter.measure(|| match step(&mut filter, &transition, inputs, outputs) {
+        meter.measure(|| match step(&mut filter, &transition, &scales, inputs, outputs) {
             Ok(bits) => {
                 state = bits;
                 Class::Update

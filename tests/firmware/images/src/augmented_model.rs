@@ -18,11 +18,12 @@ pub type Transition = AugmentedTransition<f32, 9, 6>;
 /// Of the steady flight, m/s.
 const AIRSPEED: f64 = 40.0;
 
-/// The filter, and its step over an interval (s).
+/// The filter, its step over an interval (s), and what an output is multiplied by for the filter's units, which are powers
+/// of two.
 ///
 /// # Errors
 /// None, as the tests have it.
-pub fn filter(interval: f64) -> Result<(Filter, Transition), Error> {
+pub fn filter(interval: f64) -> Result<(Filter, Transition, [f32; 4]), Error> {
     let density = SMatrix::from_diagonal(&[1e-6, 1e-3, 1e-2, 1e-8].into());
     // Nothing measures it here: it is told to be what the elevator adds at once, and little is believed of that.
     let force = Output {
@@ -44,7 +45,8 @@ pub fn filter(interval: f64) -> Result<(Filter, Transition), Error> {
     let step = model.over(interval, interval, &[0.0087, 0.02].into())?;
     let filter = Filter::new(&model)?;
     let transition = filter.transition(&step);
-    Ok((filter, transition))
+    let units = *filter.output_units();
+    Ok((filter, transition, from_fn(|output| units[output].recip() as f32)))
 }
 
 /// Takes in a sample: inputs and three outputs of the log. The bits of the four states.
@@ -54,14 +56,14 @@ pub fn filter(interval: f64) -> Result<(Filter, Transition), Error> {
 pub fn step(
     filter: &mut Filter,
     transition: &Transition,
+    scales: &[f32; 4],
     inputs: [f32; 2],
     outputs: [f32; 3],
 ) -> Result<[i64; 4], Error> {
-    let units = *filter.output_units();
     let [elevator, throttle] = inputs;
     let [rate, airspeed, pitch] = outputs;
     let all = [rate, airspeed, pitch, 12.0 * elevator - 6.3 * throttle];
-    let measured = from_fn(|output| Some(all[output] / units[output] as f32));
+    let measured = from_fn(|output| Some(all[output] * scales[output]));
     let inputs = inputs.into();
     filter.predict(transition, &inputs)?;
     filter.correct(&measured, &inputs)?;

@@ -76,6 +76,7 @@ fn updates<T: Scalar, const N: usize, const K: usize>() {
     try_on(&mut state, |state| Gaussian::update_component::<1>(state, number(), number()));
     let entries = [(whole(), number()); K];
     keep(Gaussian::weigh_entries(&state, slice(&entries), number(), number()));
+    keep(Gaussian::weigh_row(&state, &numbers(), number(), number()));
     let Ok(weighed) = Gaussian::weigh(&state, &row, number(), number()) else { return };
     weights(&mut state, any(weighed));
 }
