@@ -1,5 +1,6 @@
 //! What the command line of `host-sim fleet` can choose.
 
+use std::fmt::Write;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -38,7 +39,7 @@ pub(super) struct Options {
     /// Stream of the estimates, made likewise: those of device 7 have the subject NAME.7
     #[arg(long, value_name = "NAME", default_value = "estimates")]
     estimates: String,
-    /// What the broker calls whoever follows these subjects [default: kestirim-SYSTEM]
+    /// What the broker calls whoever follows these subjects [default: kestirim-SYSTEM, with the SUBJECT if there is one]
     #[arg(long, value_name = "NAME")]
     consumer: Option<String>,
     /// Folder with the states of the devices; a program that begins goes on with those that are there
@@ -89,10 +90,25 @@ impl Options {
         let subject = self.subject.clone().unwrap_or_else(|| format!("{}.>", self.stream));
         let name = format!("{url}, {subject}");
         let (stream, estimates) = (self.stream.clone(), self.estimates.clone());
-        let consumer = self.consumer.clone().unwrap_or_else(|| format!("kestirim-{system}"));
+        let consumer =
+            self.consumer.clone().unwrap_or_else(|| consumer(system, self.subject.as_deref()));
         let names = Names { stream, subject, estimates, consumer };
         Ok((Box::new(Nats::connect(url, names, (Arc::clone(stop), until))?), name))
     }
+}
+
+/// What a program is called that is told no name: another for each subject, since two of one name would take the stream
+/// from each other. Letters that no name may have stand as their codes.
+fn consumer(system: &str, subject: Option<&str>) -> String {
+    let mut name = format!("kestirim-{system}");
+    for byte in subject.map(|subject| format!("-{subject}")).unwrap_or_default().bytes() {
+        match byte {
+            b'-' | b'0'..=b'9' | b'A'..=b'Z' | b'a'..=b'z' => name.push(char::from(byte)),
+            // A String takes everything.
+            _ => name.write_fmt(format_args!("_{byte:02x}")).unwrap_or_default(),
+        }
+    }
+    name
 }
 
 /// The command, with the options of each system.
@@ -107,4 +123,21 @@ pub(in crate::commands) fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands(followers().map(of))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_that_follow_other_subjects_have_other_names() {
+        assert_eq!(consumer("robot", None), "kestirim-robot");
+        let names = ["frames.0.>", "frames.1.>", "frames.0.*", "frames.0-*", "frames_0.*"]
+            .map(|subject| consumer("robot", Some(subject)));
+        assert_eq!(names[0], "kestirim-robot-frames_2e0_2e_3e");
+        for (index, name) in names.iter().enumerate() {
+            assert!(!name.contains(['.', '*', '>', '/', '\\', ' ']), "{name}");
+            assert!(!names[..index].contains(name), "{name} is that of another subject");
+        }
+    }
 }
