@@ -1,9 +1,7 @@
 //! Satellites of systems that are not served.
 
-use std::collections::BTreeSet;
-
-/// Systems by the letter of their satellites, in the order in which they are named. Galileo stands here for RINEX 2, of which it is
-/// not read.
+/// Systems by the letter of their satellites, in the order in which they are named. Galileo stands here for RINEX 2, of
+/// which it is not read.
 const SYSTEMS: [(u8, &str); 6] = [
     (b'E', "Galileo"),
     (b'R', "GLONASS"),
@@ -13,27 +11,28 @@ const SYSTEMS: [(u8, &str); 6] = [
     (b'S', "SBAS"),
 ];
 
-/// Satellites of systems that are not served, by their names.
+/// Satellites of systems that are not served: a bit for each number of a system. Observations note one for each line.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Unserved(BTreeSet<[u8; 3]>);
+pub(crate) struct Unserved([u128; SYSTEMS.len()]);
 
 impl Unserved {
     /// Takes note of a satellite, unless its system is not known.
     pub(crate) fn note(&mut self, [letter, tens, ones]: [u8; 3]) {
-        if SYSTEMS.iter().any(|(of, _)| *of == letter) {
-            // RINEX allows both R01 and R 1.
-            self.0.insert([letter, if tens == b' ' { b'0' } else { tens }, ones]);
+        let digit = |byte: u8| byte.is_ascii_digit().then(|| byte - b'0');
+        // RINEX allows both R01 and R 1.
+        let tens = if tens == b' ' { Some(0) } else { digit(tens) };
+        let (Some(tens), Some(ones)) = (tens, digit(ones)) else { return };
+        for ((of, _), seen) in SYSTEMS.iter().zip(&mut self.0) {
+            *seen |= u128::from(*of == letter) << (10 * tens + ones);
         }
     }
 
     /// A sentence about them, if there are any.
     pub(crate) fn sentence(&self) -> Option<String> {
-        let count = |letter: u8| self.0.iter().filter(|name| name[0] == letter).count();
-        let counts = SYSTEMS.map(|(letter, system)| (system, count(letter)));
-        let told = counts.iter().filter(|(_, count)| *count > 0);
-        let told: Vec<_> = told.map(|(system, count)| format!("{system} ({count})")).collect();
-        let satellites = told.join(", ");
-        (!told.is_empty())
+        let told = SYSTEMS.iter().zip(self.0).filter(|(_, seen)| *seen != 0);
+        let told = told.map(|((_, system), seen)| format!("{system} ({})", seen.count_ones()));
+        let satellites = told.collect::<Vec<_>>().join(", ");
+        (!satellites.is_empty())
             .then(|| format!("satellites of {satellites} are in the file, but are not read"))
     }
 }
