@@ -36,7 +36,7 @@ def printed(code: str) -> str:
 
 
 def test_version() -> None:
-    manifest = (HERE / "Cargo.toml").read_text(encoding="utf-8")
+    manifest = (REPOSITORY / "Cargo.toml").read_text(encoding="utf-8")
     assert f'\nversion = "{kestirim.__version__}"\n' in manifest
 
 

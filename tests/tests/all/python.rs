@@ -1,9 +1,15 @@
-//! The Python package, built, installed into an environment of its own, and tested there.
+//! The Python package, installed into an environment of its own, and tested there. Its module is the one that cargo built
+//! with these tests; with `KESTIRIM_WHEEL=1` a wheel is built and installed, as `pip install ./crates/python` does, which
+//! takes minutes.
 //!
 //! Without Python, its `venv`, or a way to `PyPI` this test says SKIPPED and passes; with `KESTIRIM_REQUIRE_PYTHON=1` it
 //! fails instead, and so it does if other packages, whose speed ours is compared with, cannot be had.
 
-use std::env;
+use std::env::{
+    self,
+    consts::{DLL_PREFIX, DLL_SUFFIX},
+};
+use std::fs;
 use std::io::{self, Write};
 use std::iter;
 use std::path::{Path, PathBuf};
@@ -43,28 +49,63 @@ fn run(program: &str, arguments: &[&str]) -> io::Result<Output> {
         .args(arguments)
         .current_dir(crate_folder())
         .env("CARGO_TARGET_DIR", build)
-        // What is tested holds without it, and it takes minutes; in one unit, too, which is less work. The level of
-        // optimisation is kept: speed is tested, too.
-        .env("CARGO_PROFILE_RELEASE_LTO", "off")
-        .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "1")
         .env("KESTIRIM_HOST_SIM", env!("CARGO_BIN_EXE_replay"))
         .env("PIP_DISABLE_PIP_VERSION_CHECK", "1")
         .env_remove("PYTHONPATH")
         .output()
 }
 
-fn done(what: &str, output: &Output) -> Result<()> {
+/// What it printed.
+fn done(what: &str, output: io::Result<Output>) -> Result<String> {
+    let output = output?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let (out, err) = (text(&output.stdout), text(&output.stderr));
     ensure!(output.status.success(), "{what}: {}\n{out}\n{err}", output.status);
     // With --nocapture: what was tested and what was skipped.
     println!("{out}");
+    Ok(out)
+}
+
+/// Builds a wheel and installs it.
+fn install_wheel() -> Result<()> {
+    let wheels = target().join("wheels");
+    let folder = wheels.to_str().context("a path of letters")?;
+    let _ = fs::remove_dir_all(&wheels);
+    let wheel = ["wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, "."];
+    done("pip wheel", run("pip", &wheel))?;
+    let wheel = fs::read_dir(&wheels)?.next().context("a wheel")??;
+    let (size, path) = (wheel.metadata()?.len(), wheel.path());
+    println!("{}: {size} bytes", path.display());
+    ensure!(size <= LARGEST_WHEEL, "a wheel of {size} bytes");
+    let path = path.to_str().context("a path of letters")?.to_owned();
+    done("pip install", run("pip", &["install", "-q", "--no-deps", "--force-reinstall", &path]))?;
+    Ok(())
+}
+
+/// Puts the package where pip would, with the module that was built with these tests.
+fn install_built() -> Result<()> {
+    let folder = "import sysconfig; print(sysconfig.get_path('purelib'))";
+    let packages = done("where packages are", run("python", &["-c", folder]))?;
+    let package = Path::new(packages.trim()).join("kestirim");
+    let _ = fs::remove_dir_all(&package);
+    fs::create_dir(&package)?;
+    for file in fs::read_dir(crate_folder().join("python/kestirim"))? {
+        let file = file?;
+        if file.file_type()?.is_file() {
+            fs::copy(file.path(), package.join(file.file_name()))?;
+        }
+    }
+    let programs = Path::new(env!("CARGO_BIN_EXE_replay")).parent().context("a folder")?;
+    let module = programs.join("deps").join(format!("{DLL_PREFIX}_kestirim{DLL_SUFFIX}"));
+    fs::copy(&module, package.join("_kestirim.abi3.so"))
+        .with_context(|| module.display().to_string())?;
     Ok(())
 }
 
 #[test]
 fn the_package_is_installed_and_tested() -> Result<()> {
-    std::fs::create_dir_all(target())?;
+    let as_wheel = env::var("KESTIRIM_WHEEL").is_ok_and(|value| value == "1");
+    fs::create_dir_all(target())?;
     if !target().join("venv/bin/pip").exists() {
         let mut venv = Command::new("python3");
         venv.args(["-m", "venv", "--clear"]).arg(target().join("venv"));
@@ -75,16 +116,9 @@ fn the_package_is_installed_and_tested() -> Result<()> {
     }
     // What the package and its tests need; peers are compared with where they can be had. Of what is installed a small part
     // is loaded, and compiled then.
-    let needed = [
-        "install",
-        "-q",
-        "--no-compile",
-        "maturin>=1.9,<2",
-        "numpy>=1.22",
-        "pytest",
-        "mypy",
-        "pandas",
-    ];
+    let mut needed =
+        vec!["install", "-q", "--no-compile", "numpy>=1.22", "pytest", "mypy", "pandas"];
+    needed.extend(as_wheel.then_some("maturin>=1.9,<2"));
     if !run("pip", &needed)?.status.success() {
         return skipped("PyPI cannot be reached");
     }
@@ -92,17 +126,7 @@ fn the_package_is_installed_and_tested() -> Result<()> {
     if !peers.status.success() {
         skipped("filterpy and imufusion cannot be had")?;
     }
-    let wheels = target().join("wheels");
-    let folder = wheels.to_str().context("a path of letters")?;
-    let _ = std::fs::remove_dir_all(&wheels);
-    let wheel = ["wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, "."];
-    done("pip wheel", &run("pip", &wheel)?)?;
-    let wheel = std::fs::read_dir(&wheels)?.next().context("a wheel")??;
-    let (size, path) = (wheel.metadata()?.len(), wheel.path());
-    println!("{}: {size} bytes", path.display());
-    ensure!(size <= LARGEST_WHEEL, "a wheel of {size} bytes");
-    let path = path.to_str().context("a path of letters")?.to_owned();
-    let install = ["install", "-q", "--no-deps", "--force-reinstall", &path];
-    done("pip install", &run("pip", &install)?)?;
-    done("pytest", &run("python", &["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"])?)
+    if as_wheel { install_wheel() } else { install_built() }?;
+    let tests = ["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"];
+    done("pytest", run("python", &tests)).map(drop)
 }

@@ -55,7 +55,6 @@ fn everything_may_be_given_away_and_comes_from_the_registry() -> Result<()> {
     let workspaces = [
         "Cargo.toml",
         "crates/c/staticlib/Cargo.toml",
-        "crates/python/Cargo.toml",
         "tests/firmware/Cargo.toml",
         "tests/fuzz/Cargo.toml",
     ];
