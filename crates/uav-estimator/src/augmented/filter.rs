@@ -194,10 +194,44 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         transition: &AugmentedTransition<T, N, K>,
         input: &SVector<T, 2>,
     ) -> Result<(), Error> {
+        let mut next = self.state;
+        self.advance(&mut next, transition, input)?;
+        self.state = next;
+        Ok(())
+    }
+
+    /// Moves on by a step with the inputs that were held during it, then takes in the outputs that were measured with
+    /// those of now: [`AugmentedFilter::predict`] and [`AugmentedFilter::correct`] in one, with one copy of the estimate less.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was before both.
+    pub fn step(
+        &mut self,
+        transition: &AugmentedTransition<T, N, K>,
+        held: &SVector<T, 2>,
+        measured: &[Option<T>; P],
+        input: &SVector<T, 2>,
+    ) -> Result<[Option<Innovation<T>>; P], Error> {
+        let mut next = self.state;
+        self.advance(&mut next, transition, held)?;
+        let innovations =
+            self.taken(&mut next, measured, input, |next, weighed, _| Ok(next.correct(weighed)?))?;
+        self.state = next;
+        Ok(innovations)
+    }
+
+    /// A step of an estimate.
+    #[inline(always)]
+    fn advance(
+        &self,
+        estimate: &mut Gaussian<T, N>,
+        transition: &AugmentedTransition<T, N, K>,
+        input: &SVector<T, 2>,
+    ) -> Result<(), Error> {
         let AugmentedTransition { rows, b, fading, noise } = transition;
         let fading = &self.bounded(fading.as_array());
         let process = Driven { rows, fading, noise };
-        Ok(self.state.advance(&Forced { process, b, input })?)
+        Ok(estimate.advance(&Forced { process, b, input })?)
     }
 
     /// What is left of each state after a step; less of one whose variance hardly fits the scalar.
@@ -240,22 +274,35 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         &mut self,
         measured: &[Option<T>; P],
         input: &SVector<T, 2>,
+        correct: impl FnMut(&mut Gaussian<T, N>, &Weighed<T, N>, usize) -> Result<Innovation<T>, Error>,
+    ) -> Result<[Option<Innovation<T>>; P], Error> {
+        let mut next = self.state;
+        let innovations = self.taken(&mut next, measured, input, correct)?;
+        self.state = next;
+        Ok(innovations)
+    }
+
+    /// What the outputs say, taken into an estimate; of one that is refused nothing is to be used.
+    #[inline(always)]
+    fn taken(
+        &self,
+        next: &mut Gaussian<T, N>,
+        measured: &[Option<T>; P],
+        input: &SVector<T, 2>,
         mut correct: impl FnMut(
             &mut Gaussian<T, N>,
             &Weighed<T, N>,
             usize,
         ) -> Result<Innovation<T>, Error>,
     ) -> Result<[Option<Innovation<T>>; P], Error> {
-        let mut next = self.state;
         let mut innovations = [None; P];
         let outputs = self.rows.iter().zip(measured).zip(&mut innovations).enumerate();
         for (output, ((row, measured), innovation)) in outputs {
             let Some(measured) = *measured else { continue };
             let (expected, derivatives) = row.linearised::<K>(next.mean.as_array(), input);
             let weighed = next.weigh_row(&derivatives, measured - expected, row.variance)?;
-            *innovation = Some(correct(&mut next, &weighed, output)?);
+            *innovation = Some(correct(next, &weighed, output)?);
         }
-        self.state = next;
         Ok(innovations)
     }
 }

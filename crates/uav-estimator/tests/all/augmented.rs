@@ -2,8 +2,8 @@
 
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
-    AugmentedFlight, AugmentedModel, Drift, Dynamics, Error, FlightFilter, Gust, Noise, Output,
-    Reference, Sample,
+    AugmentedFilter, AugmentedFlight, AugmentedModel, Drift, Dynamics, Error, FlightFilter, Gust,
+    Noise, Output, Reference, Sample,
 };
 use kestirim_uav_longitudinal::{navion, rate_airspeed_and_pitch};
 use nalgebra::{SMatrix, SVector, Vector2, Vector3, Vector4};
@@ -296,4 +296,26 @@ fn what_does_not_fit_is_refused() {
     broken.measured[2] = Some(f64::NAN);
     assert_eq!(filter.take(&broken), Err(Error::NotFinite));
     assert_eq!(filter, before);
+}
+
+#[test]
+fn a_step_is_a_prediction_and_a_correction() {
+    let model = model(1.0);
+    let mut stepped = AugmentedFilter::<f32, 11, 7, 6>::new(&model).unwrap();
+    let held = Vector2::new(0.02, 0.1).map(f32::from_f64);
+    let now = Vector2::new(-0.01, 0.1).map(f32::from_f64);
+    let transition =
+        stepped.transition(&model.over(USUAL_S, USUAL_S, &Vector2::new(0.0087, 0.02)).unwrap());
+    let mut apart = stepped;
+    let mut measured = [None, Some(0.5), Some(0.01), Some(-0.2), None, Some(0.3)];
+    for _ in 0..5 {
+        apart.predict(&transition, &held).unwrap();
+        let innovations = apart.correct(&measured, &now).unwrap();
+        assert_eq!(stepped.step(&transition, &held, &measured, &now), Ok(innovations));
+        assert_eq!(stepped, apart);
+    }
+    // The last output is refused after the others were taken in: nothing has moved.
+    measured[5] = Some(f32::NAN);
+    assert!(stepped.step(&transition, &held, &measured, &now).is_err());
+    assert_eq!(stepped, apart);
 }

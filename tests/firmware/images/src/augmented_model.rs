@@ -65,7 +65,6 @@ pub fn step(
     let all = [rate, airspeed, pitch, 12.0 * elevator - 6.3 * throttle];
     let measured = from_fn(|output| Some(all[output] * scales[output]));
     let inputs = inputs.into();
-    filter.predict(transition, &inputs)?;
-    filter.correct(&measured, &inputs)?;
+    filter.step(transition, &inputs, &measured, &inputs)?;
     Ok(from_fn(|state| i64::from(filter.state().mean[state].to_bits())))
 }

@@ -162,6 +162,10 @@ fn augmented_filters<T: Scalar>() {
         let input = matrix();
         try_on(&mut filter, |filter| AugmentedFilter::predict(filter, &transition, &input));
         try_on(&mut filter, |filter| AugmentedFilter::correct(filter, &scalars(), &input));
+        let outputs = scalars();
+        try_on(&mut filter, |filter| {
+            AugmentedFilter::step(filter, &transition, &input, &outputs, &input)
+        });
     }
     keep(AugmentedFilter::estimate(&filter));
     keep(AugmentedFilter::sigma(&filter));
