@@ -21,13 +21,11 @@ const LOG: &str = "log.bin";
 const TELEMETRY: &str = "telemetry.bin";
 const LINE: &str = "line.sock";
 
-/// The applications of each target, and which of them are built in one go: `gnss-firmware` wants another board, and the
-/// last two that with its interrupts.
-const APPLICATIONS: [(&Target, Packages); 5] = [
+/// The applications of each target, and which of them are built in one go: those of one board.
+const APPLICATIONS: [(&Target, Packages); 4] = [
     (&CORTEX_M0, &["pedestrian-firmware", "uav-firmware"]),
     (&CORTEX_M4F, &["drone-firmware", "pedestrian-firmware", "uav-firmware"]),
-    (&CORTEX_M4F, &["gnss-firmware"]),
-    (&CORTEX_M4F, &["foot-embassy", "foot-rtic"]),
+    (&CORTEX_M4F, &["gnss-firmware", "foot-embassy", "foot-rtic"]),
     (&RV32IMC, &["robot-firmware"]),
 ];
 

@@ -20,8 +20,9 @@ const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
 /// Set to `short`, images are built and looked at for [`SHORT_FORM`] alone: CI has half an hour.
 const TARGETS: &str = "KESTIRIM_TARGETS";
 
-/// Targets and profiles of the short form: with and without a floating-point unit, at the level of the applications,
-/// whose dependencies they share; of the surface, whose programs take longest, the last alone.
+/// Targets and profiles of the short form: without and with a floating-point unit, at the level of the applications,
+/// whose dependencies they share; of what takes longest one alone: estimators wake on the first, of which every bit is our
+/// own arithmetic, and the surface is looked at on the second.
 const SHORT_FORM: [(&Target, Profile); 2] =
     [(&CORTEX_M0, Profile::Speed), (&CORTEX_M4F, Profile::Speed)];
 
@@ -118,7 +119,11 @@ impl Images {
         profile: Profile,
     ) -> Result<Option<Self>> {
         let is_this = |(of, at): &(&Target, Profile)| of.triple == target.triple && *at == profile;
-        let short = if packages == SURFACE { &SHORT_FORM[1..] } else { &SHORT_FORM[..] };
+        let short = match packages {
+            SNAPSHOTS => &SHORT_FORM[..1],
+            SURFACE => &SHORT_FORM[1..],
+            _ => &SHORT_FORM[..],
+        };
         if Self::is_short() && !short.iter().any(is_this) {
             let (triple, opt) = (target.triple, profile.opt());
             return left_out(&format!("images for {triple} at {opt}"));

@@ -7,6 +7,8 @@ use board::{CmsdkUart, Tape};
 use cortex_m_rt::entry;
 use gnss_app::{App, Epoch, Error};
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
+// The table of interrupts, as for all programs of this board; here nobody serves one.
+use mps2_an386 as _;
 
 /// Receiver and modem.
 const PORTS: usize = 2;
