@@ -18,7 +18,7 @@ use anyhow::{Context, Result, ensure};
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
 /// The floors of crates, and what stands on each may depend on.
-const FLOORS: [(&str, &[&str]); 8] = [
+const FLOORS: [(&str, &[&str]); 9] = [
     ("numbers", &["numbers"]),
     // Know no sensor: no model.
     ("estimator", &["numbers", "estimator"]),
@@ -32,6 +32,8 @@ const FLOORS: [(&str, &[&str]); 8] = [
     ("recordings", &["numbers", "estimator", "model", "frames", "files", "system", "recordings"]),
     // Of another language: feeds systems, as programs do, and no crate stands on it.
     ("interface", &["numbers", "estimator", "model", "frames", "system"]),
+    // The same on a PC, with whole recordings; it goes to the other language's registry.
+    ("module", &["numbers", "estimator", "model", "frames", "files", "system", "recordings"]),
 ];
 
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
@@ -52,6 +54,17 @@ fn folder(package: &Package) -> Result<&Path> {
 fn crates(metadata: &Metadata) -> Vec<&Package> {
     let folder = metadata.workspace_root.join("crates");
     metadata.packages.iter().filter(|package| package.manifest_path.starts_with(&folder)).collect()
+}
+
+/// Those that go to Cargo's registry.
+fn published(metadata: &Metadata) -> Result<Vec<&Package>> {
+    let mut published = Vec::new();
+    for package in crates(metadata) {
+        if floor(package)? != "module" {
+            published.push(package);
+        }
+    }
+    Ok(published)
 }
 
 /// Where a crate says it stands.
@@ -77,7 +90,7 @@ fn height(floor: &str) -> u32 {
     match floor {
         "numbers" => 1,
         "system" => 3,
-        "recordings" | "interface" => 4,
+        "recordings" | "interface" | "module" => 4,
         _ => 2,
     }
 }
@@ -141,7 +154,7 @@ fn what_runs_on_a_target_has_no_standard_library() -> Result<()> {
     for package in crates(&metadata) {
         let library = fs::read_to_string(folder(package)?.join("src/lib.rs"))?;
         let without = library.lines().any(|line| line == "#![no_std]");
-        let with = ["files", "recordings"].contains(&floor(package)?);
+        let with = ["files", "recordings", "module"].contains(&floor(package)?);
         assert_ne!(
             without, with,
             "{}: `#![no_std]` in lib.rs, unless it is for a PC alone",
@@ -154,10 +167,10 @@ fn what_runs_on_a_target_has_no_standard_library() -> Result<()> {
 #[test]
 fn only_crates_are_published() -> Result<()> {
     let metadata = metadata()?;
-    let crates: BTreeSet<_> = crates(&metadata).iter().map(|package| &package.id).collect();
+    let published: BTreeSet<_> = published(&metadata)?.iter().map(|package| &package.id).collect();
     for package in &metadata.packages {
         let private = package.publish.as_ref().is_some_and(Vec::is_empty);
-        assert_ne!(private, crates.contains(&package.id), "{}: publish = false?", package.name);
+        assert_ne!(private, published.contains(&package.id), "{}: publish = false?", package.name);
     }
     Ok(())
 }
@@ -166,7 +179,7 @@ fn only_crates_are_published() -> Result<()> {
 fn packages_say_what_a_registry_shows() -> Result<()> {
     let metadata = metadata()?;
     let mut keywords: BTreeMap<Vec<String>, &str> = BTreeMap::new();
-    for package in crates(&metadata) {
+    for package in published(&metadata)? {
         let name = package.name.as_str();
         for (field, given) in [
             ("description", &package.description),

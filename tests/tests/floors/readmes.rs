@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use cargo_metadata::Package;
 use syn::{ImplItem, Item, TraitItem, Visibility};
 
-use super::{crates, folder, metadata, root};
+use super::{crates, folder, metadata, published, root};
 
 /// The part of an address that all documentation on docs.rs has in common.
 const DOCS: &str = "https://docs.rs/";
@@ -17,7 +17,7 @@ const DOCS: &str = "https://docs.rs/";
 #[test]
 fn every_readme_has_the_same_sections() -> Result<()> {
     let metadata = metadata()?;
-    for package in crates(&metadata) {
+    for package in published(&metadata)? {
         let text = fs::read_to_string(folder(package)?.join("README.md"))?;
         let name = package.name.as_str();
         assert_eq!(text.lines().next(), Some(format!("# {name}").as_str()));
