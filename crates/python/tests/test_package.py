@@ -6,6 +6,7 @@ import doctest
 import importlib.util
 import io
 import json
+import os
 import re
 import subprocess
 import sys
@@ -111,6 +112,7 @@ def peers() -> Any:
     return module
 
 
+@pytest.mark.skipif(os.environ.get("KESTIRIM_WHEEL") != "1", reason="only a wheel is built for speed")
 def test_speed_beside_other_packages() -> None:
     module = peers()
     for name in ("filterpy", "imufusion"):

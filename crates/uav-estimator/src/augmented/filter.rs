@@ -194,9 +194,8 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         transition: &AugmentedTransition<T, N, K>,
         input: &SVector<T, 2>,
     ) -> Result<(), Error> {
-        let mut next = self.state;
-        self.advance(&mut next, transition, input)?;
-        self.state = next;
+        let fading = self.bounded(transition);
+        self.state.advance(&transition.forced(&fading, input))?;
         Ok(())
     }
 
@@ -213,25 +212,11 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         input: &SVector<T, 2>,
     ) -> Result<[Option<Innovation<T>>; P], Error> {
         let mut next = self.state;
-        self.advance(&mut next, transition, held)?;
-        let innovations =
-            self.taken(&mut next, measured, input, |next, weighed, _| Ok(next.correct(weighed)?))?;
+        let fading = self.bounded(transition);
+        next.advance(&transition.forced(&fading, held))?;
+        let innovations = self.taken(&mut next, measured, input, always)?;
         self.state = next;
         Ok(innovations)
-    }
-
-    /// A step of an estimate.
-    #[inline(always)]
-    fn advance(
-        &self,
-        estimate: &mut Gaussian<T, N>,
-        transition: &AugmentedTransition<T, N, K>,
-        input: &SVector<T, 2>,
-    ) -> Result<(), Error> {
-        let AugmentedTransition { rows, b, fading, noise } = transition;
-        let fading = &self.bounded(fading.as_array());
-        let process = Driven { rows, fading, noise };
-        Ok(estimate.advance(&Forced { process, b, input })?)
     }
 
     /// What is left of each state after a step; less of one whose variance hardly fits the scalar.
@@ -239,8 +224,8 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
     /// In fixed point the roundings of every step add to a state that no output measures, such as a head wind without a speed
     /// over ground. Its variance would overflow, and then every sample would be refused. Floats have room.
     #[inline(always)]
-    fn bounded(&self, fading: &[T; N]) -> [T; N] {
-        let mut bounded = *fading;
+    fn bounded(&self, transition: &AugmentedTransition<T, N, K>) -> SVector<T, N> {
+        let mut bounded = transition.fading;
         // Sums in floats have no headroom to count.
         if T::headroom(0) == Some(0) {
             return bounded;
@@ -266,7 +251,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         measured: &[Option<T>; P],
         input: &SVector<T, 2>,
     ) -> Result<[Option<Innovation<T>>; P], Error> {
-        self.correct_with(measured, input, |next, weighed, _| Ok(next.correct(weighed)?))
+        self.correct_with(measured, input, always)
     }
 
     /// The same, where `correct` decides whether a weighed output is taken in.
@@ -305,6 +290,29 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         }
         Ok(innovations)
     }
+}
+
+impl<T: Scalar, const N: usize, const K: usize> AugmentedTransition<T, N, K> {
+    /// The step with these inputs, after which so much is left of each state.
+    #[inline(always)]
+    fn forced<'a>(
+        &'a self,
+        fading: &'a SVector<T, N>,
+        input: &'a SVector<T, 2>,
+    ) -> Forced<'a, T, Driven<'a, T, N, 4, K>> {
+        let process = Driven { rows: &self.rows, fading: fading.as_array(), noise: &self.noise };
+        Forced { process, b: &self.b, input }
+    }
+}
+
+/// Every weighed output is taken in.
+#[inline(always)]
+fn always<T: Scalar, const N: usize>(
+    next: &mut Gaussian<T, N>,
+    weighed: &Weighed<T, N>,
+    _output: usize,
+) -> Result<Innovation<T>, Error> {
+    Ok(next.correct(weighed)?)
 }
 
 impl<T: Scalar, const N: usize> Row<T, N> {
