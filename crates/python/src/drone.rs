@@ -2,7 +2,7 @@
 
 use kestirim_health::{Health, Reason};
 use kestirim_replay::drone::{
-    Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Quantity, Search, Stop, level_step,
+    Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Next, Quantity, Search, Stop, level_step,
     thinned, wavelength_m,
 };
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ const HIGHEST_HZ: f64 = 30e9;
 
 /// A flight: t (n,), place (n, 2), height (n,), and what was measured (n,): losses, or levels if `levels`; at a frequency, Hz.
 #[pyfunction]
-#[pyo3(signature = (t, place, height, value, levels, area, environment, frequency, every))]
+#[pyo3(signature = (t, place, height, value, levels, area, environment, frequency, window, every))]
 pub(crate) fn drone<'py>(
     py: Python<'py>,
     t: Line<'py>,
@@ -31,6 +31,7 @@ pub(crate) fn drone<'py>(
     area: Option<Table<'py>>,
     environment: Option<&str>,
     frequency: f64,
+    window: Option<f64>,
     every: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let environment = environment.map(self::environment).transpose()?;
@@ -38,6 +39,9 @@ pub(crate) fn drone<'py>(
         return Err(refused(format!(
             "frequency: expected {LOWEST_HZ:e} to {HIGHEST_HZ:e} Hz, found {frequency:e}"
         )));
+    }
+    if let Some(window) = window.filter(|window| window.is_nan() || *window <= 0.0) {
+        return Err(refused(format!("window: expected more than 0 s, found {window}")));
     }
     let wavelength_m = wavelength_m(frequency);
     let quantity = if levels { Quantity::Level } else { Quantity::PathLoss };
@@ -47,8 +51,8 @@ pub(crate) fn drone<'py>(
         let search = move || -> PyResult<Found> {
             let stops = thinned(&stops, environment);
             let most = if every { MOST_DRAWN } else { 1 };
-            let search = Search::new(&stops, area.as_deref(), None, most, false);
-            let search = search.map_err(refused)?.at_wavelength(wavelength_m);
+            let search = Search::new(&stops, area.as_deref(), &[], most, false);
+            let search = search.map_err(refused)?.at_wavelength(wavelength_m).within(window);
             let estimates = search.find(environment, quantity);
             let channel = environment.and_then(|it| it.channel_at(wavelength_m).ok());
             let is_off = estimates.last().zip(channel).is_some_and(|(last, channel)| {
@@ -128,6 +132,7 @@ impl Found {
         };
         let is_stepping = level_step(&stops, last.place).is_some();
         let doubts = Health::GOOD.with(Reason::Innovations, is_stepping || is_off);
+        let next = last.next.map(|Next { place: [x, y], height, sd_m }| (x, y, height, sd_m));
         let level = |estimate: &Estimate| estimate.level_db.unwrap_or(f64::NAN);
         Ok(Results::new(py)
             .line("t", estimates.iter().map(|estimate| stops[estimate.stop].t).collect())?
@@ -136,6 +141,7 @@ impl Found {
             .line("level", estimates.iter().map(level).collect())?
             .line("health", vec![0_u8; estimates.len()])?
             .with("measurements", stops.len())?
+            .with("next_waypoint", next)?
             .words("reasons", reasons(doubts))?
             .done())
     }

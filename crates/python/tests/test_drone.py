@@ -38,6 +38,8 @@ def test_equals_replay(data: Path, replay: Replay, name: str, options: Any, argu
     assert ours.level[-1] == theirs["level_db"]
     assert ours.measurements == theirs["measurements"]
     assert list(ours.reasons) == theirs["health"]["reasons"]
+    following = theirs.get("next_waypoint")
+    assert ours.next_waypoint == (following and tuple(following[name] for name in ("x", "y", "height_m", "sd_m")))
     if options.get("every", True):
         assert len(ours.t) == len(track)
     rows = np.column_stack([ours.t, ours.position, ours.sigma])
@@ -58,6 +60,11 @@ def test_a_loss_of_known_power_is_found_and_refusals_are_sentences() -> None:
     lower = 20 * np.log10(4 * np.pi * 433e6 / 3e8 * distance)
     told = kestirim.drone(t, place, height, path_loss=lower, frequency=433e6, every=False)
     assert np.allclose(told.position[-1], found.position[-1], atol=0.1)
+    # The last four alone tell less.
+    few = kestirim.drone(t, place, height, path_loss=loss, window=3.5, every=False)
+    assert few.sigma[-1] > found.sigma[-1]
+    with pytest.raises(kestirim.KestirimError, match="window: expected more than 0 s, found 0"):
+        kestirim.drone(t, place, height, path_loss=loss, window=0)
     with pytest.raises(kestirim.KestirimError, match="frequency: expected 3e7 to 3e10 Hz, found 2.4e0"):
         kestirim.drone(t, place, height, path_loss=loss, frequency=2.4)
     with pytest.raises(kestirim.KestirimError, match="at least three measurements .* found 2"):

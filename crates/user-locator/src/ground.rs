@@ -5,6 +5,7 @@ use kestirim_air_to_ground::{GroundFit, Measurement, OpenGround, SUPPOSITIONS, S
 use kestirim_particle_filter::{Error as FilterError, PointMass};
 use kestirim_scalar::Scalar;
 
+use crate::informative::{Informative, most_informative, standing};
 use crate::level_step::health;
 use crate::{Area, ByPlace, Error, Health};
 
@@ -156,6 +157,22 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
         let density = |place| evidence.log_likelihood(&estimate.likely, place, |_, _| ());
         self.area.contains(place)
             && density(place) - density(heaviest) >= posterior.density_level(probability)
+    }
+
+    /// Where in the area to measure next, so high (m) above the transmitter; none if nothing is left to be learned. The
+    /// estimate must be that of the same measurements.
+    ///
+    /// Of 64 waypoints all over the area that one after which the transmitter's place is expected to be known best: the mean
+    /// over all levels that may be measured there, from 32 places that stand for the posterior (Lindley, *On a measure of the information
+    /// provided by an experiment*, 1956, with the spread in the place of the entropy). Costs some hundred thousand exponentials.
+    pub fn next_waypoint<const L: usize>(
+        &self,
+        estimate: &GroundEstimate<T, L>,
+        height: T,
+    ) -> Option<Informative<T>> {
+        let evidence = self.evidence(T::from_f64(REGION_POWER));
+        let explained = |place| evidence.best(&estimate.likely, place);
+        most_informative(&standing(&estimate.posterior, explained), &self.area, height)
     }
 
     /// Whether an estimate from these measurements can be relied upon: `innovations` where their levels step

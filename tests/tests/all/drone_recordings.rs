@@ -16,7 +16,10 @@ fn replay(folder: &Path, log: &str, truth: &str, area: &str) -> Account {
     }
     let settings = Settings::new(Drone.settings());
     let opened = Drone.open(Source::Files(files), &settings).expect("a recording can be read");
-    opened.replay(&settings, &Wanted::default()).expect("the user is found")
+    let account = opened.replay(&settings, &Wanted::default()).expect("the user is found");
+    // None of these users moves.
+    assert!(account.warnings.iter().all(|it| !it.contains("--window")), "{:?}", account.warnings);
+    account
 }
 
 /// Error and expected error of the last estimate, m, and whether the 90 % region holds the truth.

@@ -1,7 +1,7 @@
 use kestirim_scalar::Scalar;
 
 use super::Supposition;
-use super::sight::{PARAMETERS, Row, Sight, used};
+use super::sight::{PARAMETERS, PATTERN_DB, Row, Sight, decibels, used};
 
 /// Degrees of freedom of Student's distribution: tails as nulls of antennas and buildings make them.
 const FREEDOM: f64 = 4.0;
@@ -29,6 +29,44 @@ pub struct GroundFit<T> {
     pub level: T,
     /// The path-loss exponent.
     pub exponent: T,
+}
+
+impl<T: Scalar> GroundFit<T> {
+    /// The level (dB) that a further measurement would show under the supposition of this fit, and its standard deviation:
+    /// `from` there, so high above the transmitter, if that is at `place`.
+    ///
+    /// What the antennas do in that direction counts as noise: a fit does not tell it.
+    pub fn expected(
+        &self,
+        supposition: &Supposition<T>,
+        place: [T; 2],
+        from: [T; 2],
+        height: T,
+    ) -> (T, T) {
+        let distance = T::norm(&[from[0] - place[0], from[1] - place[1], height]).max(T::EPSILON);
+        let signal = self.level - self.exponent * decibels(distance.ln());
+        let (level, share) = supposition.received(signal);
+        let harmonics = T::from_binary(used(supposition.pattern) as i32 - 2, 0);
+        let pattern = T::from_f64(PATTERN_DB) * harmonics.sqrt();
+        // The variance of Student's distribution is that of its scale, times ν / (ν − 2).
+        let scale = supposition.scale * T::from_f64(FREEDOM / (FREEDOM - 2.0)).sqrt();
+        (level, T::norm(&[share * scale, share * pattern, T::from_f64(WAVERING_DB)]))
+    }
+}
+
+impl<T: Scalar> Supposition<T> {
+    /// The level that a receiver shows of a signal, and by how much it changes with the signal: from zero in the floor to one
+    /// above it.
+    fn received(&self, signal: T) -> (T, T) {
+        let (level, share) = match self.floor {
+            Some(floor) => above(floor, signal),
+            None => (signal, T::ONE),
+        };
+        match self.ceiling {
+            Some(ceiling) if level > ceiling => (ceiling, T::ZERO),
+            _ => (level, share),
+        }
+    }
 }
 
 /// Normal equations of a step.
@@ -119,13 +157,7 @@ impl<T: Scalar> Seen<T> {
         for (slope, parameter) in row.slopes.iter().zip(parameters).take(used) {
             signal += *slope * *parameter;
         }
-        let (mut level, mut share) = match supposition.floor {
-            Some(floor) => above(floor, signal),
-            None => (signal, T::ONE),
-        };
-        if let Some(ceiling) = supposition.ceiling.filter(|ceiling| level > *ceiling) {
-            (level, share) = (ceiling, T::ZERO);
-        }
+        let (level, share) = supposition.received(signal);
         let scale = share * supposition.scale;
         let variance = scale * scale + T::from_f64(WAVERING_DB * WAVERING_DB);
         let error = (row.level - level).clamp(-T::from_f64(150.0), T::from_f64(150.0));

@@ -4,7 +4,7 @@ use super::{EXPONENT, LEVEL_DB, MOST, Pattern, REFERENCE_M};
 use crate::{LevelPrior, Measurement};
 
 /// Spread of a coefficient of the pattern, dB.
-const PATTERN_DB: f64 = 2.0;
+pub(super) const PATTERN_DB: f64 = 2.0;
 /// √15, √5: they make harmonics whose mean square over all directions is one.
 const ROOTS: [f64; 2] = [3.872_983_346_207_417, 2.236_067_977_499_79];
 
@@ -106,7 +106,7 @@ impl<T: Scalar> Row<T> {
 }
 
 /// Ten times the decimal logarithm, from the natural one.
-fn decibels<T: Scalar>(logarithm: T) -> T {
+pub(super) fn decibels<T: Scalar>(logarithm: T) -> T {
     logarithm * T::from_f64(10.0 / core::f64::consts::LN_10)
 }
 

@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use kestirim_scalar::{Q16_16, Scalar};
 
-use super::{OpenGround, SUPPOSITIONS, ceiling, quantile};
+use super::{OpenGround, Pattern, SUPPOSITIONS, Supposition, ceiling, quantile};
 use crate::{LevelPrior, Measurement};
 
 const TRUTH: [f64; 2] = [30.0, -20.0];
@@ -70,6 +70,41 @@ fn a_known_level_tells_the_exponent_and_evidence_falls_where_it_is_wrong() {
     let (right, wrong) = (fit(-20.0), fit(-50.0));
     assert!((right.exponent - 2.0).abs() < 0.05 && (right.level + 20.0).abs() < 1.0, "{right:?}");
     assert!(right.log_evidence > wrong.log_evidence + 5.0, "{right:?} {wrong:?}");
+}
+
+/// A clean flight says what is measured elsewhere, a floor and a ceiling bound it.
+fn foretold<T: Scalar>() {
+    let flight = flight::<T>(2.0, |level| level);
+    let channel = OpenGround::new(None);
+    let isotropic = channel.suppositions(&flight)[0];
+    let fit = channel.fit(&flight, TRUTH.map(T::from_f64), &isotropic, T::ONE);
+    let at = |supposition: &Supposition<T>, far: f64| {
+        let waypoint = [TRUTH[0] + far, TRUTH[1]].map(T::from_f64);
+        let place = TRUTH.map(T::from_f64);
+        let (level, sigma) = fit.expected(supposition, place, waypoint, T::from_f64(40.0));
+        (level.to_f64(), sigma.to_f64())
+    };
+    for far in [10.0, 100.0, 300.0_f64] {
+        let known = -20.0 - 20.0 * far.hypot(40.0).log10();
+        let (level, sigma) = at(&isotropic, far);
+        assert!((level - known).abs() < 1.0, "{far}: {level} {known}");
+        // A scale of 1.2 dB with ν = 4, and 1.7 dB.
+        assert!((sigma - (2.0_f64 * 1.2 * 1.2 + 1.7 * 1.7).sqrt()).abs() < 0.01, "{sigma}");
+    }
+    let tilted = Supposition { pattern: Pattern::Tilted, ..isotropic };
+    assert!(at(&tilted, 100.0).1 > 4.4, "an unknown pattern is noise");
+    let floor = Supposition { floor: Some(T::from_f64(-50.0)), ..isotropic };
+    let (level, sigma) = at(&floor, 300.0);
+    assert!((level + 50.0).abs() < 0.3 && sigma < 1.8, "drowned: {level} ± {sigma}");
+    let ceiling = Supposition { ceiling: Some(T::from_f64(-60.0)), ..isotropic };
+    assert!((at(&ceiling, 0.0).0 + 60.0).abs() < 0.01, "saturated");
+}
+
+#[test]
+fn a_further_measurement_is_foretold() {
+    foretold::<f32>();
+    foretold::<f64>();
+    foretold::<Q16_16>();
 }
 
 #[test]

@@ -94,6 +94,7 @@ class _UserTrack(TypedDict):
     level: _Floats
     health: _Codes
     measurements: int
+    next_waypoint: Optional[tuple[float, float, float, float]]
     reasons: tuple[str, ...]
 
 class _UavModel(TypedDict):
@@ -257,6 +258,7 @@ def drone(
     area: Optional[_Floats],
     environment: Optional[str],
     frequency: float,
+    window: Optional[float],
     every: bool,
 ) -> _UserTrack: ...
 def uav_model(name: str) -> _UavModel: ...

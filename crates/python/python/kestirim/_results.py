@@ -185,6 +185,9 @@ class UserTrack(Frame):
     """(m,) values of `Health`."""
     measurements: int
     """How many were used."""
+    next_waypoint: Optional[tuple[float, float, float, float]]
+    """Where one more measurement is expected to tell most: x, y, height (m), and the sigma (m) that is expected after it; None
+    among buildings."""
     reasons: tuple[str, ...]
     """Why the last estimate is not good, in words; empty if it is."""
 

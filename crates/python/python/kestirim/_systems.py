@@ -194,6 +194,7 @@ def drone(
     area: Optional[npt.ArrayLike] = None,
     environment: Literal["open", "suburban", "urban", "dense-urban", "high-rise"] = "open",
     frequency: float = 2e9,
+    window: Optional[float] = None,
     every: bool = True,
 ) -> UserTrack:
     """Where the user of a drone is, from path losses or levels alone.
@@ -204,6 +205,7 @@ def drone(
     area: (k, 2) m, the corners of where the user can be, one after the other; else up to 500 m beyond the flight.
     environment: what is built on the ground; "open" is nothing.
     frequency: Hz, of path losses; what an environment adds to free space is that of 2e9.
+    window: s; measurements of so long count, for a user who moves; None: all.
     every: an estimate after each measurement; else one, after the last.
 
     The same as `host-sim replay drone`, to the bit.
@@ -223,6 +225,7 @@ def drone(
         maybe_floats("area", area, "k", 2),
         None if environment == "open" else environment,
         frequency,
+        window,
         every,
     )
     return UserTrack(**results)

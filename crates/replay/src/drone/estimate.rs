@@ -13,15 +13,28 @@ pub struct Estimate {
     pub level_db: Option<f64>,
     /// Whether the 90 % region holds the true place, if that is known.
     pub covered: Option<bool>,
+    /// Where one more measurement is expected to tell most, of the last estimate over open ground.
+    pub next: Option<Next>,
     /// All that is believed of the place, if that is wanted.
     pub cloud: Option<Cloud>,
+}
+
+/// Where to measure next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Next {
+    /// As x and y of the measurements, m.
+    pub place: [f64; 2],
+    /// Height above the user, m.
+    pub height: f64,
+    /// The deviation that is expected after one measurement there, m.
+    pub sd_m: f64,
 }
 
 impl Estimate {
     /// The mean of all that is believed.
     pub fn of_cloud(stop: usize, cloud: Cloud) -> Self {
         let (place, sd_m) = (cloud.mean, cloud.spread());
-        Self { stop, place, sd_m, level_db: None, covered: None, cloud: Some(cloud) }
+        Self { stop, place, sd_m, level_db: None, covered: None, next: None, cloud: Some(cloud) }
     }
 
     /// Effective number of particles or points, if it is known.

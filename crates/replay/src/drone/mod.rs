@@ -10,6 +10,7 @@ mod error;
 mod estimate;
 mod flight;
 mod misfit;
+mod moving;
 mod open_ground;
 mod search;
 mod trace;
@@ -18,11 +19,11 @@ pub use self::check::check;
 pub use self::cloud::Cloud;
 pub use self::density::Region;
 pub use self::error::Error;
-pub use self::estimate::Estimate;
+pub use self::estimate::{Estimate, Next};
 pub use self::flight::{
     Area, EnvironmentKind, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M, level_step, wavelength_m,
 };
 pub use self::misfit::Misfit;
 pub use self::open_ground::{MOST_DRAWN, MOST_PLACES, POINTS_OPEN};
 pub use self::search::{BEYOND_M, MOST, POINTS, Search, level_prior, thinned};
-pub use self::trace::{Flown, Track};
+pub use self::trace::{Flown, Other, Track};

@@ -1,10 +1,11 @@
 //! Over open ground, through a channel of which nothing is known.
 
 use kestirim_air_to_ground::OpenGround;
-use kestirim_user_locator::GroundSearch;
+use kestirim_user_locator::{GroundEstimate, GroundSearch, Informative, Waypoint};
 use rayon::prelude::*;
 
-use super::{Cloud, Estimate, MOST_CORNERS, Quantity, Search, level_prior};
+use super::{Cloud, Estimate, MOST_CORNERS, Next, Quantity, Search, level_prior};
+use crate::metrics::median;
 
 /// Places of a flight that are told apart.
 pub const MOST_PLACES: usize = 120;
@@ -51,7 +52,9 @@ impl Search<'_> {
         quantity: Quantity,
     ) -> Option<Estimate> {
         let found = search.estimate::<POINTS>().ok()?;
-        let covered = self.truth.map(|truth| search.credible(&found, self.inward(truth), 0.9));
+        let truth = self.truth.get(stop);
+        let covered = truth.map(|truth| search.credible(&found, self.inward(*truth), 0.9));
+        let next = (stop + 1 == self.stops.len()).then(|| self.next(search, &found)).flatten();
         let cloud =
             self.with_clouds.then(|| Cloud::of_lattice(&found.posterior).moved(self.origin));
         Some(Estimate {
@@ -60,7 +63,20 @@ impl Search<'_> {
             sd_m: found.sigma,
             level_db: (quantity == Quantity::Level).then_some(found.fit.level),
             covered,
+            next,
             cloud,
         })
+    }
+
+    /// Where to measure next, as high as usually.
+    fn next<const POINTS: usize>(
+        &self,
+        search: &Ground,
+        found: &GroundEstimate<f64, POINTS>,
+    ) -> Option<Next> {
+        let heights: Vec<f64> = self.stops.iter().map(|stop| stop.height).collect();
+        let Informative { waypoint: Waypoint { place, height }, left } =
+            search.next_waypoint(found, median(&heights))?;
+        Some(Next { place: self.outward(place), height, sd_m: left * found.sigma })
     }
 }

@@ -55,13 +55,16 @@ pub struct Search<'a> {
     /// Coordinates are counted from here, so that they stay small.
     pub(super) origin: [f64; 2],
     pub(super) area: Box<Area>,
-    pub(super) truth: Option<[f64; 2]>,
+    /// Where the user really was at each measurement; empty if nobody knows.
+    pub(super) truth: &'a [[f64; 2]],
     /// How many estimates are wanted at the most, the last among them, where each takes long.
     pub(super) most: usize,
     /// Whether all that is believed is wanted.
     pub(super) with_clouds: bool,
     /// Of what the transmitter sends, m.
     pub(super) wavelength_m: f64,
+    /// Measurements of so many seconds count, if not all do.
+    pub(super) window_s: Option<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -72,7 +75,7 @@ impl<'a> Search<'a> {
     pub fn new(
         stops: &'a [Stop],
         area: Option<&Area>,
-        truth: Option<[f64; 2]>,
+        truth: &'a [[f64; 2]],
         most: usize,
         with_clouds: bool,
     ) -> Result<Self, Error> {
@@ -85,7 +88,7 @@ impl<'a> Search<'a> {
         };
         let area = Box::new(area);
         let wavelength_m = WAVELENGTH_M;
-        Ok(Self { stops, origin, area, truth, most, with_clouds, wavelength_m })
+        Ok(Self { stops, origin, area, truth, most, with_clouds, wavelength_m, window_s: None })
     }
 
     /// The same at another wavelength than that of 2 GHz, m.
@@ -93,10 +96,16 @@ impl<'a> Search<'a> {
         Self { wavelength_m, ..self }
     }
 
+    /// The same from the measurements of the last `window_s` seconds alone, for a user who moves.
+    pub fn within(self, window_s: Option<f64>) -> Self {
+        Self { window_s, ..self }
+    }
+
     /// Where the user is after each measurement that some place explains: through the channel of an environment, or
-    /// over open ground if there is none.
+    /// over open ground if there is none. If only those of some seconds count, after as many as are wanted at the most.
     pub fn find(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Vec<Estimate> {
         match environment {
+            _ if self.window_s.is_some() => self.while_moving(environment, quantity),
             None => self.over_open_ground(quantity),
             Some(environment) => self.among_buildings(environment, quantity),
         }
@@ -183,8 +192,8 @@ impl<'a> Search<'a> {
             let moments = locator.moments();
             let (mean, deviation) = (moments.mean(), moments.deviation());
             let last = number + 1 == self.stops.len();
-            let covered =
-                self.truth.filter(|_| last).and_then(|truth| self.covered(&locator, truth));
+            let truth = self.truth.get(number).filter(|_| last);
+            let covered = truth.and_then(|truth| self.covered(&locator, *truth));
             estimates.push(Estimate {
                 stop: number,
                 place: self.outward([mean[0], mean[1]]),
@@ -192,6 +201,7 @@ impl<'a> Search<'a> {
                 // A level received is the negative loss: the more the transmitter sends, the less.
                 level_db: mean.get(2).map(|loss| -loss),
                 covered,
+                next: None,
                 cloud: self
                     .with_clouds
                     .then(|| Cloud::of_lattice(locator.posterior()).moved(self.origin)),

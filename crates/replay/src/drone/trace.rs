@@ -28,6 +28,24 @@ impl Flown {
     }
 }
 
+/// Another transmitter that was heard.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Other {
+    /// As the log names it.
+    pub name: String,
+    /// Where it is after the last measurement; none if no place explains them, and of fewer than three.
+    pub estimate: Option<Estimate>,
+    /// Where it really was then, if anybody knows.
+    pub truth: Option<[f64; 2]>,
+}
+
+impl Other {
+    /// Distance of the estimate from the truth, if anybody knows it, m.
+    pub fn error_m(&self) -> Option<f64> {
+        Some(distance(self.estimate.as_ref()?.place, self.truth?))
+    }
+}
+
 /// What was measured, and where the user is after each measurement that some place explains.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Track {
@@ -41,6 +59,8 @@ pub struct Track {
     pub warnings: Vec<String>,
     /// Of a synthetic drone.
     pub flown: Option<Flown>,
+    /// Other transmitters that were heard on the same flight.
+    pub others: Vec<Other>,
 }
 
 impl Track {

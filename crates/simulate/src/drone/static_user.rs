@@ -162,6 +162,7 @@ impl<'a> Flight<'a> {
             estimates,
             warnings: Vec::new(),
             flown: Some(Flown { path_m, climb_m: 0.0, hover_s }),
+            others: Vec::new(),
         }
     }
 }

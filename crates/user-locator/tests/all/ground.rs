@@ -7,15 +7,15 @@ use kestirim_user_locator::{Area, Error, GroundSearch, Health};
 use rand_core::{Rng, SeedableRng};
 
 /// Chance, in double precision.
-struct Chance(Xoshiro128PlusPlus);
+pub(crate) struct Chance(pub(crate) Xoshiro128PlusPlus);
 
 impl Chance {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * f64::from(self.0.next_u32()) / 4_294_967_296.0
     }
 
     /// Of mean 0 and variance 1 (Box and Muller).
-    fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.between(0.0, 1.0)).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.between(0.0, 1.0)).cos()
     }
@@ -78,12 +78,12 @@ fn path(chance: &mut Chance) -> Vec<[f64; 2]> {
 }
 
 /// Gain of a dipole with an axis, some of whose null is filled, dB.
-fn dipole(sight: [f64; 3], axis: [f64; 3], fill: f64) -> f64 {
+pub(crate) fn dipole(sight: [f64; 3], axis: [f64; 3], fill: f64) -> f64 {
     let cosine: f64 = sight.iter().zip(axis).map(|(a, b)| a * b).sum();
     10.0 * ((1.0 - cosine * cosine) * (1.0 - fill) + fill).log10()
 }
 
-fn axis(chance: &mut Chance) -> [f64; 3] {
+pub(crate) fn axis(chance: &mut Chance) -> [f64; 3] {
     let axis = [(); 3].map(|()| chance.normal());
     let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
     axis.map(|part| part / length)

@@ -3,3 +3,4 @@
 mod area;
 mod ground;
 mod users;
+mod waypoint;

@@ -2,17 +2,21 @@
 
 mod accuracy;
 
-use kestirim_replay::drone::{EnvironmentKind, Estimate, Misfit, Quantity, Track, level_step};
+use kestirim_replay::drone::{
+    EnvironmentKind, Estimate, Misfit, Next, Other, Quantity, Track, level_step,
+};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Drone;
 use super::recording::Recording;
+use super::recording::plane::Origin;
 use super::settings::expected_loss_db;
 use crate::Error;
 use crate::metrics::mean;
 use crate::system::{Account, HealthState, Reason, Settings, System, Table};
 use crate::table::Found;
+use crate::text::printable;
 
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
@@ -27,6 +31,12 @@ struct Report {
     /// Where the level was not known, what the transmitter sends, dB (received level = this − path loss); over
     /// open ground what is received at one metre.
     level_db: Option<f64>,
+    /// Where one more measurement is expected to tell most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    next_waypoint: Option<NextWaypoint>,
+    /// Other transmitters of the same flight.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    others: Vec<OtherUser>,
     /// How the log was understood.
     import: Vec<String>,
     warnings: Vec<String>,
@@ -48,6 +58,61 @@ struct Place {
     longitude: Option<f64>,
 }
 
+impl Place {
+    fn of([x, y]: [f64; 2], origin: Option<Origin>) -> Self {
+        let degrees = origin.map(|origin| origin.degrees([x, y]));
+        Self { x, y, latitude: degrees.map(|it| it[0]), longitude: degrees.map(|it| it[1]) }
+    }
+}
+
+/// Where to measure next.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct NextWaypoint {
+    #[serde(flatten)]
+    place: Place,
+    height_m: f64,
+    /// The deviation that is expected after that, m.
+    sd_m: f64,
+}
+
+/// Another transmitter.
+#[derive(Debug, Clone, Serialize)]
+struct OtherUser {
+    name: String,
+    /// None if no place explains what was heard, or too little was.
+    estimate: Option<Place>,
+    sd_m: Option<f64>,
+    /// If the truth is known.
+    error_m: Option<f64>,
+}
+
+impl OtherUser {
+    fn of(other: &Other, origin: Option<Origin>) -> Self {
+        let estimate = other.estimate.as_ref();
+        Self {
+            name: other.name.clone(),
+            estimate: estimate.map(|estimate| Place::of(estimate.place, origin)),
+            sd_m: estimate.map(|estimate| estimate.sd_m),
+            error_m: other.error_m(),
+        }
+    }
+
+    fn in_words(&self) -> String {
+        let (Some(Place { x, y, .. }), Some(sd_m)) = (&self.estimate, self.sd_m) else {
+            return "not found".to_owned();
+        };
+        let error = self.error_m.map_or(String::new(), |error| format!(", error {error:.1} m"));
+        format!("{x:.1} m, {y:.1} m, ± {sd_m:.1} m{error}")
+    }
+}
+
+/// Name and words of where to measure next.
+pub(super) fn next_in_words(next: Next) -> (String, String) {
+    let Next { place: [x, y], height, sd_m } = next;
+    let words = format!("{x:.0} m, {y:.0} m, {height:.0} m high: ± {sd_m:.0} m expected then");
+    ("measure next at".to_owned(), words)
+}
+
 /// What came of a flight up to the measurement that is shown.
 pub(super) fn account(
     recording: &Recording,
@@ -64,18 +129,20 @@ pub(super) fn account(
         Recording::Flight(recorded) => (recorded.found.clone(), recorded.flight.origin),
         Recording::Moving | Recording::Staying => (Found::default(), None),
     };
-    let degrees = origin.map(|origin| origin.degrees([x, y]));
+    let estimate = Place::of([x, y], origin);
+    let next = shown.next.filter(|_| is_last);
     let report = Report {
         system: Drone::NAME,
         measurements: if is_last { track.stops.len() } else { shown.stop + 1 },
-        estimate: Place {
-            x,
-            y,
-            latitude: degrees.map(|it| it[0]),
-            longitude: degrees.map(|it| it[1]),
-        },
+        estimate,
         sd_m: shown.sd_m,
         level_db: shown.level_db,
+        next_waypoint: next.map(|Next { place, height, sd_m }| NextWaypoint {
+            place: Place::of(place, origin),
+            height_m: height,
+            sd_m,
+        }),
+        others: track.others.iter().map(|other| OtherUser::of(other, origin)).collect(),
         import: found.import.clone(),
         warnings: found.warnings.iter().chain(&track.warnings).cloned().collect(),
         accuracy,
@@ -84,7 +151,7 @@ pub(super) fn account(
     account.understood(&report.import);
     account.fact("measurements", report.measurements.to_string());
     account.fact("place", format!("{x:.1} m, {y:.1} m"));
-    if let Some([latitude, longitude]) = degrees {
+    if let Some((latitude, longitude)) = estimate.latitude.zip(estimate.longitude) {
         account.fact("latitude, longitude", format!("{latitude:.6}°, {longitude:.6}°"));
     }
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
@@ -115,6 +182,12 @@ pub(super) fn account(
             }
             for (name, value) in report.accuracy.iter().flat_map(Accuracy::in_words) {
                 account.fact(name, value);
+            }
+            if let Some((name, value)) = next.map(next_in_words) {
+                account.fact(name, value);
+            }
+            for other in &report.others {
+                account.fact(format!("transmitter {}", printable(&other.name)), other.in_words());
             }
         }
         Recording::Moving | Recording::Staying => {

@@ -97,6 +97,13 @@ impl Drawing<'_> {
             figure = cloud::on(figure, cloud);
         }
         let user = track.user(shown).into_iter();
+        let next = shown.next.map(|next| {
+            marked("next waypoint", next.place, "measure here".to_owned(), Colour::Other(2))
+        });
+        let others = track.others.iter().filter_map(|other| {
+            let name = format!("transmitter {}", other.name);
+            Some(marked(&name, other.estimate.as_ref()?.place, other.name.clone(), Colour::Ours))
+        });
         let estimates = so_far.iter().map(|estimate| estimate.place);
         figure
             .with(flown.timed(stops.iter().map(|it| it.t - begin)).coloured(Colour::Other(1)))
@@ -115,6 +122,8 @@ impl Drawing<'_> {
             ))
             .with_all(user.map(|user| marked("user now", user, "user".to_owned(), Colour::Alarm)))
             .with(marked("estimate now", shown.place, String::new(), Colour::Ours))
+            .with_all(next)
+            .with_all(others)
     }
 
     /// A value after each measurement, with its name.

@@ -47,7 +47,8 @@ impl System for Drone {
         .imported(),
         FileField::optional(
             "truth",
-            "Where the user really is: CSV with columns x,y and one line (m); serves accuracy alone",
+            "Where the user really is: CSV with columns x,y and one line (m), of a user who moves t,x,y, of several user,x,y; serves \
+             accuracy alone",
         ),
         FileField::optional(
             "area",
@@ -89,7 +90,7 @@ impl System for Drone {
                 let options = files.reading.tables();
                 options.is_ok_and(|options| recording::flight::read(path, options).is_ok())
             }
-            "truth" => recording::flight::read_truth(path, None).is_ok(),
+            "truth" => recording::truth::Truth::read(path, None).is_ok(),
             _ => recording::area::read(path, None).is_ok(),
         }
     }

@@ -4,7 +4,7 @@ use kestirim_replay::drone::{Area, Estimate, MOST, Misfit, Quantity, Search, Sto
 use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
-use super::account::in_words;
+use super::account::{in_words, next_in_words};
 use super::recording::area;
 use super::settings::{built, channel, wavelength_m};
 use crate::Error;
@@ -64,8 +64,9 @@ impl Listener {
             return None;
         }
         let Listening { area, settings } = &self.plan;
-        let search = Search::new(stops, area.as_deref(), None, 1, false).ok()?;
-        search.at_wavelength(wavelength_m(settings)).find(built(settings), Quantity::PathLoss).pop()
+        let search = Search::new(stops, area.as_deref(), &[], 1, false).ok()?;
+        let search = search.at_wavelength(wavelength_m(settings)).within(settings.number("window"));
+        search.find(built(settings), Quantity::PathLoss).pop()
     }
 }
 
@@ -101,8 +102,10 @@ impl Online for Listener {
     }
 
     fn facts(&self) -> Vec<(String, String)> {
-        let found = self.found.iter();
-        found.map(|it| ("standard deviation".to_owned(), format!("{:.0} m", it.sd_m))).collect()
+        let Some(found) = &self.found else { return Vec::new() };
+        let mut facts = vec![("standard deviation".to_owned(), format!("{:.0} m", found.sd_m))];
+        facts.extend(found.next.map(next_in_words));
+        facts
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -3,6 +3,7 @@
 pub mod area;
 pub mod flight;
 pub mod plane;
+pub mod truth;
 mod users;
 
 use std::path::PathBuf;
@@ -10,9 +11,13 @@ use std::path::PathBuf;
 use kestirim_replay::drone::Area;
 
 use self::flight::Flight;
+use self::truth::Truth;
 use crate::Error;
 use crate::system::Files;
 use crate::table::Found;
+
+/// Of fewer measurements a place says nothing.
+pub const FEWEST_STOPS: usize = 3;
 
 /// A recording.
 #[derive(Debug, Clone)]
@@ -34,8 +39,8 @@ pub struct Recorded {
     pub flight: Flight,
     /// Where the user can be.
     pub area: Option<Box<Area>>,
-    /// Where the user really is.
-    pub truth: Option<[f64; 2]>,
+    /// Where users really are.
+    pub truth: Truth,
     /// How the log was read.
     pub found: Found,
 }
@@ -48,11 +53,11 @@ impl Recording {
     pub fn read(files: &Files) -> Result<Self, Error> {
         let log = files.required("log")?;
         let (flight, found) = flight::read(log, files.reading.tables()?)?;
-        let truth =
-            files.one("truth").map(|path| flight::read_truth(path, flight.origin)).transpose()?;
+        let truth = files.one("truth").map(|path| Truth::read(path, flight.origin)).transpose()?;
+        let truth = truth.unwrap_or_default();
         let area = files.one("area").map(|path| area::read(path, flight.origin)).transpose()?;
         let recorded = Recorded { log: log.to_path_buf(), flight, area, truth, found };
-        if recorded.flight.stops.len() < 3 {
+        if recorded.flight.stops.len() < FEWEST_STOPS {
             return Err(recorded.refused(
                 "expected at least three measurements within ±300 dB, from above the ground",
             ));

@@ -61,6 +61,15 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
             2000.0,
         )
         .live(),
+        Setting::number(
+            "window",
+            "Measurements of so many seconds count, for a user who moves [default: all]",
+            "s",
+            [1.0, 86_400.0, 1.0],
+            60.0,
+        )
+        .undecided()
+        .live(),
         Setting::one_of("flight", "What the drone does", &FlightKind::default()),
         filter(),
         resampler(),
@@ -152,7 +161,7 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
     match recording {
         Some(recording) => idle_of(recording, settings, name),
         // Some synthetic user or a recorded flight.
-        None if ["environment", "frequency", "step"].contains(&name) => None,
+        None if ["environment", "frequency", "step", "window"].contains(&name) => None,
         None => synthetic
             .map(|recording| idle_of(recording, settings, name))
             .into_iter()
@@ -176,7 +185,8 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
             is_level
                 .then(|| Idle::implied("levels of unknown offset tell the same at any frequency"))
         }
-        (_, "frequency") => Some(Idle::foreign("is for a recorded flight")),
+        (Recording::Flight(_), "window") => None,
+        (_, "frequency" | "window") => Some(Idle::foreign("is for a recorded flight")),
         (_, "environment") => {
             let is_open = settings.is_given(name) && settings.choice(name) == OPEN;
             is_open.then(|| Idle::foreign("open is for a recorded flight"))

@@ -1,3 +1,5 @@
+mod users;
+
 use kestirim_replay::drone::{EnvironmentKind, Quantity, Stop, wavelength_m};
 use kestirim_telemetry::{Message, PathLoss};
 use std::fmt::Write as _;
@@ -194,7 +196,7 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
     assert_ne!(points(&first, "map", "particles"), points(&last, "map", "particles"));
     assert!(points(&last, "error", "error")[11].1 < 60.0);
     let all = opened.settings().len();
-    assert_eq!(disabled(&last).len() + 2, all, "step and environment are all that acts");
+    assert_eq!(disabled(&last).len() + 3, all, "step, environment and window are all that act");
     fs::write(&log, "t,x,y,h,rssi_db\n0,0,0,40,-60\n").unwrap();
     let refusal = open(&files).err().unwrap().to_string();
     assert!(refusal.contains("at least three measurements"), "{refusal}");
@@ -272,13 +274,12 @@ fn settings_are_refused_only_where_no_recording_has_them() {
 #[test]
 fn firmware_says_which_filter_and_what_differs() {
     let flight = |quantity| {
-        let flight =
-            recording::flight::Flight { quantity, stops: Vec::new(), unusable: 0, origin: None };
+        let flight = recording::flight::Flight::new(quantity);
         let recorded = recording::Recorded {
             log: "a.csv".into(),
             flight,
             area: None,
-            truth: None,
+            truth: recording::truth::Truth::default(),
             found: Found::default(),
         };
         Recording::Flight(Box::new(recorded))

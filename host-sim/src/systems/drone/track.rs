@@ -1,10 +1,12 @@
 //! Feeds a flight to the filters, recorded or synthetic.
 
 use kestirim_replay::drone::{
-    Area, BEYOND_M, EnvironmentKind, MOST_DRAWN, Search, Stop, Track, thinned,
+    Area, BEYOND_M, EnvironmentKind, MOST_DRAWN, Other, Search, Stop, Track, thinned,
 };
+use rayon::prelude::*;
 
-use super::recording::{Recorded, Recording};
+use super::recording::flight::Heard;
+use super::recording::{FEWEST_STOPS, Recorded, Recording};
 use super::settings::{built, filter_of, geometry, walk, wavelength_m};
 use super::simulate::{moving_user, static_user};
 use crate::Error;
@@ -36,31 +38,52 @@ pub(super) fn track(
     }
 }
 
-/// Finds the user of a recorded flight.
+/// Finds the users of a recorded flight.
 fn find(recorded: &Recorded, settings: &Settings, detail: Detail) -> Result<Track, Error> {
     let Recorded { flight, truth, area, .. } = recorded;
     let environment = built(settings);
-    let area = area.as_deref();
     let (stops, mut warnings) = used(recorded, environment);
+    let name = flight.transmitter.as_deref();
+    let truth = stops.iter().map(|stop| truth.of(name, stop.t)).collect::<Option<Vec<_>>>();
+    let truth = truth.unwrap_or_default();
     // What comes in between takes as long as the end, each time.
-    let most = match (detail, truth) {
-        (Detail::Every, _) => MOST_DRAWN,
-        (Detail::Result, Some(_)) => MOST_JUDGED,
-        (Detail::Result, None) => 1,
+    let most = match detail {
+        Detail::Every => MOST_DRAWN,
+        Detail::Result if truth.is_empty() => 1,
+        Detail::Result => MOST_JUDGED,
     };
-    let search = Search::new(&stops, area, *truth, most, detail == Detail::Every);
+    let search = Search::new(&stops, area.as_deref(), &truth, most, detail == Detail::Every);
     let search = search.map_err(|error| recorded.refused(&error.to_string()))?;
-    let search = search.at_wavelength(wavelength_m(settings));
+    let window_s = settings.number("window");
+    let search = search.at_wavelength(wavelength_m(settings)).within(window_s);
     let estimates = search.find(environment, flight.quantity);
     if estimates.is_empty() {
         return Err(recorded.refused("no place explains the measurements"));
     }
-    // Over open ground every measurement counts, and there is an estimate after one in several.
-    if environment.is_some() && estimates.len() < stops.len() {
+    // Over open ground, and of a window, there is an estimate after one measurement in several.
+    if environment.is_some() && window_s.is_none() && estimates.len() < stops.len() {
         warnings.push("some measurements are explained by no place: left out".to_owned());
     }
-    let truth = truth.map_or_else(Vec::new, |truth| vec![truth; stops.len()]);
-    Ok(Track { stops, truth, estimates, warnings, flown: None })
+    if let Some(apart) = search.moved(environment, flight.quantity) {
+        warnings.push(format!(
+            "both halves of the flight place the user {apart:.0} m apart: one who moves needs --window"
+        ));
+    }
+    let others = flight.others.par_iter().map(|heard| other(heard, recorded, settings)).collect();
+    Ok(Track { stops, truth, estimates, warnings, flown: None, others })
+}
+
+/// Finds another transmitter of a recorded flight.
+fn other(heard: &Heard, recorded: &Recorded, settings: &Settings) -> Other {
+    let environment = built(settings);
+    let stops = thinned(&heard.stops, environment);
+    let truth = stops.last().and_then(|stop| recorded.truth.of(Some(&heard.name), stop.t));
+    let search = Search::new(&stops, recorded.area.as_deref(), &[], 1, false).ok();
+    let estimate = search.filter(|_| stops.len() >= FEWEST_STOPS).and_then(|search| {
+        let search = search.at_wavelength(wavelength_m(settings));
+        search.within(settings.number("window")).find(environment, recorded.flight.quantity).pop()
+    });
+    Other { name: heard.name.clone(), estimate, truth }
 }
 
 /// As many measurements as can be remembered, and what a reader should know.

@@ -1,8 +1,8 @@
 //! Everything of `kestirim-air-to-ground`.
 
 use kestirim_air_to_ground::{
-    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement, OpenGround,
-    PathLoss, Propagation, Rotor,
+    Channel, Contaminated, Environment, FreeSpace, GroundFit, LevelPrior, Likelihood, Measurement,
+    OpenGround, PathLoss, Propagation, Rotor,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 
@@ -64,7 +64,8 @@ fn open_ground<T: Scalar>() {
     let channel = any(OpenGround::<T>::new(prior));
     let suppositions = any(OpenGround::suppositions(&channel, measurements));
     if let Some(supposition) = slice(&suppositions).first() {
-        keep(OpenGround::fit(&channel, measurements, numbers(), supposition, number()));
+        let fit = any(OpenGround::fit(&channel, measurements, numbers(), supposition, number()));
+        keep(GroundFit::expected(&fit, supposition, numbers(), numbers(), number()));
     }
     let (place, power, all) = (numbers(), number(), slice(&suppositions));
     let told = |index: usize, log: T| keep((index, log));

@@ -156,6 +156,7 @@ fn grounds<T: Scalar, const N: usize, const L: usize>(area: Area<T, N>) -> Optio
     keep(GroundSearch::area(&search));
     let estimate = any(GroundSearch::estimate::<L>(&search)).ok()?;
     keep(GroundSearch::credible(&search, &estimate, numbers(), number()));
+    keep(GroundSearch::next_waypoint(&search, &estimate, number()));
     keep(GroundSearch::health(&search, &estimate));
     Some(())
 }

@@ -18,16 +18,29 @@ pub struct Flight {
     pub quantity: Quantity,
     /// In the order of their times.
     pub stops: Vec<Stop>,
+    /// Of whom, if the log says it.
+    pub transmitter: Option<String>,
+    /// Of other transmitters, of which nobody said that they are not looked for.
+    pub others: Vec<Heard>,
     /// Rows that no channel can use: without height, or a loss that no radio measures.
     pub unusable: usize,
     /// Where the plane touches the Earth, if places were read by latitude and longitude.
     pub origin: Option<Origin>,
 }
 
+/// What was heard of a transmitter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heard {
+    /// As the log names it.
+    pub name: String,
+    /// In the order of their times.
+    pub stops: Vec<Stop>,
+}
+
 /// From stop to stop it takes so long, s.
 const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
 /// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP. Of
-/// several transmitters, which a column user names, the one that `--topic` says.
+/// several transmitters, which a column user names, `--topic` says which one is meant, or all are.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
@@ -37,8 +50,7 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     if let Some(levels) = levels {
         return Ok(of_levels(levels));
     }
-    let mut flight =
-        Flight { quantity: Quantity::PathLoss, stops: Vec::new(), unusable: 0, origin: None };
+    let mut flight = Flight::new(Quantity::PathLoss);
     let mut users = Users::new(options.topic.as_deref());
     let mut found = table::parse(
         path,
@@ -59,26 +71,29 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
                 Quantity::PathLoss => row.number("path_loss_db", value)?,
                 Quantity::Level => -row.number("rssi_db", value)?,
             };
-            if user.is_some_and(|user| !users.hear(&row.text(user))) {
-                return Ok(());
-            }
             let stop = Stop { t, place, height, loss };
-            if stop.is_usable() {
-                flight.stops.push(stop);
-            } else {
-                flight.unusable += 1;
-            }
+            let is_usable = stop.is_usable();
+            let name = user.map(|user| row.text(user)).unwrap_or_default();
+            let is_meant = users.hear(&name, stop, is_usable);
+            flight.unusable += usize::from(is_meant && !is_usable);
             Ok(())
         },
     )?;
-    found.import.extend(users.decided(path)?);
-    flight.stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+    found.import.extend(users.decide(path, &mut flight)?);
     Ok((flight, found))
+}
+
+impl Flight {
+    /// Of nothing measured.
+    pub fn new(quantity: Quantity) -> Self {
+        let (stops, others) = (Vec::new(), Vec::new());
+        Self { quantity, stops, transmitter: None, others, unusable: 0, origin: None }
+    }
 }
 
 fn of_levels(levels: levels::Levels) -> (Flight, Found) {
     let quantity = if levels.are_losses { Quantity::PathLoss } else { Quantity::Level };
-    let mut flight = Flight { quantity, stops: Vec::new(), unusable: 0, origin: None };
+    let mut flight = Flight::new(quantity);
     for heard in levels.heard {
         let loss = if levels.are_losses { heard.level } else { -heard.level };
         let place = Origin::place(&mut flight.origin, heard.latitude, heard.longitude);
@@ -99,25 +114,4 @@ fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity, Option
         return Ok((places, columns, Quantity::PathLoss, user));
     }
     Ok((places, header.require(["t", "h", "rssi_db"])?, Quantity::Level, user))
-}
-
-/// Reads the user's true place: columns x,y or lat,lon as in the log, one line.
-///
-/// # Errors
-/// The file, the line, and what was expected there.
-pub fn read_truth(path: &Path, mut origin: Option<Origin>) -> Result<[f64; 2], Error> {
-    let mut places = Vec::new();
-    table::read(
-        path,
-        "the user's place",
-        move |header| Places::find(header)?.as_in_log(header, origin),
-        |columns, row| {
-            if !places.is_empty() {
-                return Err(row.line.error("expected one place, found a second one"));
-            }
-            places.push(columns.read(row, &mut origin)?);
-            Ok(())
-        },
-    )?;
-    Ok(places.first().copied().unwrap_or_default())
 }

@@ -1,17 +1,20 @@
 //! Which of several transmitters is looked for.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use kestirim_replay::drone::Stop;
+
+use super::flight::{Flight, Heard};
 use crate::Error;
 use crate::text::{listed, printable};
 
-/// The transmitters that a log names.
+/// The transmitters that a log names, and what was heard of each.
 #[derive(Debug)]
 pub(super) struct Users<'a> {
     /// The one that is looked for, if anybody says it.
     wanted: Option<&'a str>,
-    heard: BTreeSet<String>,
+    heard: BTreeMap<String, Vec<Stop>>,
 }
 
 /// So many are named in a complaint.
@@ -20,45 +23,89 @@ const MOST_NAMED: usize = 4;
 impl<'a> Users<'a> {
     /// None was heard yet.
     pub(super) fn new(wanted: Option<&'a str>) -> Self {
-        Self { wanted, heard: BTreeSet::new() }
+        Self { wanted, heard: BTreeMap::new() }
     }
 
-    /// Keeps a name, if there is one; whether it is the one that is looked for.
-    pub(super) fn hear(&mut self, name: &str) -> bool {
+    /// Keeps a measurement, if it is usable, of the one of this name, which may be nothing; whether it may be looked for.
+    pub(super) fn hear(&mut self, name: &str, stop: Stop, is_usable: bool) -> bool {
         let name = name.trim();
-        if !(name.is_empty() || self.heard.contains(name)) {
-            self.heard.insert(name.to_owned());
+        if !self.heard.contains_key(name) {
+            self.heard.insert(name.to_owned(), Vec::new());
+        }
+        if let Some(stops) = self.heard.get_mut(name)
+            && is_usable
+        {
+            stops.push(stop);
         }
         self.wanted.is_none_or(|wanted| wanted == name)
     }
 
-    /// What is to be told of the choice.
+    /// Gives a flight what was heard: of the transmitter that is wanted, or, of all, of the one that was heard most often, and
+    /// of the others. Answers with what is to be told of the choice.
     ///
     /// # Errors
-    /// [`Error::File`] if it is not known which of several is looked for, or it is none of them.
-    pub(super) fn decided(&self, path: &Path) -> Result<Option<String>, Error> {
+    /// [`Error::File`] if the one that is wanted was not heard.
+    pub(super) fn decide(
+        mut self,
+        path: &Path,
+        flight: &mut Flight,
+    ) -> Result<Option<String>, Error> {
+        // Rows without a name are those of the only one; of several nobody knows whose they are.
+        let unnamed = self.heard.remove("").unwrap_or_default();
         let count = self.heard.len();
-        let names = listed(self.heard.iter().map(String::as_str), MOST_NAMED);
-        let refused = |problem| Err(Error::File { path: path.to_path_buf(), problem });
-        match self.wanted {
-            None if count > 1 => {
-                refused(format!("expected one transmitter, found {names}: --topic says which"))
-            }
-            Some(wanted) if !self.heard.contains(wanted) => {
+        let told = match self.wanted {
+            Some(wanted) => {
+                let Some(stops) = self.heard.remove(wanted) else {
+                    return Err(self.refused(path, wanted));
+                };
+                flight.stops = stops;
+                flight.transmitter = Some(wanted.to_owned());
                 let wanted = printable(wanted);
-                refused(if count == 0 {
-                    format!(
-                        "--topic {wanted}: expected a column user that names transmitters, found none"
-                    )
-                } else {
-                    format!("--topic {wanted}: expected one of the transmitters {names}")
-                })
+                (count > 1).then(|| format!("transmitter {wanted} of {count}, chosen by --topic"))
             }
-            Some(wanted) if count > 1 => {
-                Ok(Some(format!("transmitter {} of {count}, chosen by --topic", printable(wanted))))
+            None if count > 1 => {
+                let most = |(_, a): &(&String, &Vec<Stop>), (_, b): &(&String, &Vec<Stop>)| {
+                    a.len().cmp(&b.len())
+                };
+                // Of several that were heard as often the first.
+                let name = self.heard.iter().rev().max_by(most).map(|(name, _)| name.clone());
+                let name = name.unwrap_or_default();
+                flight.stops = self.heard.remove(&name).unwrap_or_default();
+                flight.unusable += unnamed.len();
+                let heard = self.heard.into_iter();
+                flight.others = heard.map(|(name, stops)| Heard { name, stops }).collect();
+                let told = format!(
+                    "transmitter {} of {count}, heard most often: --topic says another",
+                    printable(&name)
+                );
+                flight.transmitter = Some(name);
+                Some(told)
             }
-            _ => Ok(None),
-        }
+            None => {
+                flight.stops = unnamed;
+                if let Some((name, stops)) = self.heard.pop_first() {
+                    flight.stops.extend(stops);
+                    flight.transmitter = Some(name);
+                }
+                None
+            }
+        };
+        let in_order = |stops: &mut Vec<Stop>| stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+        in_order(&mut flight.stops);
+        flight.others.iter_mut().for_each(|other| in_order(&mut other.stops));
+        Ok(told)
+    }
+
+    /// A complaint about the one that is wanted.
+    fn refused(&self, path: &Path, wanted: &str) -> Error {
+        let names = listed(self.heard.keys().map(String::as_str), MOST_NAMED);
+        let wanted = printable(wanted);
+        let problem = if self.heard.is_empty() {
+            format!("--topic {wanted}: expected a column user that names transmitters, found none")
+        } else {
+            format!("--topic {wanted}: expected one of the transmitters {names}")
+        };
+        Error::File { path: path.to_path_buf(), problem }
     }
 }
 
@@ -88,10 +135,11 @@ mod tests {
             (losses, told),
             (vec![70.0, 71.0, 72.0], vec!["transmitter \"b\" of 2, chosen by --topic".to_owned()])
         );
-        assert_eq!(
-            read(LOG, None).unwrap_err(),
-            "log.csv: expected one transmitter, found \"a\", \"b\": --topic says which"
-        );
+        let (losses, told) = read(&format!("{LOG}3,9,9,40,-73,b\n"), None).unwrap();
+        assert_eq!(losses, [70.0, 71.0, 72.0, 73.0]);
+        assert_eq!(told, ["transmitter \"b\" of 2, heard most often: --topic says another"]);
+        // Of several that were heard as often it is the first.
+        assert_eq!(read(LOG, None).unwrap().0, [50.0, 51.0, 52.0]);
         assert_eq!(
             read(LOG, Some("c")).unwrap_err(),
             "log.csv: --topic \"c\": expected one of the transmitters \"a\", \"b\""

@@ -1,0 +1,63 @@
+//! A user who moves: what was measured long ago says where they were.
+
+use rayon::prelude::*;
+
+use super::{EnvironmentKind, Estimate, Quantity, Search};
+
+/// So many deviations of both apart, two places are not the same.
+const APART: f64 = 3.0;
+/// Of fewer measurements in each half of a flight nothing is said.
+const FEWEST: usize = 8;
+
+impl Search<'_> {
+    /// Estimates from the measurements of the last seconds before each alone.
+    pub(super) fn while_moving(
+        &self,
+        environment: Option<EnvironmentKind>,
+        quantity: Quantity,
+    ) -> Vec<Estimate> {
+        let count = self.stops.len();
+        let stride = count.div_ceil(self.most.max(1));
+        // Counted from the end, so that the last is one of them.
+        let asked: Vec<usize> =
+            (0..count).filter(|number| (count - 1 - number).is_multiple_of(stride)).collect();
+        let find = |last: &usize| {
+            let begin = self.stops[*last].t - self.window_s.unwrap_or(f64::INFINITY);
+            let first = self.stops[..*last].partition_point(|stop| stop.t < begin);
+            self.of_part(first, last + 1, environment, quantity)
+        };
+        asked.par_iter().filter_map(find).collect()
+    }
+
+    /// How far apart (m) both halves of a flight place a user who is taken for one who stays; none if that may be chance.
+    pub fn moved(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Option<f64> {
+        let count = self.stops.len();
+        if count < 2 * FEWEST || self.window_s.is_some() {
+            return None;
+        }
+        let before = self.of_part(0, count / 2, environment, quantity)?;
+        let after = self.of_part(count / 2, count, environment, quantity)?;
+        let apart = crate::metrics::distance(before.place, after.place);
+        (apart > APART * before.sd_m.hypot(after.sd_m)).then_some(apart)
+    }
+
+    /// The last estimate from some of the measurements.
+    fn of_part(
+        &self,
+        first: usize,
+        end: usize,
+        environment: Option<EnvironmentKind>,
+        quantity: Quantity,
+    ) -> Option<Estimate> {
+        let search = Search {
+            stops: self.stops.get(first..end)?,
+            truth: self.truth.get(first..end).unwrap_or_default(),
+            area: self.area.clone(),
+            most: 1,
+            window_s: None,
+            ..*self
+        };
+        let found = search.find(environment, quantity).pop()?;
+        Some(Estimate { stop: first + found.stop, ..found })
+    }
+}

@@ -1,0 +1,129 @@
+use heapless::Vec;
+use kestirim_air_to_ground::{GroundFit, Supposition};
+use kestirim_particle_filter::PointMass;
+use kestirim_scalar::Scalar;
+
+use crate::{Area, Waypoint};
+
+/// Places that stand for the posterior.
+const STANDING: usize = 32;
+/// Waypoints that are compared.
+const WAYPOINTS: usize = 64;
+/// Nodes (in standard deviations) and weights of Gauss and Hermite's rule: what may be measured.
+const NODES: [(f64, f64); 3] =
+    [(-1.732_050_807_568_877_2, 1.0 / 6.0), (0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0)];
+/// What is so many deviations off is as unlikely as what is farther.
+const FARTHEST: f64 = 100.0;
+
+/// The waypoint from which one more measurement is expected to tell most of where the transmitter is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Informative<T> {
+    /// Where to measure.
+    pub waypoint: Waypoint<T>,
+    /// What is expected to be left of the estimate's uncertainty after that measurement: from 0 to 1, where it tells nothing.
+    pub left: T,
+}
+
+/// A place at which the transmitter may be, and what it lets one expect there.
+pub(crate) struct Standing<T> {
+    pub(crate) place: [T; 2],
+    pub(crate) supposition: Supposition<T>,
+    pub(crate) fit: GroundFit<T>,
+}
+
+/// Places that stand for a posterior, each for as much of its weight.
+pub(crate) fn standing<T: Scalar, const L: usize>(
+    posterior: &PointMass<T, 2, L>,
+    mut explained: impl FnMut([T; 2]) -> Option<(Supposition<T>, GroundFit<T>)>,
+) -> Vec<Standing<T>, STANDING> {
+    let mut all = Vec::new();
+    let weights = || posterior.log_weights().iter().map(|log| log.exp());
+    // The mean weight, so that the sum does not overflow in fixed point.
+    let mut mean = T::ZERO;
+    for (index, weight) in weights().enumerate() {
+        mean += (weight - mean) / T::from_binary(index as i32 + 1, 0);
+    }
+    let stride =
+        mean * T::from_binary(posterior.len() as i32, 0) / T::from_binary(STANDING as i32, 0);
+    let mut left = stride * T::HALF;
+    for (index, weight) in weights().enumerate() {
+        left -= weight;
+        while left < T::ZERO && !all.is_full() {
+            left += stride;
+            if let Some(place) = posterior.point(index)
+                && let Some((supposition, fit)) = explained(place)
+            {
+                // There is room.
+                let _ = all.push(Standing { place, supposition, fit });
+            }
+        }
+    }
+    all
+}
+
+/// Of waypoints all over an area the one after whose measurement the mean distance from the posterior's mean is expected to be
+/// least; none if nothing stands for the posterior, or no waypoint is inside.
+pub(crate) fn most_informative<T: Scalar, const N: usize>(
+    all: &[Standing<T>],
+    area: &Area<T, N>,
+    height: T,
+) -> Option<Informative<T>> {
+    let before = spread(all, &[T::ONE; STANDING]);
+    if before <= T::ZERO {
+        return None;
+    }
+    let lattice = PointMass::<T, 2, WAYPOINTS>::new(area.region());
+    let mut best: Option<(T, [T; 2])> = None;
+    for place in (0..WAYPOINTS).filter_map(|index| lattice.point(index)) {
+        if !area.contains(place) {
+            continue;
+        }
+        let after = after(all, place, height);
+        if best.is_none_or(|(least, _)| after < least) {
+            best = Some((after, place));
+        }
+    }
+    let (after, place) = best?;
+    Some(Informative { waypoint: Waypoint { place, height }, left: (after / before).min(T::ONE) })
+}
+
+/// The spread that is expected after a measurement from a waypoint: its mean over all that may be measured there.
+fn after<T: Scalar>(all: &[Standing<T>], waypoint: [T; 2], height: T) -> T {
+    let expected = |it: &Standing<T>| it.fit.expected(&it.supposition, it.place, waypoint, height);
+    let levels: Vec<(T, T), STANDING> = all.iter().map(expected).take(STANDING).collect();
+    let mut sum = T::ZERO;
+    for (level, sigma) in &levels {
+        for (node, share) in NODES {
+            let measured = *level + T::from_f64(node) * *sigma;
+            let likelihood = |(level, sigma): &(T, T)| {
+                let off = ((measured - *level) / *sigma).abs().min(T::from_f64(FARTHEST));
+                (-(off * off * T::HALF)).exp() / *sigma
+            };
+            let weights: Vec<T, STANDING> = levels.iter().map(likelihood).collect();
+            sum += T::from_f64(share) * spread(all, &weights);
+        }
+    }
+    sum / T::from_binary(levels.len().max(1) as i32, 0)
+}
+
+/// Mean distance of weighted places from their mean.
+fn spread<T: Scalar>(all: &[Standing<T>], weights: &[T]) -> T {
+    let (mut total, mut mean) = (T::ZERO, [T::ZERO; 2]);
+    let weighed = || all.iter().zip(weights).filter(|(_, weight)| **weight > T::ZERO);
+    // Means step by step, since sums of places would overflow in fixed point.
+    for (Standing { place, .. }, weight) in weighed() {
+        total += *weight;
+        for (mean, place) in mean.iter_mut().zip(place) {
+            *mean += *weight / total * (*place - *mean);
+        }
+    }
+    let (mut total, mut spread) = (T::ZERO, T::ZERO);
+    for (Standing { place, .. }, weight) in weighed() {
+        total += *weight;
+        let distance = T::norm(&[place[0] - mean[0], place[1] - mean[1]]);
+        spread += *weight / total * (distance - spread);
+    }
+    spread
+}
