@@ -1,5 +1,5 @@
 use heapless::Vec;
-use kestirim_air_to_ground::Measurement;
+use kestirim_air_to_ground::{Heading, Measurement};
 use kestirim_scalar::Scalar;
 
 /// Measurements this near to each other, m, say the same of a transmitter tens of metres away.
@@ -8,7 +8,7 @@ const NEAR_M: f64 = 8.0;
 /// A flight's measurements, thinned by place: those that were made close together are one, their mean. None is dropped.
 ///
 /// A drone that hovers, or comes by again, measures the same shadows and the same direction of its antenna once more: that
-/// is no further witness. Places count as one within 8 m; when M are taken, within twice as much, and so on. 24·M bytes
+/// is no further witness. Places count as one within 8 m; when M are taken, within twice as much, and so on. 36·M bytes
 /// in single precision.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -21,6 +21,8 @@ const NEAR_M: f64 = 8.0;
 )]
 pub struct ByPlace<T, const M: usize> {
     means: Vec<Measurement<T>, M>,
+    /// The mean heading of each.
+    headings: Vec<Heading<T>, M>,
     /// How many are in each.
     counts: Vec<u32, M>,
     /// Places count as one within this, m.
@@ -31,14 +33,19 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
     /// An empty collection.
     pub fn new() -> Self {
         const { assert!(M >= 2, "places that differ") };
-        Self { means: Vec::new(), counts: Vec::new(), near: T::from_f64(NEAR_M) }
+        Self {
+            means: Vec::new(),
+            headings: Vec::new(),
+            counts: Vec::new(),
+            near: T::from_f64(NEAR_M),
+        }
     }
 
-    /// Adds a measurement. O(M); O(M²) when places are joined.
-    pub fn push(&mut self, measurement: &Measurement<T>) {
+    /// Adds a measurement with the drone's heading. O(M); O(M²) when places are joined.
+    pub fn push(&mut self, measurement: &Measurement<T>, heading: &Heading<T>) {
         // As often as the whole range of numbers can be doubled.
         for _ in 0..32 {
-            if self.add(measurement, 1) {
+            if self.add(measurement, heading, 1) {
                 return;
             }
             self.near += self.near;
@@ -52,6 +59,12 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
         &self.means
     }
 
+    /// The mean heading at each of these places.
+    #[inline]
+    pub fn headings(&self) -> &[Heading<T>] {
+        &self.headings
+    }
+
     /// Within what distance places count as one, m.
     #[inline]
     pub fn near(&self) -> T {
@@ -59,7 +72,7 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
     }
 
     /// Adds the mean of `count` measurements where it is near, or as another place; false if there is no room.
-    fn add(&mut self, measurement: &Measurement<T>, count: u32) -> bool {
+    fn add(&mut self, measurement: &Measurement<T>, heading: &Heading<T>, count: u32) -> bool {
         let mut nearest: Option<(usize, T)> = None;
         for (index, mean) in self.means.iter().enumerate() {
             let [x, y] = mean.place();
@@ -71,13 +84,17 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
             }
         }
         let Some((index, _)) = nearest else {
-            return self.means.push(*measurement).is_ok() && self.counts.push(count).is_ok();
+            return self.means.push(*measurement).is_ok()
+                && self.headings.push(*heading).is_ok()
+                && self.counts.push(count).is_ok();
         };
-        if let (Some(mean), Some(all)) = (self.means.get_mut(index), self.counts.get_mut(index)) {
+        let place = (self.means.get_mut(index), self.headings.get_mut(index));
+        if let ((Some(mean), Some(turn)), Some(all)) = (place, self.counts.get_mut(index)) {
             *all = all.saturating_add(count);
             let number = |count: u32| T::from_binary(count.min(1 << 24) as i32, -12);
             let share = number(count) / number(*all);
             *mean = between(mean, measurement, share);
+            *turn = turn.mean(heading, share);
         }
         true
     }
@@ -85,9 +102,10 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
     /// Joins places that are near by now.
     fn join(&mut self) {
         let (means, counts) = (core::mem::take(&mut self.means), core::mem::take(&mut self.counts));
-        for (mean, count) in means.iter().zip(&counts) {
+        let headings = core::mem::take(&mut self.headings);
+        for ((mean, heading), count) in means.iter().zip(&headings).zip(&counts) {
             // There was room for as many.
-            self.add(mean, *count);
+            self.add(mean, heading, *count);
         }
     }
 }
@@ -120,23 +138,33 @@ mod tests {
 
     fn check<T: Scalar>() {
         let mut flight = ByPlace::<T, 4>::new();
+        let unknown = Heading::unknown();
         for k in 0..100 {
-            flight.push(&measurement([3.0, 4.0], 60.0 + f64::from(k % 2)));
+            flight.push(&measurement([3.0, 4.0], 60.0 + f64::from(k % 2)), &unknown);
         }
         let [hover] = flight.as_slice() else { panic!("{flight:?}") };
         assert!((hover.loss().to_f64() - 60.5).abs() < 0.02, "{hover:?}");
-        flight.push(&measurement([10.0, 4.0], 60.5));
+        flight.push(&measurement([10.0, 4.0], 60.5), &unknown);
         assert_eq!(flight.as_slice().len(), 1);
         // A hundredth part of the way.
         assert!((flight.as_slice()[0].place()[0].to_f64() - 3.07).abs() < 0.02);
         for k in 1..200 {
-            flight.push(&measurement([3.0 + 20.0 * f64::from(k), 4.0], 60.0));
+            flight.push(&measurement([3.0 + 20.0 * f64::from(k), 4.0], 60.0), &unknown);
             assert!(flight.as_slice().len() <= 4);
         }
         // As many places as there is room for cover the whole flight, however long.
         assert!(flight.near() > T::from_f64(512.0) && flight.as_slice().len() >= 2, "{flight:?}");
         let mean = flight.counts.iter().sum::<u32>();
         assert_eq!(mean, 300, "none is dropped");
+        let mut turning = ByPlace::<T, 4>::new();
+        for radians in [1.0, 1.2] {
+            let heading = Heading::new(T::from_f64(radians)).expect("finite");
+            turning.push(&measurement([3.0, 4.0], 60.0), &heading);
+        }
+        let [heading] = turning.headings() else { panic!("{turning:?}") };
+        let [one, other] = [1.0, 1.2].map(|it| Heading::new(T::from_f64(it)).expect("finite"));
+        assert_eq!(*heading, one.mean(&other, T::HALF));
+        assert_eq!(flight.headings(), &[unknown; 4][..flight.as_slice().len()]);
     }
 
     #[test]

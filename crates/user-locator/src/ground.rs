@@ -1,7 +1,9 @@
 use core::cell::Cell;
 
 use heapless::Vec;
-use kestirim_air_to_ground::{GroundFit, Measurement, OpenGround, SUPPOSITIONS, Supposition};
+use kestirim_air_to_ground::{
+    GroundFit, Heading, Measurement, OpenGround, SUPPOSITIONS, Supposition,
+};
 use kestirim_particle_filter::{Error as FilterError, PointMass};
 use kestirim_scalar::Scalar;
 
@@ -26,7 +28,7 @@ const FEWEST: f64 = 0.1;
 /// estimated or integrated over ([`OpenGround`]).
 ///
 /// Dearer than [`BeaconSearch`](crate::BeaconSearch), which believes free space: on a computer an estimate takes some
-/// tenths of a second. 24·M + 8·N bytes in single precision.
+/// tenths of a second. 36·M + 8·N bytes in single precision.
 ///
 /// ```
 /// use kestirim_air_to_ground::{Measurement, OpenGround};
@@ -86,6 +88,7 @@ struct Evidence<'a, T, const N: usize> {
     channel: OpenGround<T>,
     area: &'a Area<T, N>,
     measurements: &'a [Measurement<T>],
+    headings: &'a [Heading<T>],
     power: T,
 }
 
@@ -100,7 +103,14 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
     /// Takes in a measurement, of which the loss is the negative received level.
     #[inline]
     pub fn measure(&mut self, measurement: &Measurement<T>) {
-        self.measurements.push(measurement);
+        self.measure_with_heading(measurement, &Heading::unknown());
+    }
+
+    /// Takes in a measurement with the drone's heading: what an antenna that turns with the drone does to levels is then
+    /// estimated, too, and is no error of the place.
+    #[inline]
+    pub fn measure_with_heading(&mut self, measurement: &Measurement<T>, heading: &Heading<T>) {
+        self.measurements.push(measurement, heading);
     }
 
     /// The measurements by place.
@@ -120,6 +130,7 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
             channel: self.channel,
             area: &self.area,
             measurements: self.measurements(),
+            headings: self.measurements.headings(),
             power,
         }
     }
@@ -190,8 +201,8 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
         told: impl FnMut(usize, T),
     ) -> T {
         if self.area.contains(place) {
-            let Self { channel, measurements, power, .. } = self;
-            channel.log_likelihood(measurements, place, *power, suppositions, told)
+            let Self { channel, measurements, headings, power, .. } = self;
+            channel.log_likelihood(measurements, headings, place, *power, suppositions, told)
         } else {
             T::ZERO.ln()
         }
@@ -199,7 +210,11 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
 
     /// The suppositions that are likely enough anywhere, seen from a coarse lattice.
     fn likely<const L: usize>(&self) -> Result<Vec<Supposition<T>, SUPPOSITIONS>, FilterError> {
-        let all = self.channel.suppositions(self.measurements);
+        let mut all = Vec::<_, SUPPOSITIONS>::new();
+        for supposition in self.channel.suppositions(self.measurements, self.headings) {
+            // There is room for all.
+            let _ = all.push(supposition);
+        }
         let best = Cell::new([T::ZERO.ln(); SUPPOSITIONS]);
         let count = (L / SCOUTS).max(1);
         let mut scouts = PointMass::<T, 2, L>::with_count(count, self.area.region())?;
@@ -250,7 +265,8 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
     ) -> Option<(Supposition<T>, GroundFit<T>)> {
         let mut best: Option<(Supposition<T>, GroundFit<T>)> = None;
         for supposition in suppositions {
-            let fit = self.channel.fit(self.measurements, place, supposition, self.power);
+            let Self { measurements, headings, power, .. } = *self;
+            let fit = self.channel.fit(measurements, headings, place, supposition, power);
             let log = |(supposition, fit): &(Supposition<T>, GroundFit<T>)| {
                 fit.log_evidence + supposition.log_prior
             };

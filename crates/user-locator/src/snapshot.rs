@@ -17,5 +17,5 @@ layout! {
     [T: Scalar, const L: usize] for BeaconEstimate<T, L> as "beacon/estimate", 1, T, [L], infinite;
     [T: Scalar, const M: usize, const N: usize] for BeaconSearch<T, M, N> as "beacon/search", 1, T, [M, N];
     [T: Scalar, const L: usize] for GroundEstimate<T, L> as "ground/estimate", 1, T, [L], infinite;
-    [T: Scalar, const M: usize, const N: usize] for GroundSearch<T, M, N> as "ground/search", 1, T, [M, N];
+    [T: Scalar, const M: usize, const N: usize] for GroundSearch<T, M, N> as "ground/search", 2, T, [M, N];
 }

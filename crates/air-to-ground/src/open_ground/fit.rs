@@ -1,7 +1,7 @@
 use kestirim_scalar::Scalar;
 
 use super::Supposition;
-use super::sight::{PARAMETERS, PATTERN_DB, Row, Sight, decibels, used};
+use super::sight::{PATTERN_DB, Row, Sight, decibels, mean_square, used};
 
 /// Degrees of freedom of Student's distribution: tails as nulls of antennas and buildings make them.
 const FREEDOM: f64 = 4.0;
@@ -46,8 +46,7 @@ impl<T: Scalar> GroundFit<T> {
         let distance = T::norm(&[from[0] - place[0], from[1] - place[1], height]).max(T::EPSILON);
         let signal = self.level - self.exponent * decibels(distance.ln());
         let (level, share) = supposition.received(signal);
-        let harmonics = T::from_binary(used(supposition.pattern) as i32 - 2, 0);
-        let pattern = T::from_f64(PATTERN_DB) * harmonics.sqrt();
+        let pattern = T::from_f64(PATTERN_DB) * mean_square::<T>(supposition.pattern).sqrt();
         // The variance of Student's distribution is that of its scale, times ν / (ν − 2).
         let scale = supposition.scale * T::from_f64(FREEDOM / (FREEDOM - 2.0)).sqrt();
         (level, T::norm(&[share * scale, share * pattern, T::from_f64(WAVERING_DB)]))
@@ -70,19 +69,19 @@ impl<T: Scalar> Supposition<T> {
 }
 
 /// Normal equations of a step.
-struct Normal<T> {
-    matrix: [[T; PARAMETERS]; PARAMETERS],
-    vector: [T; PARAMETERS],
+struct Normal<T, const P: usize> {
+    matrix: [[T; P]; P],
+    vector: [T; P],
     used: usize,
 }
 
-pub(super) fn fit<T: Scalar>(
-    sight: &Sight<T>,
+pub(super) fn fit<T: Scalar, const P: usize>(
+    sight: &Sight<T, P>,
     supposition: &Supposition<T>,
     power: T,
 ) -> GroundFit<T> {
     let used = used(supposition.pattern);
-    let mut parameters = [T::ZERO; PARAMETERS];
+    let mut parameters = [T::ZERO; P];
     parameters[0] = start(sight, supposition) / sight.level[1];
     let mut log_evidence = T::ZERO;
     for step in 0..=STEPS {
@@ -118,8 +117,8 @@ pub(super) fn fit<T: Scalar>(
 }
 
 /// By how much the signals are stronger than expected on average, dB.
-fn start<T: Scalar>(sight: &Sight<T>, supposition: &Supposition<T>) -> T {
-    let is_signal = |row: &&Row<T>| {
+fn start<T: Scalar, const P: usize>(sight: &Sight<T, P>, supposition: &Supposition<T>) -> T {
+    let is_signal = |row: &&Row<T, P>| {
         supposition.floor.is_none_or(|floor| row.level > floor + T::from_f64(ABOVE_DB))
     };
     let mean = |signals: bool| {
@@ -147,9 +146,9 @@ struct Seen<T> {
 }
 
 impl<T: Scalar> Seen<T> {
-    fn new(
-        row: &Row<T>,
-        parameters: &[T; PARAMETERS],
+    fn new<const P: usize>(
+        row: &Row<T, P>,
+        parameters: &[T; P],
         used: usize,
         supposition: &Supposition<T>,
     ) -> Self {
@@ -186,18 +185,18 @@ fn above<T: Scalar>(floor: T, signal: T) -> (T, T) {
     }
 }
 
-impl<T: Scalar> Normal<T> {
+impl<T: Scalar, const P: usize> Normal<T, P> {
     /// Of the prior alone: all parameters are 0 ± 1.
-    fn new(used: usize, parameters: &[T; PARAMETERS]) -> Self {
+    fn new(used: usize, parameters: &[T; P]) -> Self {
         let vector = parameters.map(|parameter| -parameter);
-        let mut matrix = [[T::ZERO; PARAMETERS]; PARAMETERS];
+        let mut matrix = [[T::ZERO; P]; P];
         for (index, row) in matrix.iter_mut().enumerate() {
             row[index] = T::ONE;
         }
         Self { matrix, vector, used }
     }
 
-    fn add(&mut self, row: &Row<T>, seen: &Seen<T>, power: T) {
+    fn add(&mut self, row: &Row<T, P>, seen: &Seen<T>, power: T) {
         let freedom = T::from_f64(FREEDOM);
         let weight = power * (freedom + T::ONE) / (freedom + seen.square) / seen.variance;
         let (slope, error) = (weight * seen.share, seen.error);
@@ -216,7 +215,7 @@ impl<T: Scalar> Normal<T> {
     fn decompose(&mut self) -> T {
         let mut log_determinant = T::ZERO;
         // Constant bounds, so that the compiler sees that no index is out of them.
-        for row in 0..PARAMETERS {
+        for row in 0..P {
             if row >= self.used {
                 break;
             }
@@ -239,9 +238,9 @@ impl<T: Scalar> Normal<T> {
     }
 
     /// The parameters' change, by the factor.
-    fn solve(&self) -> [T; PARAMETERS] {
+    fn solve(&self) -> [T; P] {
         let mut change = self.vector;
-        for row in 0..PARAMETERS {
+        for row in 0..P {
             if row >= self.used {
                 break;
             }
@@ -251,10 +250,10 @@ impl<T: Scalar> Normal<T> {
             }
             change[row] = sum / self.matrix[row][row];
         }
-        for row in (0..PARAMETERS).rev() {
+        for row in (0..P).rev() {
             // What is beyond those that are used is zero, and changes nothing.
             let mut sum = change[row];
-            for index in row + 1..PARAMETERS {
+            for index in row + 1..P {
                 sum -= self.matrix[index][row] * change[index];
             }
             change[row] = sum / self.matrix[row][row];

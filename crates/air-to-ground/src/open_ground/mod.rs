@@ -6,8 +6,8 @@ mod sight;
 use kestirim_scalar::Scalar;
 
 pub use self::fit::GroundFit;
-use self::sight::Sight;
-use crate::{LevelPrior, Measurement};
+use self::sight::{PARAMETERS, Sight, TURNED};
+use crate::{Heading, LevelPrior, Measurement};
 
 /// Largest number of measurements that are read.
 const MOST: usize = 128;
@@ -29,7 +29,7 @@ const SATURATED: usize = 4;
 /// Levels are told in halves of decibels at best.
 const SATURATED_DB: f64 = 0.25;
 
-/// How many [`Supposition`]s there are: of three patterns, four floors and three scales.
+/// How many [`Supposition`]s there are at most: of four patterns, four floors and three scales.
 pub const SUPPOSITIONS: usize = Pattern::ALL.len() * (FLOORS.len() + 1) * SCALES_DB.len();
 
 /// What both antennas of a link together may have for a pattern.
@@ -43,18 +43,23 @@ pub enum Pattern {
     Upright,
     /// Any, such as that of dipoles whose axes are unknown.
     Tilted,
+    /// Any of a transmitter and any that turns with the drone, such as that of an antenna at its side.
+    Turned,
 }
 
 impl Pattern {
     /// All values.
-    pub const ALL: [Self; 3] = [Self::Isotropic, Self::Upright, Self::Tilted];
+    pub const ALL: [Self; 4] = [Self::Isotropic, Self::Upright, Self::Tilted, Self::Turned];
 
-    /// Its prior probability: few antennas have none, and those of animals and drones are seldom upright.
-    fn share<T: Scalar>(self) -> T {
+    /// Its prior probability, if headings are known and if not: few antennas have none, and those of animals and drones are
+    /// seldom upright.
+    fn share<T: Scalar>(self, is_headed: bool) -> T {
+        let either = |with: T, without: T| if is_headed { with } else { without };
         match self {
-            Self::Isotropic => T::from_f64(0.2),
-            Self::Upright => T::from_f64(0.3),
-            Self::Tilted => T::from_f64(0.5),
+            Self::Isotropic => either(T::from_f64(0.15), T::from_f64(0.2)),
+            Self::Upright => either(T::from_f64(0.2), T::from_f64(0.3)),
+            Self::Tilted => either(T::from_f64(0.3), T::from_f64(0.5)),
+            Self::Turned => either(T::from_f64(0.35), T::ZERO),
         }
     }
 }
@@ -66,6 +71,9 @@ impl Pattern {
 /// * The pattern of both antennas together is a series of real spherical harmonics of degree 2 in the line of sight, each
 ///   with a coefficient of 0 ± 2 dB: what two dipoles of unknown axes have of that degree (one has 3.2 dB, in five
 ///   coefficients); or of the one alone that is the same all around; or of none. Prior probabilities 0.5, 0.3, 0.2.
+/// * Where the drone's [`Heading`] is known, there is a fourth kind, of prior probability 0.35 (0.3, 0.2, 0.15 for the others): of
+///   those harmonics a second set (0 ± 1.5 dB each, as one dipole has it) turns with the drone, and with it the two of degree 1 that are
+///   horizontal (0 ± 2 dB): an antenna beside metal, or a patch, is stronger on one side.
 /// * The floor is the receiver's own noise, which a weak signal drowns in: none, or at one of three quantiles of the levels.
 ///   Levels at the strongest one are saturated if at least four are alike.
 /// * The noise has Student's distribution with ν = 4 and a scale of 1.2, 2.2 or 4 dB; that of the floor 1.7 dB.
@@ -103,8 +111,13 @@ impl<T: Scalar> OpenGround<T> {
         Self { level }
     }
 
-    /// All that is supposed in turn of what was received. O(M²), once for a flight.
-    pub fn suppositions(&self, measurements: &[Measurement<T>]) -> [Supposition<T>; SUPPOSITIONS] {
+    /// All that is supposed in turn of what was received: three quarters of [`SUPPOSITIONS`] if no heading is known. O(M²), once
+    /// for a flight.
+    pub fn suppositions(
+        &self,
+        measurements: &[Measurement<T>],
+        headings: &[Heading<T>],
+    ) -> impl Iterator<Item = Supposition<T>> + use<T> {
         let measurements = measurements.get(..MOST).unwrap_or(measurements);
         let ceiling = ceiling(measurements);
         // Constants one by one, so that no double-precision code reaches a target.
@@ -117,59 +130,72 @@ impl<T: Scalar> OpenGround<T> {
             quantile(measurements, T::from_f64(FLOORS[2])),
         ];
         let shares = [T::from_f64(NO_FLOOR), T::from_f64((1.0 - NO_FLOOR) / FLOORS.len() as f64)];
-        let patterns = Pattern::ALL.iter();
-        let mut all = patterns.flat_map(|pattern| {
-            floors.iter().enumerate().flat_map(move |(index, floor)| {
+        let is_headed = headings.iter().zip(measurements).any(|(heading, _)| heading.is_known());
+        let patterns =
+            Pattern::ALL.into_iter().filter(move |it| is_headed || *it != Pattern::Turned);
+        patterns.flat_map(move |pattern| {
+            floors.into_iter().enumerate().flat_map(move |(index, floor)| {
                 let share = if index == 0 { shares[0] } else { shares[1] };
-                let log_prior = share.ln() + pattern.share::<T>().ln();
-                let (pattern, floor) = (*pattern, *floor);
+                let log_prior = share.ln() + pattern.share::<T>(is_headed).ln();
                 scales.map(|scale| Supposition { pattern, floor, ceiling, scale, log_prior })
             })
-        });
-        // There are as many.
-        let first = Supposition {
-            pattern: Pattern::Isotropic,
-            floor: None,
-            ceiling,
-            scale: scales[0],
-            log_prior: T::ZERO.ln(),
-        };
-        core::array::from_fn(|_| all.next().unwrap_or(first))
+        })
     }
 
     /// The measurements as a transmitter at a place explains them under a supposition: `power` is the power that the
-    /// likelihood is raised to, less than one where measurements are not independent.
+    /// likelihood is raised to, less than one where measurements are not independent. Headings that are not there are unknown.
     pub fn fit(
         &self,
         measurements: &[Measurement<T>],
+        headings: &[Heading<T>],
         place: [T; 2],
         supposition: &Supposition<T>,
         power: T,
     ) -> GroundFit<T> {
-        fit::fit(&Sight::new(self.level, measurements, place), supposition, power)
+        if supposition.pattern == Pattern::Turned {
+            let sight = Sight::<T, TURNED>::new(self.level, measurements, headings, place);
+            fit::fit(&sight, supposition, power)
+        } else {
+            let sight = Sight::<T, PARAMETERS>::new(self.level, measurements, headings, place);
+            fit::fit(&sight, supposition, power)
+        }
     }
 
     /// Logarithm of the density of all measurements (to a power) if the transmitter is at a place, summed over
-    /// suppositions: those for which `is_taken` says so. What each contributes is told to `told`.
-    pub fn log_likelihood<'a>(
+    /// suppositions. What each contributes is told to `told` by its index.
+    pub fn log_likelihood(
         &self,
         measurements: &[Measurement<T>],
+        headings: &[Heading<T>],
         place: [T; 2],
         power: T,
-        suppositions: impl IntoIterator<Item = &'a Supposition<T>>,
+        suppositions: &[Supposition<T>],
         mut told: impl FnMut(usize, T),
-    ) -> T
-    where
-        T: 'a,
-    {
-        let sight = Sight::new(self.level, measurements, place);
+    ) -> T {
+        let of_kind = |is_turned: bool| {
+            let numbered = suppositions.iter().enumerate();
+            numbered.filter(move |(_, it)| (it.pattern == Pattern::Turned) == is_turned)
+        };
         let mut all = T::ZERO.ln();
-        for (index, supposition) in suppositions.into_iter().enumerate() {
-            let log = fit::fit(&sight, supposition, power).log_evidence + supposition.log_prior;
+        let mut add = |index: usize, supposition: &Supposition<T>, fit: GroundFit<T>| {
+            let log = fit.log_evidence + supposition.log_prior;
             told(index, log);
             // ln(eᵃ + eᵇ).
             let (more, less) = if log > all { (log, all) } else { (all, log) };
             all = if less.is_finite() { more + (T::ONE + (less - more).exp()).ln() } else { more };
+        };
+        // One after the other, so that the one can be in the memory of the other.
+        if of_kind(false).next().is_some() {
+            let sight = Sight::<T, PARAMETERS>::new(self.level, measurements, headings, place);
+            for (index, supposition) in of_kind(false) {
+                add(index, supposition, fit::fit(&sight, supposition, power));
+            }
+        }
+        if of_kind(true).next().is_some() {
+            let sight = Sight::<T, TURNED>::new(self.level, measurements, headings, place);
+            for (index, supposition) in of_kind(true) {
+                add(index, supposition, fit::fit(&sight, supposition, power));
+            }
         }
         all
     }

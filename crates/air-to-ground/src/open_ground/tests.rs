@@ -5,7 +5,7 @@ use std::vec::Vec;
 use kestirim_scalar::{Q16_16, Scalar};
 
 use super::{OpenGround, Pattern, SUPPOSITIONS, Supposition, ceiling, quantile};
-use crate::{LevelPrior, Measurement};
+use crate::{Heading, LevelPrior, Measurement};
 
 const TRUTH: [f64; 2] = [30.0, -20.0];
 
@@ -23,13 +23,21 @@ fn flight<T: Scalar>(exponent: f64, change: impl Fn(f64) -> f64) -> Vec<Measurem
     (0..100).map(stop).collect()
 }
 
+fn suppositions<T: Scalar>(
+    channel: &OpenGround<T>,
+    flight: &[Measurement<T>],
+    headings: &[Heading<T>],
+) -> Vec<Supposition<T>> {
+    channel.suppositions(flight, headings).collect()
+}
+
 /// How much likelier the true place is than another.
 fn advantage<T: Scalar>(flight: &[Measurement<T>], place: [f64; 2]) -> f64 {
     let channel = OpenGround::new(None);
-    let suppositions = channel.suppositions(flight);
+    let suppositions = suppositions(&channel, flight, &[]);
     let log = |place: [f64; 2]| {
         let place = place.map(T::from_f64);
-        channel.log_likelihood(flight, place, T::ONE, &suppositions, |_, _| ()).to_f64()
+        channel.log_likelihood(flight, &[], place, T::ONE, &suppositions, |_, _| ()).to_f64()
     };
     log(TRUTH) - log(place)
 }
@@ -45,8 +53,8 @@ fn check<T: Scalar>() {
             }
         }
         let channel = OpenGround::new(None);
-        let suppositions = channel.suppositions(&clean);
-        let fit = channel.fit(&clean, TRUTH.map(T::from_f64), &suppositions[0], T::ONE);
+        let suppositions = suppositions(&channel, &clean, &[]);
+        let fit = channel.fit(&clean, &[], TRUTH.map(T::from_f64), &suppositions[0], T::ONE);
         assert!((fit.exponent.to_f64() - exponent).abs() < 0.3, "{fit:?}");
         assert!((fit.level.to_f64() + 20.0).abs() < 6.0, "{fit:?}");
     }
@@ -64,8 +72,8 @@ fn a_known_level_tells_the_exponent_and_evidence_falls_where_it_is_wrong() {
     let flight = flight::<f64>(2.0, |level| level);
     let fit = |mean| {
         let channel = OpenGround::new(Some(LevelPrior { mean, sigma: 1.0 }));
-        let suppositions = channel.suppositions(&flight);
-        channel.fit(&flight, TRUTH, &suppositions[0], 1.0)
+        let suppositions = suppositions(&channel, &flight, &[]);
+        channel.fit(&flight, &[], TRUTH, &suppositions[0], 1.0)
     };
     let (right, wrong) = (fit(-20.0), fit(-50.0));
     assert!((right.exponent - 2.0).abs() < 0.05 && (right.level + 20.0).abs() < 1.0, "{right:?}");
@@ -76,8 +84,8 @@ fn a_known_level_tells_the_exponent_and_evidence_falls_where_it_is_wrong() {
 fn foretold<T: Scalar>() {
     let flight = flight::<T>(2.0, |level| level);
     let channel = OpenGround::new(None);
-    let isotropic = channel.suppositions(&flight)[0];
-    let fit = channel.fit(&flight, TRUTH.map(T::from_f64), &isotropic, T::ONE);
+    let isotropic = suppositions(&channel, &flight, &[])[0];
+    let fit = channel.fit(&flight, &[], TRUTH.map(T::from_f64), &isotropic, T::ONE);
     let at = |supposition: &Supposition<T>, far: f64| {
         let waypoint = [TRUTH[0] + far, TRUTH[1]].map(T::from_f64);
         let place = TRUTH.map(T::from_f64);
@@ -93,6 +101,8 @@ fn foretold<T: Scalar>() {
     }
     let tilted = Supposition { pattern: Pattern::Tilted, ..isotropic };
     assert!(at(&tilted, 100.0).1 > 4.4, "an unknown pattern is noise");
+    let turned = Supposition { pattern: Pattern::Turned, ..isotropic };
+    assert!(at(&turned, 100.0).1 > at(&tilted, 100.0).1, "and so is one that turns");
     let floor = Supposition { floor: Some(T::from_f64(-50.0)), ..isotropic };
     let (level, sigma) = at(&floor, 300.0);
     assert!((level + 50.0).abs() < 0.3 && sigma < 1.8, "drowned: {level} ± {sigma}");
@@ -120,8 +130,8 @@ fn a_floor_is_supposed_where_levels_are_and_a_ceiling_where_they_are_alike() {
     assert_eq!(ceiling(&[strongest; 3]), None);
     let saturated: Vec<_> = flight.iter().copied().chain([strongest; 4]).collect();
     assert_eq!(ceiling(&saturated), Some(-10.0));
-    let suppositions = OpenGround::new(None).suppositions(&saturated);
-    assert_eq!(suppositions.len(), SUPPOSITIONS);
+    let suppositions = suppositions(&OpenGround::new(None), &saturated, &[]);
+    assert_eq!(suppositions.len(), SUPPOSITIONS / 4 * 3, "no heading is known");
     assert!(suppositions.iter().all(|it| it.ceiling == Some(-10.0)));
     let all: f64 = suppositions.iter().map(|it| it.log_prior.exp()).sum();
     assert!((all - 3.0).abs() < 1e-9, "as many as scales: {all}");
@@ -130,10 +140,60 @@ fn a_floor_is_supposed_where_levels_are_and_a_ceiling_where_they_are_alike() {
 #[test]
 fn nothing_and_too_much_are_borne() {
     let channel = OpenGround::new(None);
-    let suppositions = channel.suppositions(&[]);
-    let log = channel.log_likelihood(&[], [0.0; 2], 1.0, &suppositions, |_, _| ());
+    let suppositions = suppositions(&channel, &[], &[]);
+    let log = channel.log_likelihood(&[], &[], [0.0; 2], 1.0, &suppositions, |_, _| ());
     assert!(log.is_finite());
     let all: Vec<_> = (0..2).flat_map(|_| flight::<f64>(2.0, |level| level)).collect();
-    let first = channel.fit(&all, TRUTH, &suppositions[1], 1.0);
-    assert_eq!(first, channel.fit(&all[..128], TRUTH, &suppositions[1], 1.0));
+    let first = channel.fit(&all, &[], TRUTH, &suppositions[1], 1.0);
+    assert_eq!(first, channel.fit(&all[..128], &[], TRUTH, &suppositions[1], 1.0));
+}
+
+/// An antenna on a drone that turns by 40° from place to place: 8 dB more to the front than to the back.
+fn check_turned<T: Scalar>() {
+    let angle = |k: usize| 40.0_f64.to_radians() * k as f64 % core::f64::consts::TAU;
+    let turned = |(k, measurement): (usize, &Measurement<T>)| {
+        let [x, y] = measurement.place().map(T::to_f64);
+        let (sine, cosine) = angle(k).sin_cos();
+        let [east, north] = [x - TRUTH[0], y - TRUTH[1]];
+        let forward = (east * sine + north * cosine) / east.hypot(north).hypot(40.0);
+        let loss = measurement.loss().to_f64() - 4.0 * forward;
+        Measurement::new(measurement.place(), measurement.height(), T::from_f64(loss)).expect("one")
+    };
+    let flight: Vec<_> = flight::<T>(2.0, |level| level).iter().enumerate().map(turned).collect();
+    let heading = |sign: f64, k| Heading::new(T::from_f64(sign * angle(k))).expect("finite");
+    let channel = OpenGround::new(None);
+    let best = |headings: &[Heading<T>], is_turned: bool| {
+        let all = suppositions(&channel, &flight, headings);
+        let of_kind = all.iter().filter(|it| (it.pattern == Pattern::Turned) == is_turned);
+        let fit = |it: &Supposition<T>| {
+            channel.fit(&flight, headings, TRUTH.map(T::from_f64), it, T::ONE)
+        };
+        let log = |it: &Supposition<T>| (fit(it).log_evidence + it.log_prior).to_f64();
+        of_kind.map(log).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let headings: Vec<_> = (0..flight.len()).map(|k| heading(1.0, k)).collect();
+    let mirrored: Vec<_> = (0..flight.len()).map(|k| heading(-1.0, k)).collect();
+    let all = suppositions(&channel, &flight, &headings);
+    assert_eq!(all.len(), SUPPOSITIONS);
+    let total: f64 = all.iter().map(|it| it.log_prior.to_f64().exp()).sum();
+    assert!((total - 3.0).abs() < 0.01, "as many as scales: {total}");
+    let [with, without, wrong] = [(&headings, true), (&headings, false), (&mirrored, true)]
+        .map(|(headings, is_turned)| best(headings, is_turned));
+    assert!(with > without + 20.0, "{with} {without}");
+    assert!(with > wrong + 20.0, "anticlockwise headings: {with} {wrong}");
+    // What log_likelihood is told is what fit finds, in the order of the suppositions.
+    let (mut told, place) = (std::vec![T::ZERO; all.len()], TRUTH.map(T::from_f64));
+    let log = |index, log| told[index] = log;
+    channel.log_likelihood(&flight, &headings, place, T::ONE, &all, log);
+    for (supposition, told) in all.iter().zip(told) {
+        let fit = channel.fit(&flight, &headings, place, supposition, T::ONE);
+        assert_eq!(fit.log_evidence + supposition.log_prior, told, "{supposition:?}");
+    }
+}
+
+#[test]
+fn an_antenna_that_turns_with_the_drone_is_likelier_where_headings_are_known() {
+    check_turned::<f32>();
+    check_turned::<f64>();
+    check_turned::<Q16_16>();
 }

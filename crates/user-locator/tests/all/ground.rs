@@ -1,6 +1,6 @@
 //! Flights over open ground with all that a channel can be unknown of: are places found, and regions honest?
 
-use kestirim_air_to_ground::{Measurement, OpenGround};
+use kestirim_air_to_ground::{Heading, Measurement, OpenGround};
 use kestirim_particle_filter::{Error as FilterError, Xoshiro128PlusPlus};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{Area, Error, GroundSearch, Health};
@@ -20,14 +20,16 @@ impl Chance {
         radius * (std::f64::consts::TAU * self.between(0.0, 1.0)).cos()
     }
 
-    fn happens(&mut self, probability: f64) -> bool {
+    pub(crate) fn happens(&mut self, probability: f64) -> bool {
         self.between(0.0, 1.0) < probability
     }
 }
 
 /// A flight, its area's corners, and where the transmitter is.
-struct Flight {
+pub(crate) struct Flight {
     stops: Vec<([f64; 2], f64, f64)>,
+    /// Along the track, rad from north to east.
+    pub(crate) headings: Vec<f64>,
     corners: [[f64; 2]; 4],
     truth: [f64; 2],
 }
@@ -89,9 +91,23 @@ pub(crate) fn axis(chance: &mut Chance) -> [f64; 3] {
     axis.map(|part| part / length)
 }
 
-/// Exponents of 1 to 3, no dipole or up to two of any axis, noise of 0.5 to 4 dB that for one flight in two is
-/// correlated shadowing, nulls, floors that signals drown in or that clip them.
+/// Directions in which a drone flies that looks where it goes.
+fn along(places: &[[f64; 2]]) -> Vec<f64> {
+    let leg = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]).atan2(pair[1][1] - pair[0][1]);
+    let mut headings: Vec<f64> = places.windows(2).map(leg).collect();
+    headings.insert(0, headings[0]);
+    headings
+}
+
+/// A flight whose drone has no pattern that turns with it.
 fn flight(chance: &mut Chance) -> Flight {
+    flight_with(chance, |_| 0.0)
+}
+
+/// Exponents of 1 to 3, no dipole or up to two of any axis, noise of 0.5 to 4 dB that for one flight in two is
+/// correlated shadowing, nulls, floors that signals drown in or that clip them. `drone` is the gain (dB) of the drone's antenna for a line
+/// of sight from the transmitter, as forward, right, up.
+pub(crate) fn flight_with(chance: &mut Chance, drone: impl Fn([f64; 3]) -> f64) -> Flight {
     let places = path(chance);
     let (margin, height) = (chance.between(20.0, 120.0), chance.between(12.0, 60.0));
     let bound = |axis: usize, sign: f64| {
@@ -110,12 +126,15 @@ fn flight(chance: &mut Chance) -> Flight {
     let (is_correlated, has_nulls) = (chance.happens(0.5), chance.happens(0.15));
     let (mut shadow, mut before) = (chance.normal(), places[0]);
     let mut levels = Vec::new();
-    for &[x, y] in &places {
+    let headings = along(&places);
+    for (&[x, y], heading) in places.iter().zip(&headings) {
         let sight = [x - truth[0], y - truth[1], height];
         let distance = sight[0].hypot(sight[1]).hypot(sight[2]);
         let sight = sight.map(|part| part / distance);
         let mut at = level - 10.0 * exponent * (distance / 50.0).log10();
         at += dipoles.iter().map(|axis| dipole(sight, *axis, fill)).sum::<f64>();
+        let ([east, north, up], (sine, cosine)) = (sight, heading.sin_cos());
+        at += drone([east * sine + north * cosine, east * cosine - north * sine, up]);
         // Along the path, as Gudmundson's model has it.
         let kept = (-(x - before[0]).hypot(y - before[1]) / decay).exp();
         before = [x, y];
@@ -145,17 +164,24 @@ fn flight(chance: &mut Chance) -> Flight {
     }
     let stops = places.iter().zip(levels).map(|(place, level)| (*place, height, level)).collect();
     let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-    Flight { stops, corners, truth }
+    Flight { stops, headings, corners, truth }
 }
 
 /// Error, σ, and whether the 90 % region holds the transmitter.
-fn find<T: Scalar, const L: usize>(flight: &Flight) -> Result<(f64, f64, bool), Error> {
+pub(crate) fn find<T: Scalar, const L: usize>(
+    flight: &Flight,
+    headings: &[Heading<T>],
+) -> Result<(f64, f64, bool), Error> {
     let number = |place: [f64; 2]| place.map(T::from_f64);
     let area = Area::<T, 4>::new(&flight.corners.map(number))?;
     let mut search = GroundSearch::<T, 120, 4>::new(OpenGround::new(None), area);
-    for &(place, height, level) in &flight.stops {
+    for (index, &(place, height, level)) in flight.stops.iter().enumerate() {
         let (height, loss) = (T::from_f64(height), T::from_f64(-level));
-        search.measure(&Measurement::new(number(place), height, loss)?);
+        let measurement = Measurement::new(number(place), height, loss)?;
+        match headings.get(index) {
+            Some(heading) => search.measure_with_heading(&measurement, heading),
+            None => search.measure(&measurement),
+        }
     }
     let found = search.estimate::<L>()?;
     let [x, y] = found.place.map(T::to_f64);
@@ -166,10 +192,21 @@ fn find<T: Scalar, const L: usize>(flight: &Flight) -> Result<(f64, f64, bool), 
 
 /// Mean error, root mean square of σ over that of the errors, and the share of regions that hold the transmitter.
 fn statistics<T: Scalar, const L: usize>(flights: u64) -> [f64; 3] {
+    statistics_of::<T, L>(flights, |seed| {
+        (flight(&mut Chance(Xoshiro128PlusPlus::seed_from_u64(seed))), Vec::new())
+    })
+}
+
+/// Of other flights, with the headings that are known.
+pub(crate) fn statistics_of<T: Scalar, const L: usize>(
+    flights: u64,
+    fly: impl Fn(u64) -> (Flight, Vec<Heading<T>>),
+) -> [f64; 3] {
     let [mut errors, mut squares, mut variances, mut held] = [0.0; 4];
     for seed in 0..flights {
-        let flight = flight(&mut Chance(Xoshiro128PlusPlus::seed_from_u64(seed)));
-        let (error, sigma, is_held) = find::<T, L>(&flight).expect("something explains it");
+        let (flight, headings) = fly(seed);
+        let (error, sigma, is_held) =
+            find::<T, L>(&flight, &headings).expect("something explains it");
         errors += error;
         squares += error * error;
         variances += sigma * sigma;
@@ -204,9 +241,9 @@ fn regions_of_a_thousand_flights_hold_nine_in_ten() {
 fn fixed_point_finds_what_floats_do() {
     for seed in 0..4 {
         let flight = flight(&mut Chance(Xoshiro128PlusPlus::seed_from_u64(seed)));
-        let (exact, sigma, _) = find::<f64, 300>(&flight).expect("something explains it");
-        let (single, ..) = find::<f32, 300>(&flight).expect("something explains it");
-        let (fixed, ..) = find::<Q16_16, 300>(&flight).expect("something explains it");
+        let (exact, sigma, _) = find::<f64, 300>(&flight, &[]).expect("something explains it");
+        let (single, ..) = find::<f32, 300>(&flight, &[]).expect("something explains it");
+        let (fixed, ..) = find::<Q16_16, 300>(&flight, &[]).expect("something explains it");
         println!("{exact:.2} {single:.2} {fixed:.2} ± {sigma:.2}");
         assert!((single - exact).abs() < 0.05 * sigma + 0.1, "{single} {exact} {sigma}");
         assert!((fixed - exact).abs() < 0.3 * sigma + 1.0, "{fixed} {exact} {sigma}");

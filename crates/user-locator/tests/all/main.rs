@@ -2,5 +2,6 @@
 
 mod area;
 mod ground;
+mod heading;
 mod users;
 mod waypoint;

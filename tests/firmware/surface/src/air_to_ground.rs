@@ -1,8 +1,8 @@
 //! Everything of `kestirim-air-to-ground`.
 
 use kestirim_air_to_ground::{
-    Channel, Contaminated, Environment, FreeSpace, GroundFit, LevelPrior, Likelihood, Measurement,
-    OpenGround, PathLoss, Propagation, Rotor,
+    Channel, Contaminated, Environment, FreeSpace, GroundFit, Heading, LevelPrior, Likelihood,
+    Measurement, OpenGround, PathLoss, Propagation, Rotor,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 
@@ -56,20 +56,35 @@ fn free_space<T: Scalar>() {
     keep(FreeSpace::level(&channel, measurements, numbers()));
 }
 
+fn heading<T: Scalar>() -> Option<Heading<T>> {
+    let heading = any(Heading::new(number()).ok()?);
+    keep(Heading::is_known(&heading));
+    Some(any(Heading::mean(&heading, &Heading::unknown(), number())))
+}
+
 fn open_ground<T: Scalar>() {
-    let Some(measurement) = measurement::<T>() else { return };
+    let (Some(measurement), Some(heading)) = (measurement::<T>(), heading()) else { return };
+    let headings = any([heading; 4]);
+    let headings = slice(&headings);
     let measurements = any([measurement; 4]);
     let measurements = slice(&measurements);
     let prior = maybe(LevelPrior { mean: number(), sigma: number() });
     let channel = any(OpenGround::<T>::new(prior));
-    let suppositions = any(OpenGround::suppositions(&channel, measurements));
-    if let Some(supposition) = slice(&suppositions).first() {
-        let fit = any(OpenGround::fit(&channel, measurements, numbers(), supposition, number()));
-        keep(GroundFit::expected(&fit, supposition, numbers(), numbers(), number()));
+    let mut suppositions = any(OpenGround::suppositions(&channel, measurements, headings));
+    let Some(first) = suppositions.next() else { return };
+    let mut all = any([first; 3]);
+    for (room, supposition) in all.iter_mut().zip(suppositions) {
+        *room = supposition;
     }
-    let (place, power, all) = (numbers(), number(), slice(&suppositions));
+    let all = slice(&all);
+    for supposition in all {
+        let power = number();
+        let fit = OpenGround::fit(&channel, measurements, headings, numbers(), supposition, power);
+        keep(GroundFit::expected(&any(fit), supposition, numbers(), numbers(), number()));
+    }
+    let (place, power) = (numbers(), number());
     let told = |index: usize, log: T| keep((index, log));
-    keep(OpenGround::log_likelihood(&channel, measurements, place, power, all, told));
+    keep(OpenGround::log_likelihood(&channel, measurements, headings, place, power, all, told));
 }
 
 fn rotors<T: Scalar>() {

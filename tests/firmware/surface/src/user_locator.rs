@@ -3,7 +3,8 @@
 use core::fmt::Debug;
 
 use kestirim_air_to_ground::{
-    Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement, OpenGround,
+    Channel, Contaminated, Environment, FreeSpace, Heading, LevelPrior, Likelihood, Measurement,
+    OpenGround,
 };
 use kestirim_particle_filter::{Region, Resampler};
 use kestirim_scalar::{Q16_16, Scalar};
@@ -147,10 +148,14 @@ fn grounds<T: Scalar, const N: usize, const L: usize>(area: Area<T, N>) -> Optio
     for _ in 0..rounds() {
         if let Some(measurement) = measurement() {
             GroundSearch::measure(any(&mut search), &measurement);
-            ByPlace::push(any(&mut places), &measurement);
+            if let Ok(heading) = any(Heading::new(number())) {
+                GroundSearch::measure_with_heading(any(&mut search), &measurement, &heading);
+                ByPlace::push(any(&mut places), &measurement, &heading);
+            }
         }
     }
     keep(ByPlace::as_slice(&places));
+    keep(ByPlace::headings(&places));
     keep(ByPlace::near(&places));
     keep(GroundSearch::measurements(&search));
     keep(GroundSearch::area(&search));
