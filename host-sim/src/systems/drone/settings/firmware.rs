@@ -22,10 +22,22 @@ pub(in crate::systems::drone) fn firmware(
     let literal = match recording {
         Some(Recording::Moving) => moving(settings, &walk(settings)),
         Some(Recording::Staying) => staying(settings),
-        Some(Recording::Flight(recorded)) => recorded_flight(settings, recorded.flight.quantity),
-        None => recorded_flight(settings, Quantity::Level),
+        Some(Recording::Flight(recorded)) => {
+            forgetting(settings, recorded_flight(settings, recorded.flight.quantity))
+        }
+        None => forgetting(settings, recorded_flight(settings, Quantity::Level)),
     };
     literal.to_string()
+}
+
+/// With what a search does not forget by itself.
+fn forgetting(settings: &Settings, literal: Literal) -> Literal {
+    match settings.number("window") {
+        Some(window_s) => literal.then(format!(
+            "// The user moves: a search of its own from the measurements of each {window_s} s."
+        )),
+        None => literal,
+    }
 }
 
 /// The search of a recorded flight.
