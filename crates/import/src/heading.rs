@@ -65,6 +65,7 @@ const KNOWN: &[Known] = &[
         "lon",
         &["lon", "lng", "long", "longitude", "gpslon", "gpslng", "gpslongitude"],
     ),
+    of(Quantity::Angle, "heading", &["heading", "hdg", "compass", "compassheading"]),
     of(Quantity::Level, "rssi_db", &["rssi", "rss", "signal", "level", "power", "rxpower"]),
     of(Quantity::Level, "path_loss_db", &["pathloss", "loss", "pl"]),
     named_only(

@@ -20,13 +20,14 @@ const HIGHEST_HZ: f64 = 30e9;
 
 /// A flight: t (n,), place (n, 2), height (n,), and what was measured (n,): losses, or levels if `levels`; at a frequency, Hz.
 #[pyfunction]
-#[pyo3(signature = (t, place, height, value, levels, area, environment, frequency, window, every))]
+#[pyo3(signature = (t, place, height, value, heading, levels, area, environment, frequency, window, every))]
 pub(crate) fn drone<'py>(
     py: Python<'py>,
     t: Line<'py>,
     place: Table<'py>,
     height: Line<'py>,
     value: Line<'py>,
+    heading: Option<Line<'py>>,
     levels: bool,
     area: Option<Table<'py>>,
     environment: Option<&str>,
@@ -45,7 +46,9 @@ pub(crate) fn drone<'py>(
     }
     let wavelength_m = wavelength_m(frequency);
     let quantity = if levels { Quantity::Level } else { Quantity::PathLoss };
-    let stops = stops(values(&t)?, rows(&place)?, values(&height)?, values(&value)?, quantity)?;
+    let heading = heading.as_ref().map(values).transpose()?;
+    let places = (rows(&place)?, values(&height)?, heading);
+    let stops = stops(values(&t)?, places, values(&value)?, quantity)?;
     let area = area.as_ref().map(|area| rows::<2>(area).and_then(polygon)).transpose()?;
     let found = py.detach(|| {
         let search = move || -> PyResult<Found> {
@@ -89,19 +92,23 @@ fn polygon(corners: &[[f64; 2]]) -> PyResult<Box<Area>> {
     })
 }
 
+/// Time, place, height, and what was measured.
+type Numbers<'a> = (((&'a f64, &'a [f64; 2]), &'a f64), &'a f64);
+
 /// Those that a channel can use, in the order of their times.
 fn stops(
     t: &[f64],
-    place: &[[f64; 2]],
-    height: &[f64],
+    (place, height, heading): (&[[f64; 2]], &[f64], Option<&[f64]>),
     value: &[f64],
     quantity: Quantity,
 ) -> PyResult<Vec<Stop>> {
-    let lines = t.iter().zip(place).zip(height).zip(value);
-    let stop = |(((&t, &place), &height), &value): (((&f64, &[f64; 2]), &f64), &f64)| {
+    let lines = t.iter().zip(place).zip(height).zip(value).enumerate();
+    let stop = |(line, (((&t, &place), &height), &value)): (usize, Numbers<'_>)| {
         // As logs are read, to the microsecond.
         let t = microseconds(t) as f64 * 1e-6;
-        Stop { t, place, height, loss: if quantity == Quantity::Level { -value } else { value } }
+        let heading = heading.and_then(|all| all.get(line).copied()).filter(|it| it.is_finite());
+        let loss = if quantity == Quantity::Level { -value } else { value };
+        Stop { t, place, height, loss, heading: heading.map(f64::to_radians) }
     };
     let is_place = |stop: &Stop| stop.place.iter().all(|axis| axis.is_finite());
     let mut stops: Vec<Stop> =

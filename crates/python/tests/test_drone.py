@@ -19,6 +19,7 @@ import kestirim
         ("afar_1204/stops.csv", {"environment": "suburban"}, ["--environment", "suburban"]),
         ("collars/collar_000419_0.csv", {"environment": "urban"}, ["--environment", "urban"]),
         ("lora_20190619", {"every": False}, []),
+        ("afar_1204/samples_2hz_attitude.csv", {"every": False}, []),
     ],
 )
 def test_equals_replay(data: Path, replay: Replay, name: str, options: Any, arguments: list[str]) -> None:
@@ -29,6 +30,8 @@ def test_equals_replay(data: Path, replay: Replay, name: str, options: Any, argu
     if area.exists():
         options = {**options, "area": vectors(table(area), "x", "y")}
         arguments = [*arguments, "--area", str(area)]
+    if "heading_deg" in (flight.dtype.names or ()):
+        options = {**options, "heading": flight["heading_deg"]}
     theirs, track = replay("drone", "--log", log, *arguments)
     place = vectors(flight, "x", "y")
     ours = kestirim.drone(flight["t"], place, flight["h"], rssi=flight["rssi_db"], **options)

@@ -33,7 +33,7 @@ fn flight(environment: EnvironmentKind, count: u32, random: &mut Xoshiro256PlusP
             (loss.obstructed_mean, loss.obstructed_sigma)
         };
         let loss = Normal::new(mean, sigma).expect("a deviation").sample(random);
-        Stop { t: f64::from(at), place, height, loss }
+        Stop { t: f64::from(at), place, height, loss, heading: None }
     };
     (0..count).map(stop).collect()
 }

@@ -254,6 +254,7 @@ def drone(
     place: _Floats,
     height: _Floats,
     value: _Floats,
+    heading: Optional[_Floats],
     levels: bool,
     area: Optional[_Floats],
     environment: Optional[str],

@@ -191,6 +191,7 @@ def drone(
     *,
     path_loss: Optional[npt.ArrayLike] = None,
     rssi: Optional[npt.ArrayLike] = None,
+    heading: Optional[npt.ArrayLike] = None,
     area: Optional[npt.ArrayLike] = None,
     environment: Literal["open", "suburban", "urban", "dense-urban", "high-rise"] = "open",
     frequency: float = 2e9,
@@ -201,6 +202,7 @@ def drone(
 
     t: (n,) s. position: (n, 2) m to the east and north. height: (n,) m above the user.
     path_loss: (n,) dB, or rssi: (n,) dB of unknown offset; one of the two, not a number where none came.
+    heading: (n,) degrees clockwise from north, where the drone's nose pointed; not a number where that is not known.
 
     area: (k, 2) m, the corners of where the user can be, one after the other; else up to 500 m beyond the flight.
     environment: what is built on the ground; "open" is nothing.
@@ -221,6 +223,7 @@ def drone(
         floats("position", position, count, 2),
         floats("height", height, count),
         floats(name, value, count),
+        maybe_floats("heading", heading, count),
         rssi is not None,
         maybe_floats("area", area, "k", 2),
         None if environment == "open" else environment,

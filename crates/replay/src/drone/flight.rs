@@ -30,6 +30,8 @@ pub struct Stop {
     pub height: f64,
     /// The path loss, or the negative level, dB.
     pub loss: f64,
+    /// Where its nose pointed, if that is known: rad, clockwise from the second axis of the plane (north) to the first (east).
+    pub heading: Option<f64>,
 }
 
 /// Heights above which no drone flies, m.

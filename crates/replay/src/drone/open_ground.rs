@@ -1,6 +1,6 @@
 //! Over open ground, through a channel of which nothing is known.
 
-use kestirim_air_to_ground::OpenGround;
+use kestirim_air_to_ground::{Heading, OpenGround};
 use kestirim_user_locator::{GroundEstimate, GroundSearch, Informative, Waypoint};
 use rayon::prelude::*;
 
@@ -29,7 +29,8 @@ impl Search<'_> {
         let mut asked = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
             let Some(measurement) = self.measurement(stop) else { continue };
-            search.measure(&measurement);
+            let heading = stop.heading.and_then(|heading| Heading::new(heading).ok());
+            search.measure_with_heading(&measurement, &heading.unwrap_or_else(Heading::unknown));
             // Counted from the end, so that the last is one of them.
             if (count - 1 - number).is_multiple_of(stride) {
                 asked.push((number, search.clone()));

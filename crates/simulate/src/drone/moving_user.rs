@@ -134,7 +134,8 @@ pub fn track(walk: &Walk, seed: u64, index: u64) -> Track {
     let mut watch = |step: &Step<'_>| {
         let Waypoint { place, height } = step.waypoint;
         let number = track.stops.len();
-        track.stops.push(Stop { t: number as f64 * INTERVAL_S, place, height, loss: step.loss_db });
+        let t = number as f64 * INTERVAL_S;
+        track.stops.push(Stop { t, place, height, loss: step.loss_db, heading: None });
         track.truth.push(step.user);
         let estimate = Estimate::of_cloud(number, step.follower.cloud());
         track.estimates.push(Estimate { place: step.estimate, ..estimate });

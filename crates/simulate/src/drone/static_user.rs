@@ -151,6 +151,7 @@ impl<'a> Flight<'a> {
                 place: measurement.place(),
                 height,
                 loss,
+                heading: None,
             });
             estimates.push(Estimate::of_cloud(number, cloud(&measurement)));
         }

@@ -76,7 +76,8 @@ impl Online for Listener {
             return Outcome::NotMine;
         };
         let [x, y, height] = place.map(f64::from);
-        let stop = Stop { t: time_us as f64 * 1e-6, place: [x, y], height, loss: f64::from(loss) };
+        let (t, place, loss) = (time_us as f64 * 1e-6, [x, y], f64::from(loss));
+        let stop = Stop { t, place, height, loss, heading: None };
         let is_on_earth = stop.place.iter().all(|axis| axis.abs() <= FARTHEST_POSITION);
         if !is_on_earth || !stop.is_usable() {
             return Outcome::Refused;

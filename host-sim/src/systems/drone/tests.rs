@@ -209,7 +209,8 @@ fn at_433_mhz() -> Vec<Stop> {
         let (t, turn) = (f64::from(k), f64::from(k) * 0.3);
         let place = [200.0 + 150.0 * turn.cos(), 100.0 + 150.0 * turn.sin()];
         let far = (place[0] - 150.0).hypot(place[1] - 120.0);
-        Stop { t, place, height: 200.0, loss: channel.path_loss(far, 200.0).unwrap().mean() }
+        let loss = channel.path_loss(far, 200.0).unwrap().mean();
+        Stop { t, place, height: 200.0, loss, heading: None }
     };
     (0..40).map(stop).collect()
 }
@@ -220,7 +221,7 @@ fn path_losses_are_those_of_a_frequency() {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("stops.csv");
     let mut text = "t,x,y,h,path_loss_db\n".to_owned();
-    for Stop { t, place: [x, y], height, loss } in at_433_mhz() {
+    for Stop { t, place: [x, y], height, loss, .. } in at_433_mhz() {
         writeln!(text, "{t},{x:.3},{y:.3},{height},{loss:.3}").unwrap();
     }
     fs::write(&log, text).unwrap();
@@ -245,7 +246,7 @@ fn a_stream_that_contradicts_its_environment_is_told() {
         let settings = given_settings(given);
         let plan = <Drone as System>::online(&settings, &Files::default()).unwrap().unwrap();
         let mut listener = plan.build().unwrap();
-        for Stop { t, place: [x, y], height, loss } in at_433_mhz() {
+        for Stop { t, place: [x, y], height, loss, .. } in at_433_mhz() {
             let place = [x as f32, y as f32, height as f32];
             let time_us = (t * 1e6) as u64;
             listener.take(&Message::PathLoss(PathLoss { time_us, place, loss: loss as f32 }));

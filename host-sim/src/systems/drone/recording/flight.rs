@@ -40,7 +40,8 @@ pub struct Heard {
 /// From stop to stop it takes so long, s.
 const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
 /// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP. Of
-/// several transmitters, which a column user names, `--topic` says which one is meant, or all are.
+/// several transmitters, which a column user names, `--topic` says which one is meant, or all are. The drone's heading
+/// (degrees clockwise from y, north) is taken where there is a column of it.
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
@@ -57,7 +58,7 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
         &bytes,
         &Log { what: "a recorded flight", usual_step_s: Some(USUAL_STEP_S), options },
         columns,
-        |&(places, [t, h, value], quantity, user), row| {
+        |&Columns { places, measured: [t, h, value], quantity, user, heading }, row| {
             flight.quantity = quantity;
             let t = row.time_us(t)? as f64 * 1e-6;
             let place = places.read(row, &mut flight.origin)?;
@@ -71,7 +72,13 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
                 Quantity::PathLoss => row.number("path_loss_db", value)?,
                 Quantity::Level => -row.number("rssi_db", value)?,
             };
-            let stop = Stop { t, place, height, loss };
+            let heading = match heading {
+                Some(column) if !row.is_empty(column) => {
+                    Some(row.number("heading", column)?.to_radians())
+                }
+                _ => None,
+            };
+            let stop = Stop { t, place, height, loss, heading };
             let is_usable = stop.is_usable();
             let name = user.map(|user| row.text(user)).unwrap_or_default();
             let is_meant = users.hear(&name, stop, is_usable);
@@ -98,7 +105,7 @@ fn of_levels(levels: levels::Levels) -> (Flight, Found) {
         let loss = if levels.are_losses { heard.level } else { -heard.level };
         let place = Origin::place(&mut flight.origin, heard.latitude, heard.longitude);
         let t = heard.time_us as f64 * 1e-6;
-        let stop = place.map(|place| Stop { t, place, height: heard.height, loss });
+        let stop = place.map(|place| Stop { t, place, height: heard.height, loss, heading: None });
         match stop.filter(Stop::is_usable) {
             Some(stop) => flight.stops.push(stop),
             None => flight.unusable += 1,
@@ -107,11 +114,24 @@ fn of_levels(levels: levels::Levels) -> (Flight, Found) {
     (flight, Found { import: levels.conclusions, warnings: levels.damage.sentences() })
 }
 
-fn columns(header: &Header<'_>) -> Result<(Places, [Column; 3], Quantity, Option<Column>), Error> {
-    let (places, user) = (Places::find(header)?, header.find("user")?);
-    if header.find("path_loss_db")?.is_some() {
-        let columns = header.require(["t", "h", "path_loss_db"])?;
-        return Ok((places, columns, Quantity::PathLoss, user));
-    }
-    Ok((places, header.require(["t", "h", "rssi_db"])?, Quantity::Level, user))
+/// The columns of a log.
+#[derive(Debug, Clone, Copy)]
+struct Columns {
+    places: Places,
+    /// Time, height, and what was measured.
+    measured: [Column; 3],
+    quantity: Quantity,
+    user: Option<Column>,
+    heading: Option<Column>,
+}
+
+fn columns(header: &Header<'_>) -> Result<Columns, Error> {
+    let (places, user, heading) =
+        (Places::find(header)?, header.find("user")?, header.find("heading")?);
+    let (name, quantity) = if header.find("path_loss_db")?.is_some() {
+        ("path_loss_db", Quantity::PathLoss)
+    } else {
+        ("rssi_db", Quantity::Level)
+    };
+    Ok(Columns { places, measured: header.require(["t", "h", name])?, quantity, user, heading })
 }

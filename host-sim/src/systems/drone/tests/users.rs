@@ -82,3 +82,31 @@ fn a_user_who_moves_is_told_and_needs_a_window() {
     assert!(error(&some) < 0.5 * error(&all), "{} {}", error(&some), error(&all));
     assert!(error(&some) < 3.0 * some["sd_m"].as_f64().unwrap(), "{some}");
 }
+
+/// An antenna that points to the front of a drone that flies to and fro: where the heading is known that is no error of the place.
+#[test]
+fn a_heading_is_read_and_explains_an_antenna_that_turns() {
+    let user = [120.0, 190.0];
+    let (mut with, mut without) = ("t,x,y,h,rssi_db,heading_deg\n".to_owned(), String::new());
+    without.push_str("t,x,y,h,rssi_db\n");
+    for step in 0..128 {
+        let (place, next) = (drone(step), drone(step + 1));
+        let [along, across] = [next[0] - place[0], next[1] - place[1]];
+        let heading = along.atan2(across);
+        let sight = [user[0] - place[0], user[1] - place[1]];
+        let forward = sight[0] * heading.sin() + sight[1] * heading.cos();
+        let gain = 6.0 * forward / sight[0].hypot(sight[1]).hypot(40.0);
+        let level = level(user, place) + gain;
+        let [x, y] = place;
+        writeln!(without, "{step},{x},{y},40,{level:.2}").unwrap();
+        writeln!(with, "{step},{x},{y},40,{level:.2},{:.1}", heading.to_degrees()).unwrap();
+    }
+    let truth = "x,y\n120,190\n";
+    let [known, unknown] = [with, without].map(|log| replayed(&log, truth, &[]));
+    let of = |report: &Value| {
+        (report["accuracy"]["error_m"].as_f64().unwrap(), report["sd_m"].as_f64().unwrap())
+    };
+    println!("{:?} {:?}", of(&known), of(&unknown));
+    assert!(known["import"].to_string().contains("heading = heading_deg in °"), "{known}");
+    assert!(of(&known).0 < 5.0 && of(&known).1 < 0.7 * of(&unknown).1, "{known} {unknown}");
+}
