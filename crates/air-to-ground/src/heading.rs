@@ -80,6 +80,12 @@ impl<T: Scalar> Heading<T> {
         Self { means }
     }
 
+    /// Length of the mean of the headings' unit vectors: 1 if all are the same.
+    pub(crate) fn length(&self) -> T {
+        let [cosine, sine, ..] = self.means;
+        T::norm(&[cosine, sine])
+    }
+
     /// A horizontal vector (east, north) as the drone has it: forward, right.
     pub(crate) fn turned(&self, [east, north]: [T; 2]) -> [T; 2] {
         let [cosine, sine, ..] = self.means;

@@ -29,6 +29,9 @@ const SATURATED: usize = 4;
 /// Levels are told in halves of decibels at best.
 const SATURATED_DB: f64 = 0.25;
 
+/// Headings whose unit vectors have a mean as long as this are within some 25° of each other.
+const SAME_WAY: f64 = 0.9;
+
 /// How many [`Supposition`]s there are at most: of four patterns, four floors and three scales.
 pub const SUPPOSITIONS: usize = Pattern::ALL.len() * (FLOORS.len() + 1) * SCALES_DB.len();
 
@@ -71,7 +74,7 @@ impl Pattern {
 /// * The pattern of both antennas together is a series of real spherical harmonics of degree 2 in the line of sight, each
 ///   with a coefficient of 0 ± 2 dB: what two dipoles of unknown axes have of that degree (one has 3.2 dB, in five
 ///   coefficients); or of the one alone that is the same all around; or of none. Prior probabilities 0.5, 0.3, 0.2.
-/// * Where the drone's [`Heading`] is known, there is a fourth kind, of prior probability 0.35 (0.3, 0.2, 0.15 for the others): of
+/// * Where the drone's [`Heading`] is known, and not always the same, there is a fourth kind, of prior probability 0.35 (0.3, 0.2, 0.15 for the others): of
 ///   those harmonics a second set (0 ± 1.5 dB each, as one dipole has it) turns with the drone, and with it the two of degree 1 that are
 ///   horizontal (0 ± 2 dB): an antenna beside metal, or a patch, is stronger on one side.
 /// * The floor is the receiver's own noise, which a weak signal drowns in: none, or at one of three quantiles of the levels.
@@ -111,8 +114,8 @@ impl<T: Scalar> OpenGround<T> {
         Self { level }
     }
 
-    /// All that is supposed in turn of what was received: three quarters of [`SUPPOSITIONS`] if no heading is known. O(M²), once
-    /// for a flight.
+    /// All that is supposed in turn of what was received: three quarters of [`SUPPOSITIONS`] if no heading is known, or
+    /// all are much the same. O(M²), once for a flight.
     pub fn suppositions(
         &self,
         measurements: &[Measurement<T>],
@@ -130,7 +133,7 @@ impl<T: Scalar> OpenGround<T> {
             quantile(measurements, T::from_f64(FLOORS[2])),
         ];
         let shares = [T::from_f64(NO_FLOOR), T::from_f64((1.0 - NO_FLOOR) / FLOORS.len() as f64)];
-        let is_headed = headings.iter().zip(measurements).any(|(heading, _)| heading.is_known());
+        let is_headed = turns(headings.get(..MOST).unwrap_or(headings));
         let patterns =
             Pattern::ALL.into_iter().filter(move |it| is_headed || *it != Pattern::Turned);
         patterns.flat_map(move |pattern| {
@@ -199,6 +202,17 @@ impl<T: Scalar> OpenGround<T> {
         }
         all
     }
+}
+
+/// Whether a drone turned by so much that its antenna's pattern can be told from one that does not turn: otherwise a further
+/// pattern costs certainty and tells nothing.
+fn turns<T: Scalar>(headings: &[Heading<T>]) -> bool {
+    let (mut mean, mut count) = (Heading::unknown(), 0);
+    for heading in headings.iter().filter(|heading| heading.is_known()) {
+        count += 1;
+        mean = mean.mean(heading, T::from_binary(count, 0).recip());
+    }
+    count > 0 && mean.length() < T::from_f64(SAME_WAY)
 }
 
 /// The level below which this part of all lie; none without a measurement.

@@ -175,6 +175,9 @@ fn check_turned<T: Scalar>() {
     let mirrored: Vec<_> = (0..flight.len()).map(|k| heading(-1.0, k)).collect();
     let all = suppositions(&channel, &flight, &headings);
     assert_eq!(all.len(), SUPPOSITIONS);
+    let nearly: Vec<_> = (0..100).map(|k| heading(0.01, k % 9)).collect();
+    let of_nearly = suppositions(&channel, &flight, &nearly);
+    assert_eq!(of_nearly, suppositions(&channel, &flight, &[]), "always much the same way");
     let total: f64 = all.iter().map(|it| it.log_prior.to_f64().exp()).sum();
     assert!((total - 3.0).abs() < 0.01, "as many as scales: {total}");
     let [with, without, wrong] = [(&headings, true), (&headings, false), (&mirrored, true)]
