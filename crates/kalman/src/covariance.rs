@@ -130,6 +130,17 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
+    /// P ← P + a·(Q − P), for a of 0 to 1: what lies between two covariances is one.
+    #[inline]
+    pub fn blend(&mut self, other: &Self, a: T) {
+        for column in 0..N {
+            for row in column..N {
+                let entry = &mut self.lower.data.0[column][row];
+                *entry += (other.lower.data.0[column][row] - *entry) * a;
+            }
+        }
+    }
+
     /// Adds process noise to state `I` alone (unit: the state's, squared).
     #[inline]
     pub fn add_variance<const I: usize>(&mut self, variance: T) {

@@ -22,6 +22,8 @@ pub enum Error {
     },
     /// All states that a filter has room for are taken, or the output or state that something is to act on is not there.
     NoRoom,
+    /// Local models do not stand in the order of their airspeeds, or have not the same states, outputs and origin.
+    Grid,
     /// The model's transition has no inverse, which the current form of the observer needs.
     Singular,
     /// The design was refused.
@@ -60,6 +62,9 @@ impl fmt::Display for Error {
                 write!(formatter, "the model is for intervals of {own} s, found one of {found} s")
             }
             Self::NoRoom => formatter.write_str("there is no room for another state"),
+            Self::Grid => formatter.write_str(
+                "the models are not in the order of their airspeeds, or of other states or outputs",
+            ),
             Self::Singular => formatter.write_str("the model's transition has no inverse"),
             Self::Design(error) => error.fmt(formatter),
             Self::Observer(error) => error.fmt(formatter),

@@ -21,7 +21,7 @@ mod watch;
 
 pub use augmented::{
     AugmentedFilter, AugmentedFlight, AugmentedModel, AugmentedStep, AugmentedTransition, Drift,
-    Gust, Output, Reference,
+    Gust, LocalModel, Output, Reference, ScheduledFilter, ScheduledFlight, ScheduledTransition,
 };
 pub use dynamics::{Dynamics, Step};
 pub use error::Error;

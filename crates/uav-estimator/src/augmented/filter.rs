@@ -4,12 +4,11 @@ use kestirim_kalman::{Covariance, Driven, Gaussian, Innovation, Weighed};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-use super::{AugmentedModel, AugmentedStep, Output, Reference};
+use super::row::{Row, blend, unit_of};
+use super::{AugmentedModel, AugmentedStep};
 use crate::Error;
 use crate::kalman_filter::{Forced, UNITS, power_of_two};
 
-/// V among the states.
-const AIRSPEED: usize = 2;
 /// Fixed point holds a variance of so many units squared as well as what is left of it.
 const UNITS_A_SIGMA: f64 = 8.0;
 /// In fixed point a state beside the four whose variance is so many times that at the start …
@@ -29,29 +28,10 @@ const FADING: f64 = 0.98;
     ))
 )]
 pub struct AugmentedTransition<T: Scalar, const N: usize, const K: usize> {
-    rows: SMatrix<T, 4, K>,
-    b: SMatrix<T, 4, 2>,
-    fading: SVector<T, N>,
-    noise: Covariance<T, N>,
-}
-
-/// What is measured of the states, in the filter's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize",
-        deserialize = "T: Scalar + serde::Deserialize<'de>"
-    ))
-)]
-struct Row<T: Scalar, const N: usize> {
-    parts: SVector<T, N>,
-    direct: SVector<T, 2>,
-    variance: T,
-    /// y₀ and 1/V₀ of what is in proportion to the dynamic pressure.
-    pressure: Option<(T, T)>,
+    pub(super) rows: SMatrix<T, 4, K>,
+    pub(super) b: SMatrix<T, 4, 2>,
+    pub(super) fading: SVector<T, N>,
+    pub(super) noise: Covariance<T, N>,
 }
 
 /// A Kalman filter of the N states of an [`AugmentedModel`], with P outputs of which each may be missing.
@@ -70,11 +50,11 @@ struct Row<T: Scalar, const N: usize> {
     ))
 )]
 pub struct AugmentedFilter<T: Scalar, const N: usize, const K: usize, const P: usize> {
-    state: Gaussian<T, N>,
+    pub(super) state: Gaussian<T, N>,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
-    rows: [Row<T, N>; P],
-    state_units: SVector<f64, N>,
-    output_units: SVector<f64, P>,
+    pub(super) rows: [Row<T, N>; P],
+    pub(super) state_units: SVector<f64, N>,
+    pub(super) output_units: SVector<f64, P>,
     /// Variances of the states at the start.
     start: SVector<T, N>,
 }
@@ -100,7 +80,8 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         let mut rows = [Row::new(); P];
         for (row, (place, (unit, output))) in rows.iter_mut().zip(outputs) {
             let parts = from_fn(|state| columns[state][place] * state_units[state]);
-            *row = Row::of(output, parts, unit);
+            *unit = unit_of(output);
+            *row = Row::of(output, parts, *unit);
         }
         let finite = |row: &Row<T, N>| row.is_finite();
         if !(T::all_finite(&start) && rows.iter().all(finite)) {
@@ -224,7 +205,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
     /// In fixed point the roundings of every step add to a state that no output measures, such as a head wind without a speed
     /// over ground. Its variance would overflow, and then every sample would be refused. Floats have room.
     #[inline(always)]
-    fn bounded(&self, transition: &AugmentedTransition<T, N, K>) -> SVector<T, N> {
+    pub(super) fn bounded(&self, transition: &AugmentedTransition<T, N, K>) -> SVector<T, N> {
         let mut bounded = transition.fading;
         // Sums in floats have no headroom to count.
         if T::headroom(0) == Some(0) {
@@ -293,9 +274,20 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
 }
 
 impl<T: Scalar, const N: usize, const K: usize> AugmentedTransition<T, N, K> {
+    /// Moves on to another step over the same interval by a share of the way, 0 to 1.
+    #[inline(always)]
+    pub(super) fn blend(&mut self, other: &Self, share: T) {
+        let (rows, others) = (self.rows.as_columns_mut(), other.rows.as_columns());
+        blend(rows.as_flattened_mut(), others.as_flattened(), share);
+        let (b, others) = (self.b.as_columns_mut(), other.b.as_columns());
+        blend(b.as_flattened_mut(), others.as_flattened(), share);
+        blend(self.fading.as_array_mut(), other.fading.as_array(), share);
+        self.noise.blend(&other.noise, share);
+    }
+
     /// The step with these inputs, after which so much is left of each state.
     #[inline(always)]
-    fn forced<'a>(
+    pub(super) fn forced<'a>(
         &'a self,
         fading: &'a SVector<T, N>,
         input: &'a SVector<T, 2>,
@@ -313,78 +305,4 @@ fn always<T: Scalar, const N: usize>(
     _output: usize,
 ) -> Result<Innovation<T>, Error> {
     Ok(next.correct(weighed)?)
-}
-
-impl<T: Scalar, const N: usize> Row<T, N> {
-    const fn new() -> Self {
-        let zero = [T::ZERO; N];
-        Self {
-            parts: SVector::from_array_storage(nalgebra::ArrayStorage([zero])),
-            direct: SVector::from_array_storage(nalgebra::ArrayStorage([[T::ZERO; 2]])),
-            variance: T::ZERO,
-            pressure: None,
-        }
-    }
-
-    /// Of an output with these parts, by states in their units; its unit is chosen and told.
-    fn of(output: &Output, mut parts: [f64; N], unit: &mut f64) -> Self {
-        *unit =
-            power_of_two(output.row.iter().zip(UNITS).map(|(part, it)| (part * it).abs()).sum());
-        let sigma = output.sigma / *unit;
-        let mut pressure = None;
-        if let Reference::Pressure { steady, airspeed } = output.reference {
-            let [_, _, unit_of_airspeed, _] = UNITS;
-            let relative = unit_of_airspeed / airspeed;
-            if let Some(part) = parts.get_mut(AIRSPEED) {
-                *part -= 2.0 * steady * relative;
-            }
-            pressure = Some((T::from_f64(steady / *unit), T::from_f64(relative)));
-        }
-        Self {
-            parts: SVector::from(parts.map(|part| T::from_f64(part / *unit))),
-            direct: SVector::from(output.direct.map(|part| T::from_f64(part / *unit))),
-            variance: T::from_f64(sigma * sigma),
-            pressure,
-        }
-    }
-
-    fn is_finite(&self) -> bool {
-        let (steady, relative) = self.pressure.unwrap_or((T::ZERO, T::ZERO));
-        T::all_finite(self.parts.as_array())
-            && T::all_finite(self.direct.as_array())
-            && T::all_finite(&[self.variance, steady, relative])
-    }
-
-    /// What is expected of these states, and its derivatives by them.
-    #[inline(always)]
-    fn linearised<const K: usize>(&self, mean: &[T; N], input: &SVector<T, 2>) -> (T, [T; N]) {
-        let parts = self.parts.as_array();
-        let mut of_the_air = T::accumulator();
-        let mut beside = T::accumulator();
-        for state in 0..K.min(N) {
-            of_the_air = T::mac(of_the_air, parts[state], mean[state]);
-        }
-        for state in K..N {
-            beside = T::mac(beside, parts[state], mean[state]);
-        }
-        let [direct, throttle] = *self.direct.as_array();
-        let [elevator_now, throttle_now] = *input.as_array();
-        of_the_air = T::mac(of_the_air, direct, elevator_now);
-        let of_the_air = T::finish(T::mac(of_the_air, throttle, throttle_now));
-        let beside = T::finish(beside);
-        let Some((steady, relative)) = self.pressure else {
-            return (of_the_air + beside, *parts);
-        };
-        let ratio = T::ONE + mean.get(AIRSPEED).copied().unwrap_or(T::ZERO) * relative;
-        let square = ratio * ratio;
-        let whole = steady + of_the_air;
-        let mut derivatives = *parts;
-        for part in derivatives.iter_mut().take(K) {
-            *part *= square;
-        }
-        if let Some(part) = derivatives.get_mut(AIRSPEED) {
-            *part += T::TWO * ratio * relative * whole;
-        }
-        (square * whole - steady + beside, derivatives)
-    }
 }

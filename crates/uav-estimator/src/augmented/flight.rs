@@ -3,9 +3,9 @@ use kestirim_kalman::Innovation;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-use super::{AugmentedFilter, AugmentedModel, AugmentedTransition};
+use super::{AugmentedFilter, AugmentedModel, AugmentedStep, AugmentedTransition};
 use crate::kalman_filter::{GATE, Gated};
-use crate::transitions::{Transitions, interval_us, is_set_back};
+use crate::transitions::{Moves, Transitions, interval_us, is_set_back};
 use crate::watch::Watch;
 use crate::{Error, Sample};
 
@@ -74,45 +74,128 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize>
     /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the filter
     /// is as it was.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
-        let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
-        if !numbers.copied().all(f64::is_finite) {
-            return Err(Error::NotFinite);
-        }
-        let mut next = self.filter;
-        let mut moved = None;
-        if self.before.is_some_and(|(before_us, _)| is_set_back(before_us, sample.time_us)) {
-            next = next.begun_anew();
-        } else if let Some((before_us, input)) = &self.before {
-            let interval_us = interval_us(*before_us, sample.time_us)?;
-            let transition = self.transitions.over(interval_us, |step| next.transition(step))?;
-            next.predict(&transition, &input.map(T::from_f64))?;
-            moved = Some((interval_us, transition));
-        }
-        let mut watch = self.watch;
-        let judged = judged(&mut next, sample, &mut watch)?;
-        // Of what inputs show at once, a gain that is a little wrong looks as if it were late.
-        let mut timed = sample.measured;
-        for (output, measured) in timed.iter_mut().enumerate() {
-            *measured = measured.filter(|_| !next.is_direct(output));
-        }
-        watch.count(&timed, &judged);
-        self.filter = next;
-        self.watch = watch;
-        self.before = Some((sample.time_us, sample.input));
-        if let Some((interval_us, transition)) = &moved {
-            self.transitions.keep(*interval_us, transition);
-        }
-        Ok(judged.innovations)
+        taken(&mut self.filter, &mut self.watch, &mut self.transitions, &mut self.before, sample)
     }
 }
 
+/// What a flight asks of its filter.
+pub(super) trait Flown<T: Scalar, const N: usize, const K: usize, const P: usize>:
+    Copy
+{
+    /// What its model does in an interval, …
+    type Step;
+    /// … and the same in its scalar and units.
+    type Transition: Copy;
+
+    /// Estimate and units.
+    fn filter(&self) -> &AugmentedFilter<T, N, K, P>;
+
+    /// The filter as it was at its start.
+    fn begun_anew(&self) -> Self;
+
+    /// Converts a step.
+    fn transition(&self, step: &Self::Step) -> Self::Transition;
+
+    /// Moves on by a step.
+    fn predict(
+        &mut self,
+        transition: &Self::Transition,
+        input: &SVector<T, 2>,
+    ) -> Result<(), Error>;
+
+    /// The filter that takes in these outputs, once what it does not see is taken from them.
+    fn prepared(
+        &mut self,
+        measured: &mut [Option<T>; P],
+    ) -> Result<&mut AugmentedFilter<T, N, K, P>, Error>;
+}
+
+impl<T: Scalar, const N: usize, const K: usize, const P: usize> Flown<T, N, K, P>
+    for AugmentedFilter<T, N, K, P>
+{
+    type Step = AugmentedStep<N>;
+    type Transition = AugmentedTransition<T, N, K>;
+
+    fn filter(&self) -> &Self {
+        self
+    }
+
+    fn begun_anew(&self) -> Self {
+        Self::begun_anew(self)
+    }
+
+    fn transition(&self, step: &Self::Step) -> Self::Transition {
+        Self::transition(self, step)
+    }
+
+    fn predict(
+        &mut self,
+        transition: &Self::Transition,
+        input: &SVector<T, 2>,
+    ) -> Result<(), Error> {
+        Self::predict(self, transition, input)
+    }
+
+    fn prepared(&mut self, _measured: &mut [Option<T>; P]) -> Result<&mut Self, Error> {
+        Ok(self)
+    }
+}
+
+/// Takes a sample into a filter of a flight; whatever is refused changes nothing.
+pub(super) fn taken<T, F, D, const N: usize, const K: usize, const P: usize, const L: usize>(
+    filter: &mut F,
+    watch: &mut Watch<P>,
+    transitions: &mut Transitions<D, F::Transition, L>,
+    before: &mut Option<(i64, SVector<f64, 2>)>,
+    sample: &Sample<P>,
+) -> Result<[Option<Innovation<f64>>; P], Error>
+where
+    T: Scalar,
+    F: Flown<T, N, K, P>,
+    D: Moves<Step = F::Step>,
+{
+    let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
+    if !numbers.copied().all(f64::is_finite) {
+        return Err(Error::NotFinite);
+    }
+    let mut next = *filter;
+    let mut moved = None;
+    if before.is_some_and(|(before_us, _)| is_set_back(before_us, sample.time_us)) {
+        next = next.begun_anew();
+    } else if let Some((before_us, input)) = before {
+        let interval_us = interval_us(*before_us, sample.time_us)?;
+        let transition = transitions.over(interval_us, |step| next.transition(step))?;
+        next.predict(&transition, &input.map(T::from_f64))?;
+        moved = Some((interval_us, transition));
+    }
+    let mut watched = *watch;
+    let judged = judged(&mut next, sample, &mut watched)?;
+    // Of what inputs show at once, a gain that is a little wrong looks as if it were late.
+    let mut timed = sample.measured;
+    for (output, measured) in timed.iter_mut().enumerate() {
+        *measured = measured.filter(|_| !next.filter().is_direct(output));
+    }
+    watched.count(&timed, &judged);
+    *filter = next;
+    *watch = watched;
+    *before = Some((sample.time_us, sample.input));
+    if let Some((interval_us, transition)) = &moved {
+        transitions.keep(*interval_us, transition);
+    }
+    Ok(judged.innovations)
+}
+
 /// Takes in what the gates admit.
-fn judged<T: Scalar, const N: usize, const K: usize, const P: usize>(
-    filter: &mut AugmentedFilter<T, N, K, P>,
+fn judged<T, F, const N: usize, const K: usize, const P: usize>(
+    filter: &mut F,
     sample: &Sample<P>,
     watch: &mut Watch<P>,
-) -> Result<Gated<P>, Error> {
-    let units = *filter.output_units().as_array();
+) -> Result<Gated<P>, Error>
+where
+    T: Scalar,
+    F: Flown<T, N, K, P>,
+{
+    let units = *filter.filter().output_units().as_array();
     let mut measured = [None; P];
     for (scaled, (value, unit)) in measured.iter_mut().zip(sample.measured.iter().zip(units)) {
         *scaled = value.map(|value| T::from_f64(value / unit));
@@ -120,6 +203,7 @@ fn judged<T: Scalar, const N: usize, const K: usize, const P: usize>(
     let mut is_left_out = [false; P];
     let input = sample.input.map(T::from_f64);
     let gates = &mut watch.gates;
+    let filter = filter.prepared(&mut measured)?;
     let reported = filter.correct_with(&measured, &input, |next, weighed, output| {
         // Without an index, which would keep a check of its bounds.
         if let Some((gate, is_left_out)) = gates.get_mut(output).zip(is_left_out.get_mut(output)) {

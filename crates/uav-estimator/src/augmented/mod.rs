@@ -3,10 +3,17 @@
 mod discretise;
 mod filter;
 mod flight;
+mod local;
 mod model;
 mod output;
+mod row;
+mod scheduled_filter;
+mod scheduled_flight;
 
 pub use filter::{AugmentedFilter, AugmentedTransition};
 pub use flight::AugmentedFlight;
+pub use local::LocalModel;
 pub use model::{AugmentedModel, AugmentedStep, Drift, Gust};
 pub use output::{Output, Reference};
+pub use scheduled_filter::{ScheduledFilter, ScheduledTransition};
+pub use scheduled_flight::ScheduledFlight;

@@ -252,6 +252,11 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         }
     }
 
+    /// Whether both have the same states, known as well at the start.
+    pub(super) fn has_states_of(&self, other: &Self) -> bool {
+        self.taken == other.taken && self.start == other.start
+    }
+
     /// Standard deviations of all states at the start.
     pub const fn start(&self) -> &SVector<f64, N> {
         &self.start

@@ -1,0 +1,179 @@
+use kestirim_scalar::{Components, Scalar};
+use nalgebra::SVector;
+
+use super::filter::AugmentedTransition;
+use super::row::{AIRSPEED, Row};
+use super::{AugmentedModel, Output, Reference};
+use crate::Error;
+use crate::kalman_filter::UNITS;
+use crate::transitions::Moves;
+
+/// A model near one steady flight, among several of one aircraft that [`ScheduledFilter`](crate::ScheduledFilter) blends.
+///
+/// The steady flight is told by its deviations from a common origin, from which samples and estimates deviate, too: the
+/// trim of one of the models, which then has zeros here. The model itself is that of deviations from its own steady flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LocalModel<const N: usize, const K: usize, const P: usize> {
+    /// How the aircraft deviates from this steady flight, with noise and gusts of its airspeed. Biases, wind, forces are those of
+    /// all models, in the same order and of the same size.
+    pub model: AugmentedModel<N, K, P>,
+    /// α (rad), q (rad/s), V (m/s), θ (rad) of this steady flight, less those of the origin.
+    pub state: SVector<f64, 4>,
+    /// δe (rad) and δt of the same.
+    pub input: SVector<f64, 2>,
+    /// What each output shows in it, less what it shows at the origin.
+    pub outputs: SVector<f64, P>,
+}
+
+impl<const N: usize, const K: usize, const P: usize> LocalModel<N, K, P> {
+    pub(super) fn is_finite(&self) -> bool {
+        let numbers = self.state.iter().chain(&self.input).chain(&self.outputs);
+        numbers.copied().all(f64::is_finite)
+    }
+
+    /// Whether both are models of the same states, outputs and origin.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let outputs = self.model.outputs.iter().zip(&other.model.outputs);
+        let mut alike = outputs.map(|(one, another)| match (one.reference, another.reference) {
+            (
+                Reference::Pressure { airspeed, .. },
+                Reference::Pressure { airspeed: others, .. },
+            ) => {
+                let (here, there) = (self.origin(airspeed), other.origin(others));
+                (here - there).abs() <= SAME * here.abs()
+            }
+            (one, another) => one == another,
+        });
+        self.model.has_states_of(&other.model) && alike.all(|alike| alike)
+    }
+
+    /// Airspeed of the origin.
+    fn origin(&self, airspeed: f64) -> f64 {
+        airspeed - self.state.as_array()[AIRSPEED]
+    }
+
+    /// An output as deviations from the origin show it, and what has to be taken from it for that.
+    ///
+    /// What is in proportion to the dynamic pressure is in proportion to that of the origin, too: with V₀ the origin's airspeed and
+    /// V₁ that of this flight, (V/V₁)² = (V/V₀)² (V₀/V₁)².
+    pub(super) fn seen(&self, output: &Output, shown: f64) -> (Output, f64) {
+        let at = |output: &Output| -> f64 {
+            let states = output.row.iter().zip(&self.state).map(|(part, it)| part * it);
+            let inputs = output.direct.iter().zip(&self.input).map(|(part, it)| part * it);
+            states.chain(inputs).sum()
+        };
+        let Reference::Pressure { steady, airspeed } = output.reference else {
+            return (*output, shown - at(output));
+        };
+        let origin = self.origin(airspeed);
+        let share = (origin / airspeed) * (origin / airspeed);
+        let mut seen = *output;
+        let [_, _, by_airspeed, _] = &mut seen.row;
+        *by_airspeed -= 2.0 * steady / airspeed;
+        let there = share * (steady - at(&seen));
+        seen.row = seen.row.map(|part| share * part);
+        seen.direct = seen.direct.map(|part| share * part);
+        let [_, _, by_airspeed, _] = &mut seen.row;
+        *by_airspeed += 2.0 * there / origin;
+        seen.reference = Reference::Pressure { steady: there, airspeed: origin };
+        (seen, there - steady + shown)
+    }
+}
+
+/// Airspeeds that differ by no more than this part are the same.
+const SAME: f64 = 1e-9;
+
+/// Local models, to be moved on together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Models<const N: usize, const K: usize, const P: usize, const G: usize> {
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
+    pub(super) models: [AugmentedModel<N, K, P>; G],
+}
+
+impl<const N: usize, const K: usize, const P: usize, const G: usize> Moves for Models<N, K, P, G> {
+    type Step = [super::AugmentedStep<N>; G];
+
+    fn over(
+        &self,
+        interval: f64,
+        sample: f64,
+        noise: &SVector<f64, 2>,
+    ) -> Result<Self::Step, Error> {
+        let first = self.models.first().ok_or(Error::Grid)?;
+        let mut step = first.over(interval, sample, noise)?;
+        let mut steps = [step; G];
+        let mut before = first;
+        for (place, model) in steps.iter_mut().zip(&self.models) {
+            // One that is there twice fills a place.
+            if model != before {
+                step = model.over(interval, sample, noise)?;
+            }
+            (*place, before) = (step, model);
+        }
+        Ok(steps)
+    }
+}
+
+/// One model of a grid, in the scalar and the units of its filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
+pub(super) struct Local<T: Scalar, const N: usize, const P: usize> {
+    /// Airspeed, less that of the origin, …
+    pub(super) airspeed: T,
+    /// … and the inverse of how far it is to the next model; zero if it is there.
+    pub(super) slope: T,
+    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
+    pub(super) rows: [Row<T, N>; P],
+    /// What is taken from each output that is measured.
+    pub(super) taken: SVector<T, P>,
+    /// The steady flight: states in their units, and inputs.
+    pub(super) state: SVector<f64, 4>,
+    pub(super) input: SVector<f64, 2>,
+}
+
+impl<T: Scalar, const N: usize, const P: usize> Local<T, N, P> {
+    pub(super) fn is_finite(&self) -> bool {
+        T::all_finite(&[self.airspeed, self.slope])
+            && T::all_finite(self.taken.as_array())
+            && self.rows.iter().all(Row::is_finite)
+    }
+
+    /// What a step adds to the four states beside A x + B u, so that the steady flight stays as it is.
+    pub(super) fn constant<const K: usize>(
+        &self,
+        step: &AugmentedTransition<T, N, K>,
+    ) -> SVector<T, 4> {
+        // Of what the scalar made of A and B: what they were before would leave their roundings.
+        let mut constant = *self.state.as_array();
+        let states = step.rows.column_iter().zip(&self.state);
+        let inputs = step.b.column_iter().zip(&self.input);
+        for (column, value) in states {
+            for (left, part) in constant.iter_mut().zip(&column) {
+                *left -= part.to_f64() * value;
+            }
+        }
+        for (column, value) in inputs {
+            for (left, part) in constant.iter_mut().zip(&column) {
+                *left -= part.to_f64() * value;
+            }
+        }
+        SVector::from(constant.map(T::from_f64))
+    }
+}
+
+/// States of a steady flight in their units.
+pub(super) fn in_units(state: &SVector<f64, 4>) -> SVector<f64, 4> {
+    state.component_div(&SVector::from(UNITS))
+}
