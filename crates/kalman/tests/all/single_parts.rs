@@ -39,6 +39,19 @@ fn entries_are_looked_up_and_changed() {
 }
 
 #[test]
+fn between_two_covariances_is_one() {
+    let other = Covariance::from_lower_triangle(&matrix![4.0, -0.5; -0.5, 3.0]);
+    let at = |share: f64| {
+        let mut p = covariance();
+        p.blend(&other, share);
+        p.to_matrix()
+    };
+    assert_eq!(at(0.0), covariance().to_matrix());
+    assert_eq!(at(0.25), matrix![2.5, 0.25; 0.25, 1.5]);
+    assert_eq!(at(1.0), other.to_matrix());
+}
+
+#[test]
 fn noise_of_one_state_is_added_within_its_bounds() {
     let mut found = estimate();
     assert_eq!(found.add_variance_at(1, 0.5), Ok(()));

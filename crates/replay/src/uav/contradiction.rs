@@ -40,6 +40,13 @@ pub enum Contradiction {
         /// Root mean square, in the model's standard deviations.
         size: f64,
     },
+    /// The estimated airspeed is beyond those of a grid of models, by more than half of how far its last two are apart.
+    Beyond {
+        /// The furthest, m/s.
+        airspeed: f64,
+        /// The end of the grid, m/s.
+        end: f64,
+    },
 }
 
 impl Followed {
@@ -53,6 +60,7 @@ impl Followed {
         if squares.len() >= FEWEST_BESIDE && mean > BESIDE {
             all.push(Contradiction::Beside { size: mean.sqrt() });
         }
+        all.extend(self.beyond.map(|[airspeed, end]| Contradiction::Beyond { airspeed, end }));
         all
     }
 }

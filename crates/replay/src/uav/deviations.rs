@@ -30,7 +30,8 @@ impl Deviations {
     /// From what was logged; with `absolute` values the model's trim is taken from them.
     ///
     /// # Errors
-    /// [`Error::NoTrim`] if values are `absolute` and the model has none.
+    /// [`Error::NoTrim`] if values are `absolute` and the model has none; [`Error::GridOfDeviations`] if they are not, and it is
+    /// a grid.
     pub fn new(
         model: Model,
         mut log: Log,
@@ -61,7 +62,7 @@ impl Deviations {
     ///
     /// # Errors
     /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample, [`Error::BeyondRange`] if a
-    /// Kalman filter in fixed point does not hold a number.
+    /// Kalman filter in fixed point does not hold a number, [`Error::GridOfObserver`].
     pub fn follow(&self, options: &Options) -> Result<Followed, Error> {
         let followed = self.followed(options);
         match options.scalar {
@@ -80,6 +81,7 @@ impl Deviations {
         };
         match options.estimator {
             EstimatorKind::Kalman => kalman(options.scalar),
+            EstimatorKind::Luenberger if self.model.is_grid() => Err(Error::GridOfObserver),
             EstimatorKind::Luenberger => {
                 let (poles, scalar) = (options.poles, options.scalar);
                 let mut followed = estimators::observer(&self.model, &self.log, poles, scalar)?;

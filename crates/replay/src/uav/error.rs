@@ -29,6 +29,14 @@ pub enum Error {
     /// Values are absolute, and the model does not say what is to be taken from them.
     #[error("absolute values need a model with a trim")]
     NoTrim,
+    /// Values are deviations, of which a grid of models cannot tell the airspeed.
+    #[error("a grid of models needs absolute values: add --absolute")]
+    GridOfDeviations,
+    /// Another estimator than the Kalman filter is to use a grid of models.
+    #[error(
+        "a grid of models is for the Kalman filter: use --estimator kalman, or a model of one airspeed"
+    )]
+    GridOfObserver,
     /// Something is beyond the range of fixed point.
     #[error(
         "a number does not fit fixed point (Q16.16, below 32768 of the filter's units): use f32 or f64"

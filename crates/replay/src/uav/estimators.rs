@@ -45,6 +45,9 @@ pub struct Followed {
     pub beside: Vec<Beside>,
     /// Standard deviations (m/s) of the gusts along and across that the innovations support most.
     pub gust: Option<[f64; 2]>,
+    /// The estimated airspeed that is furthest beyond those of a grid of models, and the end of the grid (m/s), if that is more
+    /// than half of how far its last two are apart.
+    pub beyond: Option<[f64; 2]>,
 }
 
 impl Followed {

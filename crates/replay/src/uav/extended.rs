@@ -2,37 +2,20 @@
 
 use kestirim_kalman::Innovation;
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_uav_estimator::{
-    self as uav, AugmentedFlight, AugmentedModel, Drift, Dynamics, Gust, Output, Reference,
-};
-use kestirim_uav_longitudinal::StateSpace;
-use nalgebra::{SMatrix, SVector};
+use kestirim_uav_estimator::{self as uav, Drift, Gust, Output, Reference};
+use nalgebra::SMatrix;
 
+use super::augmented::{AIRSPEED, Augmented, MOVING};
 use super::estimators::{Assumed, Estimate, Followed, sized};
 use super::{Error, Log, Model, Options};
 use crate::ScalarKind;
 
-/// States of the filter, those of them that move the four, and outputs.
-const STATES: usize = 16;
-const MOVING: usize = 10;
-/// Outputs that a model may have, if it says more than A, B and C.
-pub const MOST_EXTENDED_OUTPUTS: usize = 8;
-/// Intervals of a log of which the steps are kept.
-const KEPT: usize = 32;
-
-/// V among the states.
-const AIRSPEED: usize = 2;
 /// Outputs of these names refer to the ground.
 const GROUND: [&str; 2] = ["V_ground", "climb"];
 /// Gusts are tried at these times what the model says; the innovations decide.
 const GUSTS: [f64; 6] = [0.0, 0.125, 0.25, 0.5, 1.0, 2.0];
 /// An outlier's part in what the innovations support.
 const MOST_NIS: f64 = 50.0;
-
-type Built = AugmentedModel<STATES, MOVING, MOST_EXTENDED_OUTPUTS>;
-
-/// A filter with room for all that a model may say.
-pub type Augmented<T> = AugmentedFlight<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS, KEPT>;
 
 /// What a model says beyond A, B and C.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -59,6 +42,9 @@ pub struct Extended {
     pub density: Option<Drift>,
     /// Unknown parts of the states' derivatives.
     pub forces: Vec<(usize, Drift)>,
+    /// Models at rising airspeeds, this one among them, between which the filter blends; none if it is the only one. Each says of
+    /// outputs and of what is unknown the same.
+    pub grid: Vec<Model>,
 }
 
 /// Something that a filter estimates beside the four states.
@@ -123,8 +109,9 @@ impl Flight<'_> {
     fn follow<T: Scalar>(&self) -> Result<(f64, Followed), Error> {
         let Self { model, extended, log, options, gust } = *self;
         let parts = Parts::of(model, &log.outputs, options, gust).ok_or(uav::Error::NoRoom)?;
-        let mut filter = filter::<T>(model, &parts, log.interval_s)?;
+        let mut filter = Augmented::<T>::new(model, &log.outputs, options, gust, log.interval_s)?;
         let mut followed = Followed::new(log);
+        let mut ends = Ends::of(model);
         let mut support = 0.0;
         for (index, sample) in log.samples.iter().enumerate() {
             let innovations = filter.take(&sized(sample));
@@ -138,6 +125,7 @@ impl Flight<'_> {
                 state: state.fixed_rows::<4>(0).into(),
                 sigma: Some(sigma.fixed_rows::<4>(0).into()),
             };
+            ends.meet(state[AIRSPEED], sigma[AIRSPEED]);
             followed.judge(&innovations);
             let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
             followed.add(estimate, innovations, filter.rejected(), filter.health());
@@ -151,8 +139,47 @@ impl Flight<'_> {
             Beside { name, value, sigma, said }
         });
         followed.beside = told.collect();
+        followed.beyond = ends.beyond;
         followed.gust = extended.gust.map(|(sigmas, _)| sigmas.map(|sigma| gust * sigma));
         Ok((support, followed))
+    }
+}
+
+/// Airspeeds beyond those of a grid.
+struct Ends {
+    /// Airspeed that estimates deviate from, m/s.
+    origin: f64,
+    /// Each end, and how far it is to the model beside it: downwards negative.
+    ends: Vec<[f64; 2]>,
+    /// The furthest estimate, and the end that it is beyond.
+    beyond: Option<[f64; 2]>,
+}
+
+impl Ends {
+    fn of(model: &Model) -> Self {
+        let airspeed = |model: &Model| model.trim.map_or(0.0, |(state, _)| state[AIRSPEED]);
+        let grid = model.extended.iter().flat_map(|extended| &extended.grid);
+        let airspeeds: Vec<f64> = grid.map(airspeed).collect();
+        let ends = match airspeeds[..] {
+            [first, second, .., last_but_one, last] => {
+                vec![[first, first - second], [last, last - last_but_one]]
+            }
+            [first, last] => vec![[first, first - last], [last, last - first]],
+            _ => Vec::new(),
+        };
+        Self { origin: airspeed(model), ends, beyond: None }
+    }
+
+    /// Looks at an estimate, unless it is hardly one.
+    fn meet(&mut self, deviation: f64, sigma: f64) {
+        let airspeed = self.origin + deviation;
+        for [end, apart] in &self.ends {
+            let by = (airspeed - end) * apart.signum();
+            let furthest = self.beyond.map_or(0.0, |[airspeed, end]| (airspeed - end).abs());
+            if by > 0.5 * apart.abs() && sigma < 0.5 * apart.abs() && by > furthest {
+                self.beyond = Some([airspeed, *end]);
+            }
+        }
     }
 }
 
@@ -238,26 +265,6 @@ impl Parts {
         })
     }
 
-    /// The model of the filter.
-    fn model(&self, plant: &StateSpace) -> Result<Built, uav::Error> {
-        // Outputs that are never measured fill the rest: of the airspeed, so that fixed point holds their variance.
-        let mut outputs = [Output::state(AIRSPEED, 1.0); MOST_EXTENDED_OUTPUTS];
-        for (place, output) in outputs.iter_mut().zip(&self.outputs) {
-            *place = *output;
-        }
-        let mut built = Built::new(plant, &self.process, &outputs)?;
-        for unknown in &self.unknown {
-            built = match unknown {
-                Unknown::Gust(gust) => built.with_gust(gust),
-                Unknown::Force(state, drift) => built.with_force(*state, drift),
-                Unknown::Bias(output, drift) => built.with_bias(*output, drift),
-                Unknown::Wind(drift) => built.with_wind(drift),
-                Unknown::Density(drift) => built.with_density(drift),
-            }?;
-        }
-        Ok(built)
-    }
-
     /// What stands where beside the four states, and what the model says of it after so many seconds.
     fn told(&self, name: impl Fn(usize) -> String, duration: f64) -> Vec<(usize, String, f64)> {
         let said = |drift: &Drift| drift.sigma.hypot(drift.rate * duration.sqrt());
@@ -282,30 +289,4 @@ impl Parts {
         }
         all
     }
-}
-
-/// A filter of these outputs of a model, measured every `usual` seconds, with gusts of so many times what the model says.
-///
-/// # Errors
-/// [`uav::Error::NoRoom`] for a model of discrete time, or one that says no more than A, B and C; and whatever else keeps
-/// the filter from being built.
-pub fn augmented<T: Scalar>(
-    model: &Model,
-    outputs: &[usize],
-    options: &Options,
-    gust: f64,
-    usual: f64,
-) -> Result<Box<Augmented<T>>, uav::Error> {
-    let parts = Parts::of(model, outputs, options, gust).ok_or(uav::Error::NoRoom)?;
-    filter(model, &parts, usual)
-}
-
-fn filter<T: Scalar>(
-    model: &Model,
-    parts: &Parts,
-    usual: f64,
-) -> Result<Box<Augmented<T>>, uav::Error> {
-    let Dynamics::Continuous(plant) = &model.dynamics else { return Err(uav::Error::NoRoom) };
-    let inputs = SVector::from(parts.inputs);
-    Ok(Box::new(AugmentedFlight::new(&parts.model(plant)?, &inputs, usual)?))
 }

@@ -3,6 +3,7 @@
 //! [`Deviations`] are a [`Log`] less the steady flight of its [`Model`]; [`Deviations::follow`] makes a [`Followed`] of them
 //! as the [`Options`] say. Angles are radians, the airspeed m/s, times µs of the log's clock.
 
+mod augmented;
 mod check;
 mod contradiction;
 mod deviations;
@@ -19,14 +20,13 @@ mod noise;
 mod options;
 mod poles;
 
+pub use self::augmented::{Augmented, MOST_EXTENDED_OUTPUTS};
 pub use self::check::check;
 pub use self::contradiction::Contradiction;
 pub use self::deviations::Deviations;
 pub use self::error::Error;
 pub use self::estimators::{Assumed, Estimate, Filter, Followed, KEPT, filter, rows, sized};
-pub use self::extended::{
-    Augmented, Beside, Extended, MOST_EXTENDED_OUTPUTS, Parts, Unknown, augmented,
-};
+pub use self::extended::{Beside, Extended, Parts, Unknown};
 pub use self::log::{Log, Sample, Truth};
 pub use self::model::{MOST_OUTPUTS, Model, Plant, STATE_COLUMNS, state_outputs};
 #[cfg(feature = "serde")]

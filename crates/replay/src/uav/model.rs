@@ -87,13 +87,19 @@ impl Model {
     /// What is taken from values: nothing, or of `absolute` ones the model's trim.
     ///
     /// # Errors
-    /// [`Error::NoTrim`] if it has none.
+    /// [`Error::NoTrim`] if it has none; [`Error::GridOfDeviations`] if it is a grid, and values are not `absolute`.
     pub fn origin(&self, absolute: bool) -> Result<([f64; 4], [f64; 2]), Error> {
         match (absolute, self.trim) {
+            (false, _) if self.is_grid() => Err(Error::GridOfDeviations),
             (false, _) => Ok(([0.0; 4], [0.0; 2])),
             (true, Some(trim)) => Ok(trim),
             (true, None) => Err(Error::NoTrim),
         }
+    }
+
+    /// Whether it is one of a grid, between which a filter blends.
+    pub fn is_grid(&self) -> bool {
+        self.extended.as_ref().is_some_and(|extended| !extended.grid.is_empty())
     }
 
     /// What an output shows at this origin: nothing of deviations, and of absolute values what the model says it does in its

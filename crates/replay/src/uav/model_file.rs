@@ -6,11 +6,14 @@ use kestirim_uav_longitudinal::{Airframe, StateSpace, SteadyFlight};
 use nalgebra::SMatrix;
 use serde::Deserialize;
 
+use super::augmented::MOST_MODELS;
 use super::model_of_airframe::KnownAirframe;
 use super::{Extended, MOST_EXTENDED_OUTPUTS, MOST_OUTPUTS, Model, STATE_COLUMNS, state_outputs};
 
 /// Columns of a log that no output can have.
 const TAKEN: [&str; 3] = ["t", "delta_e", "delta_t"];
+/// What a grid is not beside.
+const ALONE: &str = "a grid alone, where each model has its A, B, C, D and trim: without those, h, airframe, coefficients and airspeed beside it";
 /// Biases, beside head wind and density, that the filter has room for.
 const MOST_BIASES: usize = 4;
 
@@ -81,7 +84,7 @@ fn printable(text: &str) -> String {
 pub struct ModelFile {
     airframe: Option<KnownAirframe>,
     coefficients: Option<Box<Airframe>>,
-    airspeed: Option<f64>,
+    airspeed: Option<Airspeeds>,
     climb_angle: Option<f64>,
     #[serde(rename = "A")]
     pub(super) a: Option<[[f64; 4]; 4]>,
@@ -94,6 +97,7 @@ pub struct ModelFile {
     pub(super) outputs: Option<Vec<String>>,
     pub(super) trim: Option<Trim>,
     h: Option<f64>,
+    grid: Option<Vec<Member>>,
     pub(super) noise: Option<Noise>,
     pub(super) bias: Option<Vec<Bias>>,
     pub(super) gust: Option<Gusts>,
@@ -101,6 +105,29 @@ pub struct ModelFile {
     density: Option<Drifting>,
     pub(super) affine: Option<Affine>,
     pub(super) scaled: Option<Vec<String>>,
+}
+
+/// One airspeed, or those of a grid, m/s.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected an airspeed in m/s or a list of them")]
+enum Airspeeds {
+    One(f64),
+    Grid(Vec<f64>),
+}
+
+/// What a model of a grid says itself.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Member {
+    #[serde(rename = "A")]
+    a: [[f64; 4]; 4],
+    #[serde(rename = "B")]
+    b: [[f64; 2]; 4],
+    #[serde(rename = "C")]
+    c: Option<Vec<[f64; 4]>>,
+    #[serde(rename = "D")]
+    d: Option<Vec<[f64; 2]>>,
+    trim: Option<Trim>,
+    h: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -157,17 +184,78 @@ impl ModelFile {
         if self.airframe.is_some() && self.coefficients.is_some() {
             return Err(ModelFileError::Number("airframe or coefficients, found both"));
         }
+        let models = match (self.grid.take(), self.airspeed.take()) {
+            (Some(members), None) => self.of_members(members)?,
+            (None, Some(Airspeeds::Grid(airspeeds))) => self.of_airspeeds(&airspeeds)?,
+            (None, airspeed) => {
+                self.airspeed = airspeed;
+                return self.one(false);
+            }
+            (Some(_), Some(_)) => return Err(ModelFileError::Number(ALONE)),
+        };
+        // Deviations are small if they are counted from the middle.
+        let mut model = models[models.len() / 2].clone();
+        if let Some(extended) = &mut model.extended {
+            extended.grid = models;
+        }
+        Ok(model)
+    }
+
+    /// Models of a grid that are written out.
+    fn of_members(&self, members: Vec<Member>) -> Result<Vec<Model>, ModelFileError> {
+        if self.airframe.is_some() || self.coefficients.is_some() || self.says_matrices() {
+            return Err(ModelFileError::Number(ALONE));
+        }
+        let models = members.into_iter().map(|Member { a, b, c, d, trim, h }| {
+            if trim.is_none() {
+                return Err(ModelFileError::Number("a trim with x and u in each model of a grid"));
+            }
+            if h.is_some() {
+                return Err(ModelFileError::Number(
+                    "A and B of continuous time, without h, in each model of a grid",
+                ));
+            }
+            Self { a: Some(a), b: Some(b), c, d, trim, ..self.clone() }.one(true)
+        });
+        let models = models.collect::<Result<Vec<_>, _>>()?;
+        let airspeeds = models.iter().filter_map(|model| model.trim.map(|(state, _)| state[2]));
+        rising(&airspeeds.collect::<Vec<_>>())?;
+        Ok(models)
+    }
+
+    /// Models of an airframe at these airspeeds.
+    fn of_airspeeds(&self, airspeeds: &[f64]) -> Result<Vec<Model>, ModelFileError> {
+        rising(airspeeds)?;
+        let models = airspeeds.iter().map(|&airspeed| {
+            let one = Self { airspeed: Some(Airspeeds::One(airspeed)), ..self.clone() };
+            one.one(true).map_err(|error| match error {
+                ModelFileError::Airframe(why) => {
+                    ModelFileError::Airframe(format!("at {airspeed} m/s {why}"))
+                }
+                other => other,
+            })
+        });
+        models.collect()
+    }
+
+    fn says_matrices(&self) -> bool {
+        let is_there = [
+            self.a.is_some(),
+            self.b.is_some(),
+            self.c.is_some(),
+            self.d.is_some(),
+            self.trim.is_some(),
+            self.h.is_some(),
+        ];
+        is_there.contains(&true)
+    }
+
+    /// The model of one airspeed.
+    fn one(mut self, is_of_grid: bool) -> Result<Model, ModelFileError> {
         let known = self.airframe.take().map(KnownAirframe::airframe);
         if let Some(airframe) = self.coefficients.take().map(|it| *it).or(known) {
-            let is_there = [
-                self.a.is_some(),
-                self.b.is_some(),
-                self.c.is_some(),
-                self.d.is_some(),
-                self.trim.is_some(),
-                self.h.is_some(),
-            ];
-            let Some(airspeed) = self.airspeed.filter(|_| !is_there.contains(&true)) else {
+            let alone = self.airspeed.take().filter(|_| !self.says_matrices());
+            let Some(Airspeeds::One(airspeed)) = alone else {
                 return Err(ModelFileError::Number(
                     "an airspeed beside airframe or coefficients, and no A, B, C, D, trim or h, which come from both",
                 ));
@@ -181,7 +269,7 @@ impl ModelFile {
             ));
         };
         let outputs = self.outputs()?;
-        let extended = self.extended(&outputs)?;
+        let extended = self.extended(&outputs, is_of_grid)?;
         let most = if extended.is_some() { MOST_EXTENDED_OUTPUTS } else { MOST_OUTPUTS };
         if outputs.is_empty() || outputs.len() > most {
             return Err(ModelFileError::Count { most, found: outputs.len() });
@@ -224,8 +312,12 @@ impl ModelFile {
         }
     }
 
-    /// What there is beyond what every model says; none if there is nothing of it.
-    fn extended(&self, outputs: &[(String, [f64; 4])]) -> Result<Option<Extended>, ModelFileError> {
+    /// What there is beyond what every model says; none if there is nothing of it, unless it is to be there.
+    fn extended(
+        &self,
+        outputs: &[(String, [f64; 4])],
+        is_wanted: bool,
+    ) -> Result<Option<Extended>, ModelFileError> {
         let steady = self.trim.as_ref().and_then(|trim| trim.y.as_ref());
         let is_there = [
             self.d.is_some(),
@@ -238,7 +330,7 @@ impl ModelFile {
             self.affine.is_some(),
             self.scaled.is_some(),
         ];
-        if !is_there.contains(&true) {
+        if !is_wanted && !is_there.contains(&true) {
             return Ok(None);
         }
         let count = outputs.len();
@@ -309,8 +401,18 @@ impl ModelFile {
             wind: self.wind.map(Drifting::drift),
             density: self.density.map(Drifting::drift),
             forces,
+            grid: Vec::new(),
         }))
     }
+}
+
+/// Whether these can be the airspeeds of a grid.
+fn rising(airspeeds: &[f64]) -> Result<(), ModelFileError> {
+    let is_grid = (2..=MOST_MODELS).contains(&airspeeds.len())
+        && airspeeds[0] > 0.0
+        && airspeeds.windows(2).all(|pair| pair[0] < pair[1]);
+    let wrong = ModelFileError::Number("a grid of 2 to 8 airspeeds above 0 m/s that rise");
+    if is_grid { Ok(()) } else { Err(wrong) }
 }
 
 impl Drifting {

@@ -8,6 +8,8 @@ use kestirim_uav_estimator::{
 use kestirim_uav_longitudinal::{navion, rate_airspeed_and_pitch};
 use nalgebra::{SMatrix, SVector, Vector2, Vector3, Vector4};
 
+use crate::dice::Dice;
+
 const USUAL_S: f64 = 0.02;
 const AIRSPEED: f64 = 53.6;
 const SIGMAS: [f64; 6] = [0.003, 0.3, 0.003, 0.3, 0.3, 0.3];
@@ -15,22 +17,6 @@ const SIGMAS: [f64; 6] = [0.003, 0.3, 0.003, 0.3, 0.3, 0.3];
 const STEADY: f64 = -9.7;
 const BY_ALPHA: f64 = -108.0;
 const BY_ELEVATOR: f64 = -8.0;
-
-/// Gaussian numbers that look random.
-struct Dice(u64);
-
-impl Dice {
-    fn uniform(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn gaussian(&mut self) -> f64 {
-        let (radius, angle) = (self.uniform(), self.uniform());
-        (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
-    }
-}
 
 fn force() -> Output {
     Output {

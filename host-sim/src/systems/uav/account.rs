@@ -158,6 +158,10 @@ fn contradicted(track: &Track, contradiction: &Contradiction) -> String {
             "biases, wind and trim are {size:.1} times as far from the model's as it says they would be: a sensor that \
              measures something else, or another aircraft"
         ),
+        Contradiction::Beyond { airspeed, end } => format!(
+            "the airspeed reaches {airspeed:.1} m/s, far beyond the grid of models, which ends at {end:.1} m/s: what is estimated \
+             there is as the model at the end has it"
+        ),
     }
 }
 

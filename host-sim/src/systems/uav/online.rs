@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use kestirim_replay::uav::{
-    Assumed, Augmented, EstimatorKind, Filter, KEPT, Model, Options, Sample, augmented, discrete,
-    filter, rows, sized,
+    Assumed, Augmented, Error as Refusal, EstimatorKind, Filter, KEPT, Model, Options, Sample,
+    discrete, filter, rows, sized,
 };
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_telemetry::{Flight, Message};
@@ -63,6 +63,9 @@ impl Flying {
         let absolute = settings.is_on("absolute");
         let origin = model.origin(absolute).map_err(refused)?;
         let options = settings::options(settings);
+        if model.is_grid() && options.estimator == EstimatorKind::Luenberger {
+            return Err(refused(Refusal::GridOfObserver));
+        }
         let flying = Self { model, outputs, places, origin, absolute, options };
         flying.build()?;
         Ok(flying)
@@ -86,7 +89,7 @@ impl Flying {
     fn estimator<T: Scalar + 'static>(&self) -> Result<Box<dyn Estimator>, uav::Error> {
         Ok(match (self.options.estimator, self.outputs.len()) {
             (EstimatorKind::Kalman, _) if self.model.extended.is_some() => {
-                augmented::<T>(&self.model, &self.outputs, &self.options, 1.0, 0.0)?
+                Box::new(Augmented::<T>::new(&self.model, &self.outputs, &self.options, 1.0, 0.0)?)
             }
             (EstimatorKind::Kalman, _) => {
                 let assumed = Assumed::of(&self.model, &self.outputs, &self.options);

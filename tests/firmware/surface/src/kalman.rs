@@ -26,6 +26,7 @@ fn covariances<T: Scalar, const N: usize>() {
     keep(Covariance::variances(&covariance));
     keep(Covariance::is_finite(&covariance));
     Covariance::add(any(&mut covariance), &Covariance::from_variances(&numbers()));
+    Covariance::blend(any(&mut covariance), &Covariance::from_variances(&numbers()), number());
     Covariance::scale(any(&mut covariance), number());
     Covariance::add_outer(any(&mut covariance), &matrix());
     Covariance::add_variance::<1>(any(&mut covariance), number());

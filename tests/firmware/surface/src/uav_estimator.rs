@@ -4,8 +4,8 @@ use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
     AugmentedFilter, AugmentedFlight, AugmentedModel, Drift, Dynamics, Error, Estimator,
-    FlightFilter, FlightObserver, Gust, KalmanFilter, Noise, Output, Reference, Sample, Step,
-    Transition, current_gain, observer_gain,
+    FlightFilter, FlightObserver, Gust, KalmanFilter, LocalModel, Noise, Output, Reference, Sample,
+    ScheduledFilter, ScheduledFlight, Step, Transition, current_gain, observer_gain,
 };
 use kestirim_uav_longitudinal::StateSpace;
 
@@ -190,8 +190,56 @@ fn augmented_flights<T: Scalar>() {
     keep(AugmentedFlight::health(&filter));
 }
 
+/// Of one kind, or of two that do not belong together.
+fn local_models() -> Option<[LocalModel<9, 6, 3>; 2]> {
+    let model = augmented_model()?;
+    let local =
+        |model| any(LocalModel { model, state: matrix(), input: matrix(), outputs: matrix() });
+    Some([local(model), local(if yes_or_no() { model } else { augmented_model()? })])
+}
+
+fn scheduled_filters<T: Scalar>() {
+    let Some(models) = local_models() else { return };
+    let Ok(mut filter) = any(ScheduledFilter::<T, 9, 6, 3, 2>::new(&models)) else { return };
+    let scalars = || any([(); 3].map(|()| option::<T>()));
+    for _ in 0..rounds() {
+        let [one, other] = &models;
+        let over = |local: &LocalModel<9, 6, 3>| {
+            any(AugmentedModel::over(&local.model, number(), number(), &matrix()))
+        };
+        let (Ok(one), Ok(other)) = (over(one), over(other)) else { continue };
+        let transition = any(ScheduledFilter::transition(&filter, &[one, other]));
+        let input = matrix();
+        try_on(&mut filter, |filter| ScheduledFilter::predict(filter, &transition, &input));
+        try_on(&mut filter, |filter| ScheduledFilter::correct(filter, &scalars(), &input));
+        let outputs = scalars();
+        try_on(&mut filter, |filter| {
+            ScheduledFilter::step(filter, &transition, &input, &outputs, &input)
+        });
+    }
+    keep(ScheduledFilter::filter(&filter));
+    keep(ScheduledFilter::begun_anew(&filter));
+}
+
+fn scheduled_flights<T: Scalar>() {
+    let Some(models) = local_models() else { return };
+    let filter = ScheduledFlight::<T, 9, 6, 3, 2, 2>::new(&models, &matrix(), number());
+    let Ok(mut filter) = any(filter) else { return };
+    let mut time_us = 0;
+    for _ in 0..rounds() {
+        try_on(&mut filter, |filter| ScheduledFlight::take(filter, &sample(&mut time_us)));
+    }
+    ScheduledFlight::set_usual(any(&mut filter), number());
+    try_on(&mut filter, |filter| ScheduledFlight::take(filter, &sample(&mut time_us)));
+    keep(ScheduledFlight::filter(&filter));
+    keep(ScheduledFlight::rejected(&filter));
+    keep(ScheduledFlight::health(&filter));
+}
+
 fn all_of<T: Scalar>() {
     call_each([
+        scheduled_filters::<T>,
+        scheduled_flights::<T>,
         augmented_filters::<T>,
         augmented_flights::<T>,
         filters::<T, 3>,
