@@ -254,6 +254,17 @@ fn a_trim_is_taken_off_and_put_back() {
     assert!(text(&output.stderr).contains("not used: note"), "{}", text(&output.stderr));
     let estimate = numbers(&json(&output)["estimate"]);
     assert!((estimate[2] - 40.0).abs() < 1e-3 && (estimate[3] - 0.053_941_088).abs() < 1e-5);
+    // And by the models of three airspeeds, of which it is the middle one's.
+    let grid = flown.replace("40,", "[36, 40, 44],");
+    let model = desk.file("grid.json", grid);
+    let files_of_grid = ["replay", "uav", "--log", &log, "--model", &model];
+    let report = json(&host_sim(&[&files_of_grid[..], &["--absolute", "--json"]].concat()));
+    let of_grid = numbers(&report["estimate"]);
+    assert!(estimate.iter().zip(&of_grid).all(|(one, of_grid)| (one - of_grid).abs() < 1e-4));
+    assert!(refusal(&files_of_grid).contains("add --absolute"));
+    let observer = ["--absolute", "--estimator", "luenberger"];
+    let sentence = refusal(&[&files_of_grid[..], &observer].concat());
+    assert!(sentence.contains("--estimator kalman"), "{sentence}");
     let warned = host_sim(&files);
     assert!(text(&warned.stderr).contains("--absolute"));
     let sentence = refusal(&["replay", "uav", "--log", &log, "--model", "P2", "--absolute"]);
@@ -291,6 +302,8 @@ fn wrong_input_is_refused_with_a_sentence() {
         "C_L_alpha": 5, "C_D_0": 0.03, "C_m_alpha": -1, "C_m_q": -12, "C_m_delta_e": -1}}"#;
     assert!(model(both).contains("airframe or coefficients, found both"));
     assert!(model("{\"airframe\": \"aerosonde\", \"airspeed\": 90}").contains("no throttle"));
+    let falling = "{\"airframe\": \"aerosonde\", \"airspeed\": [40, 30]}";
+    assert!(model(falling).contains("2 to 8 airspeeds"));
     let plant =
         "\"A\": [[-1,0,0,0],[0,-2,0,0],[0,0,-3,0],[0,0,0,-4]], \"B\": [[1,0],[0,1],[0,0],[0,0]]";
     assert!(model(&format!("{{{plant}, \"C\": [[1,0,0,0]]}}")).contains("outputs"));

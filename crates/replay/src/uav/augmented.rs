@@ -159,3 +159,6 @@ fn local(
         outputs: SVector::from_fn(|place, _| shown(place)),
     })
 }
+
+#[cfg(all(test, feature = "serde"))]
+mod tests;

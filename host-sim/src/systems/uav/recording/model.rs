@@ -13,8 +13,7 @@ use crate::{Error, output};
 /// The file, the line, and what was expected there.
 pub fn read(path: &Path) -> Result<Model, Error> {
     let file = TextFile::read(path)?;
-    let expected =
-        "a JSON object with A, B and perhaps C, outputs, trim and h, or with airframe and airspeed";
+    let expected = "a JSON object with A, B and perhaps C, outputs, trim and h, or with airframe and airspeed, or with a grid";
     let (contents, unused) = file.json_with_unused::<ModelFile>(expected)?;
     if !unused.is_empty() {
         output::warn_of(path, &[format!("not used: {}", unused.join(", "))]);

@@ -1,5 +1,7 @@
 //! The same settings in firmware: the estimator of `kestirim-uav-estimator`, with its model as numbers.
 
+use std::fmt::Write;
+
 use kestirim_observer_design::{Complex, Discrete};
 use kestirim_replay::uav::{
     Assumed, EstimatorKind, Model, Noise, Options, Parts, Unknown, discrete, rows,
@@ -77,6 +79,9 @@ fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) ->
     let scalar = scalar(options.scalar);
     let parts = Parts::of(model, outputs, options, 1.0);
     match options.estimator {
+        EstimatorKind::Kalman if model.is_grid() => {
+            scheduled(model, outputs, interval, options).unwrap_or(literal)
+        }
         EstimatorKind::Kalman if parts.is_some() => {
             parts.map_or(literal, |parts| augmented(model, &parts, interval, scalar))
         }
@@ -103,16 +108,19 @@ fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) ->
     .to_string()
 }
 
-/// A filter of more than the four states.
-fn augmented(model: &Model, parts: &Parts, interval: f64, scalar: &str) -> Literal {
-    let (Dynamics::Continuous(StateSpace { a, b })
-    | Dynamics::Discrete { step: Discrete { a, b }, .. }) = &model.dynamics;
+/// How many states there are, how many of them move the four, and outputs.
+fn sizes(parts: &Parts) -> [usize; 3] {
     let states = |moving| {
         let sizes = parts.unknown.iter().map(Unknown::moves);
         sizes.filter(|(moves, _)| *moves == moving).map(|(_, count)| count).sum::<usize>()
     };
-    let (k, p) = (4 + states(true), parts.outputs.len());
-    let n = k + states(false);
+    let k = 4 + states(true);
+    [k + states(false), k, parts.outputs.len()]
+}
+
+/// A model of more than the four states, where `plant` is an expression for A and B.
+fn augmented_model(parts: &Parts, plant: &str) -> String {
+    let [n, k, p] = sizes(parts);
     let outputs: Vec<_> = parts.outputs.iter().map(|output| format!("    {output:?},\n")).collect();
     let calls = parts.unknown.iter().map(|unknown| match unknown {
         Unknown::Gust(gust) => format!("    .with_gust(&{gust:?})?\n"),
@@ -121,22 +129,93 @@ fn augmented(model: &Model, parts: &Parts, interval: f64, scalar: &str) -> Liter
         Unknown::Wind(drift) => format!("    .with_wind(&{drift:?})?\n"),
         Unknown::Density(drift) => format!("    .with_density(&{drift:?})?\n"),
     });
+    format!(
+        "let density = {};\nlet outputs = [\n{}];\n\
+         let model = AugmentedModel::<{n}, {k}, {p}>::new(&{plant}, &density, &outputs)?\n{};",
+        columns(&parts.process),
+        outputs.concat(),
+        calls.collect::<String>().trim_end(),
+    )
+}
+
+/// A filter of more than the four states.
+fn augmented(model: &Model, parts: &Parts, interval: f64, scalar: &str) -> Literal {
+    let [n, k, p] = sizes(parts);
+    let config = format!("StateSpace {}", plant_of(model));
     Literal::new(
         "kestirim_uav_longitudinal::StateSpace",
         ScalarKind::F64,
         "StateSpace",
-        &format!("StateSpace {}", plant(a, b)),
+        &config,
     )
-    .import("kestirim_uav_estimator::{AugmentedFlight, AugmentedModel, Drift, Gust, Output, Reference::*}")
+    .import(
+        "kestirim_uav_estimator::{AugmentedFlight, AugmentedModel, Drift, Gust, Output, Reference::*}",
+    )
+    .then(augmented_model(parts, "config"))
     .then(format!(
-        "let density = {};\nlet outputs = [\n{}];\n\
-         let model = AugmentedModel::<{n}, {k}, {p}>::new(&config, &density, &outputs)?\n{};\n\
-         let filter = AugmentedFlight::<{scalar}, {n}, {k}, {p}>::new(&model, &{:?}.into(), {interval:?});",
-        columns(&parts.process),
-        outputs.concat(),
-        calls.collect::<String>().trim_end(),
+        "let filter = AugmentedFlight::<{scalar}, {n}, {k}, {p}>::new(&model, &{:?}.into(), {interval:?});",
         parts.inputs,
     ))
+}
+
+/// The same of models at several airspeeds; none if one of them has no trim.
+fn scheduled(
+    origin: &Model,
+    outputs: &[usize],
+    interval: f64,
+    options: &Options,
+) -> Option<Literal> {
+    let (state, input) = origin.trim?;
+    let grid = &origin.extended.as_ref()?.grid;
+    let parts = Parts::of(origin, outputs, options, 1.0)?;
+    let [n, k, p] = sizes(&parts);
+    let less = |there: &[f64], here: &[f64]| {
+        there.iter().zip(here).map(|(there, here)| there - here).collect::<Vec<f64>>()
+    };
+    let mut locals = String::new();
+    for model in grid {
+        let parts = Parts::of(model, outputs, options, 1.0)?;
+        let (there, held) = model.trim?;
+        let shown = outputs
+            .iter()
+            .map(|&output| model.shown(output, true, &there) - origin.shown(output, true, &state));
+        let plant = format!("StateSpace {}", plant_of(model));
+        write!(
+            locals,
+            "{{\n{}\nLocalModel {{\n    model,\n    state: {:?}.into(),\n    input: {:?}.into(),\n    \
+             outputs: {:?}.into(),\n}}\n}},\n",
+            augmented_model(&parts, &plant),
+            less(&there, &state),
+            less(&held, &input),
+            shown.collect::<Vec<f64>>(),
+        )
+        .ok()?;
+    }
+    let count = grid.len();
+    let literal = Literal::new(
+        "kestirim_uav_longitudinal::StateSpace",
+        ScalarKind::F64,
+        &format!("[LocalModel<{n}, {k}, {p}>; {count}]"),
+        &format!("[\n{locals}]"),
+    );
+    Some(
+        literal
+            .import(
+                "kestirim_uav_estimator::{AugmentedModel, Drift, Gust, LocalModel, Output, Reference::*, ScheduledFlight}",
+            )
+            .then(format!(
+                "let filter = ScheduledFlight::<{scalar}, {n}, {k}, {p}, {count}>::new(&config, &{:?}.into(), {interval:?});",
+                parts.inputs,
+                scalar = scalar(options.scalar),
+            )),
+    )
+}
+
+/// A and B of a model.
+fn plant_of(model: &Model) -> String {
+    let (Dynamics::Continuous(StateSpace { a, b })
+    | Dynamics::Discrete { step: Discrete { a, b }, .. }) = &model.dynamics;
+    plant(a, b)
 }
 
 /// An estimator of samples at one rate.
