@@ -15,6 +15,8 @@ mod model;
 #[cfg(feature = "serde")]
 mod model_file;
 #[cfg(feature = "serde")]
+mod model_grid;
+#[cfg(feature = "serde")]
 mod model_of_airframe;
 mod noise;
 mod options;

@@ -6,14 +6,12 @@ use kestirim_uav_longitudinal::{Airframe, StateSpace, SteadyFlight};
 use nalgebra::SMatrix;
 use serde::Deserialize;
 
-use super::augmented::MOST_MODELS;
+use super::model_grid::{ALONE, Airspeeds, Member};
 use super::model_of_airframe::KnownAirframe;
 use super::{Extended, MOST_EXTENDED_OUTPUTS, MOST_OUTPUTS, Model, STATE_COLUMNS, state_outputs};
 
 /// Columns of a log that no output can have.
 const TAKEN: [&str; 3] = ["t", "delta_e", "delta_t"];
-/// What a grid is not beside.
-const ALONE: &str = "a grid alone, where each model has its A, B, C, D and trim: without those, h, airframe, coefficients and airspeed beside it";
 /// Biases, beside head wind and density, that the filter has room for.
 const MOST_BIASES: usize = 4;
 
@@ -82,9 +80,9 @@ fn printable(text: &str) -> String {
 /// whatever else is known.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ModelFile {
-    airframe: Option<KnownAirframe>,
-    coefficients: Option<Box<Airframe>>,
-    airspeed: Option<Airspeeds>,
+    pub(super) airframe: Option<KnownAirframe>,
+    pub(super) coefficients: Option<Box<Airframe>>,
+    pub(super) airspeed: Option<Airspeeds>,
     climb_angle: Option<f64>,
     #[serde(rename = "A")]
     pub(super) a: Option<[[f64; 4]; 4]>,
@@ -105,29 +103,6 @@ pub struct ModelFile {
     density: Option<Drifting>,
     pub(super) affine: Option<Affine>,
     pub(super) scaled: Option<Vec<String>>,
-}
-
-/// One airspeed, or those of a grid, m/s.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected an airspeed in m/s or a list of them")]
-enum Airspeeds {
-    One(f64),
-    Grid(Vec<f64>),
-}
-
-/// What a model of a grid says itself.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Member {
-    #[serde(rename = "A")]
-    a: [[f64; 4]; 4],
-    #[serde(rename = "B")]
-    b: [[f64; 2]; 4],
-    #[serde(rename = "C")]
-    c: Option<Vec<[f64; 4]>>,
-    #[serde(rename = "D")]
-    d: Option<Vec<[f64; 2]>>,
-    trim: Option<Trim>,
-    h: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -201,44 +176,7 @@ impl ModelFile {
         Ok(model)
     }
 
-    /// Models of a grid that are written out.
-    fn of_members(&self, members: Vec<Member>) -> Result<Vec<Model>, ModelFileError> {
-        if self.airframe.is_some() || self.coefficients.is_some() || self.says_matrices() {
-            return Err(ModelFileError::Number(ALONE));
-        }
-        let models = members.into_iter().map(|Member { a, b, c, d, trim, h }| {
-            if trim.is_none() {
-                return Err(ModelFileError::Number("a trim with x and u in each model of a grid"));
-            }
-            if h.is_some() {
-                return Err(ModelFileError::Number(
-                    "A and B of continuous time, without h, in each model of a grid",
-                ));
-            }
-            Self { a: Some(a), b: Some(b), c, d, trim, ..self.clone() }.one(true)
-        });
-        let models = models.collect::<Result<Vec<_>, _>>()?;
-        let airspeeds = models.iter().filter_map(|model| model.trim.map(|(state, _)| state[2]));
-        rising(&airspeeds.collect::<Vec<_>>())?;
-        Ok(models)
-    }
-
-    /// Models of an airframe at these airspeeds.
-    fn of_airspeeds(&self, airspeeds: &[f64]) -> Result<Vec<Model>, ModelFileError> {
-        rising(airspeeds)?;
-        let models = airspeeds.iter().map(|&airspeed| {
-            let one = Self { airspeed: Some(Airspeeds::One(airspeed)), ..self.clone() };
-            one.one(true).map_err(|error| match error {
-                ModelFileError::Airframe(why) => {
-                    ModelFileError::Airframe(format!("at {airspeed} m/s {why}"))
-                }
-                other => other,
-            })
-        });
-        models.collect()
-    }
-
-    fn says_matrices(&self) -> bool {
+    pub(super) fn says_matrices(&self) -> bool {
         let is_there = [
             self.a.is_some(),
             self.b.is_some(),
@@ -251,7 +189,7 @@ impl ModelFile {
     }
 
     /// The model of one airspeed.
-    fn one(mut self, is_of_grid: bool) -> Result<Model, ModelFileError> {
+    pub(super) fn one(mut self, is_of_grid: bool) -> Result<Model, ModelFileError> {
         let known = self.airframe.take().map(KnownAirframe::airframe);
         if let Some(airframe) = self.coefficients.take().map(|it| *it).or(known) {
             let alone = self.airspeed.take().filter(|_| !self.says_matrices());
@@ -404,15 +342,6 @@ impl ModelFile {
             grid: Vec::new(),
         }))
     }
-}
-
-/// Whether these can be the airspeeds of a grid.
-fn rising(airspeeds: &[f64]) -> Result<(), ModelFileError> {
-    let is_grid = (2..=MOST_MODELS).contains(&airspeeds.len())
-        && airspeeds[0] > 0.0
-        && airspeeds.windows(2).all(|pair| pair[0] < pair[1]);
-    let wrong = ModelFileError::Number("a grid of 2 to 8 airspeeds above 0 m/s that rise");
-    if is_grid { Ok(()) } else { Err(wrong) }
 }
 
 impl Drifting {

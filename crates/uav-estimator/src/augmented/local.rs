@@ -1,11 +1,9 @@
-use kestirim_scalar::{Components, Scalar};
+use kestirim_scalar::Components;
 use nalgebra::SVector;
 
-use super::filter::AugmentedTransition;
-use super::row::{AIRSPEED, Row};
+use super::row::AIRSPEED;
 use super::{AugmentedModel, Output, Reference};
 use crate::Error;
-use crate::kalman_filter::UNITS;
 use crate::transitions::Moves;
 
 /// A model near one steady flight, among several of one aircraft that [`ScheduledFilter`](crate::ScheduledFilter) blends.
@@ -116,64 +114,4 @@ impl<const N: usize, const K: usize, const P: usize, const G: usize> Moves for M
         }
         Ok(steps)
     }
-}
-
-/// One model of a grid, in the scalar and the units of its filter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize",
-        deserialize = "T: Scalar + serde::Deserialize<'de>"
-    ))
-)]
-pub(super) struct Local<T: Scalar, const N: usize, const P: usize> {
-    /// Airspeed, less that of the origin, …
-    pub(super) airspeed: T,
-    /// … and the inverse of how far it is to the next model; zero if it is there.
-    pub(super) slope: T,
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
-    pub(super) rows: [Row<T, N>; P],
-    /// What is taken from each output that is measured.
-    pub(super) taken: SVector<T, P>,
-    /// The steady flight: states in their units, and inputs.
-    pub(super) state: SVector<f64, 4>,
-    pub(super) input: SVector<f64, 2>,
-}
-
-impl<T: Scalar, const N: usize, const P: usize> Local<T, N, P> {
-    pub(super) fn is_finite(&self) -> bool {
-        T::all_finite(&[self.airspeed, self.slope])
-            && T::all_finite(self.taken.as_array())
-            && self.rows.iter().all(Row::is_finite)
-    }
-
-    /// What a step adds to the four states beside A x + B u, so that the steady flight stays as it is.
-    pub(super) fn constant<const K: usize>(
-        &self,
-        step: &AugmentedTransition<T, N, K>,
-    ) -> SVector<T, 4> {
-        // Of what the scalar made of A and B: what they were before would leave their roundings.
-        let mut constant = *self.state.as_array();
-        let states = step.rows.column_iter().zip(&self.state);
-        let inputs = step.b.column_iter().zip(&self.input);
-        for (column, value) in states {
-            for (left, part) in constant.iter_mut().zip(&column) {
-                *left -= part.to_f64() * value;
-            }
-        }
-        for (column, value) in inputs {
-            for (left, part) in constant.iter_mut().zip(&column) {
-                *left -= part.to_f64() * value;
-            }
-        }
-        SVector::from(constant.map(T::from_f64))
-    }
-}
-
-/// States of a steady flight in their units.
-pub(super) fn in_units(state: &SVector<f64, 4>) -> SVector<f64, 4> {
-    state.component_div(&SVector::from(UNITS))
 }

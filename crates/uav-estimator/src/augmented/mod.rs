@@ -3,6 +3,7 @@
 mod discretise;
 mod filter;
 mod flight;
+mod grid;
 mod local;
 mod model;
 mod output;
@@ -12,8 +13,9 @@ mod scheduled_flight;
 
 pub use filter::{AugmentedFilter, AugmentedTransition};
 pub use flight::AugmentedFlight;
+pub use grid::ScheduledTransition;
 pub use local::LocalModel;
 pub use model::{AugmentedModel, AugmentedStep, Drift, Gust};
 pub use output::{Output, Reference};
-pub use scheduled_filter::{ScheduledFilter, ScheduledTransition};
+pub use scheduled_filter::ScheduledFilter;
 pub use scheduled_flight::ScheduledFlight;

@@ -1,46 +1,10 @@
-use core::array::from_fn;
+use kestirim_kalman::Innovation;
+use kestirim_scalar::Scalar;
+use nalgebra::SVector;
 
-use kestirim_kalman::{Gaussian, Innovation, Process};
-use kestirim_scalar::{Columns, Components, Scalar};
-use nalgebra::{ArrayStorage, SVector};
-
-use super::filter::AugmentedTransition;
-use super::local::{Local, LocalModel, in_units};
-use super::row::{AIRSPEED, Row, blend, unit_of};
-use super::{AugmentedFilter, AugmentedStep};
+use super::grid::Grid;
+use super::{AugmentedFilter, AugmentedStep, LocalModel, ScheduledTransition};
 use crate::Error;
-use crate::kalman_filter::UNITS;
-
-/// Steps of all local models in the scalar and the units of a [`ScheduledFilter`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize",
-        deserialize = "T: Scalar + serde::Deserialize<'de>"
-    ))
-)]
-pub struct ScheduledTransition<T: Scalar, const N: usize, const K: usize, const G: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
-    steps: [LocalTransition<T, N, K>; G],
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize",
-        deserialize = "T: Scalar + serde::Deserialize<'de>"
-    ))
-)]
-struct LocalTransition<T: Scalar, const N: usize, const K: usize> {
-    step: AugmentedTransition<T, N, K>,
-    constant: SVector<T, 4>,
-}
 
 /// An [`AugmentedFilter`] whose model is that of the airspeed it estimates: of G local models at rising airspeeds, the two
 /// about the estimate are blended, with weights linear in the airspeed. Below the first and beyond the last of them it is
@@ -87,29 +51,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
         const { assert!(G > 0, "one model at least is blended") };
         let first = models.first().ok_or(Error::Grid)?;
         let mut filter = AugmentedFilter::new(&first.model)?;
-        let mut units = [0.0_f64; P];
-        for local in models {
-            for (unit, output) in units.iter_mut().zip(&local.model.outputs) {
-                *unit = unit.max(unit_of(output));
-            }
-        }
-        filter.output_units = SVector::from(units);
-        let mut grid = Grid { local: [Local::new(); G] };
-        let mut nexts = models.iter().skip(1);
-        for (place, local) in grid.local.iter_mut().zip(models) {
-            if !local.is_finite() {
-                return Err(Error::NotFinite);
-            }
-            let next = nexts.next().unwrap_or(local);
-            let apart = next.state.as_array()[AIRSPEED] - local.state.as_array()[AIRSPEED];
-            if !(apart >= 0.0 && local.is_like(first)) {
-                return Err(Error::Grid);
-            }
-            *place = Local::of(local, filter.state_units.as_array(), &units, apart);
-            if !place.is_finite() {
-                return Err(Error::NotFinite);
-            }
-        }
+        let grid = Grid::new(models, &mut filter)?;
         grid.prepare(&mut filter, &mut [None; P])?;
         Ok(Self { filter, grid })
     }
@@ -121,11 +63,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
 
     /// The same steps, one a local model, converted once.
     pub fn transition(&self, steps: &[AugmentedStep<N>; G]) -> ScheduledTransition<T, N, K, G> {
-        let converted = |index: usize| {
-            let step = self.filter.transition(&steps[index]);
-            LocalTransition { step, constant: self.grid.local[index].constant(&step) }
-        };
-        ScheduledTransition { steps: from_fn(converted) }
+        self.grid.transition(&self.filter, steps)
     }
 
     /// The filter with its estimate, uncertainty and units. Its outputs' rows are those of the airspeed at which the last were taken
@@ -181,147 +119,5 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
         let innovations = next.correct(&measured, input)?;
         self.filter = next;
         Ok(innovations)
-    }
-}
-
-/// The local models of a filter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "T: serde::Serialize",
-        deserialize = "T: Scalar + serde::Deserialize<'de>"
-    ))
-)]
-pub(super) struct Grid<T: Scalar, const N: usize, const P: usize, const G: usize> {
-    #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
-    local: [Local<T, N, P>; G],
-}
-
-impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G> {
-    /// The model below an airspeed, and how near it is to the next one: 0 to 1.
-    fn place(&self, airspeed: T) -> (usize, T) {
-        let (mut place, mut share) = (0, T::ZERO);
-        let pairs = self.local.iter().zip(self.local.iter().skip(1)).enumerate();
-        for (index, (local, next)) in pairs {
-            if index == 0 || airspeed >= local.airspeed {
-                // Within both, so that fixed point holds the product.
-                let beyond = airspeed.clamp(local.airspeed, next.airspeed) - local.airspeed;
-                place = index;
-                share = (beyond * local.slope).clamp(T::ZERO, T::ONE);
-            }
-        }
-        (place, share)
-    }
-
-    /// Moves a filter on, by the step of the airspeed that it estimates.
-    pub(super) fn predict<const K: usize>(
-        &self,
-        filter: &mut AugmentedFilter<T, N, K, P>,
-        transition: &ScheduledTransition<T, N, K, G>,
-        input: &SVector<T, 2>,
-    ) -> Result<(), Error> {
-        let (place, share) = self.place(filter.state.mean.as_array()[AIRSPEED]);
-        let (below, above) = about(&transition.steps, place)?;
-        let mut step = below.step;
-        step.blend(&above.step, share);
-        let mut constant = below.constant;
-        blend(constant.as_array_mut(), above.constant.as_array(), share);
-        let fading = filter.bounded(&step);
-        let process = step.forced(&fading, input);
-        filter.state.advance(&Shifted { process, constant: &constant })?;
-        Ok(())
-    }
-
-    /// Gives a filter the outputs of the airspeed that it estimates, and takes from what was measured what these do not see.
-    pub(super) fn prepare<const K: usize>(
-        &self,
-        filter: &mut AugmentedFilter<T, N, K, P>,
-        measured: &mut [Option<T>; P],
-    ) -> Result<(), Error> {
-        let (place, share) = self.place(filter.state.mean.as_array()[AIRSPEED]);
-        let (below, above) = about(&self.local, place)?;
-        filter.rows = below.rows;
-        for (row, above) in filter.rows.iter_mut().zip(&above.rows) {
-            row.blend(above, share);
-        }
-        let mut taken = below.taken;
-        blend(taken.as_array_mut(), above.taken.as_array(), share);
-        for (measured, taken) in measured.iter_mut().zip(taken.as_array()) {
-            *measured = measured.map(|measured| measured - *taken);
-        }
-        Ok(())
-    }
-}
-
-impl<T: Scalar, const N: usize, const P: usize> Local<T, N, P> {
-    const fn new() -> Self {
-        Self {
-            airspeed: T::ZERO,
-            slope: T::ZERO,
-            rows: [Row::new(); P],
-            taken: SVector::from_array_storage(ArrayStorage([[T::ZERO; P]])),
-            state: SVector::from_array_storage(ArrayStorage([[0.0; 4]])),
-            input: SVector::from_array_storage(ArrayStorage([[0.0; 2]])),
-        }
-    }
-
-    /// Of a model, with the next one so far apart (m/s).
-    fn of<const K: usize>(
-        local: &LocalModel<N, K, P>,
-        state_units: &[f64; N],
-        units: &[f64; P],
-        apart: f64,
-    ) -> Self {
-        let [_, _, unit_of_airspeed, _] = UNITS;
-        let state = in_units(&local.state);
-        let slope = if apart > 0.0 { unit_of_airspeed / apart } else { 0.0 };
-        let mut this = Self {
-            airspeed: T::from_f64(state.as_array()[AIRSPEED]),
-            slope: T::from_f64(slope),
-            state,
-            input: local.input,
-            ..Self::new()
-        };
-        let columns = local.model.c.as_columns();
-        let places = this.rows.iter_mut().zip(this.taken.as_array_mut());
-        let outputs = local.model.outputs.iter().zip(local.outputs.as_array()).zip(units);
-        for (index, ((row, taken), ((output, shown), unit))) in places.zip(outputs).enumerate() {
-            let (seen, constant) = local.seen(output, *shown);
-            let parts = from_fn(|state| {
-                let own = seen.row.get(state).copied();
-                own.or_else(|| columns[state].get(index).copied()).unwrap_or(0.0)
-                    * state_units[state]
-            });
-            *row = Row::of(&seen, parts, *unit);
-            *taken = T::from_f64(constant / *unit);
-        }
-        this
-    }
-}
-
-/// A place of a list and the next; at the end the same.
-fn about<X, const G: usize>(all: &[X; G], place: usize) -> Result<(&X, &X), Error> {
-    let below = all.get(place).ok_or(Error::Grid)?;
-    Ok((below, all.get(place.wrapping_add(1)).unwrap_or(below)))
-}
-
-/// A process after which a constant is added to the four states.
-struct Shifted<'a, T, Q> {
-    process: Q,
-    constant: &'a SVector<T, 4>,
-}
-
-impl<T: Scalar, const N: usize, Q: Process<T, N>> Process<T, N> for Shifted<'_, T, Q> {
-    #[inline(always)]
-    fn advance(&self, estimate: &mut Gaussian<T, N>) {
-        self.process.advance(estimate);
-        for (mean, constant) in
-            estimate.mean.as_array_mut().iter_mut().zip(self.constant.as_array())
-        {
-            *mean += *constant;
-        }
     }
 }

@@ -1,0 +1,81 @@
+//! Models of several airspeeds in one file.
+
+use serde::Deserialize;
+
+use super::augmented::MOST_MODELS;
+use super::model_file::{ModelFile, Trim};
+use super::{Model, ModelFileError};
+
+/// What a grid is not beside.
+pub(super) const ALONE: &str = "a grid alone, where each model has its A, B, C, D and trim: without those, h, airframe, coefficients and airspeed beside it";
+
+/// One airspeed, or those of a grid, m/s.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected an airspeed in m/s or a list of them")]
+pub(super) enum Airspeeds {
+    One(f64),
+    Grid(Vec<f64>),
+}
+
+/// What a model of a grid says itself.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub(super) struct Member {
+    #[serde(rename = "A")]
+    a: [[f64; 4]; 4],
+    #[serde(rename = "B")]
+    b: [[f64; 2]; 4],
+    #[serde(rename = "C")]
+    c: Option<Vec<[f64; 4]>>,
+    #[serde(rename = "D")]
+    d: Option<Vec<[f64; 2]>>,
+    trim: Option<Trim>,
+    h: Option<f64>,
+}
+
+impl ModelFile {
+    /// Models of a grid that are written out.
+    pub(super) fn of_members(&self, members: Vec<Member>) -> Result<Vec<Model>, ModelFileError> {
+        if self.airframe.is_some() || self.coefficients.is_some() || self.says_matrices() {
+            return Err(ModelFileError::Number(ALONE));
+        }
+        let models = members.into_iter().map(|Member { a, b, c, d, trim, h }| {
+            if trim.is_none() {
+                return Err(ModelFileError::Number("a trim with x and u in each model of a grid"));
+            }
+            if h.is_some() {
+                return Err(ModelFileError::Number(
+                    "A and B of continuous time, without h, in each model of a grid",
+                ));
+            }
+            Self { a: Some(a), b: Some(b), c, d, trim, ..self.clone() }.one(true)
+        });
+        let models = models.collect::<Result<Vec<_>, _>>()?;
+        let airspeeds = models.iter().filter_map(|model| model.trim.map(|(state, _)| state[2]));
+        rising(&airspeeds.collect::<Vec<_>>())?;
+        Ok(models)
+    }
+
+    /// Models of an airframe at these airspeeds.
+    pub(super) fn of_airspeeds(&self, airspeeds: &[f64]) -> Result<Vec<Model>, ModelFileError> {
+        rising(airspeeds)?;
+        let models = airspeeds.iter().map(|&airspeed| {
+            let one = Self { airspeed: Some(Airspeeds::One(airspeed)), ..self.clone() };
+            one.one(true).map_err(|error| match error {
+                ModelFileError::Airframe(why) => {
+                    ModelFileError::Airframe(format!("at {airspeed} m/s {why}"))
+                }
+                other => other,
+            })
+        });
+        models.collect()
+    }
+}
+
+/// Whether these can be the airspeeds of a grid.
+fn rising(airspeeds: &[f64]) -> Result<(), ModelFileError> {
+    let is_grid = (2..=MOST_MODELS).contains(&airspeeds.len())
+        && airspeeds[0] > 0.0
+        && airspeeds.windows(2).all(|pair| pair[0] < pair[1]);
+    let wrong = ModelFileError::Number("a grid of 2 to 8 airspeeds above 0 m/s that rise");
+    if is_grid { Ok(()) } else { Err(wrong) }
+}
