@@ -160,11 +160,10 @@ impl Ends {
         let airspeed = |model: &Model| model.trim.map_or(0.0, |(state, _)| state[AIRSPEED]);
         let grid = model.extended.iter().flat_map(|extended| &extended.grid);
         let airspeeds: Vec<f64> = grid.map(airspeed).collect();
-        let ends = match airspeeds[..] {
-            [first, second, .., last_but_one, last] => {
-                vec![[first, first - second], [last, last - last_but_one]]
+        let ends = match (airspeeds.first_chunk(), airspeeds.last_chunk()) {
+            (Some([first, second]), Some([last_but_one, last])) => {
+                vec![[*first, first - second], [*last, last - last_but_one]]
             }
-            [first, last] => vec![[first, first - last], [last, last - first]],
             _ => Vec::new(),
         };
         Self { origin: airspeed(model), ends, beyond: None }
