@@ -111,7 +111,7 @@ impl Flight<'_> {
         let parts = Parts::of(model, &log.outputs, options, gust).ok_or(uav::Error::NoRoom)?;
         let mut filter = Augmented::<T>::new(model, &log.outputs, options, gust, log.interval_s)?;
         let mut followed = Followed::new(log);
-        let mut ends = Ends::of(model);
+        let mut outside = Outside::of(model);
         let mut support = 0.0;
         for (index, sample) in log.samples.iter().enumerate() {
             let innovations = filter.take(&sized(sample));
@@ -125,7 +125,7 @@ impl Flight<'_> {
                 state: state.fixed_rows::<4>(0).into(),
                 sigma: Some(sigma.fixed_rows::<4>(0).into()),
             };
-            ends.meet(state[AIRSPEED], sigma[AIRSPEED]);
+            outside.meet(state[AIRSPEED], sigma[AIRSPEED]);
             followed.judge(&innovations);
             let innovations = innovations.map(|innovation| innovation.map(|it| it.innovation));
             followed.add(estimate, innovations, filter.rejected(), filter.health());
@@ -139,23 +139,23 @@ impl Flight<'_> {
             Beside { name, value, sigma, said }
         });
         followed.beside = told.collect();
-        followed.beyond = ends.beyond;
+        followed.beyond = outside.furthest;
         followed.gust = extended.gust.map(|(sigmas, _)| sigmas.map(|sigma| gust * sigma));
         Ok((support, followed))
     }
 }
 
 /// Airspeeds beyond those of a grid.
-struct Ends {
+struct Outside {
     /// Airspeed that estimates deviate from, m/s.
     origin: f64,
     /// Each end, and how far it is to the model beside it: downwards negative.
     ends: Vec<[f64; 2]>,
     /// The furthest estimate, and the end that it is beyond.
-    beyond: Option<[f64; 2]>,
+    furthest: Option<[f64; 2]>,
 }
 
-impl Ends {
+impl Outside {
     fn of(model: &Model) -> Self {
         let airspeed = |model: &Model| model.trim.map_or(0.0, |(state, _)| state[AIRSPEED]);
         let grid = model.extended.iter().flat_map(|extended| &extended.grid);
@@ -166,7 +166,7 @@ impl Ends {
             }
             _ => Vec::new(),
         };
-        Self { origin: airspeed(model), ends, beyond: None }
+        Self { origin: airspeed(model), ends, furthest: None }
     }
 
     /// Looks at an estimate, unless it is hardly one.
@@ -174,9 +174,9 @@ impl Ends {
         let airspeed = self.origin + deviation;
         for [end, apart] in &self.ends {
             let by = (airspeed - end) * apart.signum();
-            let furthest = self.beyond.map_or(0.0, |[airspeed, end]| (airspeed - end).abs());
-            if by > 0.5 * apart.abs() && sigma < 0.5 * apart.abs() && by > furthest {
-                self.beyond = Some([airspeed, *end]);
+            let most = self.furthest.map_or(0.0, |[airspeed, end]| (airspeed - end).abs());
+            if by > 0.5 * apart.abs() && sigma < 0.5 * apart.abs() && by > most {
+                self.furthest = Some([airspeed, *end]);
             }
         }
     }

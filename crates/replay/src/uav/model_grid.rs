@@ -47,7 +47,9 @@ impl ModelFile {
                     "A and B of continuous time, without h, in each model of a grid",
                 ));
             }
-            Self { a: Some(a), b: Some(b), c, d, trim, ..self.clone() }.one(true)
+            let mut file = self.clone();
+            (file.a, file.b, file.c, file.d, file.trim) = (Some(a), Some(b), c, d, trim);
+            file.one(true)
         });
         let models = models.collect::<Result<Vec<_>, _>>()?;
         let airspeeds = models.iter().filter_map(|model| model.trim.map(|(state, _)| state[2]));
@@ -59,8 +61,9 @@ impl ModelFile {
     pub(super) fn of_airspeeds(&self, airspeeds: &[f64]) -> Result<Vec<Model>, ModelFileError> {
         rising(airspeeds)?;
         let models = airspeeds.iter().map(|&airspeed| {
-            let one = Self { airspeed: Some(Airspeeds::One(airspeed)), ..self.clone() };
-            one.one(true).map_err(|error| match error {
+            let mut file = self.clone();
+            file.airspeed = Some(Airspeeds::One(airspeed));
+            file.one(true).map_err(|error| match error {
                 ModelFileError::Airframe(why) => {
                     ModelFileError::Airframe(format!("at {airspeed} m/s {why}"))
                 }
