@@ -61,6 +61,7 @@ pub(crate) fn drone<'py>(
             let is_off = estimates.last().zip(channel).is_some_and(|(last, channel)| {
                 Misfit::find(&stops[..=last.stop], last, &channel).is_some()
             });
+            let is_off = is_off || search.moved(environment, quantity).is_some();
             Ok(Found { stops, estimates, is_off })
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(search);
@@ -127,7 +128,7 @@ struct Found {
     /// The measurements that were used.
     stops: Vec<Stop>,
     estimates: Vec<Estimate>,
-    /// Whether the environment does not explain the measurements.
+    /// Whether the environment does not explain the measurements, or the user moves.
     is_off: bool,
 }
 

@@ -1,8 +1,11 @@
 //! A user who moves: what was measured long ago says where they were.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{EnvironmentKind, Estimate, Quantity, Search};
+use crate::metrics::distance;
 
 /// So many deviations of both apart, two places are not the same.
 const APART: f64 = 3.0;
@@ -24,7 +27,7 @@ impl Search<'_> {
         let find = |last: &usize| {
             let begin = self.stops[*last].t - self.window_s.unwrap_or(f64::INFINITY);
             let first = self.stops[..*last].partition_point(|stop| stop.t < begin);
-            self.of_part(first, last + 1, environment, quantity)
+            self.of_part(first..last + 1, false, environment, quantity)
         };
         asked.par_iter().filter_map(find).collect()
     }
@@ -35,29 +38,30 @@ impl Search<'_> {
         if count < 2 * FEWEST || self.window_s.is_some() {
             return None;
         }
-        let before = self.of_part(0, count / 2, environment, quantity)?;
-        let after = self.of_part(count / 2, count, environment, quantity)?;
-        let apart = crate::metrics::distance(before.place, after.place);
+        let before = self.of_part(0..count / 2, true, environment, quantity)?;
+        let after = self.of_part(count / 2..count, true, environment, quantity)?;
+        let apart = distance(before.place, after.place);
         (apart > APART * before.sd_m.hypot(after.sd_m)).then_some(apart)
     }
 
     /// The last estimate from some of the measurements.
     fn of_part(
         &self,
-        first: usize,
-        end: usize,
+        part: Range<usize>,
+        is_rough: bool,
         environment: Option<EnvironmentKind>,
         quantity: Quantity,
     ) -> Option<Estimate> {
         let search = Search {
-            stops: self.stops.get(first..end)?,
-            truth: self.truth.get(first..end).unwrap_or_default(),
+            stops: self.stops.get(part.clone())?,
+            truth: self.truth.get(part.clone()).unwrap_or_default(),
             area: self.area.clone(),
             most: 1,
             window_s: None,
+            is_rough,
             ..*self
         };
         let found = search.find(environment, quantity).pop()?;
-        Some(Estimate { stop: first + found.stop, ..found })
+        Some(Estimate { stop: part.start + found.stop, ..found })
     }
 }

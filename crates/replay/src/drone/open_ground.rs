@@ -37,7 +37,7 @@ impl Search<'_> {
             }
         }
         let found = |(number, search): &(usize, Box<Ground>)| {
-            if number + 1 == count {
+            if number + 1 == count && !self.is_rough {
                 self.found::<POINTS_OPEN>(search, *number, quantity)
             } else {
                 self.found::<POINTS_ON_THE_WAY>(search, *number, quantity)
@@ -55,7 +55,8 @@ impl Search<'_> {
         let found = search.estimate::<POINTS>().ok()?;
         let truth = self.truth.get(stop);
         let covered = truth.map(|truth| search.credible(&found, self.inward(*truth), 0.9));
-        let next = (stop + 1 == self.stops.len()).then(|| self.next(search, &found)).flatten();
+        let is_last = stop + 1 == self.stops.len() && !self.is_rough;
+        let next = is_last.then(|| self.next(search, &found)).flatten();
         let cloud =
             self.with_clouds.then(|| Cloud::of_lattice(&found.posterior).moved(self.origin));
         Some(Estimate {

@@ -65,6 +65,8 @@ pub struct Search<'a> {
     pub(super) wavelength_m: f64,
     /// Measurements of so many seconds count, if not all do.
     pub(super) window_s: Option<f64>,
+    /// Whether fewer points will do.
+    pub(super) is_rough: bool,
 }
 
 impl<'a> Search<'a> {
@@ -88,7 +90,8 @@ impl<'a> Search<'a> {
         };
         let area = Box::new(area);
         let wavelength_m = WAVELENGTH_M;
-        Ok(Self { stops, origin, area, truth, most, with_clouds, wavelength_m, window_s: None })
+        let (window_s, is_rough) = (None, false);
+        Ok(Self { stops, origin, area, truth, most, with_clouds, wavelength_m, window_s, is_rough })
     }
 
     /// The same at another wavelength than that of 2 GHz, m.

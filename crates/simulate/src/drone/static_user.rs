@@ -164,6 +164,7 @@ impl<'a> Flight<'a> {
             warnings: Vec::new(),
             flown: Some(Flown { path_m, climb_m: 0.0, hover_s }),
             others: Vec::new(),
+            moved_m: None,
         }
     }
 }

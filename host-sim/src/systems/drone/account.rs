@@ -163,6 +163,12 @@ pub(super) fn account(
                 ));
                 account.doubt(Reason::Innovations);
             }
+            if let Some(apart) = track.moved_m {
+                account.warn(format!(
+                    "both halves of the flight place the user {apart:.0} m apart: one who moves needs --window"
+                ));
+                account.doubt(Reason::Innovations);
+            }
             let channel = super::settings::channel(settings);
             let stops = &track.stops[..=shown.stop];
             let misfit = channel.as_ref().and_then(|it| Misfit::find(stops, shown, it));

@@ -57,6 +57,18 @@ struct Listener {
 }
 
 impl Listener {
+    /// Drops what does not count any more at a time, s.
+    fn forget(&mut self, now: f64) {
+        let Some(window_s) = self.plan.settings.number("window") else { return };
+        let counts = |stop: &&Stop| stop.t >= now - window_s;
+        if self.stops.as_slice().iter().all(|stop| counts(&stop)) {
+            return;
+        }
+        let mut stops = Box::<Thinned<Stop, MOST>>::default();
+        self.stops.as_slice().iter().filter(counts).for_each(|stop| stops.push(*stop));
+        self.stops = stops;
+    }
+
     /// Where the user is; none if no place explains the path losses, and from fewer than three.
     fn locate(&self) -> Option<Estimate> {
         let stops = self.stops.as_slice();
@@ -65,8 +77,7 @@ impl Listener {
         }
         let Listening { area, settings } = &self.plan;
         let search = Search::new(stops, area.as_deref(), &[], 1, false).ok()?;
-        let search = search.at_wavelength(wavelength_m(settings)).within(settings.number("window"));
-        search.find(built(settings), Quantity::PathLoss).pop()
+        search.at_wavelength(wavelength_m(settings)).find(built(settings), Quantity::PathLoss).pop()
     }
 }
 
@@ -82,6 +93,7 @@ impl Online for Listener {
         if !is_on_earth || !stop.is_usable() {
             return Outcome::Refused;
         }
+        self.forget(t);
         self.stops.push(stop);
         self.is_new = true;
         Outcome::Taken

@@ -64,13 +64,9 @@ fn find(recorded: &Recorded, settings: &Settings, detail: Detail) -> Result<Trac
     if environment.is_some() && window_s.is_none() && estimates.len() < stops.len() {
         warnings.push("some measurements are explained by no place: left out".to_owned());
     }
-    if let Some(apart) = search.moved(environment, flight.quantity) {
-        warnings.push(format!(
-            "both halves of the flight place the user {apart:.0} m apart: one who moves needs --window"
-        ));
-    }
+    let moved_m = search.moved(environment, flight.quantity);
     let others = flight.others.par_iter().map(|heard| other(heard, recorded, settings)).collect();
-    Ok(Track { stops, truth, estimates, warnings, flown: None, others })
+    Ok(Track { stops, truth, estimates, warnings, moved_m, flown: None, others })
 }
 
 /// Finds another transmitter of a recorded flight.

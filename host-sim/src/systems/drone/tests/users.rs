@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::fs;
 
+use kestirim_telemetry::{Message, PathLoss};
 use serde_json::Value;
 
 use super::given_settings;
-use crate::system::{AnySystem, Files, Source, Wanted};
+use crate::system::{AnySystem, Files, Source, System, Wanted};
 use crate::systems::drone::Drone;
 
 /// Level of a user at a place, heard at another, 40 m higher.
@@ -77,10 +78,37 @@ fn a_user_who_moves_is_told_and_needs_a_window() {
     let error = |report: &Value| report["accuracy"]["error_m"].as_f64().unwrap();
     let all = replayed(&log, &truth, &[]);
     assert!(all["warnings"].to_string().contains("needs --window"), "{all}");
+    assert_eq!(all["health"]["state"], "bad", "{all}");
     let some = replayed(&log, &truth, &[("window", "60")]);
     assert!(!some["warnings"].to_string().contains("--window"), "{some}");
     assert!(error(&some) < 0.5 * error(&all), "{} {}", error(&some), error(&all));
     assert!(error(&some) < 3.0 * some["sd_m"].as_f64().unwrap(), "{some}");
+}
+
+#[test]
+fn a_stream_of_a_user_who_moves_is_followed_by_a_window() {
+    let user = |t: f64| [10.0 + 0.7 * t, 20.0 + 0.7 * t];
+    let followed = |given: &[(&'static str, &str)]| {
+        let settings = given_settings(given);
+        let plan = <Drone as System>::online(&settings, &Files::default()).unwrap().unwrap();
+        let mut listener = plan.build().unwrap();
+        for step in 0..384 {
+            let (t, place) = (f64::from(step), drone(step));
+            // 38.5 dB are lost on the first metre at 2 GHz.
+            let loss = -level(user(t), place) - 40.0 + 38.5;
+            let [x, y] = place.map(|axis| axis as f32);
+            let time_us = u64::from(step) * 1_000_000;
+            let heard = PathLoss { time_us, place: [x, y, 40.0], loss: loss as f32 };
+            listener.take(&Message::PathLoss(heard));
+        }
+        listener.finish().unwrap();
+        assert!(listener.facts().iter().any(|(name, _)| name == "measure next at"));
+        let [x, y, _] = listener.position().unwrap();
+        let [east, north] = user(383.0);
+        (x - east).hypot(y - north)
+    };
+    let (some, all) = (followed(&[("window", "60")]), followed(&[]));
+    assert!(some < 0.5 * all, "{some} m, {all} m of all");
 }
 
 /// An antenna that points to the front of a drone that flies to and fro: where the heading is known that is no error of the place.
