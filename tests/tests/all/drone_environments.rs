@@ -47,6 +47,7 @@ fn none_of_a_thousand_flights_contradicts_its_own_environment() {
         sd_m: 1.0,
         level_db: None,
         covered: None,
+        next: None,
         cloud: None,
     };
     for round in 0..250 {
