@@ -9,7 +9,7 @@ use crate::metrics::distance;
 
 /// So many deviations of both apart, two places are not the same.
 const APART: f64 = 3.0;
-/// Of fewer measurements in each half of a flight nothing is said.
+/// Of fewer measurements in each third of a flight nothing is said.
 const FEWEST: usize = 8;
 
 impl Search<'_> {
@@ -32,14 +32,15 @@ impl Search<'_> {
         asked.par_iter().filter_map(find).collect()
     }
 
-    /// How far apart (m) both halves of a flight place a user who is taken for one who stays; none if that may be chance.
+    /// How far apart (m) the first and the last third of a flight place a user who is taken for one who stays; none if that may
+    /// be chance.
     pub fn moved(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Option<f64> {
         let count = self.stops.len();
-        if count < 2 * FEWEST || self.window_s.is_some() {
+        if count < 3 * FEWEST || self.window_s.is_some() {
             return None;
         }
-        let before = self.of_part(0..count / 2, true, environment, quantity)?;
-        let after = self.of_part(count / 2..count, true, environment, quantity)?;
+        let before = self.of_part(0..count / 3, true, environment, quantity)?;
+        let after = self.of_part(count - count / 3..count, true, environment, quantity)?;
         let apart = distance(before.place, after.place);
         (apart > APART * before.sd_m.hypot(after.sd_m)).then_some(apart)
     }

@@ -57,7 +57,8 @@ pub struct Track {
     pub estimates: Vec<Estimate>,
     /// What a reader should know.
     pub warnings: Vec<String>,
-    /// How far apart (m) both halves of the flight place a user who is taken for one who stays, if that is no chance.
+    /// How far apart (m) the first and the last third of the flight place a user who is taken for one who stays, if that is no
+    /// chance.
     pub moved_m: Option<f64>,
     /// Of a synthetic drone.
     pub flown: Option<Flown>,

@@ -165,7 +165,7 @@ pub(super) fn account(
             }
             if let Some(apart) = track.moved_m {
                 account.warn(format!(
-                    "both halves of the flight place the user {apart:.0} m apart: one who moves needs --window"
+                    "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
                 ));
                 account.doubt(Reason::Innovations);
             }
