@@ -178,14 +178,13 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
         Some(Idle::foreign(format!("is for a synthetic recording: --synthetic {recordings}")))
     };
     match (recording, name) {
-        (_, "step") | (Recording::Flight(_), "environment") => None,
+        (_, "step") | (Recording::Flight(_), "environment" | "window") => None,
         (Recording::Flight(recorded), "frequency") => {
             // Among buildings the transmitter's level is told, from which the first metre's loss is taken.
             let is_level = recorded.flight.quantity == Quantity::Level && built(settings).is_none();
             is_level
                 .then(|| Idle::implied("levels of unknown offset tell the same at any frequency"))
         }
-        (Recording::Flight(_), "window") => None,
         (_, "frequency" | "window") => Some(Idle::foreign("is for a recorded flight")),
         (_, "environment") => {
             let is_open = settings.is_given(name) && settings.choice(name) == OPEN;
