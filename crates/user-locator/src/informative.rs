@@ -9,9 +9,9 @@ use crate::{Area, Waypoint};
 const STANDING: usize = 32;
 /// Waypoints that are compared.
 const WAYPOINTS: usize = 64;
-/// Nodes (in standard deviations) and weights of Gauss and Hermite's rule: what may be measured.
-const NODES: [(f64, f64); 3] =
-    [(-1.732_050_807_568_877_2, 1.0 / 6.0), (0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0)];
+/// Outer nodes (in standard deviations) and weights of Gauss and Hermite's rule of three: what may be measured.
+const NODE: f64 = 1.732_050_807_568_877_2;
+const WEIGHTS: [f64; 2] = [1.0 / 6.0, 2.0 / 3.0];
 /// What is so many deviations off is as unlikely as what is farther.
 const FARTHEST: f64 = 100.0;
 
@@ -91,18 +91,24 @@ pub(crate) fn most_informative<T: Scalar, const N: usize>(
 
 /// The spread that is expected after a measurement from a waypoint: its mean over all that may be measured there.
 fn after<T: Scalar>(all: &[Standing<T>], waypoint: [T; 2], height: T) -> T {
-    let expected = |it: &Standing<T>| it.fit.expected(&it.supposition, it.place, waypoint, height);
-    let levels: Vec<(T, T), STANDING> = all.iter().map(expected).take(STANDING).collect();
+    let mut levels = Vec::<(T, T), STANDING>::new();
+    for Standing { place, supposition, fit } in all {
+        // There is room.
+        let _ = levels.push(fit.expected(supposition, *place, waypoint, height));
+    }
+    // Constants one by one, so that no double-precision code reaches a target.
+    let (node, outer, inner) =
+        (T::from_f64(NODE), T::from_f64(WEIGHTS[0]), T::from_f64(WEIGHTS[1]));
     let mut sum = T::ZERO;
     for (level, sigma) in &levels {
-        for (node, share) in NODES {
-            let measured = *level + T::from_f64(node) * *sigma;
-            let likelihood = |(level, sigma): &(T, T)| {
+        for (node, share) in [(-node, outer), (T::ZERO, inner), (node, outer)] {
+            let measured = *level + node * *sigma;
+            let mut weights = Vec::<T, STANDING>::new();
+            for (level, sigma) in &levels {
                 let off = ((measured - *level) / *sigma).abs().min(T::from_f64(FARTHEST));
-                (-(off * off * T::HALF)).exp() / *sigma
-            };
-            let weights: Vec<T, STANDING> = levels.iter().map(likelihood).collect();
-            sum += T::from_f64(share) * spread(all, &weights);
+                let _ = weights.push((-(off * off * T::HALF)).exp() / *sigma);
+            }
+            sum += share * spread(all, &weights);
         }
     }
     sum / T::from_binary(levels.len().max(1) as i32, 0)

@@ -12,7 +12,7 @@ use super::{AugmentedFilter, AugmentedStep, LocalModel};
 use crate::Error;
 use crate::kalman_filter::UNITS;
 
-/// Steps of all local models in the scalar and the units of a [`ScheduledFilter`].
+/// Steps of all local models in the scalar and the units of a [`ScheduledFilter`](crate::ScheduledFilter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
