@@ -20,14 +20,12 @@ impl Search<'_> {
         quantity: Quantity,
     ) -> Vec<Estimate> {
         let count = self.stops.len();
-        let stride = count.div_ceil(self.most.max(1));
-        // Counted from the end, so that the last is one of them.
-        let asked: Vec<usize> =
-            (0..count).filter(|number| (count - 1 - number).is_multiple_of(stride)).collect();
+        let asked: Vec<usize> = (0..count).filter(|number| self.is_asked(*number)).collect();
         let find = |last: &usize| {
             let begin = self.stops[*last].t - self.window_s.unwrap_or(f64::INFINITY);
             let first = self.stops[..*last].partition_point(|stop| stop.t < begin);
-            self.of_part(first..last + 1, false, environment, quantity)
+            let is_on_the_way = last + 1 < count;
+            self.of_part(first..last + 1, is_on_the_way, environment, quantity)
         };
         asked.par_iter().filter_map(find).collect()
     }

@@ -25,14 +25,12 @@ impl Search<'_> {
         let channel = OpenGround::new(level_prior(quantity, self.wavelength_m));
         let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
         let count = self.stops.len();
-        let stride = count.div_ceil(self.most.max(1));
         let mut asked = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
             let Some(measurement) = self.measurement(stop) else { continue };
             let heading = stop.heading.and_then(|heading| Heading::new(heading).ok());
             search.measure_with_heading(&measurement, &heading.unwrap_or_else(Heading::unknown));
-            // Counted from the end, so that the last is one of them.
-            if (count - 1 - number).is_multiple_of(stride) {
+            if self.is_asked(number) {
                 asked.push((number, search.clone()));
             }
         }

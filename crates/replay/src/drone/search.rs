@@ -114,6 +114,13 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether an estimate is wanted after the measurement of this number: after one in several, counted from the end, so that
+    /// the last is one of them.
+    pub(super) fn is_asked(&self, number: usize) -> bool {
+        let count = self.stops.len();
+        (count - 1 - number).is_multiple_of(count.div_ceil(self.most.max(1)))
+    }
+
     pub(super) fn inward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x - self.origin[0], y - self.origin[1]]
     }

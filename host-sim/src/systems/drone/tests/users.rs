@@ -21,6 +21,14 @@ fn drone(step: u32) -> [f64; 2] {
     [if line.is_multiple_of(2) { along } else { 300.0 - along }, 40.0 * f64::from(line)]
 }
 
+/// Steps of a flight that comes by three times, a second each.
+const THRICE: u32 = 384;
+
+/// Where a user is after so many seconds who walks 1 m/s, 380 m during such a flight.
+fn walking(t: f64) -> [f64; 2] {
+    [10.0 + 0.7 * t, 20.0 + 0.7 * t]
+}
+
 /// What a replay of a log tells.
 fn replayed(log: &str, truth: &str, given: &[(&'static str, &str)]) -> Value {
     let folder = tempfile::tempdir().unwrap();
@@ -64,15 +72,13 @@ fn all_users_of_a_flight_are_found() {
 
 #[test]
 fn a_user_who_moves_is_told_and_needs_a_window() {
-    // They walk 1 m/s, 380 m in all, while the drone comes by three times.
-    let user = |t: f64| [10.0 + 0.7 * t, 20.0 + 0.7 * t];
     let (mut log, mut truth) = ("t,x,y,h,rssi_db\n".to_owned(), "t,x,y\n".to_owned());
-    for step in 0..384 {
+    for step in 0..THRICE {
         let (t, place) = (f64::from(step), drone(step));
-        writeln!(log, "{t},{},{},40,{:.2}", place[0], place[1], level(user(t), place)).unwrap();
+        writeln!(log, "{t},{},{},40,{:.2}", place[0], place[1], level(walking(t), place)).unwrap();
     }
-    for t in [0.0, 383.0] {
-        let [x, y] = user(t);
+    for t in [0, THRICE - 1].map(f64::from) {
+        let [x, y] = walking(t);
         writeln!(truth, "{t},{x},{y}").unwrap();
     }
     let error = |report: &Value| report["accuracy"]["error_m"].as_f64().unwrap();
@@ -87,15 +93,14 @@ fn a_user_who_moves_is_told_and_needs_a_window() {
 
 #[test]
 fn a_stream_of_a_user_who_moves_is_followed_by_a_window() {
-    let user = |t: f64| [10.0 + 0.7 * t, 20.0 + 0.7 * t];
     let followed = |given: &[(&'static str, &str)]| {
         let settings = given_settings(given);
         let plan = <Drone as System>::online(&settings, &Files::default()).unwrap().unwrap();
         let mut listener = plan.build().unwrap();
-        for step in 0..384 {
+        for step in 0..THRICE {
             let (t, place) = (f64::from(step), drone(step));
             // 38.5 dB are lost on the first metre at 2 GHz.
-            let loss = -level(user(t), place) - 40.0 + 38.5;
+            let loss = -level(walking(t), place) - 40.0 + 38.5;
             let [x, y] = place.map(|axis| axis as f32);
             let time_us = u64::from(step) * 1_000_000;
             let heard = PathLoss { time_us, place: [x, y, 40.0], loss: loss as f32 };
@@ -104,7 +109,7 @@ fn a_stream_of_a_user_who_moves_is_followed_by_a_window() {
         listener.finish().unwrap();
         assert!(listener.facts().iter().any(|(name, _)| name == "measure next at"));
         let [x, y, _] = listener.position().unwrap();
-        let [east, north] = user(383.0);
+        let [east, north] = walking(f64::from(THRICE - 1));
         (x - east).hypot(y - north)
     };
     let (some, all) = (followed(&[("window", "60")]), followed(&[]));
