@@ -40,6 +40,8 @@ impl Browser {
             .args([format!("--window-size={width},900")])
             .arg(folder)
             .arg("about:blank")
+            // What it leaves behind goes with its profile.
+            .env("TMPDIR", profile.path())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
