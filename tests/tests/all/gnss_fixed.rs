@@ -111,15 +111,27 @@ fn an_hour_with_whole_ambiguities() {
     assert!(table.worst_end[1] <= table.worst_end[0]);
 }
 
-/// The constants were chosen on sessions that begin with the hour, and looked at on these.
+/// Other beginnings; among those of 20 and 25 minutes past are the four that were wrong longest with a ratio of two.
 #[test]
 fn other_hours_with_whole_ambiguities() {
     let Some(recording) = esbc() else { return };
-    for after in [900.0, 1800.0, 2700.0] {
+    for after in [900.0, 1200.0, 1500.0, 2700.0] {
         let table = sessions(&recording, after, Systems::All);
-        assert!(table.ends[1] <= 11.0 && table.minutes[1] <= 13.0, "{after}");
+        assert!(table.ends[1] <= 11.0 && table.minutes[1] <= 14.0, "{after}");
         assert!(table.fixed >= 16 && table.wrong == 0, "{after}");
     }
+}
+
+/// All beginnings every five minutes: `cargo test --release -p kestirim-tests --test all every_five_minutes -- --ignored --nocapture`.
+#[test]
+#[ignore = "some minutes"]
+fn every_five_minutes_with_whole_ambiguities() {
+    let Some(recording) = esbc() else { return };
+    let tables = (0..12).map(|k| sessions(&recording, 300.0 * f64::from(k), Systems::All));
+    let (fixed, wrong) =
+        tables.fold((0, 0), |(fixed, wrong), it| (fixed + it.fixed, wrong + it.wrong));
+    println!("{fixed} sessions fixed, {wrong} wrong positions");
+    assert!(fixed >= 200 && wrong == 0);
 }
 
 #[test]
