@@ -41,7 +41,7 @@ pub(crate) struct Positioning {
 }
 
 layout! {
-    [] for Positioning as "c/gnss", 1, f64, [STATES]
+    [] for Positioning as "c/gnss", 2, f64, [STATES]
 }
 
 impl Handle for Gnss {
@@ -220,7 +220,8 @@ impl Positioning {
         }
         let motion =
             if process_noise > 0.0 { Motion::Kinematic { process_noise } } else { Motion::Static };
-        let config = Config { elevation_mask, ..Config::new(motion) };
+        // All room is for satellites.
+        let config = Config { elevation_mask, gradient: 0.0, ..Config::new(motion) };
         Ok(Self { filter: PppFilter::new(config), ut1_minus_gps, eccentricity, last: None })
     }
 }

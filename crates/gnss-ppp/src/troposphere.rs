@@ -1,6 +1,6 @@
 use core::f64::consts::TAU;
 
-use crate::{Geodetic, GpsTime};
+use crate::{Direction, Geodetic, GpsTime};
 
 /// Coefficients a, b, c of a mapping function.
 type Coefficients = [f64; 3];
@@ -124,6 +124,17 @@ fn in_troposphere(height: f64) -> f64 {
     height.clamp(-1_000.0, 11_000.0)
 }
 
+impl Direction {
+    /// What a gradient of the troposphere to the north and one to the east, m, add to a range from here: ∂P/∂G, by Chen and
+    /// Herring (1997), with the 0.0032 of the total delay.
+    pub fn gradient_mapping(self) -> [f64; 2] {
+        let (sine, cosine) = libm::sincos(self.elevation);
+        let mapping = cosine / (sine * sine + 0.0032 * cosine);
+        let (east, north) = libm::sincos(self.azimuth);
+        [mapping * north, mapping * east]
+    }
+}
+
 /// Linear between the latitudes of a table, constant beyond (rad, not negative).
 fn at_latitude(table: &[Coefficients; 5], latitude: f64) -> Coefficients {
     let place = (latitude.to_degrees() / 15.0 - 1.0).clamp(0.0, 4.0);
@@ -147,7 +158,7 @@ fn fraction(coefficients: &Coefficients, sine: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{Troposphere, zenith_hydrostatic, zenith_wet};
-    use crate::{Geodetic, GpsTime};
+    use crate::{Direction, Geodetic, GpsTime};
 
     fn place(latitude: f64, height: f64) -> Geodetic {
         Geodetic { latitude: latitude.to_radians(), longitude: 0.0, height }
@@ -193,6 +204,24 @@ mod tests {
             delay,
             zenith_hydrostatic(&place(30.0, 4_000.0)) * troposphere.mapping(0.5).hydrostatic
         );
+    }
+
+    /// 1/(sin 10° tan 10° + 0.0032) is 29.57; straight above a gradient adds nothing.
+    #[test]
+    fn gradients_add_to_low_satellites() {
+        let mapped = |azimuth: f64, elevation: f64| {
+            let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
+            Direction { elevation, azimuth }.gradient_mapping()
+        };
+        for (azimuth, [north, east]) in
+            [(0.0, [1.0, 0.0]), (90.0, [0.0, 1.0]), (180.0, [-1.0, 0.0]), (270.0, [0.0, -1.0])]
+        {
+            let [to_north, to_east] = mapped(azimuth, 10.0);
+            assert!((to_north - 29.569 * north).abs() < 1e-3, "{to_north}");
+            assert!((to_east - 29.569 * east).abs() < 1e-3, "{to_east}");
+        }
+        assert!(mapped(30.0, 90.0).iter().all(|mapping| mapping.abs() < 1e-12));
+        assert!(mapped(30.0, 0.0).iter().all(|mapping| mapping.is_finite()));
     }
 
     /// 1013.25 hPa at 45° and sea level: 2.3069 m. The rest computed with numpy.

@@ -1,9 +1,8 @@
 use crate::running::Running;
-use crate::start::code_position;
 use crate::{Config, Error, SatelliteObservation, Solution};
 use kestirim_gnss_ppp::{GpsTime, Receiver};
 
-/// A precise point positioning filter of N states: room for N − 5 satellites at a time (see
+/// A precise point positioning filter of N states: room for N − 5 satellites at a time, N − 7 with gradients (see
 /// [`states`](crate::states)).
 ///
 /// It starts by itself from the first epoch's codes.
@@ -69,7 +68,7 @@ impl<const N: usize> PppFilter<N> {
                 running.advance(time, direction, &self.config)?;
                 running
             }
-            None => Running::start(time, &code_position(observations)?, &self.config),
+            None => Running::start(time, observations, &self.config)?,
         };
         let solution = next.observe(receiver, observations, &self.config);
         if solution.is_ok() {

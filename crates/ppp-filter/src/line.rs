@@ -1,14 +1,14 @@
 //! One satellite's two observations, linearised.
 
 use crate::collected::collected;
-use crate::states::{CLOCK, COMMON, WET};
+use crate::states::{CLOCK, COMMON, GRADIENTS, WET};
 use crate::{Config, Motion, SatelliteObservation, Slipped};
 use kestirim_gnss_ppp::{Expected, Site};
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
 /// A row of H: the states that a phase depends on, the ambiguity last.
-pub(crate) type Row = heapless::Vec<(usize, f64), { COMMON + 2 }>;
+pub(crate) type Row = heapless::Vec<(usize, f64), { COMMON + GRADIENTS.len() + 2 }>;
 
 /// One satellite's two observations, linearised.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(crate) struct Line {
     /// That of its system's clock beside the receiver's, unless that is one.
     pub(crate) offset: Option<usize>,
     pub(crate) slipped: Option<Slipped>,
+    /// By what the gradients count, if they are estimated.
+    pub(crate) gradients: Option<[f64; 2]>,
     /// Phases without the jumps of the receiver's clock, cycles.
     phases: [f64; 2],
     pub(crate) expected: Expected,
@@ -51,6 +53,7 @@ impl Line {
             state,
             offset: None,
             slipped,
+            gradients: None,
             phases,
             expected,
             code: 0.0,
@@ -80,6 +83,7 @@ impl Line {
             site.expect(&observation.state, carriers, observation.antenna.as_ref(), wind_up)
         {
             self.expected = expected;
+            self.gradients = self.gradients.map(|_| expected.direction.gradient_mapping());
             self.compare(observation);
         }
     }
@@ -95,8 +99,9 @@ impl Line {
         let [x, y, z] = *self.expected.sight.as_array();
         let wet = (WET, self.expected.wet_mapping);
         let common = [(0, -x), (1, -y), (2, -z), (CLOCK, 1.0), wet];
+        let gradients = self.gradients.into_iter().flat_map(|them| GRADIENTS.into_iter().zip(them));
         let own = self.offset.map(|offset| (offset, 1.0)).into_iter().chain([(self.state, 1.0)]);
-        collected(common.into_iter().chain(own))
+        collected(common.into_iter().chain(gradients).chain(own))
     }
 
     /// z − h(x⁻) of the code and of the phase, where the line is linearised at a position off by
@@ -107,8 +112,12 @@ impl Line {
         offset: &Vector3<f64>,
     ) -> [f64; 2] {
         let of = |state: usize| mean.as_array().get(state).copied().unwrap_or(0.0);
-        let common = of(CLOCK) + self.offset.map_or(0.0, of) + self.expected.wet_mapping * of(WET)
-            - self.expected.sight.dot(offset);
+        let mut common =
+            of(CLOCK) + self.offset.map_or(0.0, of) + self.expected.wet_mapping * of(WET)
+                - self.expected.sight.dot(offset);
+        for (state, mapping) in GRADIENTS.into_iter().zip(self.gradients.unwrap_or_default()) {
+            common += mapping * of(state);
+        }
         [self.code - common, self.phase - common - of(self.state)]
     }
 }

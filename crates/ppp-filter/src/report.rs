@@ -48,6 +48,7 @@ impl<const N: usize> Running<N> {
             covariance_enu: rotation * covariance * rotation.transpose(),
             clock: self.state(CLOCK),
             wet_delay: self.state(WET),
+            gradients: self.gradients(),
             health: if let Some(contradiction) = contradiction.or(moved) {
                 Health::Contradicted(contradiction)
             } else if heard < 5 {

@@ -1,17 +1,19 @@
 //! A filter that has a position.
 
+mod satellites;
+
 use crate::channel::Channel;
 use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::consistency::Consistency;
 use crate::line::{Line, Row};
-use crate::phase_monitor::{PhaseMonitor, is_judged};
+use crate::phase_monitor::is_judged;
 use crate::rest::Rest;
-use crate::start::CodePosition;
-use crate::states::{CLOCK, COMMON, WET};
+use crate::start::code_position;
+use crate::states::{BEHIND_GRADIENTS, CLOCK, COMMON, GRADIENTS, WET};
 use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution};
 use heapless::Vec;
-use kestirim_gnss_ppp::{Arc, Constellation, Expected, GpsTime, Receiver, Site, Slip};
+use kestirim_gnss_ppp::{GpsTime, Receiver, Site};
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement};
 use kestirim_scalar::Components;
@@ -26,6 +28,10 @@ const CLOCK_VARIANCE: f64 = 1e6;
 const OFFSET_WALK: f64 = 1e-8;
 /// Variance of an ambiguity from one epoch's code, m².
 const AMBIGUITY_VARIANCE: f64 = 1e4;
+/// Clocks that are interpolated over longer hide gradients, s.
+const COARSE_CLOCKS: f64 = 300.0;
+/// In this time gradients change by as much as they are, s.
+const DAY: f64 = 86_400.0;
 /// Wet zenith delay of a temperate climate, m.
 const WET_DELAY: f64 = 0.1;
 /// A receiver that was found farther than this from where the model was linearised is looked at
@@ -51,6 +57,9 @@ pub(crate) struct Running<const N: usize> {
     pub(crate) time: GpsTime,
     /// The shortest time between two epochs so far, s.
     pub(crate) interval: Option<f64>,
+    /// The first state that may be an ambiguity: those of gradients come before, if they are estimated.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "first_ambiguity"))]
+    first: usize,
     /// By the state that is their ambiguity.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     channels: [Option<Channel>; N],
@@ -64,6 +73,15 @@ pub(crate) struct Running<const N: usize> {
     ahead: i32,
     /// The jump of the present epoch.
     pub(crate) jump: Option<ClockJump>,
+}
+
+/// Behind the common states, or behind the gradients.
+#[cfg(feature = "serde")]
+fn first_ambiguity<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
+    match <usize as serde::Deserialize>::deserialize(deserializer)? {
+        first @ (COMMON | BEHIND_GRADIENTS) => Ok(first),
+        _ => Err(serde::de::Error::custom("no state that is the first ambiguity")),
+    }
 }
 
 /// A state that there is, or none.
@@ -80,8 +98,18 @@ fn state<'de, D: serde::Deserializer<'de>, const N: usize>(
 }
 
 impl<const N: usize> Running<N> {
-    /// Starts at the position of an epoch's codes.
-    pub(crate) fn start(time: GpsTime, start: &CodePosition, config: &Config) -> Self {
+    /// Starts at the position of the codes of an epoch's `observations`.
+    pub(crate) fn start(
+        time: GpsTime,
+        observations: &[SatelliteObservation<'_>],
+        config: &Config,
+    ) -> Result<Self, Error> {
+        let start = code_position(observations)?;
+        let is_coarse = |it: &SatelliteObservation<'_>| it.state.clock_interval > COARSE_CLOCKS;
+        let has_gradients = config.gradient > 0.0
+            && N >= BEHIND_GRADIENTS + 4
+            && !observations.iter().any(is_coarse);
+        let gradient = if has_gradients { config.gradient * config.gradient } else { 0.0 };
         let mut mean = SVector::<f64, N>::zeros();
         let mut variances = [0.0; N];
         let [x, y, z] = *start.position.as_array();
@@ -91,23 +119,26 @@ impl<const N: usize> Running<N> {
             (z, START_VARIANCE),
             (start.clock, CLOCK_VARIANCE),
             (WET_DELAY, config.wet_delay * config.wet_delay),
+            (0.0, gradient),
+            (0.0, gradient),
         ];
         let places = mean.as_array_mut().iter_mut().zip(&mut variances);
         for ((mean, variance), known) in places.zip(known) {
             (*mean, *variance) = known;
         }
         let estimate = Gaussian::new(mean, Covariance::from_variances(&variances));
-        Self {
+        Ok(Self {
             estimate,
             time,
             interval: None,
+            first: if has_gradients { BEHIND_GRADIENTS } else { COMMON },
             channels: [None; N],
             offset: None,
             consistency: Consistency::default(),
             rest: Rest::default(),
             ahead: 0,
             jump: None,
-        }
+        })
     }
 
     /// Predicts to the time of an epoch, which comes later (`direction` 1) or earlier (−1).
@@ -129,6 +160,12 @@ impl<const N: usize> Running<N> {
             }
         }
         self.estimate.add_variance_at(WET, config.wet_delay_walk * elapsed)?;
+        if self.has_gradients() {
+            let walk = config.gradient * config.gradient * elapsed / DAY;
+            for gradient in GRADIENTS {
+                self.estimate.add_variance_at(gradient, walk)?;
+            }
+        }
         if let Some(offset) = self.offset {
             self.estimate.add_variance_at(offset, OFFSET_WALK * elapsed)?;
         }
@@ -259,154 +296,19 @@ impl<const N: usize> Running<N> {
         }
     }
 
-    /// The satellites above the mask, each with a state for its ambiguity.
-    fn lines<'a, 'b>(
-        &mut self,
-        site: &Site<'_>,
-        observations: &'a [SatelliteObservation<'b>],
-        config: &Config,
-    ) -> Lines<'a, 'b, N> {
-        let mut lines = Vec::new();
-        for observation in observations {
-            if lines.iter().any(|(_, line): &(_, Line)| line.satellite == observation.satellite) {
-                continue;
-            }
-            let known = self.find(observation.satellite);
-            let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
-            let expected = {
-                let SatelliteObservation { state, carriers, antenna, .. } = observation;
-                site.expect(state, *carriers, antenna.as_ref(), wind_up)
-            };
-            let Some(expected) = expected else { continue };
-            let above = expected.direction.elevation >= config.elevation_mask;
-            if !above && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
-                *place = None;
-            }
-            if !above || !observation.is_finite() {
-                continue;
-            }
-            let offset = match observation.carriers.constellation() {
-                Constellation::Gps => None,
-                Constellation::Galileo => {
-                    let Some(offset) = self.offset_state(observations) else { continue };
-                    Some(offset)
-                }
-            };
-            let Some(state) = known.or_else(|| self.free(observations)) else { continue };
-            let slipped = self.track(state, observation, &expected, config);
-            let phase = self.repaired(observation);
-            let mut line = Line::new(observation, phase, expected, state, slipped, config);
-            line.offset = offset;
-            if config.estimator.patience.is_some()
-                && let Some(channel) = self.channel(state)
-            {
-                line.learn(channel.monitor.noise(), config.motion);
-            }
-            if lines.push((observation, line)).is_err() {
-                break;
-            }
-        }
-        lines
-    }
-
-    /// Follows a satellite whose ambiguity is `state`. Whether and why that begins anew.
-    fn track(
-        &mut self,
-        state: usize,
-        observation: &SatelliteObservation<'_>,
-        expected: &Expected,
-        config: &Config,
-    ) -> Option<Slipped> {
-        let SatelliteObservation { satellite, code, lock_lost, .. } = *observation;
-        let phase = self.repaired(observation);
-        let clock = matches!(self.jump, Some(ClockJump::Other)).then_some(Slip::Clock);
-        let time = self.time;
-        let place = self.channels.get_mut(state)?;
-        let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
-            *place = Some(Channel {
-                satellite,
-                arc: Arc::begin(time, observation.carriers, phase, code),
-                wind_up: expected.wind_up_cycles,
-                monitor: PhaseMonitor::NEW,
-            });
-            return Some(Slipped::New);
-        };
-        channel.wind_up = expected.wind_up_cycles;
-        let slip = channel.arc.observe(time, phase, code, lock_lost, &config.slips);
-        let slip = slip.or(clock);
-        let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
-        let slipped = slip.map(Slipped::Seen).or_else(|| {
-            let patience = config.estimator.patience?;
-            channel.monitor.contradicts(patience).then_some(Slipped::Contradicted)
-        });
-        if slipped.is_some() {
-            channel.arc.restart(time, phase, code);
-            channel.monitor.begin();
-        }
-        slipped
-    }
-
-    /// The jump of the phases that most satellites have in common since they were seen before.
-    fn clock_jump(
-        &self,
-        observations: &[SatelliteObservation<'_>],
-        config: &Config,
-    ) -> Option<ClockJump> {
-        let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
-            let arc = self.channel(self.find(observation.satellite)?)?.arc;
-            let jump = arc.jump(self.repaired(observation), observation.code);
-            (self.time.since(arc.last()).abs() <= config.slips.gap).then_some(jump)
-        }));
-        ClockJump::of(&jumps, median(&jumps, |jump| *jump))
-    }
-
-    /// Phases without the milliseconds by which they are ahead of the codes, cycles.
-    pub(crate) fn repaired(&self, observation: &SatelliteObservation<'_>) -> [f64; 2] {
-        let [first, second] = observation.phase;
-        let seconds = 1e-3 * f64::from(self.ahead);
-        let [of_first, of_second] = observation.carriers.frequency();
-        [first - seconds * of_first, second - seconds * of_second]
-    }
-
-    pub(crate) fn find(&self, satellite: u8) -> Option<usize> {
-        let is = |channel: &Option<Channel>| channel.is_some_and(|c| c.satellite == satellite);
-        self.channels.iter().position(is)
-    }
-
-    fn channel(&self, state: usize) -> Option<&Channel> {
-        self.channels.get(state)?.as_ref()
-    }
-
-    /// The state that is the clock of Galileo, begun if there is none.
-    fn offset_state(&mut self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
-        if self.offset.is_none() {
-            let state = self.free(observations)?;
-            *self.channels.get_mut(state)? = None;
-            self.offset = Some(state);
-        }
-        self.offset
-    }
-
-    /// A state that is no satellite's, or that of the satellite unseen for longest.
-    fn free(&self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
-        let unseen = |state: usize| match self.channel(state) {
-            None => Some(f64::INFINITY),
-            Some(Channel { satellite, .. })
-                if observations.iter().any(|observation| observation.satellite == *satellite) =>
-            {
-                None
-            }
-            Some(channel) => Some(self.time.since(channel.arc.last()).abs()),
-        };
-        let states = (COMMON..N).filter(|state| self.offset != Some(*state));
-        let free = states.filter_map(|state| Some((state, unseen(state)?)));
-        free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
-    }
-
     /// Standard deviation of the position as the filter takes it, m.
     fn deviation(&self) -> f64 {
         let variance = |axis| self.estimate.covariance.get(axis, axis).unwrap_or(0.0);
         libm::sqrt((0..3).map(variance).sum())
+    }
+
+    fn has_gradients(&self) -> bool {
+        self.first == BEHIND_GRADIENTS
+    }
+
+    /// To the north and to the east, m; zero if they are not estimated.
+    pub(crate) fn gradients(&self) -> [f64; 2] {
+        if self.has_gradients() { GRADIENTS.map(|state| self.state(state)) } else { [0.0; 2] }
     }
 
     pub(crate) fn state(&self, index: usize) -> f64 {

@@ -214,6 +214,7 @@ impl<const N: usize> Epoch<N> {
             covariance_enu: rotation * covariance * rotation.transpose(),
             clock: self.clock + estimate.mean.as_array().get(3).copied().unwrap_or(0.0),
             wet_delay: WET_DELAY,
+            gradients: [0.0; 2],
             // Metres, whatever comes: no ambiguity is ever known.
             health: if heard > STATES { Health::Converging } else { Health::Unchecked },
             milliseconds: 0,

@@ -96,6 +96,8 @@ pub struct Solution<const N: usize> {
     pub clock: f64,
     /// Wet zenith delay, m.
     pub wet_delay: f64,
+    /// Gradients of the troposphere to the north and to the east, m; zero where they are not estimated.
+    pub gradients: [f64; 2],
     /// Quality of the solution.
     pub health: Health,
     /// By how many milliseconds the phases of all satellites jumped against their codes in this epoch. That is repaired.

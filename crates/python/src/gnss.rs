@@ -19,7 +19,7 @@ const STACK_BYTES: usize = 16 << 20;
 
 /// A receiver's positions.
 #[pyfunction]
-#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, ambiguities, mask, until, smooth))]
+#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, ambiguities, mask, gradient, until, smooth))]
 pub(crate) fn gnss<'py>(
     py: Python<'py>,
     obs: PathBuf,
@@ -33,6 +33,7 @@ pub(crate) fn gnss<'py>(
     systems: &str,
     ambiguities: &str,
     mask: Option<f64>,
+    gradient: Option<f64>,
     until: Option<f64>,
     smooth: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -40,10 +41,10 @@ pub(crate) fn gnss<'py>(
         None => Motion::Static,
         Some(process_noise) => Motion::Kinematic { process_noise },
     };
-    let config = Config::new(motion);
+    let config = self::filter(filter)?.config(motion, false);
     let config = Config {
-        estimator: self::filter(filter)?.estimator(motion, false),
         elevation_mask: mask.unwrap_or(config.elevation_mask),
+        gradient: gradient.unwrap_or(config.gradient),
         ..config
     };
     let systems = self::systems(systems)?;

@@ -33,8 +33,8 @@ def test_equals_replay_of_gps(data: Path, replay: Replay) -> None:
     check(ours, theirs, track)
     assert ours.converged[-1]
 
-    theirs, track = replay("gnss", *files, "--until", 3600, "--mode", "kinematic", "--filter", "ikf", "--mask", 12)
-    options: Any = {"process_noise": 100.0, "filter": "ikf", "mask": 12 * 3.141592653589793 / 180}
+    theirs, track = replay("gnss", *files, "--until", 3600, "--mode", "kinematic", "--filter", "ikf", "--mask", 12, "--gradient", 0.001)
+    options: Any = {"process_noise": 100.0, "filter": "ikf", "mask": 12 * 3.141592653589793 / 180, "gradient": 0.001}
     check(kestirim.gnss(obs, sp3, antex, clk=[clk], until=3600.0, **options), theirs, track)
 
     _, track = replay("gnss", *files, "--until", 3600, "--smooth")

@@ -11,7 +11,7 @@ use host_sim::systems::gnss::figures::errors;
 use host_sim::systems::gnss::figures::residuals::left;
 use host_sim::systems::gnss::settings::PROCESS_NOISE;
 use kestirim_gnss_ppp::Corrections;
-use kestirim_ppp_filter::{Config, Motion};
+use kestirim_ppp_filter::Motion;
 use kestirim_replay::gnss::{FilterKind, Followed, Pass, follow};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station};
 use kestirim_tests::recordings::folder_of;
@@ -26,7 +26,7 @@ fn follow_all(station: &Station, folder: &Path, filters: &[FilterKind], motion: 
     let receiver = recording.receiver(Corrections::ALL);
     let epochs = recording.epochs(Some(station.until));
     let day = |&filter: &FilterKind| {
-        let config = Config { estimator: filter.estimator(motion, false), ..Config::new(motion) };
+        let config = filter.config(motion, false);
         let pass = Pass { with_residuals: true, ..Pass::default() };
         (filter, follow(&recording, epochs, &receiver, config, pass, || ()))
     };

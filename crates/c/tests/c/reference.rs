@@ -268,7 +268,8 @@ pub(crate) fn drone<T: Scalar>(stream: &[u8]) -> String {
 
 pub(crate) fn gnss(_: &[u8]) -> String {
     let mut lines = Lines::default();
-    let mut filter = PppFilter::<{ states(12) }>::new(PppConfig::new(Motion::Static));
+    let config = PppConfig { gradient: 0.0, ..PppConfig::new(Motion::Static) };
+    let mut filter = PppFilter::<{ states(12) }>::new(config);
     let receiver = receiver();
     // Of C's interface, the same for both constellations, and without tides of the ocean.
     let receiver = kestirim_gnss_ppp::Receiver {

@@ -1,7 +1,8 @@
 //! The filter under a sky without noise: what it must find, and what it must not fall for.
 
 use crate::sky::{START, marker, observe, spoil};
-use kestirim_gnss_ppp::{Carriers, FREQUENCY, Receiver, Slip};
+use core::slice;
+use kestirim_gnss_ppp::{Carriers, FREQUENCY, Receiver, Site, Slip};
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation,
     SatelliteReport, Slipped, Solution, states,
@@ -396,4 +397,37 @@ fn galileo_beside_gps() {
             run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, true));
         assert!(error(alone.last().unwrap()) < 5e-3, "{}", error(alone.last().unwrap()));
     }
+}
+
+/// A troposphere that is 0.8 mm thicker to the north, and 0.6 mm thinner to the east: 2 and 3 cm at 10° of elevation.
+#[test]
+fn gradients_are_found_where_they_can_be() {
+    const GRADIENTS: [f64; 2] = [8e-4, -6e-4];
+    fn slanted<const N: usize>(config: &Config, clock_interval: f64) -> Solution<N> {
+        let slant = |seconds: f64, observations: &mut Vec<SatelliteObservation<'static>>| {
+            let site = Site::new(&Receiver::default(), &marker(), START.plus(seconds));
+            for observation in observations {
+                let SatelliteObservation { satellite, carriers, ref mut state, .. } = *observation;
+                let expected = site.expect(state, carriers, None, None).unwrap();
+                let mapping = expected.direction.gradient_mapping();
+                let delay: f64 = mapping.iter().zip(GRADIENTS).map(|(m, g)| m * g).sum();
+                state.clock_interval = clock_interval;
+                spoil(slice::from_mut(observation), satellite, delay, delay);
+            }
+        };
+        run(&mut PppFilter::<N>::new(*config), 7200.0, slant).pop().unwrap()
+    }
+    let config = Config::new(Motion::Static);
+    let found = slanted::<N>(&config, 30.0);
+    let [north, east] = [0, 1].map(|axis| (found.gradients[axis] - GRADIENTS[axis]).abs());
+    assert!(north < 5e-5 && east < 5e-5, "{:?}", found.gradients);
+    assert!(error(&found) < 2e-3, "{}", error(&found));
+    // Not asked for, behind clocks that are known every quarter of an hour, without room for them.
+    let without = Config { gradient: 0.0, ..config };
+    for unseen in [slanted::<N>(&without, 30.0), slanted::<N>(&config, 900.0)] {
+        assert_eq!(unseen.gradients, [0.0; 2]);
+        assert!(error(&unseen) > 4.0 * error(&found), "{}", error(&unseen));
+    }
+    let small = slanted::<{ states(4) }>(&config, 30.0);
+    assert_eq!((small.gradients, small.satellites.len()), ([0.0; 2], 4));
 }

@@ -291,6 +291,7 @@ def gnss(
     systems: str,
     ambiguities: str,
     mask: Optional[float],
+    gradient: Optional[float],
     until: Optional[float],
     smooth: bool,
 ) -> _ReceiverTrack: ...

@@ -332,6 +332,7 @@ def gnss(
     systems: Literal["all", "gps", "galileo"] = "all",
     ambiguities: Literal["float", "fixed"] = "float",
     mask: Optional[float] = None,
+    gradient: Optional[float] = None,
     until: Optional[float] = None,
     smooth: bool = False,
 ) -> ReceiverTrack:
@@ -344,7 +345,8 @@ def gnss(
     process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
     for one at rest. filter: what is done about observations that do not fit.
     systems: satellites that serve. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo
-    with integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. until: s, the last epoch.
+    with integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. gradient: m,
+    standard deviation of the troposphere's gradients (0: none), 0.0005 of the default filter. until: s, the last epoch.
     smooth: put together what is found forwards and backwards, from the first epoch on.
 
     The same as `host-sim replay gnss`, to the bit.
@@ -361,6 +363,7 @@ def gnss(
         systems,
         ambiguities,
         mask,
+        gradient,
         until,
         smooth,
     )

@@ -1,6 +1,6 @@
 //! Which filter, and of which systems the satellites.
 
-use kestirim_ppp_filter::{Estimator, Motion, states};
+use kestirim_ppp_filter::{Config, Estimator, Motion, states};
 
 /// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
 pub const STATES: usize = states(20);
@@ -130,6 +130,14 @@ impl FilterKind {
         } else {
             ours
         }
+    }
+
+    /// The settings of our results with this filter, whose states are the paper's if it is one of the paper's: those have no
+    /// gradients of the troposphere.
+    pub fn config(self, motion: Motion, published: bool) -> Config {
+        let ours = Config::new(motion);
+        let gradient = if self == Self::Default { ours.gradient } else { 0.0 };
+        Config { gradient, estimator: self.estimator(motion, published), ..ours }
     }
 }
 

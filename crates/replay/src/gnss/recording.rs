@@ -222,11 +222,11 @@ impl Recording {
 
     /// Settings of a filter with what broadcast ephemerides need, where those serve.
     pub fn settled(&self, config: Config) -> Config {
-        let Config { correlation_time, .. } = match self.products.broadcast() {
+        let Config { correlation_time, gradient, .. } = match self.products.broadcast() {
             Some(_) => Config::broadcast(config.motion),
             None => config,
         };
-        Config { correlation_time, ..config }
+        Config { correlation_time, gradient, ..config }
     }
 
     /// Why no ambiguity can become a whole number, if that is so.

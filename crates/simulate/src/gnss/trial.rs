@@ -85,8 +85,8 @@ pub fn trial(seed: u64, index: u64, filters: &[(Config, bool)]) -> Vec<Score> {
     // Filters of a day beside each other, so that few days keep all threads busy, too.
     filters
         .par_iter()
-        .map(|&(config, faults)| {
-            let which = usize::from(faults);
+        .map(|(config, faults)| {
+            let which = usize::from(*faults);
             follow(&days[which], &observations[which], config)
         })
         .collect()
@@ -102,7 +102,7 @@ fn observations(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
 }
 
 /// One filter through one day.
-fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: Config) -> Score {
+fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: &Config) -> Score {
     let receiver = Receiver {
         antenna: None,
         galileo_antenna: None,
@@ -111,7 +111,7 @@ fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: Con
         ut1_minus_gps: UTC_MINUS_GPS,
         corrections: Corrections::ALL,
     };
-    let mut filter = PppFilter::<STATES>::new(config);
+    let mut filter = PppFilter::<STATES>::new(*config);
     let fixes = day.epochs.iter().zip(observations).filter_map(|(epoch, observations)| {
         let solution = filter.process(epoch.time, &receiver, observations).ok()?;
         Some(Fix { t: epoch.time.since(MIDNIGHT), position: solution.position })
@@ -130,8 +130,8 @@ mod tests {
             let day = Day::new(11, index, &rates);
             let observations = observations(&day);
             [Estimator::plain(), Estimator::guarded(Motion::Static)].map(|estimator| {
-                let config = Config { estimator, ..Config::new(Motion::Static) };
-                follow(&day, &observations, config)
+                let config = Config { estimator, gradient: 0.0, ..Config::new(Motion::Static) };
+                follow(&day, &observations, &config)
             })
         })
     }

@@ -25,6 +25,9 @@ pub const PROCESS_NOISE: f64 = 100.0;
 /// The highest mask, degrees: above it there are hardly ever four satellites.
 const HIGHEST_MASK: f64 = 60.0;
 
+/// The largest gradient, m: ten times that of a front.
+const STEEPEST: f64 = 0.02;
+
 /// What can be set.
 pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     let [first, last] = recording.map_or([0.0, 1e9], Recording::span);
@@ -74,6 +77,15 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
             8.0,
         )
         .undecided(),
+        Setting::number(
+            "gradient",
+            "Standard deviation of the troposphere's horizontal gradients; 0: none [default: 0.0005 of the default \
+             filter, where clocks come every five minutes or more often; else none]",
+            "m",
+            [0.0, STEEPEST, 1e-4],
+            5e-4,
+        )
+        .undecided(),
         Setting::switch(
             "smooth",
             "Smooth: put together what is found forwards and backwards (not for firmware)",
@@ -109,7 +121,7 @@ pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
     };
     let is_single = settings.chosen::<Method>("method") == Method::Single;
     match name {
-        "mode" | "process-noise" | "ambiguities" | "smooth" if is_single => {
+        "mode" | "process-noise" | "ambiguities" | "gradient" | "smooth" if is_single => {
             Some(Idle::foreign("is for --method filter"))
         }
         "process-noise" if settings.chosen::<Mode>("mode") == Mode::Static => {
@@ -143,6 +155,8 @@ pub struct Setup {
     pub ambiguities: Ambiguities,
     /// Lowest elevation of a satellite, rad; none: the filter's own choice.
     pub mask: Option<f64>,
+    /// Standard deviation of the troposphere's gradients, m; none: the filter's own choice.
+    pub gradient: Option<f64>,
     /// Whether the paper's filters are taken as published.
     pub published: bool,
     /// Thresholds k0 and k1 of filters with IGG III weights; none: the filter's own.
@@ -167,6 +181,7 @@ impl Setup {
             method: Method::default(),
             ambiguities: Ambiguities::default(),
             mask: None,
+            gradient: None,
             published: false,
             thresholds: [None; 2],
             corrections: Corrections::ALL,
@@ -193,6 +208,7 @@ impl Setup {
             method: settings.chosen("method"),
             ambiguities: settings.chosen("ambiguities"),
             mask: settings.number("mask").map(f64::to_radians),
+            gradient: settings.number("gradient"),
             published: settings.is_on("published"),
             thresholds: ["k0", "k1"].map(|name| settings.number(name)),
             corrections: left_out.fold(Corrections::ALL, |all, part| all.without(part.into())),
@@ -205,15 +221,14 @@ impl Setup {
 
     /// The settings of a filter.
     pub fn config(&self, filter: FilterKind) -> Config {
-        let config = Config::new(self.motion);
-        let mut estimator = filter.estimator(self.motion, self.published);
-        if let Weight::Igg3(Igg3 { k0, k1, .. }) = &mut estimator.robust.weight {
+        let mut config = filter.config(self.motion, self.published);
+        if let Weight::Igg3(Igg3 { k0, k1, .. }) = &mut config.estimator.robust.weight {
             for (own, given) in [k0, k1].into_iter().zip(self.thresholds) {
                 *own = given.unwrap_or(*own);
             }
         }
         let elevation_mask = self.mask.unwrap_or(config.elevation_mask);
-        Config { elevation_mask, estimator, ..config }
+        Config { elevation_mask, gradient: self.gradient.unwrap_or(config.gradient), ..config }
     }
 
     /// Where the marker really is: as set, or else as the recording knows, ECEF, m.

@@ -64,7 +64,7 @@ pub const fn satellite_antenna() -> Option<[Pattern<'static>; 2]> {
     Some(SATELLITE_ANTENNA)
 }
 
-/// A station that stands still.
+/// A station that stands still; gradients of the troposphere would take the room of two satellites.
 pub fn config() -> Config {
-    Config::new(Motion::Static)
+    Config { gradient: 0.0, ..Config::new(Motion::Static) }
 }

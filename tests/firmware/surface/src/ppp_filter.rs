@@ -41,6 +41,7 @@ fn config() -> Config {
         clock_walk: number(),
         wet_delay: number(),
         wet_delay_walk: number(),
+        gradient: number(),
         slips: any(SlipLimits::default()),
         correlation_time: number(),
         estimator: any(Estimator::guarded(motion())),

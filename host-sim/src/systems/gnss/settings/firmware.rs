@@ -21,8 +21,10 @@ impl Setup {
         let base = format!("Config::new({motion})");
         let imports = "kestirim_ppp_filter::{Config, Motion}";
         let own = Config::new(self.motion);
+        let gradient = Some(self.config(filter).gradient);
         let mut literal = Literal::new(imports, ScalarKind::F64, "Config", &base)
-            .number_field("elevation_mask", self.mask.filter(|mask| *mask != own.elevation_mask));
+            .number_field("elevation_mask", self.mask.filter(|mask| *mask != own.elevation_mask))
+            .number_field("gradient", gradient.filter(|it| *it != own.gradient));
         let constructor = match filter {
             FilterKind::Gkf => "plain()",
             FilterKind::Rkf => "igg3()",

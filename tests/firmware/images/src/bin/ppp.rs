@@ -1,5 +1,5 @@
-//! Precise point positioning by the target itself: a station is found from ten satellites, by the default filter and
-//! by the plain one.
+//! Precise point positioning by the target itself: a station is found from ten satellites, by the default filter without
+//! gradients of the troposphere and with them, and by the plain one.
 //!
 //! Tells the host
 //!
@@ -25,11 +25,17 @@ fn run() {
     line_of_text("name", "ppp");
     line_of_text("scalar", "f64");
     line("object_bytes", &[size_of::<Filter>() as i64]);
-    let default = Config::new(Motion::Static);
+    let gradients = Config::new(Motion::Static);
+    let default = Config { gradient: 0.0, ..gradients };
     position(
         &["default.solution", "default.treated"],
         ["default first", "default clean", "default outliers"],
         default,
+    );
+    position(
+        &["gradients.solution", "gradients.treated"],
+        ["gradients first", "gradients clean", "gradients outliers"],
+        gradients,
     );
     let plain = Config { estimator: Estimator::plain(), ..default };
     position(
@@ -39,7 +45,7 @@ fn run() {
     );
 }
 
-#[inline(never)] // One filter's code for both.
+#[inline(never)] // One filter's code for all.
 fn position(keys: &[&str; 2], names: [&str; 3], config: Config) {
     let mut filter = Filter::new(black_box(config));
     let mut meters = names.map(|name| (name, Meter::reaching(REACH)));

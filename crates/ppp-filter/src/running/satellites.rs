@@ -1,0 +1,159 @@
+//! Which satellites there are, and which state is whose ambiguity.
+
+use heapless::Vec;
+use kestirim_gnss_ppp::{Arc, Constellation, Expected, Site, Slip};
+
+use super::{Lines, Running, median};
+use crate::channel::Channel;
+use crate::clock_jump::ClockJump;
+use crate::collected::collected;
+use crate::line::Line;
+use crate::phase_monitor::PhaseMonitor;
+use crate::{Config, SatelliteObservation, Slipped};
+
+impl<const N: usize> Running<N> {
+    /// The satellites above the mask, each with a state for its ambiguity.
+    pub(super) fn lines<'a, 'b>(
+        &mut self,
+        site: &Site<'_>,
+        observations: &'a [SatelliteObservation<'b>],
+        config: &Config,
+    ) -> Lines<'a, 'b, N> {
+        let mut lines = Vec::new();
+        for observation in observations {
+            if lines.iter().any(|(_, line): &(_, Line)| line.satellite == observation.satellite) {
+                continue;
+            }
+            let known = self.find(observation.satellite);
+            let wind_up = known.and_then(|state| Some(self.channel(state)?.wind_up));
+            let expected = {
+                let SatelliteObservation { state, carriers, antenna, .. } = observation;
+                site.expect(state, *carriers, antenna.as_ref(), wind_up)
+            };
+            let Some(expected) = expected else { continue };
+            let above = expected.direction.elevation >= config.elevation_mask;
+            if !above && let Some(place) = known.and_then(|state| self.channels.get_mut(state)) {
+                *place = None;
+            }
+            if !above || !observation.is_finite() {
+                continue;
+            }
+            let offset = match observation.carriers.constellation() {
+                Constellation::Gps => None,
+                Constellation::Galileo => {
+                    let Some(offset) = self.offset_state(observations) else { continue };
+                    Some(offset)
+                }
+            };
+            let Some(state) = known.or_else(|| self.free(observations)) else { continue };
+            let slipped = self.track(state, observation, &expected, config);
+            let phase = self.repaired(observation);
+            let mut line = Line::new(observation, phase, expected, state, slipped, config);
+            line.offset = offset;
+            line.gradients = self.has_gradients().then(|| expected.direction.gradient_mapping());
+            if config.estimator.patience.is_some()
+                && let Some(channel) = self.channel(state)
+            {
+                line.learn(channel.monitor.noise(), config.motion);
+            }
+            if lines.push((observation, line)).is_err() {
+                break;
+            }
+        }
+        lines
+    }
+
+    /// Follows a satellite whose ambiguity is `state`. Whether and why that begins anew.
+    fn track(
+        &mut self,
+        state: usize,
+        observation: &SatelliteObservation<'_>,
+        expected: &Expected,
+        config: &Config,
+    ) -> Option<Slipped> {
+        let SatelliteObservation { satellite, code, lock_lost, .. } = *observation;
+        let phase = self.repaired(observation);
+        let clock = matches!(self.jump, Some(ClockJump::Other)).then_some(Slip::Clock);
+        let time = self.time;
+        let place = self.channels.get_mut(state)?;
+        let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
+            *place = Some(Channel {
+                satellite,
+                arc: Arc::begin(time, observation.carriers, phase, code),
+                wind_up: expected.wind_up_cycles,
+                monitor: PhaseMonitor::NEW,
+            });
+            return Some(Slipped::New);
+        };
+        channel.wind_up = expected.wind_up_cycles;
+        let slip = channel.arc.observe(time, phase, code, lock_lost, &config.slips);
+        let slip = slip.or(clock);
+        let slip = slip.or_else(|| channel.agrees(config.estimator.patience));
+        let slipped = slip.map(Slipped::Seen).or_else(|| {
+            let patience = config.estimator.patience?;
+            channel.monitor.contradicts(patience).then_some(Slipped::Contradicted)
+        });
+        if slipped.is_some() {
+            channel.arc.restart(time, phase, code);
+            channel.monitor.begin();
+        }
+        slipped
+    }
+
+    /// The jump of the phases that most satellites have in common since they were seen before.
+    pub(super) fn clock_jump(
+        &self,
+        observations: &[SatelliteObservation<'_>],
+        config: &Config,
+    ) -> Option<ClockJump> {
+        let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
+            let arc = self.channel(self.find(observation.satellite)?)?.arc;
+            let jump = arc.jump(self.repaired(observation), observation.code);
+            (self.time.since(arc.last()).abs() <= config.slips.gap).then_some(jump)
+        }));
+        ClockJump::of(&jumps, median(&jumps, |jump| *jump))
+    }
+
+    /// Phases without the milliseconds by which they are ahead of the codes, cycles.
+    pub(crate) fn repaired(&self, observation: &SatelliteObservation<'_>) -> [f64; 2] {
+        let [first, second] = observation.phase;
+        let seconds = 1e-3 * f64::from(self.ahead);
+        let [of_first, of_second] = observation.carriers.frequency();
+        [first - seconds * of_first, second - seconds * of_second]
+    }
+
+    pub(crate) fn find(&self, satellite: u8) -> Option<usize> {
+        let is = |channel: &Option<Channel>| channel.is_some_and(|c| c.satellite == satellite);
+        self.channels.iter().position(is)
+    }
+
+    fn channel(&self, state: usize) -> Option<&Channel> {
+        self.channels.get(state)?.as_ref()
+    }
+
+    /// The state that is the clock of Galileo, begun if there is none.
+    fn offset_state(&mut self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
+        if self.offset.is_none() {
+            let state = self.free(observations)?;
+            *self.channels.get_mut(state)? = None;
+            self.offset = Some(state);
+        }
+        self.offset
+    }
+
+    /// A state that is no satellite's, or that of the satellite unseen for longest.
+    fn free(&self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
+        let unseen = |state: usize| match self.channel(state) {
+            None => Some(f64::INFINITY),
+            Some(Channel { satellite, .. })
+                if observations.iter().any(|observation| observation.satellite == *satellite) =>
+            {
+                None
+            }
+            Some(channel) => Some(self.time.since(channel.arc.last()).abs()),
+        };
+        let states = (self.first..N).filter(|state| self.offset != Some(*state));
+        let free = states.filter_map(|state| Some((state, unseen(state)?)));
+        free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
+    }
+}
