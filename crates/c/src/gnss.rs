@@ -328,6 +328,7 @@ pub unsafe extern "C" fn kestirim_gnss_update(
             galileo_antenna: antenna,
             eccentricity: positioning.eccentricity,
             ocean_loading: None,
+            pole: None,
             ut1_minus_gps: positioning.ut1_minus_gps,
             corrections: Corrections::ALL,
         };

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use flate2::bufread::GzDecoder;
 
+use crate::earth_rotation::is_earth_rotation;
 use crate::error::{Error, quoted};
 use crate::{crinex, gzip, streams};
 
@@ -37,6 +38,8 @@ pub enum Kind {
     Biases,
     /// Ocean loading of stations: BLQ.
     OceanLoading,
+    /// The Earth's rotation: ERP.
+    EarthRotation,
     /// A receiver's observations, and mostly ephemerides, as it sent them: UBX.
     Ubx,
     /// The same of a reference station: RTCM 3.
@@ -84,6 +87,7 @@ impl Kind {
             [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Orbits),
             _ if first.starts_with(b"%=BIA") => Some(Self::Biases),
             _ if first.trim_ascii_start().starts_with(b"$$") => Some(Self::OceanLoading),
+            _ if is_earth_rotation(bytes) => Some(Self::EarthRotation),
             _ if streams::is_ubx(bytes) => Some(Self::Ubx),
             _ if streams::is_rtcm(bytes) => Some(Self::Rtcm),
             _ => None,
@@ -104,6 +108,7 @@ impl fmt::Display for Kind {
             Self::Orbits => "orbits (SP3)",
             Self::Biases => "biases (Bias-SINEX)",
             Self::OceanLoading => "ocean loading (BLQ)",
+            Self::EarthRotation => "Earth rotation (ERP)",
             Self::Ubx => "a receiver's stream (UBX)",
             Self::Rtcm => "a stream of corrections (RTCM 3)",
         })

@@ -5,7 +5,10 @@ use std::path::Path;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use crate::{Antennas, Clocks, Navigation, Observations, Orbits, StationLoading, Text, samples};
+use crate::{
+    Antennas, Clocks, EarthRotation, Navigation, Observations, Orbits, StationLoading, Text,
+    samples,
+};
 
 /// Reads bytes as every format; each complaint is one line.
 fn read(bytes: Vec<u8>) {
@@ -20,6 +23,7 @@ fn read(bytes: Vec<u8>) {
             Antennas::parse(std::slice::from_ref(&text), "ANT  TYPE       DOME").map(drop),
             crate::Biases::parse(&texts).map(drop),
             StationLoading::parse(&text, "here", Some([4e6, 0.0, 4.9e6])).map(drop),
+            EarthRotation::parse(&text).map(drop),
         ];
         Ok(results.into_iter().filter_map(Result::err).collect())
     };
@@ -44,6 +48,7 @@ fn files() -> Vec<Vec<u8>> {
         samples::navigation_4(),
         samples::antennas(),
         samples::loading(),
+        samples::earth_rotation(),
     ];
     let files = files.map(String::into_bytes).to_vec();
     #[cfg(any(feature = "rtcm", feature = "ubx"))]

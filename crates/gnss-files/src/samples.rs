@@ -262,6 +262,18 @@ pub(crate) fn antennas() -> String {
     .concat()
 }
 
+pub(crate) fn earth_rotation() -> String {
+    lines(&[
+        "VERSION 2",
+        "A SOLUTION",
+        "NUTATION MODEL       : IAU2000R06               SUBDAILY POLE MODEL: DESAI2016",
+        "  MJD         X-P      Y-P   UT1UTC    LOD   S-X   S-Y  S-UT  S-LD  NR  NF  NT",
+        "              E-6\"     E-6\"    E-7S E-7S/D   E-6\"  E-6\" E-7S E-7S/D",
+        "61161.00   155985   417263   329162   4722     6     6     4     2 140 100 115",
+        "61161.50   156395   417298   326801   3705     5     5     4     5 140 100 115",
+    ])
+}
+
 pub(crate) fn loading() -> String {
     let mut file = lines(&["$$ Ocean loading displacement", "$$", "  HERE"]);
     file += "$$ Here,                  RADI TANG  lon/lat:  358.0000   50.0000   10.000\n";

@@ -21,11 +21,13 @@ pub enum Correction {
     SatelliteAntenna,
     /// Phase centre of the receiver's antenna: 5 to 15 cm.
     ReceiverAntenna,
+    /// The tide of the pole: up to 25 mm.
+    PoleTide,
 }
 
 impl Correction {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Relativity,
         Self::Shapiro,
         Self::Sagnac,
@@ -35,6 +37,7 @@ impl Correction {
         Self::WindUp,
         Self::SatelliteAntenna,
         Self::ReceiverAntenna,
+        Self::PoleTide,
     ];
 }
 

@@ -1,6 +1,6 @@
 use crate::{
     Bodies, Correction, Corrections, Geodetic, GpsTime, OceanLoading, Pattern, Troposphere,
-    solid_tide,
+    pole_tide, solid_tide,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -15,6 +15,8 @@ pub struct Receiver<'a> {
     pub eccentricity: [f64; 3],
     /// Ocean loading of the station, where known.
     pub ocean_loading: Option<&'a OceanLoading>,
+    /// Where the Earth's axis is, as for [`pole_tide`](crate::pole_tide()), rad, where known.
+    pub pole: Option<[f64; 2]>,
     /// UT1 (or UTC) ahead of GPS time, s: the leap seconds since 1980, negated.
     pub ut1_minus_gps: f64,
     /// Corrections that are applied.
@@ -49,6 +51,11 @@ impl<'a> Site<'a> {
         let mut antenna = position + enu_from_ecef.transpose() * local;
         if corrections.has(Correction::SolidTide) {
             antenna += solid_tide(position, &bodies, time, receiver.ut1_minus_gps);
+        }
+        if let Some(pole) = receiver.pole
+            && corrections.has(Correction::PoleTide)
+        {
+            antenna += pole_tide(position, pole, time);
         }
         Self {
             receiver: *receiver,

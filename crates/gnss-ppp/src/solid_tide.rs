@@ -36,7 +36,8 @@ const LONG_PERIOD: [([i8; 6], [f64; 4]); 5] = [
 /// agrees to 0.09 mm.
 ///
 /// Add it to coordinates of the ITRF or the IGS. These are conventionally free of tides, also of the permanent
-/// one, which the displacement therefore contains. The pole tide (up to 25 mm in height) is another effect.
+/// one, which the displacement therefore contains. The tide of the pole is another effect:
+/// [`pole_tide`](crate::pole_tide()).
 ///
 /// `bodies` belong to the same instant. Zero at the Earth's centre.
 pub fn solid_tide(
@@ -52,19 +53,19 @@ pub fn solid_tide(
 }
 
 /// The directions of a place on a sphere, and its geocentric latitude.
-struct Station {
+pub(crate) struct Station {
     up: Vector3<f64>,
     north: Vector3<f64>,
     east: Vector3<f64>,
     /// From the axis into the station's meridian.
     outward: Vector3<f64>,
-    sine: f64,
-    cosine: f64,
-    longitude: f64,
+    pub(crate) sine: f64,
+    pub(crate) cosine: f64,
+    pub(crate) longitude: f64,
 }
 
 impl Station {
-    fn at(position: &Vector3<f64>) -> Option<Self> {
+    pub(crate) fn at(position: &Vector3<f64>) -> Option<Self> {
         let up = position.try_normalize(f64::MIN_POSITIVE)?;
         let longitude = libm::atan2(up.y, up.x);
         let (sine, cosine) = libm::sincos(longitude);
@@ -75,7 +76,7 @@ impl Station {
         Some(Self { up, north, east, outward, sine, cosine, longitude })
     }
 
-    fn displacement(&self, up: f64, north: f64, east: f64) -> Vector3<f64> {
+    pub(crate) fn displacement(&self, up: f64, north: f64, east: f64) -> Vector3<f64> {
         self.up * up + self.north * north + self.east * east
     }
 

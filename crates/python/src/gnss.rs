@@ -19,7 +19,7 @@ const STACK_BYTES: usize = 16 << 20;
 
 /// A receiver's positions.
 #[pyfunction]
-#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, process_noise, filter, systems, ambiguities, mask, gradient, until, smooth))]
+#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, erp, process_noise, filter, systems, ambiguities, mask, gradient, until, smooth))]
 pub(crate) fn gnss<'py>(
     py: Python<'py>,
     obs: PathBuf,
@@ -28,6 +28,7 @@ pub(crate) fn gnss<'py>(
     clk: Vec<PathBuf>,
     bias: Vec<PathBuf>,
     blq: Option<PathBuf>,
+    erp: Option<PathBuf>,
     process_noise: Option<f64>,
     filter: &str,
     systems: &str,
@@ -59,6 +60,7 @@ pub(crate) fn gnss<'py>(
                 clk: &clk,
                 bias: &bias,
                 blq: blq.as_deref(),
+                erp: erp.as_deref(),
             };
             let recording = Recording::read(&paths).map_err(refused)?;
             let epochs = recording.epochs(until);

@@ -75,7 +75,7 @@ impl Files {
 
     fn paths(&self) -> Paths<'_> {
         let Self { obs, sp3, clk, antex, .. } = self;
-        Paths { obs, sp3, nav: &[], antex, clk, bias: &[], blq: None }
+        Paths { obs, sp3, nav: &[], antex, clk, bias: &[], blq: None, erp: None }
     }
 }
 

@@ -36,6 +36,7 @@ fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recordi
         clk: &[],
         bias: &[],
         blq: None,
+        erp: None,
     })
     .expect("all can be read")
 }

@@ -3,10 +3,13 @@
 //! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
 //! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
+use std::path::Path;
+use std::slice;
+
 use host_sim::metrics::{error_over_sigma, rms};
-use kestirim_gnss_ppp::{Correction, Corrections, Geodetic};
+use kestirim_gnss_ppp::{Correction, Corrections, Geodetic, pole_tide};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
-use kestirim_replay::gnss::{Accuracy, Order, Pass, Recording, follow};
+use kestirim_replay::gnss::{Accuracy, Order, Pass, Paths, Recording, follow};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, ESBC_MULTI, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -258,4 +261,34 @@ fn every_correction_matters() {
             assert!(rms - usual > 25.0, "the tides cost more than 25 mm");
         }
     }
+}
+
+/// A file of the Earth's rotation moves a place by the tide of the pole, and by nothing where that is left out.
+#[test]
+fn the_tide_of_the_pole() {
+    let Some(folder) = folder_of("gnss") else { return };
+    let file = |name: &str| folder.join("ecj02_2026121").join(name);
+    let (obs, sp3) =
+        (file("ECJ02_26050100_01H.obs.gz"), file("COD0MGXFIN_20261210000_01D_05M_ORB.SP3.gz"));
+    let (clk, antex) =
+        (file("COD0MGXFIN_20261210000_01D_30S_CLK.CLK.gz"), file("igs20_iflc_trim.atx.gz"));
+    let rotation = file("COD0MGXFIN_20261210000_12H_ERP.ERP.gz");
+    let place = |erp: Option<&Path>, corrections| {
+        let ([sp3, clk, antex], nav, bias) = ([&sp3, &clk, &antex].map(slice::from_ref), &[], &[]);
+        let paths = Paths { obs: &obs, sp3, nav, antex, clk, bias, blq: None, erp };
+        let recording = Recording::read(&paths).expect("files that can be read");
+        let (receiver, epochs) = (recording.receiver(corrections), recording.epochs(None));
+        let config = Config::new(Motion::Static);
+        let followed = follow(&recording, epochs, &receiver, config, Pass::default(), || ());
+        (followed.fixes.last().expect("a position").position, epochs[0].time)
+    };
+    let (without, start) = place(None, Corrections::ALL);
+    let (with, _) = place(Some(&rotation), Corrections::ALL);
+    let left_out = Corrections::ALL.without(Correction::PoleTide);
+    assert_eq!(place(Some(&rotation), left_out).0, without);
+    // As the file has it at midnight, 10⁻⁶″.
+    let pole = [155_985.0, 417_263.0].map(|it: f64| (1e-6 * it / 3600.0).to_radians());
+    let tide = pole_tide(&without, pole, start);
+    println!("the tide of the pole: {:.2} mm", 1e3 * tide.norm());
+    assert!(tide.norm() > 1e-3 && (with - without + tide).norm() < 1e-4, "{tide}");
 }

@@ -286,6 +286,7 @@ def gnss(
     clk: list[str],
     bias: list[str],
     blq: Optional[str],
+    erp: Optional[str],
     process_noise: Optional[float],
     filter: str,
     systems: str,

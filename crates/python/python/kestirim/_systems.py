@@ -327,6 +327,7 @@ def gnss(
     clk: Union[Path, Sequence[Path]] = (),
     bias: Union[Path, Sequence[Path]] = (),
     blq: Optional[Path] = None,
+    erp: Optional[Path] = None,
     process_noise: Optional[float] = None,
     filter: Literal["default", "gkf", "rkf", "skf", "ikf", "adaptive"] = "default",
     systems: Literal["all", "gps", "galileo"] = "all",
@@ -340,7 +341,7 @@ def gnss(
 
     obs: what the receiver observed, RINEX 2, 3 or 4 or Compact RINEX. sp3: precise orbits. antex: phase centres of
     antennas. clk: precise clocks, RINEX; else those of the orbit files. bias: biases of codes and phases, Bias-SINEX.
-    blq: ocean loading of the station.
+    blq: ocean loading of the station. erp: the Earth's rotation, for the tide of the pole.
 
     process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
     for one at rest. filter: what is done about observations that do not fit.
@@ -358,6 +359,7 @@ def gnss(
         _paths(clk),
         _paths(bias),
         None if blq is None else os.fspath(blq),
+        None if erp is None else os.fspath(erp),
         process_noise,
         filter,
         systems,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use kestirim_gnss_files::{Antenna, Error, Observations, StationLoading};
+use kestirim_gnss_files::{Antenna, EarthRotation, Error, Observations, StationLoading};
 use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
 use kestirim_ppp_filter::Config;
@@ -36,6 +36,8 @@ pub struct Paths<'a> {
     pub bias: &'a [PathBuf],
     /// Ocean loading of stations.
     pub blq: Option<&'a Path>,
+    /// The Earth's rotation.
+    pub erp: Option<&'a Path>,
 }
 
 /// What a receiver recorded, and all that must be known for a position.
@@ -54,6 +56,8 @@ pub struct Recording {
     /// On which carriers satellites of Galileo are observed.
     galileo: Option<Carriers>,
     loading: Option<OceanLoading>,
+    /// Where the Earth's axis is, rad.
+    pole: Option<[f64; 2]>,
     /// UTC ahead of GPS time, s.
     utc_minus_gps: f64,
     /// Midnight before the first epoch.
@@ -88,6 +92,7 @@ impl Recording {
         let near = observations.approximate_position;
         let read = |path| StationLoading::read(path, &observations.marker, near);
         let loading = paths.blq.map(read).transpose()?;
+        let rotation = paths.erp.map(EarthRotation::read).transpose()?;
         let Some(start) = observations.epochs.first().map(|epoch| epoch.time) else {
             let problem = "expected observations of GPS satellites, found none".to_owned();
             return Err(Error::File { path: paths.obs.to_path_buf(), problem });
@@ -96,6 +101,12 @@ impl Recording {
         let told = observations.warnings.iter().chain(satellites.warnings());
         let told = told.chain(&antennas.warnings).chain(of_loading).chain(&observations.unserved);
         let mut warnings: Vec<_> = told.map(|warning| (None, warning.to_string())).collect();
+        // In a day the axis goes as far as moves no place by a tenth of a millimetre.
+        let pole = rotation.as_ref().and_then(|rotation| rotation.pole(start));
+        if rotation.is_some() && pole.is_none() {
+            let warning = "--erp is of another time: the tide of the pole is left out";
+            warnings.push((Some(Correction::PoleTide), warning.to_owned()));
+        }
         let midnight = GpsTime::new(start.day(), 0.0);
         let antex = paths.antex.first().map_or_else(String::new, |path| printable(path));
         let antennas_of = (&*antennas, &*antex);
@@ -120,6 +131,7 @@ impl Recording {
             antenna: antennas.receiver.clone(),
             galileo: galileo.map(|(_, signals)| model::carriers(signals.carriers)),
             loading: loading.as_ref().map(model::ocean_loading),
+            pole,
             utc_minus_gps: -start.leap_seconds(),
             midnight,
             orbits_span: span,
@@ -146,6 +158,7 @@ impl Recording {
             antenna: None,
             galileo: None,
             loading: None,
+            pole: None,
             utc_minus_gps,
             midnight,
             orbits_span: [f64::NEG_INFINITY, f64::INFINITY],
@@ -254,6 +267,7 @@ impl Recording {
                 .and_then(|carriers| receiver_patterns(self.antenna.as_ref()?, carriers)),
             eccentricity: [east, north, up],
             ocean_loading: self.loading.as_ref(),
+            pole: self.pole,
             ut1_minus_gps: self.utc_minus_gps,
             corrections,
         }

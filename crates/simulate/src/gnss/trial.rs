@@ -108,6 +108,7 @@ fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: &Co
         galileo_antenna: None,
         eccentricity: [0.0; 3],
         ocean_loading: None,
+        pole: None,
         ut1_minus_gps: UTC_MINUS_GPS,
         corrections: Corrections::ALL,
     };

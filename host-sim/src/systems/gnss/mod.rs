@@ -72,6 +72,7 @@ impl System for Gnss {
         )
         .several(),
         FileField::optional("blq", "Ocean loading of the station, BLQ [default: not corrected]"),
+        FileField::optional("erp", "The Earth's rotation, ERP: for the tide of the pole, some millimetres [default: not corrected]"),
         FileField::optional("truth", "a file of which the first line is X,Y,Z"),
     ];
     const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
@@ -134,6 +135,7 @@ impl System for Gnss {
             "antex" => kind == Some(Kind::Antennas),
             "bias" => kind == Some(Kind::Biases),
             "blq" => kind == Some(Kind::OceanLoading),
+            "erp" => kind == Some(Kind::EarthRotation),
             _ => kind.is_none() && recording::truth::read(path).is_ok(),
         }
     }

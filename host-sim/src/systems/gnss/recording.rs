@@ -37,6 +37,7 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
         clk: files.all("clk"),
         bias: files.all("bias"),
         blq: files.one("blq"),
+        erp: files.one("erp"),
     };
     let mut recording =
         Recording::read_beside(&paths, &files.shared.of::<Shelf>()).map_err(error)?;

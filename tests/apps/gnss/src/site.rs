@@ -54,6 +54,7 @@ pub const fn receiver() -> Receiver<'static> {
         galileo_antenna: None,
         eccentricity: [0.0, 0.0, 0.0083],
         ocean_loading: Some(&OCEAN_LOADING),
+        pole: None,
         ut1_minus_gps: -18.24,
         corrections: Corrections::ALL,
     }

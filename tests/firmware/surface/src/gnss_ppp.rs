@@ -4,8 +4,8 @@ use kestirim_gnss_ppp::{
     Arc, Bodies, BodyAxes, Carriers, Clock, ClockSample, Constellation, Correction, Corrections,
     Direction, Ephemeris, Geodetic, GpsTime, Klobuchar, OceanLoading, Orbit, OrbitSample, Pattern,
     Receiver, SatelliteState, Site, SlipLimits, Troposphere, carried_along, eccentricity_clock,
-    greenwich_sidereal_time, sagnac, shapiro_delay, solid_tide, wind_up, zenith_hydrostatic,
-    zenith_wet,
+    greenwich_sidereal_time, pole_tide, sagnac, shapiro_delay, solid_tide, wind_up,
+    zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
 
@@ -70,6 +70,7 @@ fn site(pattern: Pattern<'_>) {
         galileo_antenna: maybe([pattern; 2]),
         eccentricity: numbers(),
         ocean_loading: maybe(&ocean),
+        pole: maybe(numbers()),
         ut1_minus_gps: number(),
         corrections,
     });
@@ -140,6 +141,7 @@ fn earth() {
     keep(Geodetic::enu_from_ecef(&place()));
     keep(Direction::of(&matrix(), &place()));
     let bodies = any(Bodies::at(time(), number()));
+    keep(pole_tide(&matrix(), numbers(), time()));
     keep(solid_tide(&matrix(), &bodies, time(), number()));
     let air = any(Troposphere::over(&place(), time()));
     keep(Troposphere::zenith_hydrostatic(&air));

@@ -61,6 +61,7 @@ fn filters<const N: usize>() {
         galileo_antenna: antenna,
         eccentricity: numbers(),
         ocean_loading: maybe(&ocean),
+        pole: maybe(numbers()),
         ut1_minus_gps: number(),
         corrections: any(Corrections::ALL),
     });

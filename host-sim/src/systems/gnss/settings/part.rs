@@ -24,6 +24,8 @@ pub(super) enum Part {
     SatelliteAntenna,
     /// The phase centre of the receiver's antenna
     ReceiverAntenna,
+    /// The tide of the pole
+    PoleTide,
 }
 
 impl From<Part> for Correction {
@@ -38,6 +40,7 @@ impl From<Part> for Correction {
             Part::WindUp => Self::WindUp,
             Part::SatelliteAntenna => Self::SatelliteAntenna,
             Part::ReceiverAntenna => Self::ReceiverAntenna,
+            Part::PoleTide => Self::PoleTide,
         }
     }
 }
