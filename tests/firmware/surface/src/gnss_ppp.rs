@@ -139,6 +139,7 @@ fn earth() {
     keep(Geodetic::from_ecef(&matrix()));
     keep(Geodetic::to_ecef(&place()));
     keep(Geodetic::enu_from_ecef(&place()));
+    keep(Direction::gradient_mapping(direction()));
     keep(Direction::of(&matrix(), &place()));
     let bodies = any(Bodies::at(time(), number()));
     keep(pole_tide(&matrix(), numbers(), time()));
