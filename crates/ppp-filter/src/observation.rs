@@ -1,5 +1,8 @@
 use kestirim_gnss_ppp::{Carriers, Pattern, SatelliteState};
 
+/// Clocks that are interpolated over longer hide gradients of the troposphere, s.
+const COARSE_CLOCKS: f64 = 300.0;
+
 /// Observation of one satellite in an epoch, and the satellite's state.
 ///
 /// Only complete observations serve: both codes and both phases.
@@ -22,6 +25,12 @@ pub struct SatelliteObservation<'a> {
 }
 
 impl SatelliteObservation<'_> {
+    /// Whether the satellite's clock is interpolated over more than five minutes: what it does meanwhile looks like a gradient of
+    /// the troposphere ([`Config::gradient`](crate::Config::gradient)).
+    pub fn hides_gradients(&self) -> bool {
+        self.state.clock_interval > COARSE_CLOCKS
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         self.code.iter().chain(&self.phase).all(|value| value.is_finite())
     }

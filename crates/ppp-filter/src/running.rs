@@ -28,8 +28,6 @@ const CLOCK_VARIANCE: f64 = 1e6;
 const OFFSET_WALK: f64 = 1e-8;
 /// Variance of an ambiguity from one epoch's code, m².
 const AMBIGUITY_VARIANCE: f64 = 1e4;
-/// Clocks that are interpolated over longer hide gradients, s.
-const COARSE_CLOCKS: f64 = 300.0;
 /// In this time gradients change by as much as they are, s.
 const DAY: f64 = 86_400.0;
 /// Wet zenith delay of a temperate climate, m.
@@ -105,10 +103,9 @@ impl<const N: usize> Running<N> {
         config: &Config,
     ) -> Result<Self, Error> {
         let start = code_position(observations)?;
-        let is_coarse = |it: &SatelliteObservation<'_>| it.state.clock_interval > COARSE_CLOCKS;
         let has_gradients = config.gradient > 0.0
             && N >= BEHIND_GRADIENTS + 4
-            && !observations.iter().any(is_coarse);
+            && !observations.iter().any(SatelliteObservation::hides_gradients);
         let gradient = if has_gradients { config.gradient * config.gradient } else { 0.0 };
         let mut mean = SVector::<f64, N>::zeros();
         let mut variances = [0.0; N];

@@ -164,6 +164,15 @@ fn a_packed_file_that_was_cut_off_is_refused() {
     assert!(sentence.contains("cut.rnx.gz: is a gzip file that was cut off"), "{sentence}");
 }
 
+/// Clocks every quarter of an hour.
+#[test]
+fn gradients_are_refused_where_clocks_hide_them() {
+    let Some(acor) = Station::acor() else { return };
+    let arguments = acor.arguments.iter().map(String::as_str).chain(["--gradient", "0.001"]);
+    let sentence = refusal(&arguments.collect::<Vec<_>>());
+    assert!(sentence.contains("--gradient is for precise clocks every five minutes"), "{sentence}");
+}
+
 #[test]
 fn all_filters_on_one_file() {
     let Some(acor) = Station::acor() else { return };

@@ -242,6 +242,15 @@ impl Recording {
         Config { correlation_time, gradient, ..config }
     }
 
+    /// Whether gradients of the troposphere cannot be told from what orbits and clocks leave.
+    pub fn hides_gradients(&self) -> bool {
+        let of = |epoch: &Epoch| {
+            let known = |observed| self.products.observation(epoch.time, observed).ok();
+            epoch.satellites.iter().filter_map(known).any(|it| it.hides_gradients())
+        };
+        self.products.broadcast().is_some() || self.epochs.first().is_some_and(of)
+    }
+
     /// Why no ambiguity can become a whole number, if that is so.
     pub fn never_whole(&self) -> Option<&'static str> {
         if self.receiver_antenna().is_none() {

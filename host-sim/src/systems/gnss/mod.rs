@@ -107,6 +107,9 @@ impl System for Gnss {
             Some(recording) if name == "systems" && !recording.has_galileo() => {
                 Some(Idle::foreign("is for recordings with satellites of Galileo"))
             }
+            Some(recording) if name == "gradient" && recording.hides_gradients() => {
+                Some(Idle::foreign("is for precise clocks every five minutes or more often"))
+            }
             Some(recording) if name == "ambiguities" && recording.never_whole().is_some() => {
                 Some(Idle::foreign(
                     "is for clocks or biases that make ambiguities whole, and a known antenna",

@@ -77,6 +77,7 @@ fn filters<const N: usize>() {
     let carriers = one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b]);
     let observation =
         SatelliteObservation { satellite, carriers, code, phase, lock_lost, state, antenna };
+    keep(SatelliteObservation::hides_gradients(&observation));
     let observations = any([observation; 4]);
     let code = [maybe(number()), maybe(number())];
     let group_delay = number();
