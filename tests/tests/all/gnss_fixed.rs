@@ -106,7 +106,7 @@ fn an_hour_with_whole_ambiguities() {
     let Some(recording) = esbc() else { return };
     assert_eq!(recording.never_whole(), None);
     let table = sessions(&recording, 0.0, Systems::All);
-    assert!(table.ends[1] <= 10.5 && table.minutes[1] <= 12.0);
+    assert!(table.ends[1] <= 9.5 && table.minutes[1] <= 12.0);
     assert!(table.fixed >= 17 && table.wrong == 0);
     assert!(table.worst_end[1] <= table.worst_end[0]);
 }

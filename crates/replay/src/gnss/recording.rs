@@ -104,7 +104,8 @@ impl Recording {
         // In a day the axis goes as far as moves no place by a tenth of a millimetre.
         let pole = rotation.as_ref().and_then(|rotation| rotation.pole(start));
         if rotation.is_some() && pole.is_none() {
-            let warning = "--erp is of another time: the tide of the pole is left out";
+            let warning =
+                "the Earth's rotation is of another time: the tide of the pole is left out";
             warnings.push((Some(Correction::PoleTide), warning.to_owned()));
         }
         let midnight = GpsTime::new(start.day(), 0.0);
