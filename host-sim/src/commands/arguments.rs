@@ -31,11 +31,13 @@ pub(super) fn sentence(error: &clap::Error) -> String {
     let complaint = joined.trim_start_matches("error: ");
     match meant(error) {
         Some(name) => format!("{complaint}: did you mean {name}? (see --help)"),
+        // Of a wrong value the complaint names all there are.
+        None if error.get(ContextKind::ValidValue).is_some() => complaint.to_owned(),
         None => format!("{complaint} (see --help)"),
     }
 }
 
-/// The command or option that an unknown one resembles. Of a value the complaint names all there are.
+/// The command or option that an unknown one resembles.
 fn meant(error: &clap::Error) -> Option<&str> {
     let similar = [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg];
     similar.into_iter().find_map(|kind| match error.get(kind)? {

@@ -30,6 +30,8 @@ const BATCH_BYTES: usize = 1 << 24;
 /// Until a broker that does not answer is asked again.
 const SILENCE: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(200);
+/// So long after a message the end of what was asked for is waited for: a busy broker of version 2.9 may not tell it.
+const LATE: Duration = Duration::from_millis(500);
 /// So long the broker knows the ids of estimates: no restart may take longer.
 const KNOWN: Duration = Duration::from_secs(600);
 
@@ -154,11 +156,14 @@ impl Nats {
         let Some(consumer) = self.consumer.take() else { return Ok(deliveries) };
         let batch = consumer.batch().max_messages(BATCH).max_bytes(self.most_bytes);
         let mut messages = batch.expires(PATIENCE).messages().await?;
-        while let Some(message) = timeout(SILENCE, messages.next()).await? {
-            let message = match message {
+        loop {
+            let wait = if deliveries.is_empty() { SILENCE } else { LATE };
+            let message = match timeout(wait, messages.next()).await {
+                Err(silent) if deliveries.is_empty() => return Err(silent.into()),
+                Err(_) | Ok(None) => break,
                 // The next one is beyond the bytes that were asked for.
-                Err(error) if error.to_string().contains("MaxBytes") => break,
-                message => message?,
+                Ok(Some(Err(error))) if error.to_string().contains("MaxBytes") => break,
+                Ok(Some(message)) => message?,
             };
             let info = message.info()?;
             self.delivered += 1;
