@@ -272,7 +272,7 @@ fn the_tide_of_the_pole() {
         (file("ECJ02_26050100_01H.obs.gz"), file("COD0MGXFIN_20261210000_01D_05M_ORB.SP3.gz"));
     let (clk, antex) =
         (file("COD0MGXFIN_20261210000_01D_30S_CLK.CLK.gz"), file("igs20_iflc_trim.atx.gz"));
-    let rotation = file("COD0MGXFIN_20261210000_12H_ERP.ERP.gz");
+    let rotation = file("COD0MGXFIN_20261210000_01D_12H_ERP.ERP.gz");
     let place = |erp: Option<&Path>, corrections| {
         let ([sp3, clk, antex], nav, bias) = ([&sp3, &clk, &antex].map(slice::from_ref), &[], &[]);
         let paths = Paths { obs: &obs, sp3, nav, antex, clk, bias, blq: None, erp };
