@@ -35,10 +35,10 @@ impl EarthRotation {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(text: &Text) -> Result<Self, Error> {
-        if !is_earth_rotation(text.bytes()) {
+        let mut lines = text.lines();
+        if !lines.next().is_some_and(|first| is_earth_rotation(first.bytes)) {
             return Err(text.wrong_kind("Earth rotation (ERP version 2)"));
         }
-        let mut lines = text.lines();
         let is_table = |line: &Line<'_>| blank_separated(line.bytes).next() == Some(b"MJD");
         let found = lines.find(is_table);
         found.ok_or_else(|| text.error("expected the line that begins with MJD"))?;
@@ -74,9 +74,8 @@ impl EarthRotation {
     }
 }
 
-/// Whether a text begins as a file of the Earth's rotation.
-pub(crate) fn is_earth_rotation(bytes: &[u8]) -> bool {
-    let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+/// Whether a first line is that of a file of the Earth's rotation.
+pub(crate) fn is_earth_rotation(first: &[u8]) -> bool {
     first.trim_ascii().eq_ignore_ascii_case(b"VERSION 2")
 }
 

@@ -87,7 +87,7 @@ impl Kind {
             [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Orbits),
             _ if first.starts_with(b"%=BIA") => Some(Self::Biases),
             _ if first.trim_ascii_start().starts_with(b"$$") => Some(Self::OceanLoading),
-            _ if is_earth_rotation(bytes) => Some(Self::EarthRotation),
+            _ if is_earth_rotation(first) => Some(Self::EarthRotation),
             _ if streams::is_ubx(bytes) => Some(Self::Ubx),
             _ if streams::is_rtcm(bytes) => Some(Self::Rtcm),
             _ => None,
