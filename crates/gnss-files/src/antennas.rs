@@ -4,6 +4,7 @@ use std::path::Path;
 
 use memchr::memmem::Finder;
 
+use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
 use crate::fields::satellite;
 use crate::text::{Line, Lines, Text};
@@ -38,6 +39,10 @@ pub struct PhaseCentre {
 pub struct Antenna {
     /// Type of the antenna, and the radome of a receiver's, as in the file.
     pub name: String,
+    /// The satellite's number for life, `E210` for example; empty of a receiver's.
+    pub code: String,
+    /// The edition that the antenna belongs to, if it says so (`SINEX CODE`).
+    pub model: Option<AntennaModel>,
     /// The phase centres on L1 and L2, where the file has them.
     pub frequencies: [Option<PhaseCentre>; 2],
     /// The phase centres on E1, E5a and E5b of Galileo, where the file has them.
@@ -52,6 +57,24 @@ impl Antenna {
     fn is_valid(&self, time: GpsTime) -> bool {
         self.valid_from.is_none_or(|from| from <= time)
             && self.valid_until.is_none_or(|until| time <= until)
+    }
+
+    /// The antenna as another edition has it, where that is known: the same one if it belongs to that, or says nothing; of
+    /// `igs14` and `igs20` those of Galileo and of GPS's block IIIA, of which `igs20.atx` tells by how much it moved them.
+    pub fn in_model(&self, model: AntennaModel) -> Option<Self> {
+        let moved = match (self.model, model) {
+            (None, _) => return Some(self.clone()),
+            (Some(own), _) if own == model => return Some(self.clone()),
+            (Some(AntennaModel::Igs14), AntennaModel::Igs20) => 1.0,
+            (Some(AntennaModel::Igs20), AntennaModel::Igs14) => -1.0,
+            _ => return None,
+        };
+        let moved = moved * AntennaModel::moved_by_igs20(&self.name, &self.code)?;
+        let mut other = Self { model: Some(model), ..self.clone() };
+        for centre in other.frequencies.iter_mut().chain(&mut other.galileo).flatten() {
+            centre.offset[2] += moved;
+        }
+        Some(other)
     }
 }
 
@@ -168,7 +191,8 @@ impl Name {
 
 /// Reads the lines of an antenna behind the one that tells its type.
 fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
-    let mut antenna = Antenna { name: start.text(0, 20), ..Antenna::default() };
+    let (name, code) = (start.text(0, 20), start.text(40, 50));
+    let mut antenna = Antenna { name, code, ..Antenna::default() };
     let mut grid = Grid::default();
     loop {
         let line = lines.expect("the end of an antenna")?;
@@ -180,6 +204,7 @@ fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
                 grid.last = line.finite("the last angle", 8, 14)?;
                 grid.step = line.finite("the step of the angles", 14, 20)?;
             }
+            b"SINEX CODE" => antenna.model = AntennaModel::named(line.columns(0, 10)),
             b"VALID FROM" => antenna.valid_from = Some(line.time(VALIDITY)?),
             b"VALID UNTIL" => antenna.valid_until = Some(line.time(VALIDITY)?),
             b"START OF FREQUENCY" => match line.columns(3, 6) {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
 use crate::fields::{blank_separated, decimal, first_field, integer, satellite};
 use crate::satellites::PerSatellite;
@@ -27,6 +28,9 @@ pub struct Clocks {
     samples: PerSatellite<ClockSample>,
     /// Wide-lane biases of satellites, of the days of their files.
     wide_lanes: BTreeMap<(i32, u8), f64>,
+    /// The edition of the satellites' antennas that the files were made with, as the first of them to say so has it
+    /// (`SYS / PCVS APPLIED`).
+    pub antenna_model: Option<AntennaModel>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
@@ -83,7 +87,7 @@ impl Clocks {
 
 fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSample>, Error> {
     let mut lines = text.lines();
-    header(text, &mut lines, &mut clocks.wide_lanes)?;
+    header(text, &mut lines, clocks)?;
     let mut samples = PerSatellite::default();
     let mut dated = None;
     while let Some(line) = lines.next() {
@@ -113,11 +117,7 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
     Ok(samples)
 }
 
-fn header(
-    text: &Text,
-    lines: &mut Lines<'_>,
-    wide_lanes: &mut BTreeMap<(i32, u8), f64>,
-) -> Result<(), Error> {
+fn header(text: &Text, lines: &mut Lines<'_>, clocks: &mut Clocks) -> Result<(), Error> {
     let first = lines.next().filter(|line| {
         // Version 3.04 has wider lines.
         let label = line.bytes.get(60..).unwrap_or_default();
@@ -130,10 +130,14 @@ fn header(
         match label {
             b"END OF HEADER" => return Ok(()),
             b"TIME SYSTEM ID" => time_system(&line)?,
+            b"SYS / PCVS APPLIED" => {
+                let told = || AntennaModel::named(line.columns(18, 65));
+                clocks.antenna_model = clocks.antenna_model.or_else(told);
+            }
             b"COMMENT" if line.bytes.starts_with(b"WL ") => {
                 // Of other systems, and other things that a comment may say.
                 if let Some((day, prn, bias)) = wide_lane(line.bytes) {
-                    wide_lanes.insert((day, prn), bias);
+                    clocks.wide_lanes.insert((day, prn), bias);
                 }
             }
             _ => {}
@@ -220,6 +224,20 @@ mod tests {
 
     fn complaint(file: &str) -> String {
         Clocks::parse(&[text(file)]).expect_err(file).to_string()
+    }
+
+    #[test]
+    fn the_edition_of_the_antennas_is_read() -> Result<(), Error> {
+        let end = header("", "END OF HEADER");
+        let of = |told: &str| {
+            let told = header(told, "SYS / PCVS APPLIED") + &end;
+            Ok::<_, Error>(Clocks::parse(&[text(clocks().replace(&end, &told))])?.antenna_model)
+        };
+        assert_eq!(of("G  GPSEST V5.5        IGS20_2415")?, Some(AntennaModel::Igs20));
+        assert_eq!(of("G GINS   V11.1      igs14_2108.atx")?, Some(AntennaModel::Igs14));
+        assert_eq!(of("G igs08  V11.1      own")?, None);
+        assert_eq!(Clocks::parse(&[text(clocks())])?.antenna_model, None);
+        Ok(())
     }
 
     #[test]

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod antenna_model;
 mod antennas;
 mod biases;
 mod clocks;
@@ -25,6 +26,7 @@ mod mutations;
 #[cfg(test)]
 mod samples;
 
+pub use antenna_model::AntennaModel;
 pub use antennas::{Antenna, Antennas, PhaseCentre};
 pub use biases::Biases;
 pub use clocks::{ClockSample, Clocks};

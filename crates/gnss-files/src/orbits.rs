@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
 use crate::fields::satellite;
 use crate::satellites::PerSatellite;
@@ -32,6 +33,8 @@ pub struct OrbitSample {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Orbits {
     samples: PerSatellite<OrbitSample>,
+    /// The edition of the satellites' antennas that the files were made with, as the first of them to say so has it (`PCV:`).
+    pub antenna_model: Option<AntennaModel>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
@@ -54,7 +57,7 @@ impl Orbits {
     pub fn parse(texts: &[Text]) -> Result<Self, Error> {
         let mut orbits = Self::default();
         let files: Result<Vec<_>, _> =
-            texts.iter().map(|text| parse_file(text, &mut orbits.warnings)).collect();
+            texts.iter().map(|text| parse_file(text, &mut orbits)).collect();
         orbits.samples = PerSatellite::merge(
             files?,
             |sample| sample.time,
@@ -78,10 +81,7 @@ impl Orbits {
     }
 }
 
-fn parse_file(
-    text: &Text,
-    warnings: &mut Vec<Warning>,
-) -> Result<PerSatellite<OrbitSample>, Error> {
+fn parse_file(text: &Text, orbits: &mut Orbits) -> Result<PerSatellite<OrbitSample>, Error> {
     let mut lines = text.lines();
     let first = lines.next().filter(|line| matches!(line.bytes, [b'#', b'a'..=b'd', ..]));
     let first = first.ok_or_else(|| text.wrong_kind("orbits (SP3)"))?;
@@ -115,6 +115,9 @@ fn parse_file(
                 time_system_known = true;
                 time_system(&line)?;
             }
+            [b'/', b'*', comment @ ..] => {
+                orbits.antenna_model = orbits.antenna_model.or_else(|| antenna_model(comment));
+            }
             [b'E', b'P' | b'V', ..] | [b'V' | b'#' | b'+' | b'%' | b'/', ..] => {}
             _ if line.bytes.trim_ascii().is_empty() => {}
             _ => return Err(line.expected("a record of an SP3 file")),
@@ -124,13 +127,19 @@ fn parse_file(
         return Err(first.error("expected orbits of satellites of GPS or Galileo, found none"));
     }
     if !ended {
-        warnings.push(text.warning("has no EOF at its end: it may have been cut off"));
+        orbits.warnings.push(text.warning("has no EOF at its end: it may have been cut off"));
     }
     if predicted > 0 {
         let problem = format!("holds {predicted} predicted positions, worse than computed ones");
-        warnings.push(text.warning(problem));
+        orbits.warnings.push(text.warning(problem));
     }
     Ok(samples)
+}
+
+/// The edition in a comment as `PCV:IGS14_2108 OL/AL:FES2012`.
+fn antenna_model(comment: &[u8]) -> Option<AntennaModel> {
+    let told = comment.trim_ascii_start().strip_prefix(b"PCV:")?;
+    AntennaModel::named(told.split(|&byte| byte == b' ').next()?)
 }
 
 /// Times of Galileo and of QZSS are those of GPS to some nanoseconds.
@@ -182,6 +191,16 @@ mod tests {
         assert!(second.clock_event && second.manoeuvre);
         let warning = "file: holds 1 predicted positions, worse than computed ones";
         assert_eq!(sentences(&orbits.warnings), [warning]);
+        Ok(())
+    }
+
+    #[test]
+    fn the_edition_of_the_antennas_is_read() -> Result<(), Error> {
+        let of = |file: String| Ok::<_, Error>(Orbits::parse(&[text(file)])?.antenna_model);
+        assert_eq!(of(orbits())?, None);
+        let told = orbits().replace("/* BY HAND", "/* PCV:IGS14_2108 OL/AL:igs20");
+        assert_eq!(of(told)?, Some(AntennaModel::Igs14));
+        assert_eq!(of(orbits().replace("/* BY HAND", "/* PCV: OL/AL:igs20"))?, None);
         Ok(())
     }
 

@@ -96,6 +96,19 @@ fn rms(report: &Value) -> f64 {
     report["accuracy"]["rms_3d_m"].as_f64().expect("a number")
 }
 
+/// GRG's orbits and clocks were made with `igs14_2108.atx`, the antennas of the file are of `IGS20_2417`.
+#[test]
+fn antennas_of_another_edition_are_told() {
+    let (Some(esbc), Some(acor)) = (Station::esbc(), Station::acor()) else { return };
+    let warnings = |station: &Station, more: &[&str]| {
+        station.report(&[more, &["--until", "600"]].concat())["warnings"].to_string()
+    };
+    let told = "are those of igs20, orbits and clocks were made with igs14";
+    assert!(warnings(&esbc, &[]).contains(told));
+    assert!(!warnings(&esbc, &["--without", "satellite-antenna"]).contains("igs20"));
+    assert!(!warnings(&acor, &[]).contains("are those of igs"));
+}
+
 #[test]
 fn every_epoch_counts() {
     let Some(esbc) = Station::esbc() else { return };

@@ -106,19 +106,20 @@ fn an_hour_with_whole_ambiguities() {
     let Some(recording) = esbc() else { return };
     assert_eq!(recording.never_whole(), None);
     let table = sessions(&recording, 0.0, Systems::All);
-    assert!(table.ends[1] <= 9.5 && table.minutes[1] <= 12.0);
-    assert!(table.fixed >= 17 && table.wrong == 0);
+    assert!(table.ends[1] <= 9.0 && table.minutes[1] <= 12.0);
+    assert!(table.fixed >= 21 && table.wrong == 0);
     assert!(table.worst_end[1] <= table.worst_end[0]);
 }
 
-/// Other beginnings; among those of 20 and 25 minutes past are the four that were wrong longest with a ratio of two.
+/// Other beginnings; among those of 20 and 25 minutes past are the four that were wrong longest with a ratio of two, at 50 minutes
+/// past the one that was so with a ratio of 2.5 at every success rate.
 #[test]
 fn other_hours_with_whole_ambiguities() {
     let Some(recording) = esbc() else { return };
-    for after in [900.0, 1200.0, 1500.0, 1800.0, 2700.0] {
+    for after in [900.0, 1200.0, 1500.0, 1800.0, 2700.0, 3000.0] {
         let table = sessions(&recording, after, Systems::All);
-        assert!(table.ends[1] <= 11.0 && table.minutes[1] <= 13.0, "{after}");
-        assert!(table.fixed >= 16 && table.wrong == 0, "{after}");
+        assert!(table.ends[1] <= 10.5 && table.minutes[1] <= 13.0, "{after}");
+        assert!(table.fixed >= 18 && table.wrong == 0, "{after}");
     }
 }
 
@@ -131,7 +132,7 @@ fn every_five_minutes_with_whole_ambiguities() {
     let (fixed, wrong) =
         tables.fold((0, 0), |(fixed, wrong), it| (fixed + it.fixed, wrong + it.wrong));
     println!("{fixed} sessions fixed, {wrong} wrong positions");
-    assert!(fixed >= 200 && wrong == 0);
+    assert!(fixed >= 235 && wrong == 0);
 }
 
 #[test]

@@ -48,6 +48,37 @@ fn an_unknown_radome_or_antenna_is_told() -> Result<(), Error> {
 }
 
 #[test]
+fn satellites_of_galileo_are_moved_between_editions_as_igs20_tells() -> Result<(), Error> {
+    let at = GpsTime::from_calendar([2020, 1, 1, 0, 0], 0.0).expect("a day");
+    let of = |kind: &str, code: &str, edition: &str| {
+        let satellite =
+            antennas().replace("BLOCK IIF ", &format!("{kind:10}")).replace("G050", code);
+        let told = format!("{edition:60}SINEX CODE\n     0.0{:52}DAZI", "");
+        let file = satellite.replace(&format!("     0.0{:52}DAZI", ""), &told);
+        let antennas = Antennas::parse(&[text(file)], RECEIVER)?;
+        Ok::<_, Error>(antennas.satellite(5, at).expect("it is there").clone())
+    };
+    let z = |antenna: &Antenna| {
+        antenna.frequencies[0].as_ref().map(|centre| (centre.offset[2] * 1e5).round())
+    };
+    let galileo = of("GALILEO-2", "E210", "IGS20_2417")?;
+    assert_eq!((galileo.model, galileo.code.as_str()), (Some(AntennaModel::Igs20), "E210"));
+    assert_eq!(z(&galileo), Some(10_000.0));
+    let before = galileo.in_model(AntennaModel::Igs14).expect("igs20.atx tells it");
+    assert_eq!((z(&before), before.model), (Some(-5_573.0), Some(AntennaModel::Igs14)));
+    assert_eq!(before.in_model(AntennaModel::Igs20).as_ref().and_then(z), Some(10_000.0));
+    assert_eq!(galileo.in_model(AntennaModel::Igs20).as_ref().and_then(z), Some(10_000.0));
+    assert_eq!(galileo.in_model(AntennaModel::Igs08), None);
+    // Estimated one by one, and no edition at all.
+    assert_eq!(of("BLOCK IIF", "G050", "IGS20_2417")?.in_model(AntennaModel::Igs14), None);
+    assert_eq!(of("GALILEO-1", "E102", "IGS20_2417")?.in_model(AntennaModel::Igs14), None);
+    let silent = of("BLOCK IIF", "G050", "OWN")?;
+    assert_eq!(silent.model, None);
+    assert_eq!(silent.in_model(AntennaModel::Igs14), Some(silent));
+    Ok(())
+}
+
+#[test]
 fn damage_is_located() {
     let complaint =
         |file: &str| Antennas::parse(&[text(file)], RECEIVER).expect_err(file).to_string();

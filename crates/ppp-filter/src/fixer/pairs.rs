@@ -12,10 +12,13 @@ use super::wide_lane::Candidate;
 const MODEL: f64 = 0.006;
 /// How many pairs must be found at once. With six to eight, those of one in a hundred hours were wrong together.
 const FEWEST: usize = 9;
-/// The tests: the least success rate and ratio, the largest mean square of what the integers are off, in variances. With a ratio of
-/// two and a model of 5 mm those of one in fifty hours were wrong.
+/// The tests: the least success rate, the least ratio at that rate and the one that is enough where the rate is high, and the largest
+/// mean square of what the integers are off, in variances. With the lower ratio throughout, those of one in three hundred hours were
+/// wrong.
 const LEAST_SUCCESS: f64 = 0.98;
-const LEAST_RATIO: f64 = 2.5;
+const LEAST_RATIO: f64 = 3.0;
+const HIGH_SUCCESS: f64 = 0.995;
+const RATIO_AT_HIGH_SUCCESS: f64 = 2.5;
 const LARGEST_MISFIT: f64 = 3.0;
 
 /// A satellite less the highest of its system.
@@ -130,7 +133,9 @@ pub(super) fn search<const N: usize>(
             let [distance, _] = nearest.distances;
             let fits = distance <= LARGEST_MISFIT * pairs.len() as f64;
             let ratio = nearest.ratio();
-            if ratio >= LEAST_RATIO && (fits || are_held) {
+            let is_high = success_rate >= HIGH_SUCCESS;
+            let least = if is_high { RATIO_AT_HIGH_SUCCESS } else { LEAST_RATIO };
+            if ratio >= least && (fits || are_held) {
                 let validation = Validation { ratio, success_rate };
                 return Some(Found { pairs, integers: nearest.integers, validation });
             }

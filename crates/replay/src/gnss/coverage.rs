@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use kestirim_gnss_files::{
-    Antennas, GpsTime as Time, Message, Navigation, Observations, Orbits, Signals, satellite_name,
+    AntennaModel, Antennas, GpsTime as Time, Message, Navigation, Observations, Orbits, Signals,
+    satellite_name,
 };
 use kestirim_gnss_ppp::{Correction, GpsTime};
 
@@ -54,6 +55,25 @@ pub(super) fn left_out(
         ));
     }
     left_out
+}
+
+/// A warning of observed satellites whose antennas are not those that orbits and clocks were made with, nor could be converted.
+pub(super) fn other_antennas(
+    observations: &Observations,
+    antennas: &Antennas,
+    start: Time,
+    model: Option<AntennaModel>,
+) -> Option<(Option<Correction>, String)> {
+    let model = model?;
+    let own = |number| antennas.satellite(number, start);
+    let is_other = |&number: &u8| own(number).is_some_and(|it| it.in_model(model).is_none());
+    let others: Vec<_> = observations.signals.keys().copied().filter(is_other).collect();
+    let other = own(*others.first()?)?.model?;
+    let sentence = format!(
+        "antennas of {} are those of {other}, orbits and clocks were made with {model}: the height may be a centimetre off",
+        names(others),
+    );
+    Some((Some(Correction::SatelliteAntenna), sentence))
 }
 
 /// From when to when there are orbits, s since midnight.

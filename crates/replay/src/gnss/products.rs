@@ -1,6 +1,8 @@
 //! Precise products as the filter wants them: a satellite's orbit, clock and antenna at an instant.
 
-use kestirim_gnss_files::{self as files, Antenna, Antennas, Clocks, Observed, Orbits};
+use kestirim_gnss_files::{
+    self as files, Antenna, AntennaModel, Antennas, Clocks, Observed, Orbits,
+};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Pattern, SatelliteState};
 use kestirim_ppp_filter::{CodeObservation, SatelliteObservation};
@@ -36,6 +38,11 @@ pub struct Satellite {
     pub antenna: Option<Antenna>,
 }
 
+/// The edition of the antennas that products were made with: that of the clocks, into which another's offset would go.
+pub(super) fn antenna_model(orbits: &Orbits, clocks: Option<&Clocks>) -> Option<AntennaModel> {
+    clocks.and_then(|clocks| clocks.antenna_model).or(orbits.antenna_model)
+}
+
 /// The products of a day.
 #[derive(Debug)]
 pub struct Products {
@@ -56,6 +63,7 @@ impl Products {
         antennas: &Antennas,
     ) -> Self {
         let reference = GpsTime::new(start.day(), 0.0);
+        let model = antenna_model(orbits, clocks);
         let satellites = (0..=SATELLITES).map(|prn| {
             // A sample of a manoeuvre or of a jumping clock belongs to neither side.
             let samples = orbits.satellite(prn);
@@ -73,7 +81,10 @@ impl Products {
                     .filter_map(|sample| Some(clock_sample(reference, sample.time, sample.clock?)))
                     .collect(),
             };
-            let antenna = antennas.satellite(prn, start).cloned();
+            let antenna = antennas.satellite(prn, start);
+            // Where it is not known how that edition has it, another's is better than none.
+            let as_made = antenna.zip(model).and_then(|(antenna, model)| antenna.in_model(model));
+            let antenna = as_made.or_else(|| antenna.cloned());
             Satellite { orbit: orbit.collect(), clock, antenna }
         });
         Self {

@@ -11,7 +11,7 @@ use kestirim_gnss_ppp::Correction;
 use super::broadcast::Broadcast;
 use super::coverage::{self, names};
 use super::model;
-use super::products::Products;
+use super::products::{Products, antenna_model};
 use super::recording::Paths;
 use super::shelf::Shelf;
 use super::whole_biases::WholeBiases;
@@ -79,6 +79,8 @@ impl Told {
                 let products = Products::new(start, orbits, clocks, antennas).with_whole(whole);
                 let known = (antex, start);
                 let left_out = coverage::left_out(observations, orbits, antennas, known, warnings);
+                let model = antenna_model(orbits, clocks);
+                warnings.extend(coverage::other_antennas(observations, antennas, start, model));
                 Served { products, left_out, span: coverage::span(orbits, midnight) }
             }
             Self::Broadcast(navigation) => {
