@@ -111,7 +111,7 @@ fn step<const L: usize>() -> (f64, f64) {
 /// Rows of seven numbers.
 fn rows() -> anyhow::Result<Curve> {
     let mut curve = Vec::new();
-    for rows in [1_000, 10_000, 100_000, 1_000_000] {
+    for rows in [1_000, 10_000, 100_000, 500_000] {
         let mut file = String::from("t,ax,ay,az,gx,gy,gz\n");
         for row in 0..rows {
             let (t, sine) = (f64::from(row) * 0.005, f64::from(row).sin());
