@@ -9,7 +9,7 @@ const PREFIX: &[u8] = b"igs";
 ///
 /// Orbits and clocks go with the antennas of satellites that they were made with: another edition has them up to two
 /// decimetres nearer to the Earth or farther, as it follows another scale of the Earth's frame, and the height shows a part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AntennaModel {
     /// `igs05.atx`, in use from November 2006.
@@ -40,8 +40,9 @@ impl AntennaModel {
         })
     }
 
-    /// By how much `igs20.atx` moved all satellites of a type alike along Z against `igs14.atx`, m: of the others it says that
-    /// they were estimated one by one (its header, "Major changes w.r.t. igs14.atx").
+    /// By how much `igs20.atx` moved satellites of a type along Z against `igs14.atx`, all alike, m (its header, "Major changes
+    /// w.r.t. igs14.atx"). Of GPS it tells that of block IIIA alone, and that the others were estimated one by one: moved by itself,
+    /// that block would no longer go with them.
     pub(crate) fn moved_by_igs20(kind: &str, code: &str) -> Option<f64> {
         match kind {
             "GALILEO-1" | "GALILEO-2" if code != "E102" => Some(0.155_73),

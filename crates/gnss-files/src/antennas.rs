@@ -59,8 +59,8 @@ impl Antenna {
             && self.valid_until.is_none_or(|until| time <= until)
     }
 
-    /// The antenna as another edition has it, where that is known: the same one if it belongs to that, or says nothing; of
-    /// `igs14` and `igs20` those of Galileo and of GPS's block IIIA, of which `igs20.atx` tells by how much it moved them.
+    /// The antenna as another edition has it, where that is known: the same one if it belongs to that edition, or to none that it
+    /// names; between `igs14` and `igs20` those of Galileo, of which the header of `igs20.atx` tells by how much it moved them.
     pub fn in_model(&self, model: AntennaModel) -> Option<Self> {
         let moved = match (self.model, model) {
             (None, _) => return Some(self.clone()),
