@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use host_sim::figure::svg;
+use host_sim::figure::{Figure, svg};
 use host_sim::report::Chapter;
 
 /// Draws figures of a chapter into the book's folder: their names in the chapter, and their files'.
@@ -11,13 +11,25 @@ use host_sim::report::Chapter;
 /// # Errors
 /// If the chapter has no such figure, or a file cannot be written.
 pub fn draw(chapter: &Chapter, files: &[(&str, &str)]) -> io::Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/figures");
     for (id, file) in files {
         let figure = chapter
             .figures()
             .find(|figure| figure.id == *id)
             .ok_or_else(|| io::Error::other(format!("the chapter has no figure {id}")))?;
-        std::fs::write(folder.join(file), svg::draw(figure))?;
+        draw_as(file, figure)?;
     }
     Ok(())
+}
+
+/// Draws a figure into the book's folder, as its `id` is called.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn draw_figure(figure: &Figure) -> io::Result<()> {
+    draw_as(&format!("{}.svg", figure.id), figure)
+}
+
+fn draw_as(file: &str, figure: &Figure) -> io::Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/figures");
+    std::fs::write(folder.join(file), svg::draw(figure))
 }

@@ -11,11 +11,10 @@ mod robust;
 
 use std::fmt::Write as _;
 use std::hint::black_box;
-use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use host_sim::figure::{Colour, Figure, Mark, Series, svg};
+use host_sim::figure::{Colour, Figure, Mark, Series};
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
 use kestirim_gnss_ppp::{Corrections, Receiver};
 use kestirim_import::{Table, Text};
@@ -23,6 +22,7 @@ use kestirim_particle_filter::{Region, Xoshiro128PlusPlus};
 use kestirim_ppp_filter::{Config, Motion, PppFilter};
 use kestirim_replay::gnss::STATES;
 use kestirim_simulate::gnss::{Day, Rates, UTC_MINUS_GPS};
+use kestirim_tests::book::draw_figure;
 use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use rustix::time::{ClockId, clock_gettime};
@@ -52,7 +52,7 @@ fn main() -> anyhow::Result<()> {
         print(name, &relative, "of one, over that in the smallest case");
         figure = figure.with(series(name, relative).coloured(Colour::Other(index)));
     }
-    draw(&figure)?;
+    draw_figure(&figure)?;
     let outliers = robust::outliers();
     let clean = outliers[0].1;
     let outliers: Vec<_> = outliers.into_iter().map(|(n, s)| (n, s / clean)).collect();
@@ -62,7 +62,7 @@ fn main() -> anyhow::Result<()> {
         .axes(name, "clean updates")
         .with(series("worst first", outliers));
     figure.y.range = Some([0.0, 4.0]);
-    draw(&figure)
+    Ok(draw_figure(&figure)?)
 }
 
 fn series(name: &str, curve: Curve) -> Series {
@@ -73,11 +73,6 @@ fn series(name: &str, curve: Curve) -> Series {
 fn print(name: &str, curve: &Curve, unit: &str) {
     let all: Vec<_> = curve.iter().map(|(n, cost)| format!("{n:.0}: {cost:.2}")).collect();
     println!("{name:33} {}  ({unit})", all.join("  "));
-}
-
-fn draw(figure: &Figure) -> anyhow::Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/figures");
-    Ok(std::fs::write(folder.join(&figure.id).with_extension("svg"), svg::draw(figure))?)
 }
 
 /// A step of the thesis' filter that resamples, with its moments.

@@ -6,13 +6,14 @@
 use std::io;
 use std::path::Path;
 
-use host_sim::figure::{Figure, svg};
+use host_sim::figure::Figure;
 use host_sim::systems::gnss::figures::errors;
 use host_sim::systems::gnss::figures::residuals::left;
 use host_sim::systems::gnss::settings::PROCESS_NOISE;
 use kestirim_gnss_ppp::Corrections;
 use kestirim_ppp_filter::Motion;
 use kestirim_replay::gnss::{FilterKind, Followed, Pass, follow};
+use kestirim_tests::book::draw_figure;
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, Station};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -41,12 +42,7 @@ fn draw_errors(name: &str, title: &str, station: &Station, mut days: Days) -> io
         followed.fixes = wanted.map(|(_, fix)| fix).collect();
     }
     let filters = days.iter().map(|(filter, followed)| (*filter, followed));
-    draw(&errors(Figure::new(name, title), filters, &Vector3::from(station.truth)))
-}
-
-fn draw(figure: &Figure) -> io::Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src/figures");
-    std::fs::write(folder.join(&figure.id).with_extension("svg"), svg::draw(figure))
+    draw_figure(&errors(Figure::new(name, title), filters, &Vector3::from(station.truth)))
 }
 
 /// Figure 3: what is left in the codes.
@@ -58,7 +54,9 @@ fn residuals() -> io::Result<()> {
     {
         let title = format!("{}: {} codes rejected", filter.title(), followed.rejected.code);
         let figure = Figure::new(format!("gnss-residuals-{}", filter.name()), title);
-        draw(&left(figure, &followed, |report| &report.code).showing(None, Some([-34.0, 34.0])))?;
+        draw_figure(
+            &left(figure, &followed, |report| &report.code).showing(None, Some([-34.0, 34.0])),
+        )?;
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ use kestirim_gnss_files::{
 use kestirim_gnss_ppp::{Correction, GpsTime};
 
 use super::model::{self, patterns};
+use super::products::Products;
 
 /// The number of the first satellite of Galileo, `E01`.
 pub(super) const FIRST_GALILEO: u8 = 101;
@@ -60,15 +61,13 @@ pub(super) fn left_out(
 /// A warning of observed satellites whose antennas are not those that orbits and clocks were made with, nor could be converted.
 pub(super) fn other_antennas(
     observations: &Observations,
-    antennas: &Antennas,
-    start: Time,
+    products: &Products,
     model: Option<AntennaModel>,
 ) -> Option<(Option<Correction>, String)> {
     let model = model?;
-    let own = |number| antennas.satellite(number, start);
-    let is_other = |&number: &u8| own(number).is_some_and(|it| it.in_model(model).is_none());
+    let is_other = |&number: &u8| products.antenna_model(number).is_some_and(|it| it != model);
     let others: Vec<_> = observations.signals.keys().copied().filter(is_other).collect();
-    let other = own(*others.first()?)?.model?;
+    let other = products.antenna_model(*others.first()?)?;
     let sentence = format!(
         "antennas of {} are those of {other}, orbits and clocks were made with {model}: the height may be a centimetre off",
         names(others),

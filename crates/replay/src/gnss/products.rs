@@ -172,6 +172,11 @@ impl Products {
         })
     }
 
+    /// The edition of a satellite's antenna as it is taken, if it says so.
+    pub(super) fn antenna_model(&self, number: u8) -> Option<AntennaModel> {
+        self.satellites.get(usize::from(number))?.antenna.as_ref()?.model
+    }
+
     /// The antenna of an observed satellite, where known; what satellites broadcast needs none.
     fn antenna(&self, observed: &Observed) -> Option<[Pattern<'_>; 2]> {
         let satellite = self.satellites.get(usize::from(observed.prn))?;

@@ -80,7 +80,7 @@ impl Told {
                 let known = (antex, start);
                 let left_out = coverage::left_out(observations, orbits, antennas, known, warnings);
                 let model = antenna_model(orbits, clocks);
-                warnings.extend(coverage::other_antennas(observations, antennas, start, model));
+                warnings.extend(coverage::other_antennas(observations, &products, model));
                 Served { products, left_out, span: coverage::span(orbits, midnight) }
             }
             Self::Broadcast(navigation) => {
