@@ -67,7 +67,7 @@ pub(crate) fn gnss<'py>(
             let receiver = recording.receiver(Corrections::ALL);
             let run = |order| {
                 let pass = Pass { systems, order, ambiguities, ..Pass::default() };
-                follow(&recording, epochs, &receiver, config, pass, || ())
+                follow(&recording, epochs, &receiver, config, pass, &mut || ())
             };
             let mut followed = run(Order::Forwards);
             if smooth {

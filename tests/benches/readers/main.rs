@@ -160,7 +160,7 @@ fn station_day(day: &str, files: &Files) -> anyhow::Result<()> {
     let config = Config::new(Motion::Static);
     let receiver = recording.receiver(Corrections::default());
     let epochs = recording.epochs(None);
-    let solve = || follow(&recording, epochs, &receiver, config, Pass::default(), || ());
+    let solve = || follow(&recording, epochs, &receiver, config, Pass::default(), &mut || ());
     ensure!(solve().fixes.len() * 10 > epochs.len() * 9, "{day}: too few positions");
     let shelf = Shelf::default();
     Recording::read_beside(&files.paths(), &shelf)?;

@@ -70,7 +70,7 @@ fn followed(
     let epochs = recording.epochs(Some(UNTIL));
     let receiver = recording.receiver(Corrections::ALL);
     let pass = Pass { method, ..Pass::default() };
-    let found = follow(recording, epochs, &receiver, Config::new(motion), pass, || ());
+    let found = follow(recording, epochs, &receiver, Config::new(motion), pass, &mut || ());
     let truth = Vector3::from(ESBC.truth);
     let told = found.fixes.iter().zip(&found.deviations);
     let told: Vec<_> =

@@ -29,7 +29,7 @@ fn follow_all(station: &Station, folder: &Path, filters: &[FilterKind], motion: 
     let day = |&filter: &FilterKind| {
         let config = filter.config(motion, false);
         let pass = Pass { with_residuals: true, ..Pass::default() };
-        (filter, follow(&recording, epochs, &receiver, config, pass, || ()))
+        (filter, follow(&recording, epochs, &receiver, config, pass, &mut || ()))
     };
     filters.par_iter().map(day).collect()
 }

@@ -28,7 +28,7 @@ fn run(recording: &Recording, seconds: Range<f64>, pass: Pass) -> Followed {
     let epochs = recording.epochs(Some(seconds.end.min(ESBC_MULTI.until)));
     let from = epochs.partition_point(|epoch| recording.seconds(epoch) < seconds.start);
     let receiver = recording.receiver(Corrections::ALL);
-    follow(recording, &epochs[from..], &receiver, Config::new(Motion::Static), pass, || ())
+    follow(recording, &epochs[from..], &receiver, Config::new(Motion::Static), pass, &mut || ())
 }
 
 /// Horizontal errors, m.

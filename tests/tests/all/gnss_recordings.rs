@@ -91,7 +91,7 @@ fn smoothed_from_the_first_epoch_on() {
                 let epochs = recording.epochs(Some(station.until));
                 let config = Config::new(motion);
                 let pass = Pass { order, ..Pass::default() };
-                follow(&recording, epochs, &receiver, config, pass, || ())
+                follow(&recording, epochs, &receiver, config, pass, &mut || ())
             };
             let [forwards, backwards] = [Order::Forwards, Order::Backwards].map(run);
             let both = forwards.smoothed(&backwards);
@@ -279,7 +279,7 @@ fn the_tide_of_the_pole() {
         let recording = Recording::read(&paths).expect("files that can be read");
         let (receiver, epochs) = (recording.receiver(corrections), recording.epochs(None));
         let config = Config::new(Motion::Static);
-        let followed = follow(&recording, epochs, &receiver, config, Pass::default(), || ());
+        let followed = follow(&recording, epochs, &receiver, config, Pass::default(), &mut || ());
         (followed.fixes.last().expect("a position").position, epochs[0].time)
     };
     let (without, start) = place(None, Corrections::ALL);

@@ -163,7 +163,7 @@ fn positions(folder: &Path, observations: &[u8]) -> Followed {
         &receiver,
         config,
         Pass::default(),
-        || (),
+        &mut || (),
     )
 }
 

@@ -187,7 +187,7 @@ pub fn follow(
     receiver: &Receiver<'_>,
     config: Config,
     pass: Pass,
-    next: impl FnMut(),
+    next: &mut dyn FnMut(),
 ) -> Followed {
     let config = recording.settled(config);
     if pass.method == Method::Single {
@@ -208,7 +208,7 @@ fn feed<const N: usize>(
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     pass: Pass,
-    mut next: impl FnMut(),
+    next: &mut dyn FnMut(),
 ) -> Followed {
     let Pass { systems, order, with_residuals, .. } = pass;
     let mut fixer = (pass.ambiguities == Ambiguities::Fixed).then(|| Fixer::new(recording));

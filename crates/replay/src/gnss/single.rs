@@ -17,7 +17,7 @@ pub(super) fn single(
     receiver: &Receiver<'_>,
     config: &Config,
     pass: Pass,
-    mut next: impl FnMut(),
+    next: &mut dyn FnMut(),
 ) -> Followed {
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
     for epoch in epochs {

@@ -188,7 +188,7 @@ impl DetectorKind {
 }
 
 /// What is done with a detector, whichever it is.
-pub trait WithDetector<T: Scalar> {
+pub(super) trait WithDetector<T: Scalar> {
     /// What comes of it.
     type Output;
 
@@ -197,7 +197,10 @@ pub trait WithDetector<T: Scalar> {
 }
 
 /// Does something with the detector that is chosen.
-pub fn with_detector<T: Number, W: WithDetector<T>>(options: &Options, work: W) -> W::Output {
+pub(super) fn with_detector<T: Number, W: WithDetector<T>>(
+    options: &Options,
+    work: W,
+) -> W::Output {
     let threshold = T::from_f64;
     match options.detector {
         DetectorKind::Adaptive => work.with(Adaptive::default()),

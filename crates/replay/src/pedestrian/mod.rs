@@ -2,13 +2,14 @@
 //!
 //! [`walk`] makes a [`Walk`] of [`Sample`]s as the [`Options`] say, [`trace`] keeps velocity, attitude and stance of every
 //! sample, too. [`heading_rate`] finds how the heading drifts where the log has a magnetometer, [`sensor_class`] what kind
-//! of sensor it was. Frame: *room*, z up, x as the foot pointed at the start.
+//! of sensor it was. [`build`] makes what follows a walk while it comes. Frame: *room*, z up, x as the foot pointed at the start.
 
 mod check;
 mod choices;
 mod closed;
 mod error;
 mod heading;
+mod live;
 mod position;
 mod sensor;
 mod smoothed;
@@ -19,15 +20,15 @@ mod warning;
 pub use kestirim_import::inertial::Sample;
 
 pub use self::check::check;
-pub use self::choices::{
-    DetectorKind, Options, SensorClass, TrackerKind, WithDetector, with_detector,
-};
+pub use self::choices::{DetectorKind, Options, SensorClass, TrackerKind};
 pub use self::error::Error;
 pub use self::heading::heading_rate;
+pub use self::live::{Follow, build};
 pub use self::position::{Footprint, TrackPoint, position_at};
 pub use self::sensor::sensor_class;
 pub use self::trace::{Moment, Trace, trace, without_updates};
-pub use self::walk::{Stride, Walk, imu_sample, walk};
+use self::walk::imu_sample;
+pub use self::walk::{Stride, Walk, walk};
 pub use self::warning::sentences;
 
 use crate::metrics::STANDARD_GRAVITY;

@@ -279,7 +279,7 @@ impl Stride {
 }
 
 /// A sample as a tracker takes it.
-pub fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {
+pub(super) fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {
     ImuSample {
         time_us: sample.time_us,
         specific_force: SVector::from(sample.specific_force.map(T::from_f64)),

@@ -34,7 +34,7 @@ type Grid<T> = ScheduledFlight<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS, MOST_MO
 
 /// A filter with room for all that a model may say.
 #[derive(Debug, Clone)]
-pub enum Augmented<T: Scalar> {
+pub(super) enum Augmented<T: Scalar> {
     /// By one model.
     One(Box<One<T>>),
     /// By a grid of them.
@@ -47,7 +47,7 @@ impl<T: Scalar> Augmented<T> {
     /// # Errors
     /// [`uav::Error::NoRoom`] for a model of discrete time, or one that says no more than A, B and C; and whatever else keeps
     /// the filter from being built.
-    pub fn new(
+    pub(super) fn new(
         model: &Model,
         outputs: &[usize],
         options: &Options,
@@ -73,7 +73,7 @@ impl<T: Scalar> Augmented<T> {
     }
 
     /// Says how long an interval usually is, s.
-    pub fn set_usual(&mut self, usual: f64) {
+    pub(super) fn set_usual(&mut self, usual: f64) {
         match self {
             Self::One(flight) => flight.set_usual(usual),
             Self::Grid(flight) => flight.set_usual(usual),
@@ -84,7 +84,7 @@ impl<T: Scalar> Augmented<T> {
     ///
     /// # Errors
     /// As these.
-    pub fn take(
+    pub(super) fn take(
         &mut self,
         sample: &Sample<MOST_EXTENDED_OUTPUTS>,
     ) -> Result<[Option<Innovation<f64>>; MOST_EXTENDED_OUTPUTS], uav::Error> {
@@ -95,7 +95,7 @@ impl<T: Scalar> Augmented<T> {
     }
 
     /// The filter, with the estimate and its uncertainty at the time of the last sample.
-    pub fn filter(&self) -> &AugmentedFilter<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS> {
+    pub(super) fn filter(&self) -> &AugmentedFilter<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS> {
         match self {
             Self::One(flight) => flight.filter(),
             Self::Grid(flight) => flight.filter(),
@@ -103,7 +103,7 @@ impl<T: Scalar> Augmented<T> {
     }
 
     /// How many times each output was left out, because it contradicted the estimate.
-    pub fn rejected(&self) -> &[u32; MOST_EXTENDED_OUTPUTS] {
+    pub(super) fn rejected(&self) -> &[u32; MOST_EXTENDED_OUTPUTS] {
         match self {
             Self::One(flight) => flight.rejected(),
             Self::Grid(flight) => flight.rejected(),
@@ -111,7 +111,7 @@ impl<T: Scalar> Augmented<T> {
     }
 
     /// Whether the estimate can be relied upon.
-    pub fn health(&self) -> Health {
+    pub(super) fn health(&self) -> Health {
         match self {
             Self::One(flight) => flight.health(),
             Self::Grid(flight) => flight.health(),
@@ -159,6 +159,3 @@ fn local(
         outputs: SVector::from_fn(|place, _| shown(place)),
     })
 }
-
-#[cfg(all(test, feature = "serde"))]
-mod tests;

@@ -12,10 +12,10 @@ use super::{
 use crate::ScalarKind;
 
 /// Intervals of a log of which the steps are kept.
-pub const KEPT: usize = 512;
+pub(super) const KEPT: usize = 512;
 
 /// A Kalman filter with room for as many outputs as a model may have.
-pub type Filter<T> = FlightFilter<T, MOST_OUTPUTS, KEPT>;
+pub(super) type Filter<T> = FlightFilter<T, MOST_OUTPUTS, KEPT>;
 
 /// An estimate, after its line was taken in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,7 +118,7 @@ impl Assumed {
 ///
 /// # Errors
 /// Why there is none.
-pub fn filter<T: Scalar>(
+pub(super) fn filter<T: Scalar>(
     model: &Model,
     outputs: &[usize],
     assumed: &Assumed,
@@ -223,7 +223,7 @@ pub fn rows<const P: usize>(model: &Model, outputs: &[usize]) -> SMatrix<f64, P,
 }
 
 /// A line with room for P outputs.
-pub fn sized<const P: usize>(sample: &Sample) -> uav::Sample<P> {
+pub(super) fn sized<const P: usize>(sample: &Sample) -> uav::Sample<P> {
     uav::Sample {
         time_us: sample.t_us,
         input: sample.input.into(),

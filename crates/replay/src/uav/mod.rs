@@ -1,7 +1,7 @@
 //! The longitudinal motion of an aeroplane: α, q, V, θ.
 //!
 //! [`Deviations`] are a [`Log`] less the steady flight of its [`Model`]; [`Deviations::follow`] makes a [`Followed`] of them
-//! as the [`Options`] say. Angles are radians, the airspeed m/s, times µs of the log's clock.
+//! as the [`Options`] say, [`build`] what follows a flight while it comes. Angles are radians, the airspeed m/s, times µs of the log's clock.
 
 mod augmented;
 mod check;
@@ -10,6 +10,7 @@ mod deviations;
 mod error;
 mod estimators;
 mod extended;
+mod live;
 mod log;
 mod model;
 #[cfg(feature = "serde")]
@@ -22,13 +23,15 @@ mod noise;
 mod options;
 mod poles;
 
-pub use self::augmented::{Augmented, MOST_EXTENDED_OUTPUTS};
+use self::augmented::Augmented;
+pub use self::augmented::MOST_EXTENDED_OUTPUTS;
 pub use self::check::check;
 pub use self::contradiction::Contradiction;
 pub use self::deviations::Deviations;
 pub use self::error::Error;
-pub use self::estimators::{Assumed, Estimate, Filter, Followed, KEPT, filter, rows, sized};
+pub use self::estimators::{Assumed, Estimate, Followed, rows};
 pub use self::extended::{Beside, Extended, Parts, Unknown};
+pub use self::live::{Follow, build};
 pub use self::log::{Log, Sample, Truth};
 pub use self::model::{MOST_OUTPUTS, Model, Plant, STATE_COLUMNS, state_outputs};
 #[cfg(feature = "serde")]

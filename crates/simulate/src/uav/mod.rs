@@ -1,6 +1,7 @@
 //! Flights of known aircraft, with the noise of their sensors.
 
 pub mod design;
+pub mod errors;
 pub mod flight;
 pub mod plant;
 pub mod scenario;

@@ -41,7 +41,7 @@ impl Track {
                 detail == Detail::Every && filter == main && order == Order::Forwards;
             let Setup { systems, method, ambiguities, .. } = *setup;
             let pass = Pass { systems, order, method, ambiguities, with_residuals };
-            follow(recording, epochs, &receiver, setup.config(filter), pass, || progress.inc())
+            follow(recording, epochs, &receiver, setup.config(filter), pass, &mut || progress.inc())
         };
         let forwards = || -> Vec<_> {
             chosen.par_iter().map(|&filter| (filter, run(filter, Order::Forwards))).collect()

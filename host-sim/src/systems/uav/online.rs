@@ -1,22 +1,16 @@
 //! A flight while it comes: what is sent, and the estimator that is set.
 
-use std::fmt::Debug;
-
 use kestirim_replay::uav::{
-    Assumed, Augmented, Error as Refusal, EstimatorKind, Filter, KEPT, Model, Options, Sample,
-    discrete, filter, rows, sized,
+    Error as Refusal, EstimatorKind, Follow, Model, Options, Sample, build,
 };
-use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_telemetry::{Flight, Message};
-use kestirim_uav_estimator::{self as uav, FlightObserver};
-use nalgebra::{SMatrix, SVector};
 
 use super::recording::log::LARGEST;
 use super::recording::model;
 use super::settings;
 use super::track::refused;
 use crate::Error;
-use crate::system::{Files, Online, Outcome, Plan, ScalarKind, Settings};
+use crate::system::{Files, Online, Outcome, Plan, Settings};
 
 /// What a [`Flight`] measures, by the names of a model's outputs.
 const MEASURED: [&str; 3] = ["q", "V", "theta"];
@@ -85,31 +79,11 @@ impl Flying {
         let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
         numbers.copied().all(|number| number.abs() < LARGEST).then_some(sample)
     }
-
-    fn estimator<T: Scalar + 'static>(&self) -> Result<Box<dyn Estimator>, uav::Error> {
-        Ok(match (self.options.estimator, self.outputs.len()) {
-            (EstimatorKind::Kalman, _) if self.model.extended.is_some() => {
-                Box::new(Augmented::<T>::new(&self.model, &self.outputs, &self.options, 1.0, 0.0)?)
-            }
-            (EstimatorKind::Kalman, _) => {
-                let assumed = Assumed::of(&self.model, &self.outputs, &self.options);
-                // What the interval is, the second sample tells.
-                filter::<T>(&self.model, &self.outputs, &assumed, 0.0)?
-            }
-            (EstimatorKind::Luenberger, 1) => Box::new(Observer::<T, 1>::new(self)),
-            (EstimatorKind::Luenberger, 2) => Box::new(Observer::<T, 2>::new(self)),
-            (EstimatorKind::Luenberger, _) => Box::new(Observer::<T, 3>::new(self)),
-        })
-    }
 }
 
 impl Plan for Flying {
     fn build(&self) -> Result<Box<dyn Online>, Error> {
-        let estimator = match self.options.scalar {
-            ScalarKind::F32 => self.estimator::<f32>(),
-            ScalarKind::F64 => self.estimator::<f64>(),
-            ScalarKind::Fixed => self.estimator::<Q16_16>(),
-        };
+        let estimator = build(&self.model, &self.outputs, &self.options);
         let estimator = estimator.map_err(|error| Error::Usage(error.to_string()))?;
         Ok(Box::new(Aeroplane {
             plan: self.clone(),
@@ -120,104 +94,11 @@ impl Plan for Flying {
     }
 }
 
-/// An estimator, as in a replay.
-trait Estimator: Debug {
-    /// Says how long an interval usually is, s.
-    fn set_usual(&mut self, usual: f64);
-
-    /// Takes in a sample.
-    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error>;
-
-    /// x̂ after the last sample.
-    fn estimate(&self) -> SVector<f64, 4>;
-}
-
-impl<T: Scalar> Estimator for Filter<T> {
-    fn set_usual(&mut self, usual: f64) {
-        Self::set_usual(self, usual);
-    }
-
-    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
-        Self::take(self, &sized(sample)).map(drop)
-    }
-
-    fn estimate(&self) -> SVector<f64, 4> {
-        self.filter().estimate()
-    }
-}
-
-impl<T: Scalar> Estimator for Augmented<T> {
-    fn set_usual(&mut self, usual: f64) {
-        Self::set_usual(self, usual);
-    }
-
-    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
-        Self::take(self, &sized(sample)).map(drop)
-    }
-
-    fn estimate(&self) -> SVector<f64, 4> {
-        self.filter().estimate().fixed_rows::<4>(0).into()
-    }
-}
-
-/// An observer whose gain waits for the usual interval.
-#[derive(Debug)]
-struct Observer<T: Scalar, const P: usize> {
-    plan: Flying,
-    c: SMatrix<f64, P, 4>,
-    usual: f64,
-    running: Option<Box<FlightObserver<T, P, KEPT>>>,
-    before: Option<uav::Sample<P>>,
-}
-
-impl<T: Scalar, const P: usize> Observer<T, P> {
-    fn new(plan: &Flying) -> Self {
-        let c = rows(&plan.model, &plan.outputs);
-        Self { plan: plan.clone(), c, usual: 0.0, running: None, before: None }
-    }
-
-    /// One for the usual interval, that begins at the sample before.
-    fn begin(&self) -> Result<Box<FlightObserver<T, P, KEPT>>, uav::Error> {
-        let poles = discrete(self.plan.options.poles, self.usual);
-        let dynamics = &self.plan.model.dynamics;
-        let mut observer = Box::new(FlightObserver::new(dynamics, &self.c, &poles, self.usual)?);
-        if let Some(before) = &self.before {
-            observer.take(before)?;
-        }
-        Ok(observer)
-    }
-}
-
-impl<T: Scalar, const P: usize> Estimator for Observer<T, P> {
-    fn set_usual(&mut self, usual: f64) {
-        (self.usual, self.running) = (usual, None);
-    }
-
-    fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
-        let sample = sized(sample);
-        if self.before.is_some() {
-            let mut observer = match self.running.take() {
-                Some(observer) => observer,
-                None => self.begin()?,
-            };
-            let taken = observer.take(&sample);
-            self.running = Some(observer);
-            taken?;
-        }
-        self.before = Some(sample);
-        Ok(())
-    }
-
-    fn estimate(&self) -> SVector<f64, 4> {
-        self.running.as_ref().map_or_else(SVector::zeros, |observer| observer.estimate())
-    }
-}
-
 /// The estimator on its way.
 #[derive(Debug)]
 struct Aeroplane {
     plan: Flying,
-    estimator: Box<dyn Estimator>,
+    estimator: Box<dyn Follow>,
     last_us: Option<i64>,
     usual_s: f64,
 }

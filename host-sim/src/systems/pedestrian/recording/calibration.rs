@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use kestirim_imu_calibration::{Calibration, Triad};
-use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 use serde::Serialize;
 
@@ -132,18 +131,6 @@ pub fn corrected(calibration: &Calibration<f64>, sample: &Sample) -> Sample {
     let (force, rate) = calibration
         .apply(&SVector::from(sample.specific_force), &SVector::from(sample.angular_rate));
     Sample { specific_force: force.into(), angular_rate: rate.into(), ..*sample }
-}
-
-/// A calibration in the tracker's numbers.
-pub fn cast<T: Scalar>(calibration: &Calibration<f64>) -> Calibration<T> {
-    let cast = |triad: &Triad<f64>| Triad {
-        offset: triad.offset.map(T::from_f64),
-        matrix: triad.matrix.map(T::from_f64),
-    };
-    Calibration {
-        accelerometer: cast(&calibration.accelerometer),
-        gyroscope: cast(&calibration.gyroscope),
-    }
 }
 
 /// The same in firmware.

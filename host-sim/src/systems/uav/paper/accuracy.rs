@@ -2,17 +2,17 @@
 
 use kestirim_observer_design::Discrete;
 use kestirim_replay::uav::{FAST, MIDDLE, Noise, Plant, SLOW};
-use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_simulate::with_outputs;
 use kestirim_sweep::{Block, Samples};
 use nalgebra::{SMatrix, SVector};
 use serde::Serialize;
 
-use crate::random::stream;
 use crate::system::ScalarKind;
 use crate::systems::uav::simulate::design::{Family, Kind, settled};
+use crate::systems::uav::simulate::errors::Errors;
+use crate::systems::uav::simulate::flight::Flight;
 use crate::systems::uav::simulate::plant::Outputs;
-use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START, fly};
+use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START};
 
 /// Samples after which an estimator that starts at the truth has settled: the slowest error of the experiment, that
 /// of the Navion's airspeed, has by then been forgotten to a hundredth.
@@ -119,11 +119,19 @@ impl Cell {
             numbers.iter().map(move |number| format!("{name}: {number}")).collect::<Vec<_>>()
         });
         let columns: Vec<_> = columns.collect();
-        let fly = match scalar {
-            ScalarKind::F32 => with_outputs!(self.outputs, flight::<f32, _>, self, seed),
-            ScalarKind::F64 => with_outputs!(self.outputs, flight::<f64, _>, self, seed),
-            ScalarKind::Fixed => with_outputs!(self.outputs, flight::<Q16_16, _>, self, seed),
+        let flight = Flight {
+            plant: self.plant,
+            outputs: self.outputs,
+            inputs: self.inputs,
+            noise: self.noise,
+            truth: START,
+            start: self.start(),
+            samples: self.settling() + SAMPLES,
         };
+        let flights = flight.errors(&self.kinds, self.settling(), scalar, seed);
+        let flights = flights.expect("estimators of the table");
+        let numbers = |Errors { squares: [a, q, v, t], refused }| [a, q, v, t, f64::from(refused)];
+        let fly = move |index| flights(index).into_iter().flat_map(numbers).collect();
         Block::new(format!("cell {place}"), columns, trials, move |index| Ok(fly(index)))
     }
 
@@ -159,8 +167,8 @@ impl Cell {
         with_outputs!(self.outputs, predicted, self, kind)
     }
 
-    fn start(&self) -> SVector<f64, 4> {
-        SVector::from(if self.window == Window::Whole { NEAR } else { START })
+    fn start(&self) -> [f64; 4] {
+        if self.window == Window::Whole { NEAR } else { START }
     }
 
     /// Samples before those that count.
@@ -172,46 +180,18 @@ impl Cell {
 /// Numbers of a flight of one estimator: sums of squares of its errors, and steps that it could not take.
 const NUMBERS: usize = 5;
 
-/// One flight by its number: the numbers of each estimator.
-type Flight = Box<dyn Fn(u64) -> Vec<f64> + Send + Sync>;
-
-fn flight<T: Scalar<Accumulator: Send + Sync> + Send + Sync, const P: usize>(
-    c: &SMatrix<f64, P, 4>,
-    cell: &Cell,
-    seed: u64,
-) -> Flight {
-    let (c, plant) = (*c, cell.plant.discrete(INTERVAL_S));
-    let (truth, start) = (SVector::from(START), cell.start());
-    let new = |kind: &Kind| {
-        kind.estimator::<T, P>(&plant, &c, &start, &(truth - start))
-            .expect("an estimator of the table")
-    };
-    let estimators: Vec<_> = cell.kinds.iter().map(new).collect();
-    let (inputs, noise, settling) = (cell.inputs, cell.noise, cell.settling());
-    Box::new(move |index| {
-        let begin = |it: &_| (Clone::clone(it), SVector::<f64, 4>::zeros(), 0.0);
-        let mut flying: Vec<_> = estimators.iter().map(begin).collect();
-        let samples = fly(plant, truth, inputs, noise, stream(seed, index));
-        for (number, sample) in samples.take(settling + SAMPLES).enumerate() {
-            let measured = sample.measured(&c);
-            for (estimator, squares, refused) in &mut flying {
-                if number >= settling {
-                    let error = sample.x - estimator.estimate();
-                    *squares += error.component_mul(&error);
-                }
-                *refused += f64::from(estimator.step(&sample.u, &measured).is_err());
-            }
-        }
-        let numbers = flying.iter().map(|(_, it, refused)| [it.x, it.y, it.z, it.w, *refused]);
-        numbers.flatten().collect()
-    })
-}
-
 fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -> [f64; 4] {
     let plant = cell.plant.discrete(INTERVAL_S);
     if cell.window == Window::Whole {
         let (q, r) = (cell.noise.process(&plant), cell.noise.measurement(c));
-        return over_a_flight(c, &plant, kind, &q, &r, &(SVector::from(START) - cell.start()));
+        return over_a_flight(
+            c,
+            &plant,
+            kind,
+            &q,
+            &r,
+            &(SVector::from(START) - SVector::from(cell.start())),
+        );
     }
     settled(c, &plant, kind, &cell.noise).expect("a stable estimator of the table")
 }

@@ -6,8 +6,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde_json::{Value, json};
 
-use crate::ScalarKind;
-use crate::uav::{
+use kestirim_replay::ScalarKind;
+use kestirim_replay::uav::{
     Contradiction, Deviations, Error, EstimatorKind, Followed, Log, Model, ModelFile,
     ModelFileError, Options, Sample, Truth,
 };
