@@ -3,7 +3,8 @@
 use kestirim_pedestrian::{Ekf, MagneticHeading, OfflineTracker, PathUncertainty};
 use nalgebra::SVector;
 
-use super::{Options, Sample, Walk, imu_sample, position_at};
+use super::walk::imu_sample;
+use super::{Options, Sample, Walk, position_at};
 
 /// Standard deviation of where a foot stands that is put back to where it stood, m.
 const PUT_BACK: f64 = 0.1;

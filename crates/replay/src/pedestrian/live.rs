@@ -9,7 +9,8 @@ use kestirim_pedestrian::{Ekf, Estimate, Lite, Navigator, Tracker};
 use kestirim_scalar::{Components, Q12_20, Scalar};
 
 use super::choices::{WithDetector, with_detector};
-use super::{Options, Sample, TrackerKind, imu_sample, sentences};
+use super::walk::imu_sample;
+use super::{Options, Sample, TrackerKind, sentences};
 use crate::{Number, ScalarKind, Stored};
 
 /// Something that follows a walk, as [`walk`](super::walk) does where all of it is there.

@@ -2,7 +2,8 @@
 //!
 //! [`walk`] makes a [`Walk`] of [`Sample`]s as the [`Options`] say, [`trace`] keeps velocity, attitude and stance of every
 //! sample, too. [`heading_rate`] finds how the heading drifts where the log has a magnetometer, [`sensor_class`] what kind
-//! of sensor it was. [`build`] makes what follows a walk while it comes. Frame: *room*, z up, x as the foot pointed at the start.
+//! of sensor it was. [`build`] makes what follows a walk while it comes. Frame: *room*, z up, x as the foot pointed at
+//! the start.
 
 mod check;
 mod choices;
@@ -27,7 +28,6 @@ pub use self::live::{Follow, build};
 pub use self::position::{Footprint, TrackPoint, position_at};
 pub use self::sensor::sensor_class;
 pub use self::trace::{Moment, Trace, trace, without_updates};
-use self::walk::imu_sample;
 pub use self::walk::{Stride, Walk, walk};
 pub use self::warning::sentences;
 

@@ -3,11 +3,12 @@
 use std::fmt::Debug;
 
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_uav_estimator::{self as uav, FlightObserver};
+use kestirim_uav_estimator::{self as uav, Dynamics, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
+use super::augmented::Augmented;
 use super::estimators::{Assumed, Filter, KEPT, filter, rows, sized};
-use super::{Augmented, EstimatorKind, Model, Options, Poles, Sample, discrete};
+use super::{EstimatorKind, Model, Options, Poles, Sample, discrete};
 use crate::ScalarKind;
 
 /// Something that follows a flight, as [`Deviations::follow`](super::Deviations::follow) does where all of it is there.
@@ -92,7 +93,7 @@ impl<T: Scalar> Follow for Augmented<T> {
 /// An observer whose gain waits for the usual interval.
 #[derive(Debug)]
 struct Observer<T: Scalar, const P: usize> {
-    model: Model,
+    dynamics: Dynamics,
     c: SMatrix<f64, P, 4>,
     poles: Poles,
     usual: f64,
@@ -103,7 +104,7 @@ struct Observer<T: Scalar, const P: usize> {
 impl<T: Scalar, const P: usize> Observer<T, P> {
     fn new(model: &Model, outputs: &[usize], options: &Options) -> Self {
         Self {
-            model: model.clone(),
+            dynamics: model.dynamics,
             c: rows(model, outputs),
             poles: options.poles,
             usual: 0.0,
@@ -115,8 +116,8 @@ impl<T: Scalar, const P: usize> Observer<T, P> {
     /// One for the usual interval, that begins at the sample before.
     fn begin(&self) -> Result<Box<FlightObserver<T, P, KEPT>>, uav::Error> {
         let poles = discrete(self.poles, self.usual);
-        let dynamics = &self.model.dynamics;
-        let mut observer = Box::new(FlightObserver::new(dynamics, &self.c, &poles, self.usual)?);
+        let mut observer =
+            Box::new(FlightObserver::new(&self.dynamics, &self.c, &poles, self.usual)?);
         if let Some(before) = &self.before {
             observer.take(before)?;
         }

@@ -1,7 +1,8 @@
 //! The longitudinal motion of an aeroplane: α, q, V, θ.
 //!
 //! [`Deviations`] are a [`Log`] less the steady flight of its [`Model`]; [`Deviations::follow`] makes a [`Followed`] of them
-//! as the [`Options`] say, [`build`] what follows a flight while it comes. Angles are radians, the airspeed m/s, times µs of the log's clock.
+//! as the [`Options`] say, [`build`] what follows a flight while it comes. Angles are radians, the airspeed m/s, times µs
+//! of the log's clock.
 
 mod augmented;
 mod check;
@@ -23,7 +24,6 @@ mod noise;
 mod options;
 mod poles;
 
-use self::augmented::Augmented;
 pub use self::augmented::MOST_EXTENDED_OUTPUTS;
 pub use self::check::check;
 pub use self::contradiction::Contradiction;

@@ -1,5 +1,4 @@
-//! What replays whole recordings: it stands apart from what tests single functions, which so need not be built with all
-//! trackers of all number types.
+//! What replays whole recordings. It stands apart from the tests of single functions, so that those are built without the trackers.
 
 mod robot_smoother;
 #[cfg(feature = "serde")]

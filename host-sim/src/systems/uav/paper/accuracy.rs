@@ -131,8 +131,9 @@ impl Cell {
         let flights = flight.errors(&self.kinds, self.settling(), scalar, seed);
         let flights = flights.expect("estimators of the table");
         let numbers = |Errors { squares: [a, q, v, t], refused }| [a, q, v, t, f64::from(refused)];
-        let fly = move |index| flights(index).into_iter().flat_map(numbers).collect();
-        Block::new(format!("cell {place}"), columns, trials, move |index| Ok(fly(index)))
+        Block::new(format!("cell {place}"), columns, trials, move |index| {
+            Ok(flights(index).into_iter().flat_map(numbers).collect())
+        })
     }
 
     /// What came of the flights.
@@ -184,14 +185,8 @@ fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -
     let plant = cell.plant.discrete(INTERVAL_S);
     if cell.window == Window::Whole {
         let (q, r) = (cell.noise.process(&plant), cell.noise.measurement(c));
-        return over_a_flight(
-            c,
-            &plant,
-            kind,
-            &q,
-            &r,
-            &(SVector::from(START) - SVector::from(cell.start())),
-        );
+        let off = SVector::from(START) - SVector::from(cell.start());
+        return over_a_flight(c, &plant, kind, &q, &r, &off);
     }
     settled(c, &plant, kind, &cell.noise).expect("a stable estimator of the table")
 }
