@@ -30,7 +30,8 @@ pub struct Navigation {
     pub ionosphere: Option<[[f64; 4]; 2]>,
     /// How many records were passed over: other systems, other messages, orbits that are none.
     pub skipped: usize,
-    /// Of which satellites files have ephemerides whose systems are not served; none of RINEX 2 and of streams.
+    /// Of which satellites files have ephemerides whose systems are not served; none of RINEX 2, whose files have one
+    /// system each.
     pub unserved: Vec<Warning>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
@@ -57,7 +58,7 @@ impl Navigation {
         for text in texts {
             let mut file = Vec::new();
             match Stream::of(text)? {
-                Some(stream) => navigation.take(stream, &mut file),
+                Some(stream) => navigation.take(text, stream, &mut file),
                 None => navigation.parse_file(text, &mut file)?,
             }
             if file.is_empty() {
@@ -104,10 +105,11 @@ impl Navigation {
         }
     }
 
-    fn take(&mut self, stream: Stream, found: &mut Vec<(u8, Ephemeris)>) {
+    fn take(&mut self, text: &Text, stream: Stream, found: &mut Vec<(u8, Ephemeris)>) {
         self.ionosphere = stream.ionosphere.or(self.ionosphere);
         self.skipped += stream.skipped;
         self.warnings.extend(stream.warnings);
+        self.tell(text, &stream.unread);
         let (orbits, others): (Vec<_>, Vec<_>) =
             stream.ephemerides.into_iter().partition(|(_, ephemeris)| ephemeris.is_orbit());
         self.skipped += others.len();
@@ -139,7 +141,7 @@ impl Navigation {
                 }
                 Record::Other => {
                     self.skipped += 1;
-                    layout.sender(&line).into_iter().for_each(|name| unserved.note(name));
+                    layout.sender(&line).into_iter().for_each(|name| unserved.note_name(name));
                     Ok(())
                 }
             };
@@ -151,8 +153,12 @@ impl Navigation {
                 read => read?,
             }
         }
-        self.unserved.extend(unserved.sentence().map(|it| text.warning(it)));
+        self.tell(text, &unserved);
         Ok(())
+    }
+
+    fn tell(&mut self, text: &Text, unserved: &Unserved) {
+        self.unserved.extend(unserved.sentence("ephemerides").map(|it| text.warning(it)));
     }
 
     fn header(&mut self, text: &Text, lines: &mut Lines<'_>) -> Result<Layout, Error> {

@@ -1,6 +1,10 @@
 //! Streams of receivers as they were recorded: RTCM 3 and UBX.
 
+#[cfg(any(feature = "rtcm", feature = "ubx"))]
+mod bits;
 mod frames;
+#[cfg(feature = "ubx")]
+mod inav;
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 mod indices;
 #[cfg(feature = "ubx")]
@@ -24,6 +28,7 @@ use crate::observations::Raw;
 use crate::observations::Signal;
 use crate::text::Text;
 use crate::time::GpsTime;
+use crate::unserved::Unserved;
 
 /// A satellite with all its signals.
 pub(crate) type Signals = (u8, Vec<Raw>);
@@ -39,6 +44,10 @@ pub(crate) struct Stream {
     pub(crate) ionosphere: Option<[[f64; 4]; 2]>,
     /// How many messages were passed over: other systems, other things.
     pub(crate) skipped: usize,
+    /// Which satellites were observed whose systems are not served.
+    pub(crate) observed: Unserved,
+    /// Which satellites sent ephemerides that are not read.
+    pub(crate) unread: Unserved,
     /// Warnings about it.
     pub(crate) warnings: Vec<Warning>,
 }

@@ -16,24 +16,32 @@ const SYSTEMS: [(u8, &str); 6] = [
 pub(crate) struct Unserved([u128; SYSTEMS.len()]);
 
 impl Unserved {
-    /// Takes note of a satellite, unless its system is not known.
-    pub(crate) fn note(&mut self, [letter, tens, ones]: [u8; 3]) {
+    /// Takes note of a satellite by its name, unless its system is not known.
+    pub(crate) fn note_name(&mut self, [letter, tens, ones]: [u8; 3]) {
         let digit = |byte: u8| byte.is_ascii_digit().then(|| byte - b'0');
         // RINEX allows both R01 and R 1.
         let tens = if tens == b' ' { Some(0) } else { digit(tens) };
         let (Some(tens), Some(ones)) = (tens, digit(ones)) else { return };
+        self.note(letter, 10 * tens + ones);
+    }
+
+    /// Takes note of a satellite by the letter of its system and its number, unless one of them is not known.
+    pub(crate) fn note(&mut self, letter: u8, number: u8) {
+        let Some(bit) = 1_u128.checked_shl(u32::from(number)) else { return };
         for ((of, _), seen) in SYSTEMS.iter().zip(&mut self.0) {
-            *seen |= u128::from(*of == letter) << (10 * tens + ones);
+            if *of == letter {
+                *seen |= bit;
+            }
         }
     }
 
-    /// A sentence about them, if there are any.
-    pub(crate) fn sentence(&self) -> Option<String> {
+    /// A sentence about them or their ephemerides, if there are any.
+    pub(crate) fn sentence(&self, what: &str) -> Option<String> {
         let told = SYSTEMS.iter().zip(self.0).filter(|(_, seen)| *seen != 0);
         let told = told.map(|((_, system), seen)| format!("{system} ({})", seen.count_ones()));
         let satellites = told.collect::<Vec<_>>().join(", ");
         (!satellites.is_empty())
-            .then(|| format!("satellites of {satellites} are in the file, but are not read"))
+            .then(|| format!("{what} of {satellites} are in the file, but are not read"))
     }
 }
 
@@ -45,10 +53,12 @@ mod tests {
     fn each_satellite_counts_once() {
         let mut unserved = Unserved::default();
         for name in [b"C19", b"R01", b"R 1", b"R24", b"X01", b"   "] {
-            unserved.note(*name);
+            unserved.note_name(*name);
         }
+        unserved.note(b'R', 24);
+        unserved.note(b'R', 255);
         let expected = "satellites of GLONASS (2), BeiDou (1) are in the file, but are not read";
-        assert_eq!(unserved.sentence().as_deref(), Some(expected));
-        assert_eq!(Unserved::default().sentence(), None);
+        assert_eq!(unserved.sentence("satellites").as_deref(), Some(expected));
+        assert_eq!(Unserved::default().sentence("satellites"), None);
     }
 }

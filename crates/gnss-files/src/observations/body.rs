@@ -79,6 +79,7 @@ impl Body {
     /// Takes in the epochs of a stream.
     pub(super) fn take(&mut self, text: &Text, stream: Stream) -> Result<(), Error> {
         self.warnings.extend(stream.warnings);
+        self.unserved = stream.observed;
         for (time, satellites) in stream.epochs {
             if self.epochs.last().is_some_and(|last| time <= last.time) {
                 self.backwards += 1;
@@ -133,7 +134,7 @@ impl Body {
             let prn = match named {
                 Named::Known(prn) => prn,
                 Named::Other(name) => {
-                    self.unserved.note(name);
+                    self.unserved.note_name(name);
                     continue;
                 }
             };
@@ -260,7 +261,7 @@ impl Body {
             antenna_delta_hen,
             epochs,
             signals,
-            unserved: self.unserved.sentence().map(|it| text.warning(it)),
+            unserved: self.unserved.sentence("satellites").map(|it| text.warning(it)),
             warnings: self.warnings,
         }
     }

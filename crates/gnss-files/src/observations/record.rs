@@ -23,7 +23,7 @@ pub struct Observations {
     pub epochs: Vec<Epoch>,
     /// The signals taken from each satellite, by its number.
     pub signals: BTreeMap<u8, Signals>,
-    /// Which satellites were observed whose systems are not served; none of streams, in which they are passed over.
+    /// Which satellites were observed whose systems are not served.
     pub unserved: Option<Warning>,
     /// Warnings about the file.
     pub warnings: Vec<Warning>,

@@ -46,7 +46,8 @@ fn frames(bytes: &[u8], first: &[u8], is_frame: impl Fn(&[u8]) -> Option<bool>) 
         .any(|place| is_frame(&bytes[place..]).unwrap_or_default())
 }
 
-fn crc_24q(bytes: &[u8]) -> u32 {
+/// The checksum of a frame of RTCM 3.
+pub(super) fn crc_24q(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte) << 16, |crc, _| {
             let shifted = crc << 1 & 0xff_ffff;

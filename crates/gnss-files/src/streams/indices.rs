@@ -18,7 +18,6 @@ pub(super) fn ura(index: u8) -> Option<f64> {
 
 /// SISA of Galileo, m (OS SIS ICD, 5.1.12); none without a prediction, and none of index 0: no range is free of errors, and files
 /// with such an accuracy are read alike.
-#[cfg(feature = "rtcm")]
 pub(super) fn sisa(index: u8) -> Option<f64> {
     let above = |first: u8, step: f64| f64::from(index - first) * step;
     match index {
@@ -30,7 +29,7 @@ pub(super) fn sisa(index: u8) -> Option<f64> {
     }
 }
 
-#[cfg(all(test, feature = "rtcm"))]
+#[cfg(test)]
 mod tests {
     use super::sisa;
 

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::bits::Fields;
 use super::indices::{SEMICIRCLE, ura};
 use crate::navigation::{Ephemeris, time_of_week};
 use crate::time::GpsTime;
 
-/// Words of a subframe, and bits of a word without its parity.
+/// Words of a subframe, and bytes of a word without its parity.
 pub(super) const WORDS: usize = 10;
-const BITS: usize = 24;
+const BYTES: usize = 3;
 /// The first bit behind the telemetry and the hand-over word.
 const DATA: usize = 48;
 /// The page of the fourth subframe that has the ionosphere.
@@ -18,58 +19,23 @@ const TICK: f64 = 16.0;
 
 /// A subframe: words of 24 bits, the parity taken off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Subframe([u32; WORDS]);
+pub(super) struct Subframe([u8; WORDS * BYTES]);
 
 impl Subframe {
     /// From words with 6 bits of parity at their ends, as receivers pass them on; none of another number of words.
     pub(super) fn of(words: impl Iterator<Item = u32>) -> Option<Self> {
-        let words: Vec<_> = words.map(|word| word >> 6 & 0xff_ffff).collect();
-        words.try_into().ok().map(Self)
+        // The highest two bits say nothing.
+        let bytes = words.map(|word| (word << 2).to_be_bytes()).flat_map(|[a, b, c, _]| [a, b, c]);
+        bytes.collect::<Vec<_>>().try_into().ok().map(Self)
     }
 
     /// Its number, from 1 to 5.
     fn number(&self) -> u64 {
-        self.unsigned(43, 3)
+        self.fields(43).whole(3)
     }
 
-    fn unsigned(&self, from: usize, bits: usize) -> u64 {
-        (from..from + bits).fold(0, |value, place| {
-            let word = self.0.get(place / BITS).copied().unwrap_or_default();
-            value << 1 | u64::from(word >> (BITS - 1 - place % BITS) & 1)
-        })
-    }
-
-    fn signed(&self, from: usize, bits: usize) -> f64 {
-        let value = self.unsigned(from, bits) as i64;
-        (if value >> (bits - 1) == 0 { value } else { value - (1 << bits) }) as f64
-    }
-}
-
-/// Numbers of a subframe one after the other.
-struct Fields<'a> {
-    subframe: &'a Subframe,
-    place: usize,
-}
-
-impl Fields<'_> {
-    fn skip(&mut self, bits: usize) {
-        self.place += bits;
-    }
-
-    fn whole(&mut self, bits: usize) -> u64 {
-        self.skip(bits);
-        self.subframe.unsigned(self.place - bits, bits)
-    }
-
-    /// A number with a sign, in units of a power of two.
-    fn signed(&mut self, bits: usize, power: i32) -> f64 {
-        self.skip(bits);
-        self.subframe.signed(self.place - bits, bits) * 2_f64.powi(power)
-    }
-
-    /// The same without a sign.
-    fn unsigned(&mut self, bits: usize, power: i32) -> f64 {
-        self.whole(bits) as f64 * 2_f64.powi(power)
+    fn fields(&self, place: usize) -> Fields<'_> {
+        Fields::at(&self.0, place)
     }
 }
 
@@ -97,17 +63,17 @@ impl Collection {
 
 /// α and β of Klobuchar's model, if a subframe has them.
 pub(super) fn ionosphere(subframe: &Subframe) -> Option<[[f64; 4]; 2]> {
-    if subframe.number() != 4 || subframe.unsigned(DATA + 2, 6) != IONOSPHERE {
+    if subframe.number() != 4 || subframe.fields(DATA + 2).whole(6) != IONOSPHERE {
         return None;
     }
-    let mut fields = Fields { subframe, place: DATA + 8 };
+    let mut fields = subframe.fields(DATA + 8);
     let alpha = [-30, -27, -24, -24].map(|power| fields.signed(8, power));
     Some([alpha, [11, 14, 16, 16].map(|power| fields.signed(8, power))])
 }
 
 /// The ephemeris of three subframes, if they are of one issue.
 fn ephemeris([first, second, third]: [&Subframe; 3], near: GpsTime) -> Option<Ephemeris> {
-    let mut fields = Fields { subframe: first, place: DATA + 12 };
+    let mut fields = first.fields(DATA + 12);
     let accuracy = ura(fields.whole(4) as u8);
     let is_healthy = fields.whole(6) == 0;
     fields.skip(2 + 1 + 87);
@@ -117,7 +83,7 @@ fn ephemeris([first, second, third]: [&Subframe; 3], near: GpsTime) -> Option<Ep
     let [ageing, drift, offset] =
         [(8, -55), (16, -43), (22, -31)].map(|(bits, power)| fields.signed(bits, power));
 
-    let mut fields = Fields { subframe: second, place: DATA };
+    let mut fields = second.fields(DATA);
     let issue = fields.whole(8);
     let sine_radius = fields.signed(16, -5);
     let mean_motion_correction = SEMICIRCLE * fields.signed(16, -43);
@@ -128,7 +94,7 @@ fn ephemeris([first, second, third]: [&Subframe; 3], near: GpsTime) -> Option<Ep
     let root_of_axis = fields.unsigned(32, -19);
     let second_of_week = TICK * fields.unsigned(16, 0);
 
-    let mut fields = Fields { subframe: third, place: DATA };
+    let mut fields = third.fields(DATA);
     let cosine_inclination = fields.signed(16, -29);
     let node = SEMICIRCLE * fields.signed(32, -31);
     let sine_inclination = fields.signed(16, -29);

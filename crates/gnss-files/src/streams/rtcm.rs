@@ -2,12 +2,14 @@
 
 mod ephemerides;
 mod lock_times;
+mod passed_over;
 mod weeks;
 
 use rtcm_rs::prelude::*;
 
 use self::ephemerides::{fnav, gps, inav};
 use self::lock_times::{tracked_long, tracked_short};
+use self::passed_over::{PassedOver, cells};
 use self::weeks::{dated, elapsed, in_week_of, rolled_to, second_of_week};
 use super::{Locks, Signals, Stream};
 use crate::biases::SPEED_OF_LIGHT;
@@ -33,8 +35,9 @@ pub(super) fn read(text: &Text) -> Result<Stream, Error> {
         match next_msg_frame(rest) {
             (used, Some(frame)) => {
                 position += used;
-                if is_regular(&frame) {
-                    reader.take(&frame.get_message());
+                // The decoder relies on that.
+                if cells(&frame).is_none_or(|cells| (1..=MOST_CELLS).contains(&cells)) {
+                    reader.take(&frame);
                 } else {
                     reader.stream.skipped += 1;
                 }
@@ -44,21 +47,6 @@ pub(super) fn read(text: &Text) -> Result<Stream, Error> {
         }
     }
     reader.finish(text)
-}
-
-/// Whether a message of observations has as many cells as may be: the decoder relies on that.
-fn is_regular(frame: &MessageFrame<'_>) -> bool {
-    let number = frame.message_number().unwrap_or_default();
-    if !(1071..=1137).contains(&number) {
-        return true;
-    }
-    // The masks of satellites and of signals stand behind the header of 73 bits.
-    let ones = |from: usize, bits: usize| {
-        let bit =
-            |place: usize| frame.data().get(place / 8).map(|byte| byte >> (7 - place % 8) & 1);
-        (from..from + bits).filter_map(bit).map(u32::from).sum::<u32>()
-    };
-    (1..=MOST_CELLS).contains(&(ones(73, 64) * ones(137, 32)))
 }
 
 /// An epoch of which the week is not known yet: ms of the week, and its satellites.
@@ -71,6 +59,7 @@ struct Reader {
     locks: Locks,
     /// Ephemerides of the weeks that were transmitted, each with the number of its satellite and the place of the epoch before it.
     ephemerides: Vec<(usize, u8, Ephemeris)>,
+    passed_over: PassedOver,
 }
 
 /// The signals of a message of observations: satellites' rough ranges, and what is fine beside them, ms.
@@ -97,8 +86,8 @@ macro_rules! cells {
 }
 
 impl Reader {
-    fn take(&mut self, message: &Message) {
-        match message {
+    fn take(&mut self, frame: &MessageFrame<'_>) {
+        match &frame.get_message() {
             Message::Msg1074(it) => cells!(
                 self,
                 it,
@@ -142,7 +131,10 @@ impl Reader {
             Message::Msg1019(it) => self.ephemeris(it.gps_satellite_id, gps(it)),
             Message::Msg1045(it) => self.ephemeris(GALILEO + it.gal_satellite_id, fnav(it)),
             Message::Msg1046(it) => self.ephemeris(GALILEO + it.gal_satellite_id, inav(it)),
-            _ => self.stream.skipped += 1,
+            _ => {
+                self.stream.skipped += 1;
+                self.passed_over.note(frame);
+            }
         }
     }
 
@@ -187,7 +179,10 @@ impl Reader {
 
     /// Gives epochs and ephemerides their weeks.
     fn finish(self, text: &Text) -> Result<Stream, Error> {
-        let Self { mut stream, epochs, ephemerides, .. } = self;
+        let Self { mut stream, epochs, ephemerides, passed_over, .. } = self;
+        stream.warnings.extend(passed_over.sentence().map(|it| text.warning(it)));
+        stream.observed = passed_over.observed;
+        stream.unread = passed_over.ephemerides;
         let seconds: Vec<_> = epochs.iter().map(|(time, _)| 1e-3 * *time as f64).collect();
         // Weeks of Galileo are told without a doubt.
         let near =

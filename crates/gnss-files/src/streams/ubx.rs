@@ -1,4 +1,4 @@
-//! UBX: observations (RXM-RAWX), and the message of GPS on L1 (RXM-SFRBX).
+//! UBX: observations (RXM-RAWX), and the messages of GPS on L1 and of Galileo on E1 and E5b (RXM-SFRBX).
 
 use std::ops::RangeInclusive;
 
@@ -7,12 +7,14 @@ use ublox::rxm_rawx::{RxmRawxRef, TrkStatFlags};
 use ublox::rxm_sfrbx::RxmSfrbxRef;
 use ublox::{ParserBuilder, UbxPacket};
 
-use super::lnav::{self, Collection, Subframe, WORDS};
+use super::inav::{self, Word};
+use super::lnav::{self, Subframe};
 use super::{Locks, Signals, Stream};
 use crate::fields::GALILEO;
 use crate::observations::{Raw, Signal};
 use crate::text::Text;
 use crate::time::GpsTime;
+use crate::unserved::Unserved;
 
 /// The longest message that is read, bytes: 255 signals.
 const LONGEST: usize = 8_192;
@@ -23,10 +25,15 @@ const OF_GPS: u8 = 0;
 const OF_GALILEO: u8 = 2;
 /// `sigId` of L1 C/A, the signal that carries the message which is read.
 const L1: u8 = 0;
+/// The letters of systems that are not served by their `gnssId`, and what is taken off a satellite's number for the one that
+/// RINEX has.
+const OTHERS: [(u8, u8, u8); 5] =
+    [(1, b'S', 100), (3, b'C', 0), (5, b'J', 0), (6, b'R', 0), (7, b'I', 0)];
 /// Days of a week.
 const WEEK: i32 = 7;
-/// Numbers of GPS satellites.
+/// Numbers of satellites of both.
 const GPS: RangeInclusive<u8> = 1..=32;
+const GALILEO_NUMBERS: RangeInclusive<u8> = 1..=36;
 
 /// Reads a file.
 pub(super) fn read(text: &Text) -> Stream {
@@ -41,7 +48,7 @@ pub(super) fn read(text: &Text) -> Stream {
                 Ok(UbxPacket::Proto27(PacketRef::RxmRawx(message))) => {
                     reader.observations(&message);
                 }
-                Ok(UbxPacket::Proto27(PacketRef::RxmSfrbx(message))) => reader.subframe(&message),
+                Ok(UbxPacket::Proto27(PacketRef::RxmSfrbx(message))) => reader.part(&message),
                 Ok(_) => reader.stream.skipped += 1,
                 Err(_) => damaged += 1,
             }
@@ -55,13 +62,20 @@ pub(super) fn read(text: &Text) -> Stream {
     stream
 }
 
+/// A part of the message of a satellite.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    Gps(Subframe),
+    Galileo(Word),
+}
+
 #[derive(Debug, Default)]
 struct Reader {
     stream: Stream,
     locks: Locks,
-    /// Subframes in the order of the stream, of which the week is not known by themselves, each with the place of the epoch before
-    /// it.
-    subframes: Vec<(usize, u8, Subframe)>,
+    /// Parts of messages in the order of the stream, of which the week is not known by themselves, each with the place of the
+    /// epoch before it and its satellite's number.
+    parts: Vec<(usize, u8, Part)>,
 }
 
 impl Reader {
@@ -74,6 +88,7 @@ impl Reader {
             // The driver's name of the signal: it was reserved before there were receivers of two carriers.
             let Some((satellite, [code, phase])) = told(it.gnss_id(), it.sv_id(), it.reserved2())
             else {
+                note(&mut self.stream.observed, it.gnss_id(), it.sv_id());
                 continue;
             };
             let known = satellites.iter().position(|(other, _)| *other == satellite);
@@ -99,30 +114,54 @@ impl Reader {
         self.stream.epochs.push((time, satellites));
     }
 
-    fn subframe(&mut self, message: &RxmSfrbxRef<'_>) {
-        let is_lnav = message.gnss_id() == OF_GPS
-            && message.reserved1() == L1
-            && GPS.contains(&message.sv_id());
-        let place = self.stream.epochs.len().saturating_sub(1);
-        match Subframe::of(message.dwrd().take(WORDS)) {
-            Some(subframe) if is_lnav => self.subframes.push((place, message.sv_id(), subframe)),
-            _ => self.stream.skipped += 1,
-        }
+    fn part(&mut self, message: &RxmSfrbxRef<'_>) {
+        let (system, number) = (message.gnss_id(), message.sv_id());
+        // The driver's name of the signal, too.
+        let signal = message.reserved1();
+        let part = match system {
+            OF_GPS if signal == L1 && GPS.contains(&number) => {
+                Subframe::of(message.dwrd().take(lnav::WORDS)).map(Part::Gps)
+            }
+            // Both signals carry the same message; of another it would not have the checksum.
+            OF_GALILEO if GALILEO_NUMBERS.contains(&number) => {
+                Word::of(message.dwrd().take(inav::WORDS)).map(Part::Galileo)
+            }
+            _ => None,
+        };
+        let Some(part) = part else {
+            self.stream.skipped += 1;
+            note(&mut self.stream.unread, system, number);
+            return;
+        };
+        self.parts.push((self.stream.epochs.len().saturating_sub(1), number, part));
     }
 
-    /// Makes ephemerides of the subframes.
+    /// Makes ephemerides of the parts.
     fn finish(self) -> Stream {
-        let Self { mut stream, subframes, .. } = self;
-        let mut collection = Collection::default();
-        for (place, satellite, subframe) in subframes {
+        let Self { mut stream, parts, .. } = self;
+        let mut of_gps = lnav::Collection::default();
+        let mut of_galileo = inav::Collection::default();
+        for (place, number, part) in parts {
             // Without any epoch there is no week.
             let Some(near) = stream.epochs.get(place).map(|(time, _)| *time) else { break };
-            stream.ionosphere = lnav::ionosphere(&subframe).or(stream.ionosphere);
-            if let Some(ephemeris) = collection.take(satellite, subframe, near) {
-                stream.ephemerides.push((satellite, ephemeris));
-            }
+            let (satellite, ephemeris) = match part {
+                Part::Gps(subframe) => {
+                    stream.ionosphere = lnav::ionosphere(&subframe).or(stream.ionosphere);
+                    (number, of_gps.take(number, subframe, near))
+                }
+                Part::Galileo(word) => (GALILEO + number, of_galileo.take(number, word, near)),
+            };
+            stream.ephemerides.extend(ephemeris.map(|ephemeris| (satellite, ephemeris)));
         }
         stream
+    }
+}
+
+/// Takes note of a satellite by the receiver's numbers, if its system is one of the others.
+fn note(unserved: &mut Unserved, system: u8, number: u8) {
+    let Some((_, letter, off)) = OTHERS.iter().find(|(of, ..)| *of == system) else { return };
+    if let Some(number) = number.checked_sub(*off) {
+        unserved.note(*letter, number);
     }
 }
 

@@ -9,6 +9,7 @@ use rtcm_rs::prelude::MessageBuilder;
 use rtcm_rs::util::DataVec;
 
 use super::*;
+use crate::streams::frames::crc_24q;
 
 fn frame(message: &message::Message) -> Vec<u8> {
     MessageBuilder::new().build_message(message).expect("a message").to_vec()
@@ -144,6 +145,47 @@ fn observations_are_read_to_the_resolution_of_the_format() -> Result<(), Error> 
     }
     // Tracked for a shorter time than before.
     assert_eq!((first.loss_of_lock, second.loss_of_lock), ([false; 2], [true; 2]));
+    Ok(())
+}
+
+/// The message with another number: the systems' messages of observations are alike.
+fn renumbered(frame: &[u8], number: u16) -> Vec<u8> {
+    let mut frame = frame[..frame.len() - 3].to_vec();
+    frame[3] = (number >> 4) as u8;
+    frame[4] = frame[4] & 0xf | (number << 4) as u8;
+    let sum = crc_24q(&frame).to_be_bytes();
+    [&frame, &sum[1..]].concat()
+}
+
+#[test]
+fn what_is_passed_over_is_named() -> Result<(), Error> {
+    let read = [ephemerides(&broadcast()?), observed(345_600_000, 7)].concat();
+    let [gps, of_gps] = [observed(345_600_000, 7), ephemerides(&broadcast()?)];
+    // GLONASS, SBAS, BeiDou and a number that none has; GPS as MSM5 and as it was before; ephemerides of BeiDou and QZSS.
+    let others = [1087, 1107, 1124, 1138, 1075].map(|number| renumbered(&gps, number)).concat();
+    let end = 6 + usize::from(of_gps[2]);
+    let broadcast = [1042, 1044].map(|number| renumbered(&of_gps[..end], number)).concat();
+    let old = renumbered(&of_gps[..end], 1004);
+    let stream = text([read.clone(), others, broadcast, old].concat());
+
+    let observations = Observations::parse(&stream)?;
+    let told = observations.unserved.map(|it| it.to_string());
+    let expected =
+        "file: satellites of GLONASS (1), BeiDou (1), SBAS (1) are in the file, but are not read";
+    assert_eq!(told.as_deref(), Some(expected));
+    let [warning] = &observations.warnings[..] else { panic!("one warning") };
+    let expected =
+        "file: observations in messages 1004, 1075 are not read, only those in MSM4 and MSM7";
+    assert_eq!(warning.to_string(), expected);
+    let navigation = Navigation::parse(&[stream])?;
+    let [unserved] = &navigation.unserved[..] else { panic!("one warning") };
+    let expected = "file: ephemerides of BeiDou (1), QZSS (1) are in the file, but are not read";
+    assert_eq!(unserved.to_string(), expected);
+
+    let stream = text(read);
+    let observations = Observations::parse(&stream)?;
+    assert_eq!((observations.unserved, observations.warnings), (None, Vec::new()));
+    assert_eq!(Navigation::parse(&[stream])?.unserved, []);
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::streams::frames::crc_24q;
 
 fn frame(id: u8, held: &[u8]) -> Vec<u8> {
     let length = u16::try_from(held.len()).expect("a short message").to_le_bytes();
@@ -43,6 +44,11 @@ fn observed_in_week(week: u16, second: f64, lock: u16) -> Vec<u8> {
 
 /// Bits from the first to the last, in words with room for parity.
 fn subframe(number: u64, fields: &[(i64, usize)]) -> Vec<u8> {
+    subframe_of([0, 1], number, fields)
+}
+
+/// The same of another system and satellite.
+fn subframe_of(sender: [u8; 2], number: u64, fields: &[(i64, usize)]) -> Vec<u8> {
     let mut bits = vec![false; 240];
     let mut place = 43;
     for (value, width) in [(number as i64, 3), (0, 2)].iter().chain(fields) {
@@ -51,7 +57,7 @@ fn subframe(number: u64, fields: &[(i64, usize)]) -> Vec<u8> {
             place += 1;
         }
     }
-    let mut held = vec![0, 1, 0, 0, 10, 0, 2, 0];
+    let mut held = [&sender[..], &[0, 0, 10, 0, 2, 0]].concat();
     for word in bits.chunks(24) {
         let word = word.iter().fold(0_u32, |word, bit| word << 1 | u32::from(*bit));
         // Parity, and two bits that say nothing.
@@ -109,6 +115,113 @@ pub(super) fn subframes(it: &Ephemeris) -> Vec<u8> {
         (turns(it.inclination_rate, -43), 14),
     ];
     [subframe(1, &first), subframe(2, &second), subframe(3, &third)].concat()
+}
+
+/// A word of the message of Galileo's first satellite, as both parts of a page: its type, the number of the issue if it has one,
+/// and the rest.
+fn word(number: i64, fields: &[(i64, usize)]) -> Vec<u8> {
+    let bits = |fields: &[(i64, usize)]| {
+        let bits =
+            |&(value, width): &(i64, usize)| (0..width).rev().map(move |bit| value >> bit & 1 == 1);
+        fields.iter().flat_map(bits).collect::<Vec<_>>()
+    };
+    let mut held = bits(&[&[(number, 6)], fields].concat());
+    held.resize(128, false);
+    let even = [&bits(&[(0, 2)])[..], &held[..112]].concat();
+    let odd = [&bits(&[(2, 2)])[..], &held[112..], &[true; 64]].concat();
+    let summed = [&[false; 4], &even[..], &odd[..]].concat();
+    let packed = |bits: &[bool]| {
+        let byte = |bits: &[bool]| bits.iter().fold(0_u8, |byte, bit| byte << 1 | u8::from(*bit));
+        bits.chunks(8).map(byte).collect::<Vec<_>>()
+    };
+    let sum = bits(&[(i64::from(crc_24q(&packed(&summed))), 24)]);
+    // The tail and what a receiver fills up with say nothing.
+    let page = [even, vec![true; 14], odd, sum, vec![true; 22]].concat();
+    let mut frame_of = vec![2, 1, 1, 0, 8, 0, 2, 0];
+    for word in packed(&page).chunks(4) {
+        frame_of.extend(word.iter().rev());
+    }
+    frame(0x13, &frame_of)
+}
+
+/// The words of an ephemeris.
+fn words(it: &Ephemeris) -> [Vec<u8>; 5] {
+    let turns = |angle: f64, power| in_units(angle / PI, power);
+    let minutes = |time: crate::GpsTime| {
+        let second = f64::from((time.day() - 44_244).rem_euclid(7)) * 86_400.0 + time.second();
+        (second / 60.0) as i64
+    };
+    let issue = (i64::from(it.issue), 10);
+    let first = [
+        issue,
+        (minutes(it.time), 14),
+        (turns(it.mean_anomaly, -31), 32),
+        (in_units(it.eccentricity, -33), 32),
+        (in_units(it.root_of_axis, -19), 32),
+    ];
+    let second = [
+        issue,
+        (turns(it.node, -31), 32),
+        (turns(it.inclination, -31), 32),
+        (turns(it.perigee, -31), 32),
+        (turns(it.inclination_rate, -43), 14),
+    ];
+    let third = [
+        issue,
+        (turns(it.node_rate, -43), 24),
+        (turns(it.mean_motion_correction, -43), 16),
+        (in_units(it.latitude_terms[0], -29), 16),
+        (in_units(it.latitude_terms[1], -29), 16),
+        (in_units(it.radius_terms[0], -5), 16),
+        (in_units(it.radius_terms[1], -5), 16),
+        (107, 8),
+    ];
+    let fourth = [
+        issue,
+        (1, 6),
+        (in_units(it.inclination_terms[0], -29), 16),
+        (in_units(it.inclination_terms[1], -29), 16),
+        (minutes(it.clock_time), 14),
+        (in_units(it.clock[0], -34), 31),
+        (in_units(it.clock[1], -46), 21),
+        (in_units(it.clock[2], -59), 6),
+    ];
+    let fifth = [
+        (-1, 11 + 11 + 14 + 5),
+        (in_units(it.group_delays[0], -32), 10),
+        (in_units(it.group_delays[1], -32), 10),
+        (i64::from(!it.is_healthy), 2 + 2 + 1 + 1),
+    ];
+    [word(1, &first), word(2, &second), word(3, &third), word(4, &fourth), word(5, &fifth)]
+}
+
+#[test]
+fn ephemerides_of_galileo_are_what_the_file_has() -> Result<(), Error> {
+    let [_, (_, told)] = broadcast()?;
+    let told = Ephemeris {
+        message: Message::Inav,
+        group_delays: [told.group_delays[0], -3.0 * 2_f64.powi(-32)],
+        ..told
+    };
+    let [first, second, third, fourth, fifth] = words(&told);
+    let mut damaged = second.clone();
+    // A bit of the page, and the frame's own sums made good.
+    damaged[20] ^= 4;
+    let damaged = frame(0x13, &damaged[6..damaged.len() - 2]);
+    let other = words(&Ephemeris { issue: told.issue + 1, ..told })[1].clone();
+    let before = [observed(360_000.0, 100), fifth, fourth, third, damaged, first];
+    let found =
+        |last: &[Vec<u8>]| Navigation::parse(&[text([&before[..], last].concat().concat())]);
+
+    assert!(
+        found(std::slice::from_ref(&other)).is_err(),
+        "a word is missing, and one is of another issue"
+    );
+    let read = found(&[other, second])?;
+    let [galileo] = read.satellite(101, Message::Inav) else { panic!("one ephemeris") };
+    are_alike(galileo, &told);
+    assert_eq!((read.skipped, read.unserved), (1, Vec::new()));
+    Ok(())
 }
 
 #[test]
@@ -176,6 +289,22 @@ fn a_loss_within_a_gap_is_seen() -> Result<(), Error> {
     let lost: Vec<_> =
         observations.epochs.iter().map(|it| it.satellites[0].loss_of_lock[0]).collect();
     assert_eq!(lost, [false, true, false, false, false]);
+    Ok(())
+}
+
+#[test]
+fn what_is_passed_over_is_named() -> Result<(), Error> {
+    let [(_, told), _] = broadcast()?;
+    // SBAS's 123, QZSS's second and a satellite of GLONASS that the receiver has no number for.
+    let others = [[1, 123], [5, 2], [6, 255]].map(|sender| subframe_of(sender, 1, &[])).concat();
+    let stream = text([observed(345_600.0, 1_000), subframes(&told), others].concat());
+    let observed = Observations::parse(&stream)?.unserved.map(|it| it.to_string());
+    let expected = "file: satellites of GLONASS (1) are in the file, but are not read";
+    assert_eq!(observed.as_deref(), Some(expected));
+    let navigation = Navigation::parse(&[stream])?;
+    let [unserved] = &navigation.unserved[..] else { panic!("one warning") };
+    let expected = "file: ephemerides of QZSS (1), SBAS (1) are in the file, but are not read";
+    assert_eq!((unserved.to_string(), navigation.skipped), (expected.to_owned(), 3));
     Ok(())
 }
 

@@ -1,0 +1,85 @@
+//! What messages hold that are not read: satellites of other systems, and observations of ours in another form.
+
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+
+use rtcm_rs::MessageFrame;
+
+use crate::streams::bits::Fields;
+use crate::unserved::Unserved;
+
+/// The numbers of messages of observations with several signals (MSM): ten for each system.
+const SEVERAL_SIGNALS: RangeInclusive<u16> = 1071..=1137;
+/// The letters of their systems, and what is added to a satellite's number for the one that RINEX has.
+const SYSTEMS: [(u8, u8); 7] =
+    [(b'G', 0), (b'R', 0), (b'E', 0), (b'S', 19), (b'J', 0), (b'C', 0), (b'I', 0)];
+/// The masks of satellites and of signals stand behind the header of 73 bits.
+const SATELLITES: (usize, usize) = (73, 64);
+const SIGNALS: (usize, usize) = (137, 32);
+/// Messages of observations of GPS and of GLONASS from before there were those.
+const OLD_OF_GPS: RangeInclusive<u16> = 1001..=1004;
+const OLD_OF_GLONASS: RangeInclusive<u16> = 1009..=1012;
+/// Ephemerides of other systems: the message, the letter, and the bits of the satellite's number.
+const EPHEMERIDES: [(u16, u8, usize); 4] =
+    [(1020, b'R', 6), (1041, b'I', 6), (1042, b'C', 6), (1044, b'J', 4)];
+/// Behind the number of the message.
+const BEGINNING: usize = 12;
+
+/// How many cells of satellites and signals a message of observations has; none of another message.
+pub(super) fn cells(frame: &MessageFrame<'_>) -> Option<u32> {
+    let ones = |mask| ones(frame, mask).count() as u32;
+    SEVERAL_SIGNALS.contains(&number(frame)).then(|| ones(SATELLITES) * ones(SIGNALS))
+}
+
+/// What was passed over.
+#[derive(Debug, Default)]
+pub(super) struct PassedOver {
+    pub(super) observed: Unserved,
+    pub(super) ephemerides: Unserved,
+    /// Numbers of messages with observations that are not read in this form.
+    messages: BTreeSet<u16>,
+}
+
+impl PassedOver {
+    /// Takes note of a message that is not read.
+    pub(super) fn note(&mut self, frame: &MessageFrame<'_>) {
+        let number = number(frame);
+        if let Some((letter, offset)) = system(number) {
+            if matches!(letter, b'G' | b'E') {
+                self.messages.insert(number);
+            } else {
+                ones(frame, SATELLITES).for_each(|it| self.observed.note(letter, it + offset));
+            }
+        } else if let Some((_, letter, bits)) = EPHEMERIDES.iter().find(|it| it.0 == number) {
+            self.ephemerides.note(*letter, Fields::at(frame.data(), BEGINNING).whole(*bits) as u8);
+        } else if OLD_OF_GPS.contains(&number) || OLD_OF_GLONASS.contains(&number) {
+            self.messages.insert(number);
+        }
+    }
+
+    /// A sentence about observations, if there are any in another form.
+    pub(super) fn sentence(&self) -> Option<String> {
+        let numbers: Vec<_> = self.messages.iter().map(u16::to_string).collect();
+        (!numbers.is_empty()).then(|| {
+            let numbers = numbers.join(", ");
+            format!("observations in messages {numbers} are not read, only those in MSM4 and MSM7")
+        })
+    }
+}
+
+fn number(frame: &MessageFrame<'_>) -> u16 {
+    frame.message_number().unwrap_or_default()
+}
+
+/// The system of a message of observations with several signals.
+fn system(number: u16) -> Option<(u8, u8)> {
+    let place = number.checked_sub(*SEVERAL_SIGNALS.start())?;
+    // The last three of ten are no such messages.
+    (place % 10 < 7).then(|| SYSTEMS.get(usize::from(place / 10)).copied()).flatten()
+}
+
+/// The places of the ones in a mask, from 1 on.
+fn ones(frame: &MessageFrame<'_>, (from, bits): (usize, usize)) -> impl Iterator<Item = u8> {
+    let mut mask = Fields::at(frame.data(), from);
+    (1..=bits as u8).filter(move |_| mask.whole(1) == 1)
+}
