@@ -3,6 +3,9 @@
 
 use std::{env, fs, path::PathBuf};
 
+/// The images' crates could be logged, as an application's are; what is measured logs nothing, and has no place for the names.
+const NO_LOG: &str = "\nSECTIONS { /DISCARD/ : { *(.defmt.*) } }\n";
+
 fn main() {
     let target = env::var("TARGET").expect("cargo sets TARGET");
     let board = match target.as_str() {
@@ -13,7 +16,8 @@ fn main() {
     };
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let map = format!("memory/{board}.x");
-    fs::copy(&map, out.join("memory.x")).expect("the memory map can be copied to OUT_DIR");
+    let text = fs::read_to_string(&map).expect("the memory map can be read");
+    fs::write(out.join("memory.x"), text + NO_LOG).expect("it can be copied to OUT_DIR");
 
     println!("cargo::rustc-link-search={}", out.display());
     println!("cargo::rustc-check-cfg=cfg(board, values(\"microbit\", \"mps2-an386\", \"virt\"))");

@@ -1,6 +1,6 @@
 //! The costs as they were, kept in `baseline.json`: no change makes the estimators larger or slower unseen.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
 
@@ -46,7 +46,7 @@ impl Baseline {
     }
 
     /// What of `measured` has grown by more than [`SLACK`], is new, or is gone: a sentence each. A target at an
-    /// optimisation of which nothing was measured was left out, and is not asked for.
+    /// optimisation of which nothing was measured was left out, and is not asked for; so are peers.
     pub fn complaints(&self, measured: &[Row]) -> Vec<String> {
         let mut complaints = Vec::new();
         let now: BTreeMap<_, _> = measured.iter().map(|row| (row.key(), row)).collect();
@@ -63,8 +63,9 @@ impl Baseline {
                 }
             }
         }
-        let is_measured =
-            |of: &Row| measured.iter().any(|row| (&row.target, &row.opt) == (&of.target, &of.opt));
+        let group = |of: &Row| (of.target.clone(), of.opt.clone(), of.is_peer());
+        let groups: BTreeSet<_> = measured.iter().map(group).collect();
+        let is_measured = |of: &Row| groups.contains(&group(of));
         let gone = kept.iter().filter(|(key, row)| !now.contains_key(*key) && is_measured(row));
         let gone = gone.map(|(key, _)| key);
         complaints.extend(gone.map(|key| format!("{} is not measured any more", key.join(" "))));
@@ -131,5 +132,8 @@ mod tests {
             ["b f32 here 3 has no baseline", "a f32 here 3 is not measured any more"]
         );
         assert_eq!(baseline.complaints(&[]), Vec::<String>::new(), "this target was left out");
+        let rows = vec![row("a"), row("peer-b")];
+        let baseline = Baseline { compilers: BTreeMap::new(), rows };
+        assert_eq!(baseline.complaints(&[row("a")]), Vec::<String>::new(), "peers were left out");
     }
 }

@@ -29,6 +29,9 @@ const SHORT_FORM: [(&Target, Profile); 2] =
 /// The packages of images with our workloads and with the peers', built in one go.
 const WORKLOADS: Packages = &["images", "peers"];
 
+/// The same without the peers, which change with no change of ours, and bring crates that nothing else stands on.
+const OURS: Packages = &["images"];
+
 /// The package of the programs that call everything; apart, because it takes long and one test needs it.
 const SURFACE: Packages = &["surface"];
 
@@ -76,6 +79,7 @@ pub struct Images {
     pub profile: Profile,
     /// What compiled them: counts of different compilers do not compare.
     pub compiler: String,
+    packages: Packages,
     directory: PathBuf,
 }
 
@@ -89,7 +93,19 @@ impl Images {
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        Self::of_form(WORKLOADS, target, profile)
+        let packages = if Self::is_short() { OURS } else { WORKLOADS };
+        Self::of_form(packages, target, profile)
+    }
+
+    /// The same with the peers' images: nothing in the short form.
+    ///
+    /// # Errors
+    /// As [`Images::of`].
+    pub fn of_peers(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
+        if Self::is_short() {
+            return left_out("the peers' images");
+        }
+        Self::of(target, profile)
     }
 
     /// The same for the programs that call everything the crates offer: to be looked at, not to be run.
@@ -159,13 +175,18 @@ impl Images {
         images.clone().map_err(Error::msg)
     }
 
-    fn build(toolchain: &Toolchain, packages: &[&str], profile: Profile) -> Result<Self> {
+    fn build(toolchain: &Toolchain, packages: Packages, profile: Profile) -> Result<Self> {
         Ok(Self {
             target: toolchain.target,
             profile,
             compiler: toolchain.version()?,
+            packages,
             directory: toolchain.build(packages, profile.name())?,
         })
+    }
+
+    pub(crate) fn has_peers(&self) -> bool {
+        self.packages == WORKLOADS
     }
 
     /// Runs an image, with a stream of samples (see [`crate::streams::Encode`]) for it to read, until it ends.

@@ -89,6 +89,11 @@ impl Row {
         [&self.name, &self.scalar, &self.target, &self.opt]
     }
 
+    /// Whether it is of another crate's filter.
+    pub fn is_peer(&self) -> bool {
+        is_peer(&self.name)
+    }
+
     /// How much the steps differ: (max − min)/mean.
     pub fn jitter(&self) -> f64 {
         (self.instructions_max - self.instructions_min) as f64 / self.instructions_mean
@@ -113,4 +118,9 @@ impl fmt::Display for Row {
             self.double_symbols,
         )
     }
+}
+
+/// Whether an image of this name runs another crate's filter.
+pub(crate) fn is_peer(name: &str) -> bool {
+    name.starts_with("peer-")
 }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use crate::images::Images;
-use crate::row::Row;
+use crate::row::{Row, is_peer};
 use crate::streams::{Common, Encode, circle, ellipse, fly, walk};
 use crate::target::CORTEX_M0;
 use crate::uav;
@@ -49,7 +49,7 @@ const PPP_METERS: [&str; 2] = ["default clean", "default outliers"];
 
 /// Runs every workload whose image's name begins with `only` on one target at one optimisation.
 ///
-/// `ppp` needs more stack than a Cortex-M0 of 16 KiB has and is left out there.
+/// `ppp` needs more stack than a Cortex-M0 of 16 KiB has and is left out there, and the peers where they were not built.
 ///
 /// # Errors
 /// A stream cannot be made, or an image failed.
@@ -66,7 +66,9 @@ pub fn measure(images: &Images, only: &str) -> Result<Vec<Row>> {
     ];
     let workloads =
         streams.iter().flat_map(|(stream, names)| names.iter().map(move |&name| (name, stream)));
-    let workloads: Vec<_> = workloads.filter(|(name, _)| name.starts_with(only)).collect();
+    let built = |name: &str| images.has_peers() || !is_peer(name);
+    let workloads: Vec<_> =
+        workloads.filter(|(name, _)| name.starts_with(only) && built(name)).collect();
     let row = |&(image, stream): &(&str, &Vec<u8>)| {
         Row::of(images, image, &images.run(image, stream)?).with_context(|| image.to_owned())
     };
