@@ -9,7 +9,7 @@ use rtcm_rs::prelude::*;
 
 use self::ephemerides::{fnav, gps, inav};
 use self::lock_times::{tracked_long, tracked_short};
-use self::passed_over::{PassedOver, cells};
+use self::passed_over::{PassedOver, cell_count};
 use self::weeks::{dated, elapsed, in_week_of, rolled_to, second_of_week};
 use super::{Locks, Signals, Stream};
 use crate::biases::SPEED_OF_LIGHT;
@@ -36,7 +36,7 @@ pub(super) fn read(text: &Text) -> Result<Stream, Error> {
             (used, Some(frame)) => {
                 position += used;
                 // The decoder relies on that.
-                if cells(&frame).is_none_or(|cells| (1..=MOST_CELLS).contains(&cells)) {
+                if cell_count(&frame).is_none_or(|count| (1..=MOST_CELLS).contains(&count)) {
                     reader.take(&frame);
                 } else {
                     reader.stream.skipped += 1;

@@ -26,7 +26,7 @@ const EPHEMERIDES: [(u16, u8, usize); 4] =
 const BEGINNING: usize = 12;
 
 /// How many cells of satellites and signals a message of observations has; none of another message.
-pub(super) fn cells(frame: &MessageFrame<'_>) -> Option<u32> {
+pub(super) fn cell_count(frame: &MessageFrame<'_>) -> Option<u32> {
     let ones = |mask| ones(frame, mask).count() as u32;
     SEVERAL_SIGNALS.contains(&number(frame)).then(|| ones(SATELLITES) * ones(SIGNALS))
 }
