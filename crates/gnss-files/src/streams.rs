@@ -2,6 +2,8 @@
 
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 mod bits;
+#[cfg(feature = "ubx")]
+mod collection;
 mod frames;
 #[cfg(feature = "ubx")]
 mod inav;

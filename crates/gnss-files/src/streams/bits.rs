@@ -29,6 +29,7 @@ impl<'a> Fields<'a> {
     }
 
     /// A number with a sign, in units of a power of two.
+    #[cfg(feature = "ubx")]
     pub(super) fn signed(&mut self, bits: usize, power: i32) -> f64 {
         let value = self.whole(bits) as i64;
         let value = if value >> (bits - 1) == 0 { value } else { value - (1 << bits) };
@@ -36,6 +37,7 @@ impl<'a> Fields<'a> {
     }
 
     /// The same without a sign.
+    #[cfg(feature = "ubx")]
     pub(super) fn unsigned(&mut self, bits: usize, power: i32) -> f64 {
         self.whole(bits) as f64 * 2_f64.powi(power)
     }

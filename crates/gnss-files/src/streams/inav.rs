@@ -1,7 +1,6 @@
 //! The message I/NAV of Galileo from its words (OS SIS ICD 2.1, 4.3).
 
 use std::array;
-use std::collections::BTreeMap;
 
 use super::bits::Fields;
 use super::frames::crc_24q;
@@ -47,7 +46,7 @@ impl Word {
         packed(bits(even, FRONT, EVEN).chain(bits(odd, FRONT, ODD))).try_into().ok().map(Self)
     }
 
-    fn number(&self) -> u64 {
+    pub(super) fn number(&self) -> u64 {
         Fields::at(&self.0, 0).whole(TYPE)
     }
 
@@ -62,28 +61,10 @@ fn packed(bits: impl Iterator<Item = u64>) -> Vec<u8> {
     bits.chunks(8).map(|byte| byte.iter().fold(0, |byte, bit| byte << 1 | *bit as u8)).collect()
 }
 
-/// Words of satellites, until five of one make an ephemeris.
-#[derive(Debug, Default)]
-pub(super) struct Collection(BTreeMap<u8, [Option<Word>; 5]>);
-
-impl Collection {
-    /// Takes in a word of a satellite; an ephemeris if that is whole now, of a week `near` a time.
-    pub(super) fn take(&mut self, satellite: u8, word: Word, near: GpsTime) -> Option<Ephemeris> {
-        let place = usize::try_from(word.number()).ok()?.checked_sub(1)?;
-        let parts = self.0.entry(satellite).or_default();
-        *parts.get_mut(place)? = Some(word);
-        let [Some(first), Some(second), Some(third), Some(fourth), Some(fifth)] = *parts else {
-            return None;
-        };
-        let ephemeris = ephemeris([&first, &second, &third, &fourth, &fifth], near)?;
-        *parts = [None; 5];
-        Some(ephemeris)
-    }
-}
-
-/// The ephemeris of words 1 to 5, if those that tell an issue are of the same.
-fn ephemeris(words: [&Word; 5], near: GpsTime) -> Option<Ephemeris> {
-    let [mut first, mut second, mut third, mut fourth, mut fifth] = words.map(Word::fields);
+/// The ephemeris of words 1 to 5, of a week `near` a time, if those that tell an issue are of the same.
+pub(super) fn ephemeris(words: [Word; 5], near: GpsTime) -> Option<Ephemeris> {
+    let [mut first, mut second, mut third, mut fourth, mut fifth] =
+        words.each_ref().map(Word::fields);
     let issue = first.whole(ISSUE);
     if [&mut second, &mut third, &mut fourth].into_iter().any(|it| it.whole(ISSUE) != issue) {
         return None;

@@ -1,7 +1,5 @@
 //! The legacy message of GPS from its subframes (IS-GPS-200, 20.3.3).
 
-use std::collections::BTreeMap;
-
 use super::bits::Fields;
 use super::indices::{SEMICIRCLE, ura};
 use crate::navigation::{Ephemeris, time_of_week};
@@ -30,34 +28,12 @@ impl Subframe {
     }
 
     /// Its number, from 1 to 5.
-    fn number(&self) -> u64 {
+    pub(super) fn number(&self) -> u64 {
         self.fields(43).whole(3)
     }
 
     fn fields(&self, place: usize) -> Fields<'_> {
         Fields::at(&self.0, place)
-    }
-}
-
-/// Subframes of satellites, until three of one make an ephemeris.
-#[derive(Debug, Default)]
-pub(super) struct Collection(BTreeMap<u8, [Option<Subframe>; 3]>);
-
-impl Collection {
-    /// Takes in a subframe of a satellite; an ephemeris if that is whole now, of a week `near` a time.
-    pub(super) fn take(
-        &mut self,
-        satellite: u8,
-        subframe: Subframe,
-        near: GpsTime,
-    ) -> Option<Ephemeris> {
-        let place = usize::try_from(subframe.number()).ok()?.checked_sub(1)?;
-        let parts = self.0.entry(satellite).or_default();
-        *parts.get_mut(place)? = Some(subframe);
-        let [Some(first), Some(second), Some(third)] = *parts else { return None };
-        let ephemeris = ephemeris([&first, &second, &third], near)?;
-        *parts = [None; 3];
-        Some(ephemeris)
     }
 }
 
@@ -71,8 +47,8 @@ pub(super) fn ionosphere(subframe: &Subframe) -> Option<[[f64; 4]; 2]> {
     Some([alpha, [11, 14, 16, 16].map(|power| fields.signed(8, power))])
 }
 
-/// The ephemeris of three subframes, if they are of one issue.
-fn ephemeris([first, second, third]: [&Subframe; 3], near: GpsTime) -> Option<Ephemeris> {
+/// The ephemeris of the first three subframes, of a week `near` a time, if they are of one issue.
+pub(super) fn ephemeris([first, second, third]: [Subframe; 3], near: GpsTime) -> Option<Ephemeris> {
     let mut fields = first.fields(DATA + 12);
     let accuracy = ura(fields.whole(4) as u8);
     let is_healthy = fields.whole(6) == 0;

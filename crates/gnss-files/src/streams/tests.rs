@@ -16,7 +16,12 @@ pub(crate) fn streams() -> Vec<Vec<u8>> {
         #[cfg(feature = "rtcm")]
         [rtcm::ephemerides(&told), rtcm::observed(345_600_000, 7)].concat(),
         #[cfg(feature = "ubx")]
-        [ubx::observed(345_600.0, 1_000), ubx::subframes(&told[0].1)].concat(),
+        [
+            ubx::observed(345_600.0, 1_000),
+            ubx::subframes(&told[0].1),
+            ubx::words(&told[1].1).concat(),
+        ]
+        .concat(),
     ]
 }
 

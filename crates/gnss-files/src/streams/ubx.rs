@@ -7,6 +7,7 @@ use ublox::rxm_rawx::{RxmRawxRef, TrkStatFlags};
 use ublox::rxm_sfrbx::RxmSfrbxRef;
 use ublox::{ParserBuilder, UbxPacket};
 
+use super::collection::Collection;
 use super::inav::{self, Word};
 use super::lnav::{self, Subframe};
 use super::{Locks, Signals, Stream};
@@ -139,17 +140,22 @@ impl Reader {
     /// Makes ephemerides of the parts.
     fn finish(self) -> Stream {
         let Self { mut stream, parts, .. } = self;
-        let mut of_gps = lnav::Collection::default();
-        let mut of_galileo = inav::Collection::default();
+        let mut of_gps = Collection::new();
+        let mut of_galileo = Collection::new();
         for (place, number, part) in parts {
             // Without any epoch there is no week.
             let Some(near) = stream.epochs.get(place).map(|(time, _)| *time) else { break };
             let (satellite, ephemeris) = match part {
                 Part::Gps(subframe) => {
                     stream.ionosphere = lnav::ionosphere(&subframe).or(stream.ionosphere);
-                    (number, of_gps.take(number, subframe, near))
+                    let ephemeris = |parts| lnav::ephemeris(parts, near);
+                    (number, of_gps.take(number, (subframe.number(), subframe), ephemeris))
                 }
-                Part::Galileo(word) => (GALILEO + number, of_galileo.take(number, word, near)),
+                Part::Galileo(word) => {
+                    let ephemeris = |parts| inav::ephemeris(parts, near);
+                    let ephemeris = of_galileo.take(number, (word.number(), word), ephemeris);
+                    (GALILEO + number, ephemeris)
+                }
             };
             stream.ephemerides.extend(ephemeris.map(|ephemeris| (satellite, ephemeris)));
         }

@@ -145,7 +145,7 @@ fn word(number: i64, fields: &[(i64, usize)]) -> Vec<u8> {
 }
 
 /// The words of an ephemeris.
-fn words(it: &Ephemeris) -> [Vec<u8>; 5] {
+pub(super) fn words(it: &Ephemeris) -> [Vec<u8>; 5] {
     let turns = |angle: f64, power| in_units(angle / PI, power);
     let minutes = |time: crate::GpsTime| {
         let second = f64::from((time.day() - 44_244).rem_euclid(7)) * 86_400.0 + time.second();
