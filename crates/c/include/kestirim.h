@@ -293,6 +293,14 @@ enum kestirim_gnss_carriers
   KESTIRIM_GNSS_CARRIERS_E1E5A = 1,
   // E1 and E5b of Galileo.
   KESTIRIM_GNSS_CARRIERS_E1E5B = 2,
+  // G1 and G2 of GLONASS, on the satellite's channel.
+  KESTIRIM_GNSS_CARRIERS_G1G2 = 3,
+  // B1I and B3I of BeiDou.
+  KESTIRIM_GNSS_CARRIERS_B1B3 = 4,
+  // B1I and B2I of BeiDou.
+  KESTIRIM_GNSS_CARRIERS_B1B2 = 5,
+  // B1C and B2a of BeiDou.
+  KESTIRIM_GNSS_CARRIERS_B1C_B2A = 6,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -424,10 +432,12 @@ typedef struct kestirim_gnss_satellite {
 
 // Observation of one satellite.
 typedef struct kestirim_gnss_observation {
-  // Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's and 100, say.
+  // Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's number and 100, say.
   uint8_t satellite;
   // 1 if the receiver reports a loss of lock since the last epoch, else 0.
   uint8_t lock_lost;
+  // The channel of a satellite of GLONASS, -7 to 6; 0 of others.
+  int8_t channel;
   // Its two carriers: a `kestirim_gnss_carriers`.
   uint32_t carriers;
   // Codes on both, m.
@@ -703,7 +713,7 @@ kestirim_status kestirim_gnss_init(void *memory,
 
 // Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations.
 // `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is not known; for the carriers of
-// Galileo it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
+// other systems it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
 //
 // Errors: `TOO_FEW` satellites; `TOO_MANY`; `GEOMETRY`; `OUT_OF_ORDER`; `CONTRADICTORY`; `NOT_FINITE`;
 // `INVALID_ARGUMENT` of carriers or settings.

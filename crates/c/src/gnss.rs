@@ -132,6 +132,14 @@ pub enum GnssCarriers {
     E1E5a = 1,
     /// E1 and E5b of Galileo.
     E1E5b = 2,
+    /// G1 and G2 of GLONASS, on the satellite's channel.
+    G1G2 = 3,
+    /// B1I and B3I of BeiDou.
+    B1B3 = 4,
+    /// B1I and B2I of BeiDou.
+    B1B2 = 5,
+    /// B1C and B2a of BeiDou.
+    B1cB2a = 6,
 }
 
 /// A satellite at the time of transmission.
@@ -154,10 +162,12 @@ pub struct GnssSatellite {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct GnssObservation {
-    /// Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's and 100, say.
+    /// Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's number and 100, say.
     pub satellite: u8,
     /// 1 if the receiver reports a loss of lock since the last epoch, else 0.
     pub lock_lost: u8,
+    /// The channel of a satellite of GLONASS, -7 to 6; 0 of others.
+    pub channel: i8,
     /// Its two carriers: a `kestirim_gnss_carriers`.
     pub carriers: u32,
     /// Codes on both, m.
@@ -250,6 +260,10 @@ impl GnssObservation {
             0 => Carriers::L1L2,
             1 => Carriers::E1E5a,
             2 => Carriers::E1E5b,
+            3 => Carriers::G1G2 { channel: self.channel },
+            4 => Carriers::B1B3,
+            5 => Carriers::B1B2,
+            6 => Carriers::B1cB2a,
             _ => return Err(Status::InvalidArgument),
         };
         let state = &self.state;
@@ -301,7 +315,7 @@ pub unsafe extern "C" fn kestirim_gnss_init(
 
 /// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations.
 /// `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is not known; for the carriers of
-/// Galileo it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
+/// other systems it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
 ///
 /// Errors: `TOO_FEW` satellites; `TOO_MANY`; `GEOMETRY`; `OUT_OF_ORDER`; `CONTRADICTORY`; `NOT_FINITE`;
 /// `INVALID_ARGUMENT` of carriers or settings.
@@ -326,6 +340,8 @@ pub unsafe extern "C" fn kestirim_gnss_update(
         let receiver = Receiver {
             antenna,
             galileo_antenna: antenna,
+            glonass_antenna: antenna,
+            beidou_antenna: antenna,
             eccentricity: positioning.eccentricity,
             ocean_loading: None,
             pole: None,

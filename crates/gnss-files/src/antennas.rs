@@ -6,7 +6,8 @@ use memchr::memmem::Finder;
 
 use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
-use crate::fields::satellite;
+use crate::observations::Carriers;
+use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
@@ -43,10 +44,8 @@ pub struct Antenna {
     pub code: String,
     /// The edition that the antenna belongs to, if it says so (`SINEX CODE`).
     pub model: Option<AntennaModel>,
-    /// The phase centres on L1 and L2, where the file has them.
-    pub frequencies: [Option<PhaseCentre>; 2],
-    /// The phase centres on E1, E5a and E5b of Galileo, where the file has them.
-    pub galileo: [Option<PhaseCentre>; 3],
+    /// The phase centres by system and band, the digit of RINEX 3.
+    centres: Vec<((System, u8), PhaseCentre)>,
     /// The first instant at which a satellite has this antenna; none if it always had.
     pub valid_from: Option<GpsTime>,
     /// The last instant at which a satellite has this antenna; none if it still has.
@@ -71,14 +70,24 @@ impl Antenna {
         };
         let moved = moved * AntennaModel::moved_by_igs20(&self.name, &self.code)?;
         let mut other = Self { model: Some(model), ..self.clone() };
-        for centre in other.frequencies.iter_mut().chain(&mut other.galileo).flatten() {
+        for (_, centre) in &mut other.centres {
             centre.offset[2] += moved;
         }
         Some(other)
     }
+
+    /// The phase centres on two carriers, if the file has both.
+    pub fn on(&self, carriers: Carriers) -> Option<[&PhaseCentre; 2]> {
+        let [first, second] = carriers.bands();
+        let centre = |band| {
+            let wanted = (carriers.system(), band);
+            self.centres.iter().find(|(on, _)| *on == wanted).map(|(_, centre)| centre)
+        };
+        Some([centre(first)?, centre(second)?])
+    }
 }
 
-/// Antennas of satellites of GPS and Galileo and of one receiver.
+/// Antennas of satellites and of one receiver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antennas {
     satellites: Vec<(u8, Antenna)>,
@@ -141,7 +150,9 @@ impl Antennas {
                 return Err(line.expected("TYPE / SERIAL NO"));
             }
             let serial = line.columns(20, 40);
-            if let (3, [b'G' | b'E', ..]) = (serial.len(), serial) {
+            if let (3, [letter, ..]) = (serial.len(), serial)
+                && letter.is_ascii_alphabetic()
+            {
                 if let Some(number) = satellite(serial) {
                     self.satellites.push((number, antenna(&line, &mut lines)?));
                 }
@@ -207,18 +218,26 @@ fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
             b"SINEX CODE" => antenna.model = AntennaModel::named(line.columns(0, 10)),
             b"VALID FROM" => antenna.valid_from = Some(line.time(VALIDITY)?),
             b"VALID UNTIL" => antenna.valid_until = Some(line.time(VALIDITY)?),
-            b"START OF FREQUENCY" => match line.columns(3, 6) {
-                b"G01" => antenna.frequencies[0] = Some(grid.frequency(&line, lines)?),
-                b"G02" => antenna.frequencies[1] = Some(grid.frequency(&line, lines)?),
-                b"E01" => antenna.galileo[0] = Some(grid.frequency(&line, lines)?),
-                b"E05" => antenna.galileo[1] = Some(grid.frequency(&line, lines)?),
-                b"E07" => antenna.galileo[2] = Some(grid.frequency(&line, lines)?),
-                _ => lines.skip_past(&Finder::new("END OF FREQUENCY")),
+            b"START OF FREQUENCY" => match band(line.columns(3, 6)) {
+                Some(band) => antenna.centres.push((band, grid.frequency(&line, lines)?)),
+                None => lines.skip_past(&Finder::new("END OF FREQUENCY")),
             },
             b"START OF FREQ RMS" => lines.skip_past(&Finder::new("END OF FREQ RMS")),
             _ => {}
         }
     }
+}
+
+/// The system and the band of a frequency as `G01`; none of one that no carriers are on.
+fn band(frequency: &[u8]) -> Option<(System, u8)> {
+    let &[letter, b'0', band] = frequency else { return None };
+    let system = System::of_letter(letter)?;
+    let bands: &[u8] = match system {
+        System::Gps | System::Glonass => b"12",
+        System::Galileo => b"157",
+        System::BeiDou => b"12567",
+    };
+    bands.contains(&band).then_some((system, band))
 }
 
 const VALIDITY: [usize; 7] = [0, 6, 12, 18, 24, 30, 43];

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::Error;
-use crate::fields::{decimal, integer, satellite};
+use crate::fields::{decimal, integer};
 use crate::observations::{Carriers, Signal};
+use crate::system::satellite;
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
 

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
-use crate::fields::{blank_separated, decimal, first_field, integer, satellite};
+use crate::fields::{blank_separated, decimal, first_field, integer};
 use crate::satellites::PerSatellite;
+use crate::system::satellite;
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
@@ -22,7 +23,7 @@ pub struct ClockSample {
     pub bias: f64,
 }
 
-/// Clocks of satellites, which are called by number: of GPS that of their name, of Galileo that and 100.
+/// Clocks of satellites, which are called by number ([`Observed::prn`](crate::Observed::prn)).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clocks {
     samples: PerSatellite<ClockSample>,
@@ -96,7 +97,7 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
             break;
         }
         match line.bytes {
-            [b'A', b'S', b' ', b'G' | b'E' | b' ', ..] => {
+            [b'A', b'S', b' ', b'G' | b'E' | b'R' | b'C' | b' ', ..] => {
                 let (prn, sample) = record(line.bytes, &mut dated)
                     .ok_or_else(|| line.expected("a satellite's clock"))?;
                 if sample.bias.abs() < NO_BIAS {
@@ -112,7 +113,9 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
         }
     }
     if samples.is_empty() {
-        return Err(text.error("expected clocks of satellites of GPS or Galileo, found none"));
+        return Err(text.error(
+            "expected clocks of satellites of GPS, Galileo, GLONASS or BeiDou, found none",
+        ));
     }
     Ok(samples)
 }
@@ -278,7 +281,7 @@ mod tests {
         let comments = [
             "WL G05  2020  1  1 12  0  0.000000  1   -0.110300E+01  0102",
             "WL E01 2020   1  1 12  0  0.000000  1   -4.400000E-01  0105",
-            "WL R07 2020   1  1 12  0  0.000000  1   -4.400000E-01  0105",
+            "WL J07 2020   1  1 12  0  0.000000  1   -4.400000E-01  0105",
             "WL are the wide lanes",
         ];
         let comments = comments.map(|comment| header(comment, "COMMENT")).concat();
@@ -303,7 +306,7 @@ mod tests {
         let file = clocks().replace("0.100000000000E-04", "0.10000000000xE-04");
         assert!(complaint(&file).contains("line 5: expected a satellite's clock"));
         assert!(
-            complaint(&clocks().replace("AS G", "AS R")).contains("GPS or Galileo, found none")
+            complaint(&clocks().replace("AS G", "AS J")).contains("GLONASS or BeiDou, found none")
         );
         let file = header("     3.04           O", "RINEX VERSION / TYPE");
         assert_eq!(

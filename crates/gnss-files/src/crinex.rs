@@ -28,7 +28,7 @@ pub(crate) fn is_compressed(bytes: &[u8]) -> bool {
 }
 
 /// The RINEX file as it was, but for what nothing here needs, which is blank: the receiver's clock offsets, flags without an
-/// observation, and observables other than the codes and phases of GPS and Galileo that can be used. An epoch that was cut off at the end of the file is only marked.
+/// observation, and observables other than the codes and phases that can be used. An epoch that was cut off at the end of the file is only marked.
 ///
 /// # Errors
 /// The line of the compressed file, and what was expected there.

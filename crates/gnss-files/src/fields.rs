@@ -111,40 +111,12 @@ pub(crate) fn blank_separated(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     bytes.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty())
 }
 
-/// Number of the satellites of Galileo: 100 and that of their name.
-pub(crate) const GALILEO: u8 = 100;
-
-/// The number of a satellite of GPS or Galileo: that of its name, of Galileo (`E05`, `E 5`) and 100.
-pub(crate) fn satellite(name: &[u8]) -> Option<u8> {
-    match name.strip_prefix(b"E") {
-        Some(number) if number.first() != Some(&b'G') => {
-            Some(GALILEO + gps_satellite(number).filter(|number| *number < GALILEO)?)
-        }
-        Some(_) => None,
-        None => gps_satellite(name),
-    }
-}
-
-/// The name of a satellite from its number: `G05`, `E05`.
-pub fn satellite_name(number: u8) -> String {
-    match number.checked_sub(GALILEO) {
-        Some(number) => format!("E{number:02}"),
-        None => format!("G{number:02}"),
-    }
-}
-
-/// The number of a GPS satellite called `G05`, `G 5` or, where GPS goes without saying, ` 5`.
-pub(crate) fn gps_satellite(name: &[u8]) -> Option<u8> {
-    let digits = name.strip_prefix(b"G").unwrap_or(name);
-    let number = integer(digits.trim_ascii())?;
-    u8::try_from(number).ok().filter(|number| (1..=99).contains(number))
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::system::satellite;
 
     #[test]
     fn numbers_as_files_write_them() {
@@ -181,19 +153,6 @@ mod tests {
         assert_eq!(integer(b"99999999999"), None);
     }
 
-    #[test]
-    fn satellites_with_and_without_letter() {
-        assert_eq!(gps_satellite(b"G05"), Some(5));
-        assert_eq!(gps_satellite(b"G 5"), Some(5));
-        assert_eq!(gps_satellite(b" 31"), Some(31));
-        assert_eq!(gps_satellite(b"R05"), None);
-        assert_eq!(gps_satellite(b"G00"), None);
-        assert_eq!((satellite(b"E05"), satellite(b"G05")), (Some(105), Some(5)));
-        assert_eq!((satellite(b"E 5"), satellite(b"R05")), (Some(105), None));
-        assert_eq!((satellite(b"E"), satellite(b"EG5"), satellite(b"E00")), (None, None, None));
-        assert_eq!([5, 105].map(satellite_name), ["G05", "E05"]);
-    }
-
     proptest! {
         #[test]
         fn decimals_are_read_as_the_standard_library_reads_them(number: f64, places in 0_usize..20) {
@@ -205,7 +164,7 @@ mod tests {
 
         #[test]
         fn no_bytes_are_too_wild(bytes: Vec<u8>) {
-            let _ = (decimal(&bytes), integer(&bytes), gps_satellite(&bytes));
+            let _ = (decimal(&bytes), integer(&bytes), satellite(&bytes));
         }
     }
 }

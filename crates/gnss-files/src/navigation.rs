@@ -21,11 +21,11 @@ use crate::unserved::Unserved;
 /// What is said of a record that no satellite can have sent.
 const NO_ORBIT: &str = "this record's orbit is no ellipse: it is left out";
 
-/// What satellites broadcast about themselves, which are called by number: of GPS that of their name, of Galileo that and 100.
+/// What satellites broadcast about themselves, which are called by number ([`Observed::prn`](crate::Observed::prn)).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Navigation {
     /// Of each message by itself, as two of a satellite of Galileo hold for the same instant.
-    messages: [PerSatellite<Ephemeris>; 3],
+    messages: [PerSatellite<Ephemeris>; Message::ALL.len()],
     /// Klobuchar's ionosphere as GPS broadcasts it: α in s, s per semicircle and so on, then β.
     pub ionosphere: Option<[[f64; 4]; 2]>,
     /// How many records were passed over: other systems, other messages, orbits that are none.
@@ -62,7 +62,8 @@ impl Navigation {
                 None => navigation.parse_file(text, &mut file)?,
             }
             if file.is_empty() {
-                let problem = "expected ephemerides of satellites of GPS or Galileo, found none";
+                let problem =
+                    "expected ephemerides of satellites of GPS, Galileo or BeiDou, found none";
                 return Err(text.error(problem));
             }
             files.push(file);

@@ -11,7 +11,9 @@ use std::path::Path;
 use self::body::Body;
 use self::header::Header;
 pub use self::record::{Epoch, Observations, Observed};
-pub(crate) use self::signals::Raw;
+#[cfg(feature = "rtcm")]
+pub(crate) use self::signals::channel_scale;
+pub(crate) use self::signals::{CHANNELS, Raw};
 pub use self::signals::{Carriers, Signal, Signals};
 use crate::biases::Biases;
 use crate::error::Error;

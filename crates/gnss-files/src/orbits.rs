@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
-use crate::fields::satellite;
 use crate::satellites::PerSatellite;
+use crate::system::satellite;
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
 
@@ -29,7 +29,7 @@ pub struct OrbitSample {
     pub manoeuvre: bool,
 }
 
-/// Orbits of satellites, which are called by number: of GPS that of their name, of Galileo that and 100.
+/// Orbits of satellites, which are called by number ([`Observed::prn`](crate::Observed::prn)).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Orbits {
     samples: PerSatellite<OrbitSample>,
@@ -124,7 +124,9 @@ fn parse_file(text: &Text, orbits: &mut Orbits) -> Result<PerSatellite<OrbitSamp
         }
     }
     if samples.is_empty() {
-        return Err(first.error("expected orbits of satellites of GPS or Galileo, found none"));
+        return Err(first.error(
+            "expected orbits of satellites of GPS, Galileo, GLONASS or BeiDou, found none",
+        ));
     }
     if !ended {
         orbits.warnings.push(text.warning("has no EOF at its end: it may have been cut off"));
@@ -238,7 +240,7 @@ mod tests {
         let file = orbits().replace("-20000.000000", "-20000.00000x");
         assert!(complaint(&file).starts_with("file, line 11: expected a position in km"));
         assert!(
-            complaint(&orbits().replace("PG05", "PR05")).contains("GPS or Galileo, found none")
+            complaint(&orbits().replace("PG05", "PJ05")).contains("GLONASS or BeiDou, found none")
         );
         assert!(complaint("walk\n").contains("expected orbits (SP3), found \"walk\""));
     }

@@ -1,4 +1,4 @@
-//! Samples of each GPS satellite.
+//! Samples of each satellite.
 
 use crate::time::GpsTime;
 

@@ -18,7 +18,6 @@ pub(crate) mod tests;
 #[cfg(feature = "ubx")]
 mod ubx;
 
-#[cfg(any(feature = "rtcm", feature = "ubx"))]
 use std::collections::BTreeMap;
 
 pub(crate) use self::frames::{is_rtcm, is_ubx};
@@ -40,6 +39,8 @@ pub(crate) type Signals = (u8, Vec<Raw>);
 pub(crate) struct Stream {
     /// Epochs in the order of the stream.
     pub(crate) epochs: Vec<(GpsTime, Vec<Signals>)>,
+    /// Of satellites of GLONASS, by number.
+    pub(crate) channels: BTreeMap<u8, i8>,
     /// Ephemerides with the numbers of their satellites.
     pub(crate) ephemerides: Vec<(u8, Ephemeris)>,
     /// α and β of Klobuchar's model.

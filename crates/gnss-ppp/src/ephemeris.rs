@@ -8,25 +8,28 @@ use nalgebra::Vector3;
 const DAY: f64 = 86_400.0;
 /// The day (modified Julian date) that began the first week of GPS time.
 const FIRST_WEEK: i32 = 44_244;
+/// By so much BeiDou's time is behind that of GPS, s.
+const BEIDOU_BEHIND: f64 = 14.0;
 /// Newton's steps of Kepler's equation: two suffice for orbits of satellites of navigation, four for e = 0.6.
 const STEPS: usize = 6;
 
-/// An ephemeris as a satellite of GPS or Galileo broadcasts it, in m, s and rad.
+/// An ephemeris as a satellite of GPS, Galileo or BeiDou broadcasts it, in m, s and rad.
 ///
-/// Positions are those of IS-GPS-200, table 20-IV, which are the Galileo OS SIS ICD's, too (5.1.1): where the phase centre of the
+/// Positions are those of IS-GPS-200, table 20-IV, which are the Galileo OS SIS ICD's, too (5.1.1), and with constants of their own
+/// those of BeiDou's satellites that are not geostationary (BDS-SIS-ICD-B1I, 5.2.4.12): where the phase centre of the
 /// satellite's antenna is, not its centre of mass. What the documents call by symbols stands behind each name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ephemeris {
-    /// The system, whose constant of gravity counts.
+    /// The system, whose constants count.
     pub constellation: Constellation,
-    /// The time of which the orbit is told: toe.
+    /// The time of which the orbit is told, by GPS: toe.
     pub time: GpsTime,
     /// The time of which the clock is told: toc.
     pub clock_time: GpsTime,
     /// The satellite's clock minus the time of its system, s, s/s and s/s², without the effect of its eccentric orbit: af0, af1,
-    /// af2. Of Galileo, of the two carriers that are observed.
+    /// af2. Of Galileo and BeiDou, of the two carriers that are observed.
     pub clock: [f64; 3],
     /// By what the clock is ahead of that of the first carrier alone, s: `TGD` or `BGD`.
     pub group_delay: f64,
@@ -107,8 +110,8 @@ impl Ephemeris {
         let tilt = self.inclination + self.inclination_rate * elapsed + tilt;
         let of_tilt = self.inclination_rate + of_tilt;
         // By the week of the ephemeris, even when that is over.
-        let second = second_of_week(self.time) + elapsed;
-        let node = self.node + self.node_rate * elapsed - EARTH_ROTATION * second;
+        let second = second_of_week(self.time) + elapsed - self.behind();
+        let node = self.node + self.node_rate * elapsed - self.rotation() * second;
 
         // In the plane of the orbit, x to the ascending node.
         let (up, along) = libm::sincos(argument + latitude);
@@ -137,7 +140,25 @@ impl Ephemeris {
     const fn gravity(&self) -> f64 {
         match self.constellation {
             Constellation::Gps => 3.986_005e14,
-            Constellation::Galileo => 3.986_004_418e14,
+            Constellation::Galileo | Constellation::Glonass | Constellation::BeiDou => {
+                3.986_004_418e14
+            }
+        }
+    }
+
+    /// Rotation of the Earth that the message is made for, rad/s.
+    const fn rotation(&self) -> f64 {
+        match self.constellation {
+            Constellation::BeiDou => 7.292_115_0e-5,
+            _ => EARTH_ROTATION,
+        }
+    }
+
+    /// By how much the week of its time begins later than that of GPS, s.
+    const fn behind(&self) -> f64 {
+        match self.constellation {
+            Constellation::BeiDou => BEIDOU_BEHIND,
+            _ => 0.0,
         }
     }
 }
@@ -245,6 +266,23 @@ mod tests {
         let [before, after] =
             [599.5, 600.5].map(|second| ephemeris.orbit_at(saturday.plus(second)).position);
         assert!((after - before).norm() < 4_000.0);
+    }
+
+    /// The same elements as BeiDou's: its week begins 14 s later, and the Earth turns by another number.
+    #[test]
+    fn of_beidou_the_week_and_the_constants_are_its_own() {
+        let of = |constellation| Ephemeris { constellation, ..real() };
+        let [galileo, beidou] = [Constellation::Galileo, Constellation::BeiDou].map(of);
+        for second in [-3_000.0, 0.0, 3_000.0] {
+            let at = galileo.time.plus(second);
+            let turned = galileo.orbit_at(at).position;
+            let since = 4.0 * DAY + 14_400.0 + second;
+            let angle = EARTH_ROTATION * since - 7.292_115e-5 * (since - 14.0);
+            let expected = carried_along(&turned, -angle / EARTH_ROTATION);
+            let found = beidou.orbit_at(at).position;
+            assert!((found - expected).norm() < 1e-3, "{found} {expected}");
+            assert!((found - turned).norm() > 1e4);
+        }
     }
 
     #[test]

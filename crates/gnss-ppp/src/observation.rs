@@ -87,6 +87,8 @@ impl Site<'_> {
         let own = match carriers.constellation() {
             Constellation::Gps => &self.receiver.antenna,
             Constellation::Galileo => &self.receiver.galileo_antenna,
+            Constellation::Glonass => &self.receiver.glonass_antenna,
+            Constellation::BeiDou => &self.receiver.beidou_antenna,
         };
         if let Some([first, second]) = own
             && has(Correction::ReceiverAntenna)

@@ -8,9 +8,21 @@ pub const FREQUENCY: [f64; 2] = [1_575.42e6, 1_227.60e6];
 /// Wavelengths of L1 and L2, m.
 pub const WAVELENGTH: [f64; 2] = [SPEED_OF_LIGHT / FREQUENCY[0], SPEED_OF_LIGHT / FREQUENCY[1]];
 
-/// E5a and E5b of Galileo, Hz (Galileo OS SIS ICD); E1 is L1.
+/// E5a and E5b of Galileo, Hz (Galileo OS SIS ICD); E1 is L1. B2a and B2I of BeiDou are on the same frequencies.
 const E5A: f64 = 1_176.45e6;
 const E5B: f64 = 1_207.14e6;
+
+/// G1 and G2 of GLONASS on channel 0, Hz (GLONASS ICD L1, L2, 3.3.1.1), and which part of both a channel is away from that.
+const G1: f64 = 1_602e6;
+const G2: f64 = 1_246e6;
+const CHANNEL: f64 = 1.0 / 2_848.0;
+/// How many channels there are, and the place of channel 0 among them.
+const CHANNELS: usize = 14;
+const CHANNEL_0: usize = 7;
+
+/// B1I and B3I of BeiDou, Hz (BDS-SIS-ICD-B1I, B3I); B1C is on L1.
+const B1I: f64 = 1_561.098e6;
+const B3I: f64 = 1_268.52e6;
 
 /// A satellite system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,6 +34,15 @@ pub enum Constellation {
     Gps,
     /// Galileo.
     Galileo,
+    /// GLONASS.
+    Glonass,
+    /// BeiDou.
+    BeiDou,
+}
+
+impl Constellation {
+    /// All systems, GPS first.
+    pub const ALL: [Self; 4] = [Self::Gps, Self::Galileo, Self::Glonass, Self::BeiDou];
 }
 
 /// The two carriers on which a satellite is observed.
@@ -36,9 +57,21 @@ pub enum Carriers {
     E1E5a,
     /// E1 and E5b of Galileo.
     E1E5b,
+    /// G1 and G2 of GLONASS.
+    G1G2 {
+        /// Of the satellite: −7 to 6.
+        channel: i8,
+    },
+    /// B1I and B3I of BeiDou.
+    B1B3,
+    /// B1I and B2I of BeiDou.
+    B1B2,
+    /// B1C and B2a of BeiDou.
+    B1cB2a,
 }
 
 /// What the combinations of a pair are made of.
+#[derive(Clone, Copy)]
 struct Pair {
     frequency: [f64; 2],
     wavelength: [f64; 2],
@@ -65,13 +98,33 @@ impl Pair {
 static L1L2: Pair = Pair::new(FREQUENCY[0], FREQUENCY[1]);
 static E1E5A: Pair = Pair::new(FREQUENCY[0], E5A);
 static E1E5B: Pair = Pair::new(FREQUENCY[0], E5B);
+/// From the lowest channel on.
+static G1G2: [Pair; CHANNELS] = {
+    let mut pairs = [Pair::new(G1, G2); CHANNELS];
+    let mut place = 0;
+    while place < CHANNELS {
+        let scale = 1.0 + (place as f64 - CHANNEL_0 as f64) * CHANNEL;
+        pairs[place] = Pair::new(scale * G1, scale * G2);
+        place += 1;
+    }
+    pairs
+};
+static B1B3: Pair = Pair::new(B1I, B3I);
+static B1B2: Pair = Pair::new(B1I, E5B);
 
 impl Carriers {
     const fn pair(self) -> &'static Pair {
         match self {
             Self::L1L2 => &L1L2,
-            Self::E1E5a => &E1E5A,
+            Self::E1E5a | Self::B1cB2a => &E1E5A,
             Self::E1E5b => &E1E5B,
+            Self::G1G2 { channel } => {
+                // Below the lowest channel this is a large number.
+                let place = channel.wrapping_add(CHANNEL_0 as i8) as u8 as usize;
+                &G1G2[if place < CHANNELS { place } else { CHANNEL_0 }]
+            }
+            Self::B1B3 => &B1B3,
+            Self::B1B2 => &B1B2,
         }
     }
 
@@ -80,10 +133,12 @@ impl Carriers {
         match self {
             Self::L1L2 => Constellation::Gps,
             Self::E1E5a | Self::E1E5b => Constellation::Galileo,
+            Self::G1G2 { .. } => Constellation::Glonass,
+            Self::B1B3 | Self::B1B2 | Self::B1cB2a => Constellation::BeiDou,
         }
     }
 
-    /// Their frequencies, Hz.
+    /// Their frequencies, Hz; of GLONASS on a channel that there is not, those of channel 0.
     pub const fn frequency(self) -> [f64; 2] {
         self.pair().frequency
     }
@@ -140,7 +195,16 @@ mod tests {
 
     #[test]
     fn the_combinations_cancel_what_they_should() {
-        for carriers in [Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b] {
+        let of_glonass = [-7, 0, 6].map(|channel| Carriers::G1G2 { channel });
+        let others = [
+            Carriers::L1L2,
+            Carriers::E1E5a,
+            Carriers::E1E5b,
+            Carriers::B1B3,
+            Carriers::B1B2,
+            Carriers::B1cB2a,
+        ];
+        for carriers in others.into_iter().chain(of_glonass) {
             let (range, ionosphere) = (22e6, 7.0);
             let ([first, second], wavelength) = (carriers.frequency(), carriers.wavelength());
             let ratio = (first / second).powi(2);
@@ -161,5 +225,11 @@ mod tests {
         }
         assert_eq!(Carriers::L1L2.wavelength(), WAVELENGTH);
         assert!((Carriers::E1E5a.wide_lane() - 0.751).abs() < 1e-3);
+        // ICD, table 3.1.
+        let [first, second] = Carriers::G1G2 { channel: -7 }.frequency();
+        assert!((first - 1_598.062_5e6).abs() < 1e-3 && (second - 1_242.937_5e6).abs() < 1e-3);
+        for none in [-8, 7, i8::MIN, i8::MAX] {
+            assert_eq!(Carriers::G1G2 { channel: none }.frequency(), [G1, G2]);
+        }
     }
 }

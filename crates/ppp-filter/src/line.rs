@@ -3,12 +3,30 @@
 use crate::collected::collected;
 use crate::states::{CLOCK, COMMON, GRADIENTS, WET};
 use crate::{Config, Motion, SatelliteObservation, Slipped};
-use kestirim_gnss_ppp::{Expected, Site};
+use kestirim_gnss_ppp::{Carriers, Constellation, Expected, Site};
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
 /// A row of H: the states that a phase depends on, the ambiguity last.
 pub(crate) type Row = heapless::Vec<(usize, f64), { COMMON + GRADIENTS.len() + 2 }>;
+
+/// Variance of the delays of the codes of a system's satellites, each beside the others for good, m²: of GLONASS those of
+/// the receiver, which differ with the channel (inter-frequency biases, up to some metres), of BeiDou those of the satellites.
+pub(crate) const fn code_bias(carriers: Carriers) -> f64 {
+    match carriers.constellation() {
+        Constellation::Gps | Constellation::Galileo => 0.0,
+        Constellation::Glonass | Constellation::BeiDou => 9.0,
+    }
+}
+
+/// How many times the variance of phases of a system's satellites is that of GPS's: orbits, clocks and antennas of GLONASS and
+/// BeiDou are not known as well (RTKLIB counts the deviations of GLONASS 1.5 times, too).
+const fn phase_doubt(carriers: Carriers) -> f64 {
+    match carriers.constellation() {
+        Constellation::Gps | Constellation::Galileo => 1.0,
+        Constellation::Glonass | Constellation::BeiDou => 1.5 * 1.5,
+    }
+}
 
 /// One satellite's two observations, linearised.
 #[derive(Clone, Copy, Debug)]
@@ -58,8 +76,11 @@ impl Line {
             expected,
             code: 0.0,
             phase: 0.0,
-            code_variance: config.code.variance(sine) + clock + told,
-            phase_variance: config.phase.variance(sine) + told,
+            code_variance: config.code.variance(sine)
+                + clock
+                + told
+                + code_bias(observation.carriers),
+            phase_variance: phase_doubt(observation.carriers) * config.phase.variance(sine) + told,
             clock_variance: clock,
             phase_noise: 1.0,
         };

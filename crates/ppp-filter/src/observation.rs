@@ -8,7 +8,7 @@ const COARSE_CLOCKS: f64 = 300.0;
 /// Only complete observations serve: both codes and both phases.
 #[derive(Clone, Copy, Debug)]
 pub struct SatelliteObservation<'a> {
-    /// Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's and 100, say.
+    /// Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's number and 100, say.
     pub satellite: u8,
     /// The two carriers on which it is observed.
     pub carriers: Carriers,

@@ -13,7 +13,7 @@ use crate::start::code_position;
 use crate::states::{BEHIND_GRADIENTS, CLOCK, COMMON, GRADIENTS, WET};
 use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution};
 use heapless::Vec;
-use kestirim_gnss_ppp::{GpsTime, Receiver, Site};
+use kestirim_gnss_ppp::{Constellation, GpsTime, Receiver, Site};
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement};
 use kestirim_scalar::Components;
@@ -23,7 +23,7 @@ use nalgebra::{SVector, Vector3};
 const START_VARIANCE: f64 = 1e4;
 /// Variance of the receiver's clock, of which each epoch knows nothing but its codes, m².
 const CLOCK_VARIANCE: f64 = 1e6;
-/// Variance per second by which the clock of Galileo walks beside that of GPS, m²/s: the receiver's delays are steady,
+/// Variance per second by which the clock of another system walks beside that of GPS, m²/s: the receiver's delays are steady,
 /// the times of the products are not always.
 const OFFSET_WALK: f64 = 1e-8;
 /// Variance of an ambiguity from one epoch's code, m².
@@ -48,6 +48,11 @@ pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a SatelliteObservation<'b
 /// Decisions about each line's code and phase.
 pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 
+/// Number of the systems beside GPS.
+const OTHERS: usize = Constellation::ALL.len() - 1;
+/// The states that are clocks beside that of GPS, in the order of [`Constellation::ALL`] behind GPS.
+type Offsets = [Option<usize>; OTHERS];
+
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Running<const N: usize> {
@@ -61,10 +66,10 @@ pub(crate) struct Running<const N: usize> {
     /// By the state that is their ambiguity.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     channels: [Option<Channel>; N],
-    /// The state that is the clock of Galileo beside that of GPS, both as the receiver has them, from the first
-    /// satellite of Galileo on.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "state::<_, N>"))]
-    offset: Option<usize>,
+    /// The states that are the clocks of other systems beside that of GPS, all as the receiver has them, each from the first
+    /// satellite of that system on.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "offsets::<_, N>"))]
+    offsets: Offsets,
     pub(crate) consistency: Consistency,
     pub(crate) rest: Rest,
     /// By how many milliseconds the phases are ahead of the codes since the beginning.
@@ -82,14 +87,14 @@ fn first_ambiguity<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<
     }
 }
 
-/// A state that there is, or none.
+/// States that there are, or none.
 #[cfg(feature = "serde")]
-fn state<'de, D: serde::Deserializer<'de>, const N: usize>(
+fn offsets<'de, D: serde::Deserializer<'de>, const N: usize>(
     deserializer: D,
-) -> Result<Option<usize>, D::Error> {
-    let state = <Option<usize> as serde::Deserialize>::deserialize(deserializer)?;
-    if state.is_none_or(|index| index < N) {
-        Ok(state)
+) -> Result<Offsets, D::Error> {
+    let offsets = <Offsets as serde::Deserialize>::deserialize(deserializer)?;
+    if offsets.iter().flatten().all(|index| *index < N) {
+        Ok(offsets)
     } else {
         Err(serde::de::Error::custom("a state that there is not"))
     }
@@ -130,7 +135,7 @@ impl<const N: usize> Running<N> {
             interval: None,
             first: if has_gradients { BEHIND_GRADIENTS } else { COMMON },
             channels: [None; N],
-            offset: None,
+            offsets: Offsets::default(),
             consistency: Consistency::default(),
             rest: Rest::default(),
             ahead: 0,
@@ -163,7 +168,7 @@ impl<const N: usize> Running<N> {
                 self.estimate.add_variance_at(gradient, walk)?;
             }
         }
-        if let Some(offset) = self.offset {
+        for offset in self.offsets.into_iter().flatten() {
             self.estimate.add_variance_at(offset, OFFSET_WALK * elapsed)?;
         }
         Ok(())
@@ -181,7 +186,7 @@ impl<const N: usize> Running<N> {
         if let Some(ClockJump::Milliseconds(milliseconds)) = self.jump {
             self.ahead = self.ahead.saturating_add(milliseconds);
         }
-        let known = self.offset;
+        let known = self.offsets;
         let mut lines = self.lines(&site, observations, config);
         if lines.len() < 4 {
             return Err(Error::TooFewSatellites);
@@ -201,19 +206,23 @@ impl<const N: usize> Running<N> {
         Ok(self.solution(&site, &lines, &decisions, config))
     }
 
-    /// Begins the receiver's clock anew at the median code, and its offset to Galileo's time if that was not `known`.
-    fn set_clocks(&mut self, lines: &Lines<'_, '_, N>, known: Option<usize>) -> Result<(), Error> {
-        let codes = |of_galileo: bool| -> Vec<f64, N> {
-            let of = lines.iter().map(|(_, line)| line);
-            collected(of.filter(|it| it.offset.is_some() == of_galileo).map(|line| line.code))
-        };
-        let (gps, galileo) = (codes(false), codes(true));
-        let [of_gps, of_galileo] = [&gps, &galileo].map(|codes| median(codes, |code| *code));
-        let offset = known.map_or(0.0, |state| self.state(state));
-        let clock = if gps.is_empty() { of_galileo - offset } else { of_gps };
-        if let (Some(state), None) = (self.offset, known) {
-            self.estimate.reset_at(state, of_galileo - clock, CLOCK_VARIANCE)?;
+    /// Begins the receiver's clock anew at the median code, and those of systems beside it that were not `known`.
+    #[inline(never)]
+    fn set_clocks(&mut self, lines: &Lines<'_, '_, N>, known: Offsets) -> Result<(), Error> {
+        let mut clock = median_code(lines, None);
+        // Without GPS the clock is that of a system beside it, best of one that is known.
+        for begins in [false, true] {
+            for (state, known) in self.offsets.into_iter().zip(known) {
+                let Some(state) = state.filter(|_| known.is_none() == begins) else { continue };
+                let Some(code) = median_code(lines, Some(state)) else { continue };
+                let beside = if begins { 0.0 } else { self.state(state) };
+                let clock = *clock.get_or_insert(code - beside);
+                if begins {
+                    self.estimate.reset_at(state, code - clock, CLOCK_VARIANCE)?;
+                }
+            }
         }
+        let Some(clock) = clock else { return Ok(()) };
         Ok(self.estimate.reset_at(CLOCK, clock, CLOCK_VARIANCE)?)
     }
 
@@ -285,7 +294,8 @@ impl<const N: usize> Running<N> {
     fn monitor(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>, config: &Config) {
         let judged = decisions.iter().map(|[_, phase]| phase).filter(|phase| is_judged(phase));
         let squares: Vec<f64, N> = collected(judged.map(|it| it.standardised * it.standardised));
-        let common = (median(&squares, |square| *square) / MEDIAN_OF_SQUARES).max(1.0);
+        let median = median(|| squares.iter().copied()).unwrap_or_default();
+        let common = (median / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
                 channel.monitor.update(phase, line, common, config.motion);
@@ -317,14 +327,20 @@ impl<const N: usize> Running<N> {
     }
 }
 
-/// By counting: sorting would bring panics along.
-fn median<T, const N: usize>(items: &Vec<T, N>, value: impl Fn(&T) -> f64) -> f64 {
-    let values = || items.iter().map(&value);
-    let middle = items.len() / 2;
+/// The median code of the satellites of a system, by the state of its clock beside that of GPS, if there are any.
+#[inline(never)]
+fn median_code<const N: usize>(lines: &Lines<'_, '_, N>, state: Option<usize>) -> Option<f64> {
+    let of_system = || lines.iter().map(|(_, line)| line).filter(|it| it.offset == state);
+    median(|| of_system().map(|line| line.code))
+}
+
+/// The median, if there are any values. By counting: sorting would bring panics along.
+fn median<I: Iterator<Item = f64>>(values: impl Fn() -> I) -> Option<f64> {
+    let middle = values().count() / 2;
     let is_median = |candidate: &f64| {
         let below = values().filter(|other| other.total_cmp(candidate).is_lt()).count();
         let up_to = values().filter(|other| other.total_cmp(candidate).is_le()).count();
         below <= middle && middle < up_to
     };
-    values().find(is_median).unwrap_or(0.0)
+    values().find(is_median)
 }

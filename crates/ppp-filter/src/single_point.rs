@@ -1,6 +1,7 @@
 //! Positions from the codes of one epoch each.
 
 use crate::collected::collected;
+use crate::line::code_bias;
 use crate::running::GROUND;
 use crate::start::code_position;
 use crate::{Config, Error, Health, SatelliteObservation, SatelliteReport, Solution};
@@ -29,8 +30,10 @@ const NOT_TOLD: f64 = 5.0;
 const LOWEST: f64 = 0.1;
 /// Least squares are done again from where they led.
 const ROUNDS: usize = 2;
-/// Coordinates, the receiver's clock, and Galileo's beside that.
-const STATES: usize = 5;
+/// Coordinates and the receiver's clock.
+const COMMON: usize = 4;
+/// The same, and the clocks of systems beside the receiver's.
+const STATES: usize = COMMON + Constellation::ALL.len() - 1;
 
 /// The codes of one satellite in an epoch, and the satellite's state.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +114,7 @@ struct Line {
     /// Observed less expected, m.
     innovation: f64,
     variance: f64,
-    row: [(usize, f64); STATES],
+    row: [(usize, f64); COMMON + 1],
 }
 
 /// An epoch, linearised at a position.
@@ -120,6 +123,8 @@ struct Epoch<const N: usize> {
     clock: f64,
     estimate: Gaussian<f64, STATES>,
     lines: Vec<Line, N>,
+    /// Of how many systems the lines are.
+    systems: usize,
     decisions: Vec<Decision<f64>, N>,
 }
 
@@ -127,7 +132,7 @@ impl<const N: usize> Epoch<N> {
     fn at(place: Vector3<f64>, clock: f64) -> Self {
         let covariance = Covariance::from_variances(&[UNKNOWN; STATES]);
         let estimate = Gaussian::new(SVector::zeros(), covariance);
-        Self { place, clock, estimate, lines: Vec::new(), decisions: Vec::new() }
+        Self { place, clock, estimate, lines: Vec::new(), systems: 0, decisions: Vec::new() }
     }
 
     fn observe(
@@ -141,7 +146,10 @@ impl<const N: usize> Epoch<N> {
         let site = Site::new(receiver, &self.place, time);
         let place = Geodetic::from_ecef(&self.place);
         let system = |it: &CodeObservation<'_>| it.carriers.constellation();
-        let has_gps = codes.iter().any(|it| system(it) == Constellation::Gps);
+        // To the clock of the first system the others are beside.
+        let is_there = |of: &Constellation| codes.iter().any(|it| system(it) == *of);
+        let there = || Constellation::ALL.into_iter().filter(is_there);
+        self.systems = there().count();
         self.lines = collected(codes.iter().enumerate().filter_map(|(index, it)| {
             let before = codes.get(..index).unwrap_or(&[]);
             if before.iter().any(|other| other.satellite == it.satellite) {
@@ -164,17 +172,19 @@ impl<const N: usize> Epoch<N> {
                 }
                 (true, None) => (0.0, NOT_TOLD / sine.max(LOWEST)),
             };
-            let noise = config.code.variance(sine) * if is_alone { ALONE * ALONE } else { 1.0 };
+            let noise = config.code.variance(sine) + code_bias(it.carriers);
+            let noise = noise * if is_alone { ALONE * ALONE } else { 1.0 };
             let wet = config.wet_delay * expected.wet_mapping;
             let known = self.clock + expected.wet_mapping * WET_DELAY + delay;
             let [x, y, z] = *expected.sight.as_array();
-            let is_beside = has_gps && system(it) == Constellation::Galileo;
+            let beside = there().skip(1).position(|of| of == system(it));
+            let own = beside.map_or((COMMON, 0.0), |place| (COMMON + place, 1.0));
             Some(Line {
                 satellite: it.satellite,
                 expected,
                 innovation: range - expected.range - known,
                 variance: noise + square(left) + square(wet) + square(it.state.accuracy),
-                row: [(0, -x), (1, -y), (2, -z), (3, 1.0), (4, f64::from(u8::from(is_beside)))],
+                row: [(0, -x), (1, -y), (2, -z), (3, 1.0), own],
             })
         }));
     }
@@ -216,7 +226,11 @@ impl<const N: usize> Epoch<N> {
             wet_delay: WET_DELAY,
             gradients: [0.0; 2],
             // Metres, whatever comes: no ambiguity is ever known.
-            health: if heard > STATES { Health::Converging } else { Health::Unchecked },
+            health: if heard > COMMON + self.systems {
+                Health::Converging
+            } else {
+                Health::Unchecked
+            },
             milliseconds: 0,
             satellites: collected(satellites),
         }

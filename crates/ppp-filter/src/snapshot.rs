@@ -4,5 +4,5 @@ use crate::PppFilter;
 use kestirim_snapshot::layout;
 
 layout! {
-    [const N: usize] for PppFilter<N> as "ppp", 2, f64, [N];
+    [const N: usize] for PppFilter<N> as "ppp", 3, f64, [N];
 }

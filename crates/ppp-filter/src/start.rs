@@ -32,9 +32,9 @@ const LARGEST_RESIDUAL: f64 = 15.0;
 pub(crate) fn code_position(
     observations: &[SatelliteObservation<'_>],
 ) -> Result<CodePosition, Error> {
-    let observations = observations.get(..32).unwrap_or(observations);
-    // A satellite that is there twice counts once; from no place are more than 32 seen.
-    let mut dropped = 0_u32;
+    let observations = observations.get(..64).unwrap_or(observations);
+    // A satellite that is there twice counts once; from no place are more than 64 seen.
+    let mut dropped = 0_u64;
     for (index, observation) in observations.iter().enumerate() {
         let before = observations.get(..index).unwrap_or(&[]);
         if before.iter().any(|other| other.satellite == observation.satellite) {
@@ -42,13 +42,13 @@ pub(crate) fn code_position(
         }
     }
     // Each system has a clock of its own: the codes of one of them tell the place.
-    let is = |it: &SatelliteObservation<'_>| it.carriers.constellation() == Constellation::Galileo;
-    let galileo = observations.iter().filter(|it| is(it)).count();
-    let most = observations.len().saturating_sub(galileo).max(galileo);
-    if most >= 4 {
-        let most_are_galileo = most == galileo;
+    let system = |it: &SatelliteObservation<'_>| it.carriers.constellation();
+    let count = |of| observations.iter().filter(|it| system(it) == of).count();
+    // Of as many the first.
+    let most = Constellation::ALL.into_iter().rev().max_by_key(|of| count(*of));
+    if let Some(most) = most.filter(|of| count(*of) >= 4) {
         for (index, observation) in observations.iter().enumerate() {
-            dropped |= u32::from(is(observation) != most_are_galileo) << index;
+            dropped |= u64::from(system(observation) != most) << index;
         }
     }
     loop {

@@ -13,8 +13,8 @@ pub(crate) const GRADIENTS: [usize; 2] = [COMMON, COMMON + 1];
 /// Number of states besides ambiguities where gradients are.
 pub(crate) const BEHIND_GRADIENTS: usize = COMMON + GRADIENTS.len();
 
-/// Number of states of a [`PppFilter`](crate::PppFilter) for so many satellites at a time. Where satellites of Galileo
-/// are among them, their clock takes the room of one; gradients, if they are estimated, take that of two.
+/// Number of states of a [`PppFilter`](crate::PppFilter) for so many satellites at a time. The clock of each
+/// system beside GPS takes the room of one; gradients, if they are estimated, take that of two.
 pub const fn states(satellites: usize) -> usize {
     COMMON.saturating_add(satellites)
 }

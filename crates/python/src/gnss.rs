@@ -98,7 +98,8 @@ fn systems(name: &str) -> PyResult<Systems> {
         "all" => Ok(Systems::All),
         "gps" => Ok(Systems::Gps),
         "galileo" => Ok(Systems::Galileo),
-        _ => Err(unknown("systems", name, "'all', 'gps' or 'galileo'")),
+        "gps-galileo" => Ok(Systems::GpsGalileo),
+        _ => Err(unknown("systems", name, "'all', 'gps', 'galileo' or 'gps-galileo'")),
     }
 }
 

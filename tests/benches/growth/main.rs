@@ -126,6 +126,8 @@ fn epochs() -> Curve {
     let receiver = Receiver {
         antenna: None,
         galileo_antenna: None,
+        glonass_antenna: None,
+        beidou_antenna: None,
         eccentricity: [0.0; 3],
         ocean_loading: None,
         pole: None,

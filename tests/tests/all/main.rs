@@ -19,6 +19,7 @@ mod gnss_files;
 mod gnss_fixed;
 mod gnss_recordings;
 mod gnss_streams;
+mod gnss_systems;
 mod panic_free;
 mod pedestrian_on_target;
 mod pedestrian_recordings;

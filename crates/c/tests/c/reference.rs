@@ -271,9 +271,11 @@ pub(crate) fn gnss(_: &[u8]) -> String {
     let config = PppConfig { gradient: 0.0, ..PppConfig::new(Motion::Static) };
     let mut filter = PppFilter::<{ states(12) }>::new(config);
     let receiver = receiver();
-    // Of C's interface, the same for both constellations, and without tides of the ocean.
+    // Of C's interface, the same for all systems, and without tides of the ocean.
     let receiver = kestirim_gnss_ppp::Receiver {
         galileo_antenna: receiver.antenna,
+        glonass_antenna: receiver.antenna,
+        beidou_antenna: receiver.antenna,
         ocean_loading: None,
         ..receiver
     };

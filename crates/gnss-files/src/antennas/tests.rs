@@ -9,7 +9,7 @@ fn patterns_are_read_in_metres() -> Result<(), Error> {
     assert_eq!(sentences(&antennas.warnings), [""; 0]);
     let receiver = antennas.receiver.expect("it is there");
     assert_eq!(receiver.name, RECEIVER);
-    let [Some(_), Some(l2)] = &receiver.frequencies else { panic!("two frequencies") };
+    let [_, l2] = receiver.on(Carriers::L1L2).expect("two frequencies");
     assert_eq!(l2.offset, [1.5e-3, -2.5e-3, 0.1]);
     assert_eq!((l2.first, l2.step, l2.azimuth_step), (0.0, 5.0, 180.0));
     assert_eq!(l2.mean, [1e-3, 2e-3, -3.25e-3]);
@@ -28,7 +28,9 @@ fn satellites_change_their_numbers() -> Result<(), Error> {
         Some(56_473)
     );
     assert_eq!(antennas.satellite(5, at(2020)).and_then(|one| one.valid_until), None);
-    assert!(antennas.satellite(5, at(2020)).is_some_and(|one| one.frequencies[1].is_none()));
+    let without_l2 =
+        antennas.satellite(5, at(2020)).is_some_and(|one| one.on(Carriers::L1L2).is_none());
+    assert!(without_l2);
     assert_eq!(antennas.satellite(6, at(2020)), None);
     Ok(())
 }
@@ -59,7 +61,7 @@ fn satellites_of_galileo_are_moved_between_editions_as_igs20_tells() -> Result<(
         Ok::<_, Error>(antennas.satellite(5, at).expect("it is there").clone())
     };
     let z = |antenna: &Antenna| {
-        antenna.frequencies[0].as_ref().map(|centre| (centre.offset[2] * 1e5).round())
+        antenna.centres.first().map(|(_, centre)| (centre.offset[2] * 1e5).round())
     };
     let galileo = of("GALILEO-2", "E210", "IGS20_2417")?;
     assert_eq!((galileo.model, galileo.code.as_str()), (Some(AntennaModel::Igs20), "E210"));

@@ -2,13 +2,15 @@
 
 use super::record::Numbers;
 use crate::error::Error;
-use crate::fields::GALILEO;
+use crate::system::System;
 use crate::time::GpsTime;
 
 /// Seconds of a week.
 const WEEK: f64 = 604_800.0;
 /// As files write it that a satellite of GPS tells no accuracy: index 15 (IS-GPS-200, 20.3.3.3.1.3) is 6144 m and more.
 const NO_ACCURACY: f64 = 6_144.0;
+/// By so much BeiDou's time is behind that of GPS, s.
+const BEIDOU_BEHIND: f64 = 14.0;
 /// The longest fit that a message can tell, h.
 const LONGEST_FIT: f64 = 194.0;
 
@@ -21,20 +23,22 @@ pub enum Message {
     Inav,
     /// That of Galileo on E5a, whose clock refers to E1 and E5a.
     Fnav,
+    /// That of BeiDou on B1I, B2I and B3I, whose clock refers to B3I.
+    D1,
 }
 
 impl Message {
     /// All of them.
-    pub(super) const ALL: [Self; 3] = [Self::Lnav, Self::Inav, Self::Fnav];
+    pub const ALL: [Self; 4] = [Self::Lnav, Self::Inav, Self::Fnav, Self::D1];
 }
 
-/// An ephemeris as a satellite broadcasts it: m, s and rad. What IS-GPS-200 (table 20-III) and the Galileo OS SIS ICD (5.1.1)
-/// call by symbols stands behind each name.
+/// An ephemeris as a satellite broadcasts it: m, s and rad. What IS-GPS-200 (table 20-III), the Galileo OS SIS ICD (5.1.1) and
+/// BDS-SIS-ICD-B1I (5.2.4) call by symbols stands behind each name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ephemeris {
     /// The message.
     pub message: Message,
-    /// The time of which the orbit is told: toe.
+    /// The time of which the orbit is told, by GPS: toe.
     pub time: GpsTime,
     /// The time of which the clock is told: toc.
     pub clock_time: GpsTime,
@@ -67,9 +71,9 @@ pub struct Ephemeris {
     pub radius_terms: [f64; 2],
     /// Cosine and sine terms of the inclination, rad: Cic, Cis.
     pub inclination_terms: [f64; 2],
-    /// Group delays, s: `TGD` of GPS; of Galileo BGD(E1, E5a) and BGD(E1, E5b).
+    /// Group delays, s: `TGD` of GPS; of Galileo BGD(E1, E5a) and BGD(E1, E5b); of BeiDou TGD1 of B1I and TGD2 of B2I.
     pub group_delays: [f64; 2],
-    /// Standard deviation of a range by it, m: URA of GPS, SISA of Galileo; none if the satellite gives none.
+    /// Standard deviation of a range by it, m: URA of GPS and BeiDou, SISA of Galileo; none if the satellite gives none.
     pub accuracy: Option<f64>,
     /// Whether the satellite calls the signals of this message healthy and its data valid.
     pub is_healthy: bool,
@@ -119,19 +123,21 @@ impl Ephemeris {
         let needed = |place| numbers.needed(place);
         let clock_time = numbers.time()?;
         let optional = |place| Ok(numbers.optional(place)?.unwrap_or_default());
-        let galileo = satellite >= GALILEO;
-        let sources = if galileo { optional(20)? as i64 } else { 0 };
-        let message = message.unwrap_or(match (galileo, sources & 2) {
-            (false, _) => Message::Lnav,
-            (true, 0) => Message::Inav,
-            (true, _) => Message::Fnav,
+        let system = System::of(satellite);
+        let sources = if system == System::Galileo { optional(20)? as i64 } else { 0 };
+        let message = message.unwrap_or(match (system, sources & 2) {
+            (System::Galileo, 0) => Message::Inav,
+            (System::Galileo, _) => Message::Fnav,
+            (System::BeiDou, _) => Message::D1,
+            _ => Message::Lnav,
         });
         let accuracy = needed(23)?;
-        let of_gps = !galileo;
+        let behind = if system == System::BeiDou { BEIDOU_BEHIND } else { 0.0 };
+        let by_gps = |time: GpsTime| GpsTime::new(time.day(), time.second() + behind);
         Ok(Self {
             message,
-            time: time_of_week(clock_time, needed(11)?),
-            clock_time,
+            time: by_gps(time_of_week(clock_time, needed(11)?)),
+            clock_time: by_gps(clock_time),
             clock: [needed(0)?, needed(1)?, needed(2)?],
             issue: needed(3)? as u16,
             radius_terms: [needed(16)?, needed(4)?],
@@ -148,8 +154,8 @@ impl Ephemeris {
             inclination_rate: needed(19)?,
             accuracy: (accuracy > 0.0 && accuracy < NO_ACCURACY).then_some(accuracy),
             is_healthy: is_healthy(message, needed(24)?),
-            group_delays: [needed(25)?, if galileo { optional(26)? } else { 0.0 }],
-            fit: if of_gps { fit(optional(28)?) } else { None },
+            group_delays: [needed(25)?, if system == System::Gps { 0.0 } else { optional(26)? }],
+            fit: if system == System::Gps { fit(optional(28)?) } else { None },
         })
     }
 }
@@ -161,6 +167,7 @@ pub(crate) fn is_healthy(message: Message, bits: f64) -> bool {
         Message::Lnav => 0xff,
         Message::Inav => 0b1_1100_0111,
         Message::Fnav => 0b0_0011_1000,
+        Message::D1 => 1,
     };
     bits as i64 & own == 0
 }

@@ -2,7 +2,8 @@
 
 use super::ephemeris::Message;
 use crate::error::Error;
-use crate::fields::{blank_separated, satellite};
+use crate::fields::blank_separated;
+use crate::system::{System, satellite};
 use crate::text::{Line, Lines};
 use crate::time::{GpsTime, full_year};
 
@@ -43,7 +44,7 @@ impl Layout {
     }
 
     /// The name of the satellite that sent the ephemeris that begins with a line, where files tell its system by a
-    /// letter; none of Galileo, of which other messages are read.
+    /// letter; none of Galileo and BeiDou, of which other messages are read.
     pub(super) fn sender(self, line: &Line<'_>) -> Option<[u8; 3]> {
         let from = match self.version {
             ..3 => return None,
@@ -52,7 +53,8 @@ impl Layout {
             _ => return None,
         };
         let name = [0, 1, 2].map(|place| line.column(from + place));
-        (name[0] != b'E').then_some(name)
+        let is_read = satellite(&name).is_some_and(has_orbit);
+        (name[0] == b'G' || !is_read).then_some(name)
     }
 
     fn satellite(self, line: &Line<'_>) -> Option<u8> {
@@ -60,9 +62,15 @@ impl Layout {
             Some(b'E') => satellite(&[b"E", line.columns(0, 2)].concat()),
             Some(_) => satellite(line.columns(0, 2)),
             None if self.version < 3 => None,
-            None => satellite(line.columns(0, 3)),
+            None => satellite(line.columns(0, 3)).filter(|number| has_orbit(*number)),
         }
     }
+}
+
+/// Whether a satellite tells its orbit by an ellipse: one of GLONASS tells a place and a velocity, and that of a geostationary
+/// one is turned.
+const fn has_orbit(satellite: u8) -> bool {
+    !matches!(System::of(satellite), System::Glonass) && !System::is_geostationary(satellite)
 }
 
 /// The lines of a record.
@@ -145,6 +153,7 @@ impl<'a> Record<'a> {
             (Some(b'G'), b"LNAV") => Message::Lnav,
             (Some(b'E'), b"INAV") => Message::Inav,
             (Some(b'E'), b"FNAV") => Message::Fnav,
+            (Some(b'C'), b"D1") => Message::D1,
             _ => return Self::Other,
         };
         match (kind, satellite(name)) {

@@ -65,7 +65,7 @@ fn version_2_needs_no_letters() -> Result<(), Error> {
     let glonass = navigation_2().replace("N: GPS", "G: GLO");
     assert!(
         complaint(&glonass)
-            .ends_with("expected ephemerides of satellites of GPS or Galileo, found none")
+            .ends_with("expected ephemerides of satellites of GPS, Galileo or BeiDou, found none")
     );
     Ok(())
 }
@@ -153,5 +153,26 @@ fn an_orbit_that_is_none_is_left_out() -> Result<(), Error> {
         assert_eq!((read.satellites().collect::<Vec<_>>(), read.skipped), (vec![101], 2));
         assert!(sentences(&read.warnings)[0].ends_with("it is left out"));
     }
+    Ok(())
+}
+
+/// The record of a satellite of Galileo under another name: BeiDou's have the same order.
+#[test]
+fn times_of_beidou_are_14_s_behind() -> Result<(), Error> {
+    let renamed = |name: &str| navigation_3().replace("E01 2020", name);
+    let navigation = Navigation::parse(&[text(renamed("C19 2020"))])?;
+    let [one] = navigation.satellite(199, Message::D1) else { panic!("one ephemeris") };
+    assert_eq!(one.time, GpsTime::new(59_024, 84_614.0));
+    assert_eq!(one.clock_time, GpsTime::new(59_024, 84_614.0));
+    assert_eq!(one.group_delays, [-1.862_645_149_231e-9, 0.0]);
+    assert_eq!((one.accuracy, one.is_healthy, one.fit), (Some(3.12), true, None));
+    let fourth =
+        navigation_4().replace("EPH E01 FNAV", "EPH C19 D1").replace("E01 2020", "C19 2020");
+    let fourth = Navigation::parse(&[text(fourth)])?;
+    assert_eq!(fourth.satellite(199, Message::D1), [*one]);
+    let geostationary = Navigation::parse(&[text(renamed("C03 2020"))])?;
+    assert_eq!(geostationary.satellites().collect::<Vec<_>>(), [1]);
+    let told = "ephemerides of GLONASS (1), BeiDou (1) are in the file, but are not read";
+    assert!(geostationary.unserved[0].to_string().ends_with(told));
     Ok(())
 }

@@ -9,6 +9,7 @@ use super::signals::{Raw, Seen, Signals};
 use crate::biases::Biases;
 use crate::error::{Error, Warning};
 use crate::streams::Stream;
+use crate::system::{System, satellite_name};
 use crate::text::{Line, Lines, Text};
 use crate::time::{GpsTime, full_year};
 use crate::unserved::Unserved;
@@ -80,6 +81,7 @@ impl Body {
     pub(super) fn take(&mut self, text: &Text, stream: Stream) -> Result<(), Error> {
         self.warnings.extend(stream.warnings);
         self.unserved = stream.observed;
+        self.header.channels = stream.channels;
         for (time, satellites) in stream.epochs {
             if self.epochs.last().is_some_and(|last| time <= last.time) {
                 self.backwards += 1;
@@ -97,7 +99,9 @@ impl Body {
             self.epochs.push(RawEpoch { time, power_failure: false, end: self.records.len() });
         }
         if self.raw.is_empty() {
-            return Err(text.error("expected observations of GPS or Galileo, found none"));
+            return Err(
+                text.error("expected observations of GPS, Galileo, GLONASS or BeiDou, found none")
+            );
         }
         Ok(())
     }
@@ -195,7 +199,9 @@ impl Body {
         let old = self.header.version < 3;
         let (offset, in_a_line) = if old { (0, 5) } else { (3, usize::MAX) };
         let mut line = first;
-        let observables = self.header.observables_of(!old && named.is_galileo());
+        // RINEX 2 has one list for all.
+        let system = named.system().unwrap_or(System::Gps);
+        let observables = self.header.observables_of(system);
         for (i, observable) in observables.iter().enumerate() {
             let place = i % in_a_line;
             if i > 0 && place == 0 {
@@ -221,22 +227,29 @@ impl Body {
             seen.count(prn, &self.raw[start..end]);
             start = end;
         }
-        let signals = seen.choose();
+        let channels = &self.header.channels;
+        let signals = seen.choose(channels);
+        let names: Vec<_> = seen.without_channel(channels).map(satellite_name).collect();
+        if !names.is_empty() {
+            let problem = format!("tells no channel of {}: they are left out", names.join(" "));
+            self.warnings.push(text.warning(problem));
+        }
         let mut corrected = BTreeSet::new();
         let mut epochs = Vec::with_capacity(self.epochs.len());
         let (mut record, mut start) = (0, 0);
         for epoch in &self.epochs {
             let mut satellites = Vec::with_capacity(epoch.end - record);
             for &(prn, end) in &self.records[record..epoch.end] {
-                let chosen = signals.get(&prn).copied().unwrap_or_default();
-                let mut observed = Observed::of(prn, &chosen, &self.raw[start..end]);
+                let raw = &self.raw[start..end];
+                start = end;
+                let Some(chosen) = signals.get(&prn).copied() else { continue };
+                let mut observed = Observed::of(prn, &chosen, raw);
                 if let Some(biases) = biases.of_codes(prn, chosen.carriers, chosen.code, epoch.time)
                 {
                     observed.shorten(biases);
                     corrected.insert(prn);
                 }
                 satellites.push(observed);
-                start = end;
             }
             record = epoch.end;
             let RawEpoch { time, power_failure, .. } = *epoch;

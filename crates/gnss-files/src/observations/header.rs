@@ -1,8 +1,11 @@
 //! The header of an observation file.
 
-use super::signals::Signal;
+use std::collections::BTreeMap;
+
+use super::signals::{CHANNELS, Signal};
 use crate::error::Error;
-use crate::fields::{blank_separated, decimal};
+use crate::fields::{blank_separated, decimal, integer};
+use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 
 /// A column of observations that is of use.
@@ -23,8 +26,10 @@ pub(super) struct Header {
     pub(super) antenna: String,
     pub(super) approximate_position: Option<[f64; 3]>,
     pub(super) antenna_delta_hen: [f64; 3],
-    /// Of GPS and of Galileo.
-    lists: [List; 2],
+    /// In the order of [`System::ALL`].
+    lists: [List; System::ALL.len()],
+    /// Of the satellites of GLONASS, by number.
+    pub(super) channels: BTreeMap<u8, i8>,
     /// The satellite system of a list that goes on.
     system: u8,
 }
@@ -39,9 +44,6 @@ struct List {
     announced: usize,
     scales: Vec<(Vec<u8>, f64)>,
 }
-
-/// The letters of the systems in the order of their lists.
-const SYSTEMS: [u8; 2] = *b"GE";
 
 impl Header {
     pub(super) fn parse<'a>(text: &'a Text, lines: &mut Lines<'a>) -> Result<Self, Error> {
@@ -62,8 +64,7 @@ impl Header {
                     .iter()
                     .all(|list| list.observables.iter().flatten().next().is_none())
                 {
-                    let problem =
-                        "expected observations of GPS on L1 or L2 in the header, found none";
+                    let problem = "expected observations of GPS, Galileo, GLONASS or BeiDou in the header, found none";
                     return Err(text.error(problem));
                 }
                 return Ok(header);
@@ -86,9 +87,23 @@ impl Header {
             }
             b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = three(line)?,
             b"TIME OF FIRST OBS" => time_system(line)?,
+            b"GLONASS SLOT / FRQ #" => self.channels(line),
             _ => self.observables(line)?,
         }
         Ok(())
+    }
+
+    /// Takes up to eight satellites of GLONASS with their channels; none of which one of both cannot be read.
+    fn channels(&mut self, line: &Line<'_>) {
+        for field in (0..8).map(|place| 4 + 7 * place) {
+            let number = satellite(line.columns(field, field + 3));
+            let channel = integer(line.columns(field + 4, field + 6));
+            let channel = channel.and_then(|channel| i8::try_from(channel).ok());
+            let channel = channel.filter(|channel| CHANNELS.contains(channel));
+            if let (Some(number), Some(channel)) = (number, channel) {
+                self.channels.insert(number, channel);
+            }
+        }
     }
 
     /// Reads a line of a list of observables, and no other.
@@ -142,19 +157,19 @@ impl Header {
     }
 
     fn list(&mut self, system: u8) -> Option<&mut List> {
-        let place = SYSTEMS.iter().position(|letter| *letter == system)?;
-        self.lists.get_mut(place)
+        let system = System::of_letter(system)?;
+        self.lists.get_mut(system as usize)
     }
 
-    /// The observables of satellites of GPS, or of Galileo, by column.
-    pub(super) fn observables_of(&self, galileo: bool) -> &[Option<Observable>] {
-        &self.lists[usize::from(galileo)].observables
+    /// The observables of a system's satellites by column.
+    pub(super) fn observables_of(&self, system: System) -> &[Option<Observable>] {
+        &self.lists[system as usize].observables
     }
 
     /// Makes of the lists what the observations need.
     pub(super) fn complete(mut self) -> Self {
-        for (system, list) in SYSTEMS.into_iter().zip(&mut self.lists) {
-            list.complete(system);
+        for (system, list) in System::ALL.into_iter().zip(&mut self.lists) {
+            list.complete(system.letter());
         }
         self
     }

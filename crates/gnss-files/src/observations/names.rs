@@ -1,7 +1,8 @@
 //! Names of satellites.
 
 use crate::error::Error;
-use crate::fields::{self, gps_satellite};
+use crate::system;
+use crate::system::{System, gps_satellite};
 use crate::text::{Line, Lines};
 
 /// The satellites of an epoch of RINEX 2: twelve in a line.
@@ -29,15 +30,19 @@ pub(super) fn names<'a>(
 /// Meaning of a satellite's name.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Named {
-    /// A satellite of GPS or Galileo, by its number.
+    /// A satellite of a system that is served, by its number.
     Known(u8),
     /// One of another system.
     Other([u8; 3]),
 }
 
 impl Named {
-    pub(super) const fn is_galileo(self) -> bool {
-        matches!(self, Self::Known(number) if number >= fields::GALILEO)
+    /// The system, if it is served.
+    pub(super) fn system(self) -> Option<System> {
+        match self {
+            Self::Known(number) => Some(System::of(number)),
+            Self::Other(_) => None,
+        }
     }
 }
 
@@ -45,7 +50,7 @@ impl Named {
 pub(super) fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
     match name {
         [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
-        [b'E', ..] if !old => fields::satellite(&name).map(Named::Known),
+        [b'E' | b'R' | b'C', ..] if !old => system::satellite(&name).map(Named::Known),
         [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other(name)),
         _ => None,
     }

@@ -6,7 +6,7 @@ use super::signals::{Carriers, Raw, Signals};
 use crate::error::Warning;
 use crate::time::GpsTime;
 
-/// Observations of satellites of GPS and Galileo on two carriers by one receiver.
+/// Observations of satellites on two carriers by one receiver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Observations {
     /// The name of the station's marker.
@@ -43,7 +43,7 @@ pub struct Epoch {
 /// Observations of one satellite in one epoch, on two carriers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Observed {
-    /// The satellite's number: of GPS that of its name (PRN), of Galileo that and 100.
+    /// The satellite's number: of GPS that of its name (PRN), of Galileo that and 100, of GLONASS and 150, of BeiDou and 180.
     pub prn: u8,
     /// The carriers.
     pub carriers: Carriers,
@@ -67,11 +67,14 @@ impl Observed {
     pub(super) fn of(prn: u8, signals: &Signals, raw: &[Raw]) -> Self {
         let mut observed = Self { prn, carriers: signals.carriers, ..Self::default() };
         for &Raw { signal, value, lock_lost } in raw {
-            let band = signal.place();
-            if signal.phase && signals.phase[band] == Some(signal) {
+            let of = if signal.phase { signals.phase } else { signals.code };
+            let Some(band) = of.iter().position(|chosen| *chosen == Some(signal)) else {
+                continue;
+            };
+            if signal.phase {
                 observed.phase[band] = Some(value);
                 observed.loss_of_lock[band] = lock_lost;
-            } else if !signal.phase && signals.code[band] == Some(signal) {
+            } else {
                 observed.code[band] = Some(value);
             }
         }

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::RangeInclusive;
 
-use crate::fields;
+use crate::system::{System, satellite_name};
 
 /// The trackings of L1 and of L2 of GPS, the best first: the clocks of satellites refer to W, which P and Y are
 /// too.
@@ -12,6 +13,21 @@ const GPS: [&[u8]; 2] = [b"WPYCXSLMN", b"WPYLSXCDMN"];
 const GPS_PHASES: [&[u8]; 2] = [b"CWPYXSLMN", b"WPYLSXCDMN"];
 /// The trackings of E1 of Galileo and of E5a or E5b.
 const GALILEO: [&[u8]; 2] = [b"CXBAZ", b"QXI"];
+/// The trackings of G1 and G2 of GLONASS: clocks refer to P.
+const GLONASS: &[u8] = b"PC";
+/// The trackings of B1I, B2I and B3I of BeiDou, …
+const BEIDOU: &[u8] = b"IXQ";
+/// … and of B1C and B2a.
+const BEIDOU_3: &[u8] = b"PXD";
+
+/// The channels of GLONASS.
+pub(crate) const CHANNELS: RangeInclusive<i8> = -7..=6;
+
+/// How many times its frequencies are those of channel 0 (GLONASS ICD L1, L2, 3.3.1.1).
+#[cfg(feature = "rtcm")]
+pub(crate) fn channel_scale(channel: i8) -> f64 {
+    1.0 + f64::from(channel) / 2_848.0
+}
 
 /// The two carriers on which a satellite is observed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -23,15 +39,49 @@ pub enum Carriers {
     E1E5a,
     /// E1 and E5b of Galileo.
     E1E5b,
+    /// G1 and G2 of GLONASS.
+    G1G2 {
+        /// Of the satellite: −7 to 6.
+        channel: i8,
+    },
+    /// B1I and B3I of BeiDou.
+    B1B3,
+    /// B1I and B2I of BeiDou.
+    B1B2,
+    /// B1C and B2a of BeiDou.
+    B1cB2a,
 }
 
 impl Carriers {
-    /// The bands by their digits in RINEX 3, and the trackings of codes and of phases.
-    const fn bands(self) -> ([u8; 2], [[&'static [u8]; 2]; 2]) {
+    /// The system whose satellites send them.
+    pub const fn system(self) -> System {
         match self {
-            Self::L1L2 => (*b"12", [GPS, GPS_PHASES]),
-            Self::E1E5a => (*b"15", [GALILEO, GALILEO]),
-            Self::E1E5b => (*b"17", [GALILEO, GALILEO]),
+            Self::L1L2 => System::Gps,
+            Self::E1E5a | Self::E1E5b => System::Galileo,
+            Self::G1G2 { .. } => System::Glonass,
+            Self::B1B3 | Self::B1B2 | Self::B1cB2a => System::BeiDou,
+        }
+    }
+
+    /// The bands by their digits in RINEX 3.
+    pub(crate) const fn bands(self) -> [u8; 2] {
+        match self {
+            Self::L1L2 | Self::G1G2 { .. } => *b"12",
+            Self::E1E5a | Self::B1cB2a => *b"15",
+            Self::E1E5b => *b"17",
+            Self::B1B3 => *b"26",
+            Self::B1B2 => *b"27",
+        }
+    }
+
+    /// The trackings of codes and of phases.
+    const fn trackings(self) -> [[&'static [u8]; 2]; 2] {
+        match self {
+            Self::L1L2 => [GPS, GPS_PHASES],
+            Self::E1E5a | Self::E1E5b => [GALILEO; 2],
+            Self::G1G2 { .. } => [[GLONASS; 2]; 2],
+            Self::B1B3 | Self::B1B2 => [[BEIDOU; 2]; 2],
+            Self::B1cB2a => [[BEIDOU_3; 2]; 2],
         }
     }
 }
@@ -69,41 +119,39 @@ impl Signal {
             (b'G', b'2') => GPS[1],
             (b'E', b'1') => GALILEO[0],
             (b'E', b'5' | b'7') => GALILEO[1],
+            (b'R', b'1' | b'2') => GLONASS,
+            (b'C', b'2' | b'6' | b'7') => BEIDOU,
+            (b'C', b'1' | b'5') => BEIDOU_3,
             _ => return None,
         };
         trackings.contains(&tracking).then_some(Self { phase: kind == b'L', band, tracking })
     }
 
-    /// Its carrier's frequency, Hz.
+    /// Its carrier's frequency, Hz; of GLONASS that of channel 0.
     #[cfg(feature = "rtcm")]
-    pub(crate) const fn frequency(self) -> f64 {
-        match self.band {
-            b'1' => 1_575.42e6,
-            b'2' => 1_227.60e6,
-            b'5' => 1_176.45e6,
+    pub(crate) const fn frequency(self, system: System) -> f64 {
+        match (system, self.band) {
+            (System::Glonass, b'1') => 1_602e6,
+            (System::Glonass, _) => 1_246e6,
+            (System::BeiDou, b'2') => 1_561.098e6,
+            (_, b'1') => 1_575.42e6,
+            (_, b'2') => 1_227.60e6,
+            (_, b'5') => 1_176.45e6,
+            (_, b'6') => 1_268.52e6,
             _ => 1_207.14e6,
         }
     }
 
-    /// The first carrier or the second.
-    pub(super) const fn place(self) -> usize {
-        if self.band == b'1' { 0 } else { 1 }
-    }
-
-    /// Whether the clocks of satellites refer to this code, as far as anybody tells them apart.
-    const fn is_reference(self) -> bool {
-        match self.band {
-            b'1' | b'2' => matches!(self.tracking, b'W' | b'P' | b'Y'),
-            band => band == b'5',
-        }
-    }
-
-    /// The code of the same carrier to which the clocks of satellites refer; none of a carrier to which they do not.
+    /// The code of the same carrier to which the clocks of satellites refer, as far as anybody tells them apart; none of a carrier to
+    /// which they do not.
     pub(crate) const fn reference(self, carriers: Carriers) -> Option<Self> {
-        match (carriers, self.is_reference()) {
-            (Carriers::L1L2, true) | (Carriers::E1E5a, _) => Some(self),
-            (Carriers::L1L2, false) => Some(Self { tracking: b'W', ..self }),
-            (Carriers::E1E5b, _) => None,
+        match (carriers, self.tracking) {
+            (Carriers::L1L2, b'W' | b'P' | b'Y') | (Carriers::E1E5a | Carriers::B1B3, _) => {
+                Some(self)
+            }
+            (Carriers::L1L2, _) => Some(Self { tracking: b'W', ..self }),
+            (Carriers::G1G2 { .. }, _) => Some(Self { tracking: b'P', ..self }),
+            (Carriers::E1E5b | Carriers::B1B2 | Carriers::B1cB2a, _) => None,
         }
     }
 }
@@ -131,21 +179,45 @@ impl Seen {
         }
     }
 
-    pub(super) fn choose(&self) -> BTreeMap<u8, Signals> {
-        let galileo = self.galileo();
-        let carriers = |number| if number < fields::GALILEO { Carriers::L1L2 } else { galileo };
-        let choose =
-            |(&number, counts): (&u8, &Vec<_>)| (number, Signals::choose(counts, carriers(number)));
-        self.0.iter().map(choose).collect()
+    /// The signals of each satellite; those of GLONASS are on `channels`, and of one of which that is not known, there is nothing.
+    pub(super) fn choose(&self, channels: &BTreeMap<u8, i8>) -> BTreeMap<u8, Signals> {
+        let (galileo, beidou) = (self.galileo(), self.beidou());
+        let carriers = |number| match System::of(number) {
+            System::Gps => Some(Carriers::L1L2),
+            System::Galileo => Some(galileo),
+            System::Glonass => channels.get(&number).map(|&channel| Carriers::G1G2 { channel }),
+            System::BeiDou => Some(beidou),
+        };
+        let choose = |(&number, counts): (&u8, &Vec<_>)| {
+            Some((number, Signals::choose(counts, carriers(number)?)))
+        };
+        self.0.iter().filter_map(choose).collect()
+    }
+
+    /// The satellites of GLONASS that are not on `channels`.
+    pub(super) fn without_channel(&self, channels: &BTreeMap<u8, i8>) -> impl Iterator<Item = u8> {
+        let of_glonass = self.0.keys().filter(|number| System::of(**number) == System::Glonass);
+        of_glonass.copied().filter(|number| !channels.contains_key(number))
+    }
+
+    /// How often a band of a system is observed.
+    fn count_of(&self, system: System, band: u8) -> usize {
+        let all = self.0.iter().filter(|(number, _)| System::of(**number) == system);
+        let all = all.flat_map(|(_, counts)| counts);
+        all.filter(|(signal, _)| signal.band == band).map(|(_, count)| count).sum()
     }
 
     /// The carriers of Galileo: E5a, unless E5b is observed more than twice as often.
     fn galileo(&self) -> Carriers {
-        let count = |band| -> usize {
-            let all = self.0.range(fields::GALILEO..).flat_map(|(_, counts)| counts);
-            all.filter(|(signal, _)| signal.band == band).map(|(_, count)| count).sum()
-        };
-        if count(b'7') > 2 * count(b'5') { Carriers::E1E5b } else { Carriers::E1E5a }
+        let [a, b] = [b'5', b'7'].map(|band| self.count_of(System::Galileo, band));
+        if b > 2 * a { Carriers::E1E5b } else { Carriers::E1E5a }
+    }
+
+    /// The carriers of BeiDou: B1I and the one of B3I, B2I and B2a, then with B1C, that is observed most, the first of equals.
+    fn beidou(&self) -> Carriers {
+        let pairs = [Carriers::B1cB2a, Carriers::B1B2, Carriers::B1B3];
+        let count = |pair: &Carriers| self.count_of(System::BeiDou, pair.bands()[1]);
+        pairs.into_iter().max_by_key(count).unwrap_or(Carriers::B1B3)
     }
 }
 
@@ -172,9 +244,9 @@ impl Signals {
             let often = |signal: &Signal| count(signal) > 0 && 2 * count(signal) >= most;
             first.into_iter().chain(order.iter().copied()).map(signal).find(often)
         };
-        let (bands, [codes, phases]) = carriers.bands();
+        let [codes, phases] = carriers.trackings();
         let mut chosen = Self { carriers, ..Self::default() };
-        for (place, band) in bands.into_iter().enumerate() {
+        for (place, band) in carriers.bands().into_iter().enumerate() {
             chosen.code[place] = best(false, band, None, codes[place]);
             let tracking = chosen.code[place].map(|code| code.tracking);
             chosen.phase[place] = best(true, band, tracking, phases[place]);
@@ -196,11 +268,15 @@ impl Signals {
             if signals.code.contains(&None) {
                 continue;
             }
-            // Those of Galileo's E1 are nearly the same.
-            let first = usize::from(signals.carriers != Carriers::L1L2);
+            // Those of Galileo's E1 are nearly the same; those of GLONASS and BeiDou do not count for much anyway.
+            let first = match signals.carriers.system() {
+                System::Gps => 0,
+                System::Galileo => 1,
+                System::Glonass | System::BeiDou => continue,
+            };
             for code in signals.code.into_iter().skip(first).flatten() {
-                if !code.is_reference() {
-                    others.entry(code).or_default().push(fields::satellite_name(*number));
+                if code.reference(signals.carriers) != Some(code) {
+                    others.entry(code).or_default().push(satellite_name(*number));
                 }
             }
         }

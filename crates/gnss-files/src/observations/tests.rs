@@ -9,7 +9,7 @@ fn complaint(file: &str) -> String {
     sentence
 }
 
-const NOT_READ: &str = "file: satellites of GLONASS (1) are in the file, but are not read";
+const NOT_READ: &str = "file: satellites of QZSS (1) are in the file, but are not read";
 
 #[test]
 fn rinex_3_is_read() -> Result<(), Error> {
@@ -61,7 +61,7 @@ fn rinex_2_is_read() -> Result<(), Error> {
     assert_eq!(second.satellites[0].code, [None, Some(20_000_101.0)]);
     assert_eq!(sentences(&observations.warnings), [""; 0]);
     let unserved = observations.unserved.iter().map(ToString::to_string).collect::<Vec<_>>();
-    assert_eq!(unserved, [NOT_READ]);
+    assert_eq!(unserved, [NOT_READ.replace("QZSS", "GLONASS")]);
     Ok(())
 }
 
@@ -143,7 +143,10 @@ fn what_cannot_be_used_is_refused() {
     let file = observations_3().replace("3.04 ", "1.04 ");
     assert!(complaint(&file).contains("expected RINEX 2, 3 or 4, found version 1.04"));
     let file = observations_3().replace("G    5", "C    5");
-    assert!(complaint(&file).contains("expected observations of GPS on L1 or L2 in the header"));
+    assert!(
+        complaint(&file)
+            .contains("expected observations of GPS, Galileo, GLONASS or BeiDou in the header")
+    );
     let file = header("     3.04           N", "RINEX VERSION / TYPE");
     let sentence = "file: expected observations (RINEX), found a navigation file (RINEX)";
     assert_eq!(complaint(&file), sentence);
@@ -193,5 +196,49 @@ fn galileo_is_read_beside_gps() -> Result<(), Error> {
     let e5b = Observations::parse(&text(file("C1C L1C C6C L6C C7Q L7Q")))?;
     let eleven = e5b.epochs[0].satellites[1];
     assert_eq!((eleven.carriers, eleven.code[1]), (Carriers::E1E5b, Some(24_000_002.0)));
+    Ok(())
+}
+
+#[test]
+fn glonass_needs_channels_and_beidou_its_most_frequent_carriers() -> Result<(), Error> {
+    let file = |channels: &str, bands: &str| {
+        lines(&[
+            "     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE",
+            &format!("{channels:60}GLONASS SLOT / FRQ #"),
+            "R    5 C1C L1C C2P L2P S1C                                  SYS / # / OBS TYPES",
+            &format!("C    6 {bands:<53}SYS / # / OBS TYPES"),
+            "                                                            END OF HEADER",
+            "> 2020 01 01 00 00  0.0000000  0  3",
+            "R07  20000000.125   105100000.250    20000001.000    81000000.000          45.000",
+            "R22  20000000.125   105100000.250    20000001.000    81000000.00011        45.000",
+            "C19  24000000.000   126100000.000    24000001.000    94200000.500    24000002.000    96600000.000",
+        ])
+    };
+    let told = "  2 R07  5 R22 -3";
+    let both = Observations::parse(&text(file(told, "C2I L2I C7I L7I C6I L6I")))?;
+    assert_eq!(sentences(&both.warnings), [""; 0]);
+    let [seven, other, nineteen] = &both.epochs[0].satellites[..] else { panic!("three") };
+    assert_eq!((seven.prn, seven.carriers), (157, Carriers::G1G2 { channel: 5 }));
+    assert_eq!((other.prn, other.carriers), (172, Carriers::G1G2 { channel: -3 }));
+    assert_eq!((other.code[1], other.phase[1]), (Some(20_000_001.0), Some(81_000_000.0)));
+    assert_eq!(other.loss_of_lock, [false, true]);
+    assert_eq!((nineteen.prn, nineteen.carriers), (199, Carriers::B1B3));
+    assert_eq!(nineteen.code, [Some(24_000_000.0), Some(24_000_002.0)]);
+    let of_beidou = |bands: &str| {
+        let observations = Observations::parse(&text(file(told, bands)))?;
+        let last = observations.epochs[0].satellites.last().copied();
+        Ok::<_, Error>(last.map(|it| (it.carriers, it.code[1])))
+    };
+    let third = Some(24_000_002.0);
+    assert_eq!(of_beidou("C6X L6D C2I L2I C7I L7I")?, Some((Carriers::B1B2, third)));
+    assert_eq!(of_beidou("C2X L2X C1P L1P C5P L5P")?, Some((Carriers::B1cB2a, third)));
+
+    let unknown = Observations::parse(&text(file("  1 R22 -3", "C2I L2I C7I L7I C6I L6I")))?;
+    assert_eq!(unknown.epochs[0].satellites.len(), 2);
+    let warning = "file: tells no channel of R07: they are left out";
+    assert_eq!(sentences(&unknown.warnings), [warning]);
+    // No satellite is on such a channel.
+    let wrong = Observations::parse(&text(file("  1 R22 -8", "C2I L2I C7I L7I C6I L6I")))?;
+    assert_eq!(wrong.epochs[0].satellites.len(), 1);
     Ok(())
 }

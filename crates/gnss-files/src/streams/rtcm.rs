@@ -1,24 +1,29 @@
-//! RTCM 3: observations (MSM4 and MSM7 of GPS and Galileo) and ephemerides (1019, 1045, 1046).
+//! RTCM 3: observations (MSM4 and MSM7) and ephemerides (1019, 1042, 1045, 1046).
 
 mod ephemerides;
+mod glonass;
 mod lock_times;
 mod passed_over;
 mod weeks;
 
 use rtcm_rs::prelude::*;
 
-use self::ephemerides::{fnav, gps, inav};
+use self::ephemerides::{beidou, fnav, gps, inav};
+use self::glonass::OfGlonass;
 use self::lock_times::{tracked_long, tracked_short};
 use self::passed_over::{PassedOver, cell_count};
 use self::weeks::{dated, elapsed, in_week_of, rolled_to, second_of_week};
-use super::{Locks, Signals, Stream};
+use super::{Locks, Signals, Stream, WEEK_MS};
 use crate::biases::SPEED_OF_LIGHT;
 use crate::error::Error;
-use crate::fields::GALILEO;
 use crate::navigation::{Ephemeris, time_of_week};
 use crate::observations::{Raw, Signal};
+use crate::system::System;
 use crate::text::Text;
 use crate::time::GpsTime;
+
+/// By so much BeiDou's time is behind that of GPS, ms.
+const BEIDOU_BEHIND: i64 = 14_000;
 
 /// Most cells of satellites and signals that a message of observations may have.
 const MOST_CELLS: u32 = 64;
@@ -59,12 +64,13 @@ struct Reader {
     locks: Locks,
     /// Ephemerides of the weeks that were transmitted, each with the number of its satellite and the place of the epoch before it.
     ephemerides: Vec<(usize, u8, Ephemeris)>,
+    glonass: OfGlonass,
     passed_over: PassedOver,
 }
 
 /// The signals of a message of observations: satellites' rough ranges, and what is fine beside them, ms.
 macro_rules! cells {
-    ($reader:ident, $message:ident, $time:ident, $system:literal, $code:ident, $phase:ident, $lock:ident, $tracked:ident) => {{
+    ($reader:ident, $message:ident, $time:expr, $system:expr, $code:ident, $phase:ident, $lock:ident, $tracked:ident) => {{
         let data = &$message.data_segment;
         let rough = |satellite: u8| {
             let of = data.satellite_data.iter().find(|it| it.satellite_id == satellite)?;
@@ -75,63 +81,99 @@ macro_rules! cells {
             let name = [b'0' + cell.signal_id.band(), cell.signal_id.attribute() as u8];
             let fine = [cell.$code, cell.$phase.filter(|_| cell.half_cycle_ambiguity_ind == 0)];
             let lock = $tracked(cell.$lock);
-            $reader.cell(
-                i64::from($message.$time),
-                ($system, cell.satellite_id),
-                name,
-                (rough(cell.satellite_id), fine, lock),
-            );
+            let satellite = ($system, cell.satellite_id);
+            $reader.cell($time, satellite, name, (rough(cell.satellite_id), fine, lock));
         }
     }};
 }
 
+/// Those of a message in MSM4 …
+macro_rules! short_cells {
+    ($reader:ident, $message:ident, $time:expr, $system:expr) => {
+        cells!(
+            $reader,
+            $message,
+            $time,
+            $system,
+            gnss_signal_fine_pseudorange_ms,
+            gnss_signal_fine_phaserange_ms,
+            gnss_phaserange_lock_time_ind,
+            tracked_short
+        )
+    };
+}
+
+/// … and in MSM7.
+macro_rules! long_cells {
+    ($reader:ident, $message:ident, $time:expr, $system:expr) => {
+        cells!(
+            $reader,
+            $message,
+            $time,
+            $system,
+            gnss_signal_fine_pseudorange_ext_ms,
+            gnss_signal_fine_phaserange_ext_ms,
+            gnss_phaserange_lock_time_ext_ind,
+            tracked_long
+        )
+    };
+}
+
 impl Reader {
     fn take(&mut self, frame: &MessageFrame<'_>) {
+        let of_beidou = |time: u32| (i64::from(time) + BEIDOU_BEHIND).rem_euclid(WEEK_MS);
         match &frame.get_message() {
-            Message::Msg1074(it) => cells!(
-                self,
-                it,
-                gps_epoch_time_ms,
-                b'G',
-                gnss_signal_fine_pseudorange_ms,
-                gnss_signal_fine_phaserange_ms,
-                gnss_phaserange_lock_time_ind,
-                tracked_short
-            ),
-            Message::Msg1077(it) => cells!(
-                self,
-                it,
-                gps_epoch_time_ms,
-                b'G',
-                gnss_signal_fine_pseudorange_ext_ms,
-                gnss_signal_fine_phaserange_ext_ms,
-                gnss_phaserange_lock_time_ext_ind,
-                tracked_long
-            ),
-            Message::Msg1094(it) => cells!(
-                self,
-                it,
-                gal_epoch_time_ms,
-                b'E',
-                gnss_signal_fine_pseudorange_ms,
-                gnss_signal_fine_phaserange_ms,
-                gnss_phaserange_lock_time_ind,
-                tracked_short
-            ),
-            Message::Msg1097(it) => cells!(
-                self,
-                it,
-                gal_epoch_time_ms,
-                b'E',
-                gnss_signal_fine_pseudorange_ext_ms,
-                gnss_signal_fine_phaserange_ext_ms,
-                gnss_phaserange_lock_time_ext_ind,
-                tracked_long
-            ),
-            Message::Msg1019(it) => self.ephemeris(it.gps_satellite_id, gps(it)),
-            Message::Msg1045(it) => self.ephemeris(GALILEO + it.gal_satellite_id, fnav(it)),
-            Message::Msg1046(it) => self.ephemeris(GALILEO + it.gal_satellite_id, inav(it)),
-            _ => {
+            Message::Msg1074(it) => {
+                short_cells!(self, it, i64::from(it.gps_epoch_time_ms), System::Gps);
+            }
+            Message::Msg1077(it) => {
+                long_cells!(self, it, i64::from(it.gps_epoch_time_ms), System::Gps);
+            }
+            Message::Msg1094(it) => {
+                short_cells!(self, it, i64::from(it.gal_epoch_time_ms), System::Galileo);
+            }
+            Message::Msg1097(it) => {
+                long_cells!(self, it, i64::from(it.gal_epoch_time_ms), System::Galileo);
+            }
+            Message::Msg1124(it) => {
+                short_cells!(self, it, of_beidou(it.bds_epoch_time_ms), System::BeiDou);
+            }
+            Message::Msg1127(it) => {
+                long_cells!(self, it, of_beidou(it.bds_epoch_time_ms), System::BeiDou);
+            }
+            Message::Msg1084(it) => {
+                let Some(time) = OfGlonass::time(it.glo_day_of_week, it.glo_epoch_time_ms) else {
+                    return;
+                };
+                short_cells!(self, it, time, System::Glonass);
+            }
+            Message::Msg1087(it) => {
+                let Some(time) = OfGlonass::time(it.glo_day_of_week, it.glo_epoch_time_ms) else {
+                    return;
+                };
+                for of in it.data_segment.satellite_data.iter() {
+                    let channel = of.glonass_satellite_frequency_channel_number;
+                    self.glonass.on(of.satellite_id, channel);
+                }
+                long_cells!(self, it, time, System::Glonass);
+            }
+            Message::Msg1042(it) => {
+                let satellite = System::BeiDou.number(it.bds_satellite_id);
+                let satellite = satellite.filter(|number| !System::is_geostationary(*number));
+                self.ephemeris(satellite, beidou(it));
+            }
+            Message::Msg1019(it) => self.ephemeris(Some(it.gps_satellite_id), gps(it)),
+            Message::Msg1045(it) => {
+                self.ephemeris(System::Galileo.number(it.gal_satellite_id), fnav(it));
+            }
+            Message::Msg1046(it) => {
+                self.ephemeris(System::Galileo.number(it.gal_satellite_id), inav(it));
+            }
+            other => {
+                if let Message::Msg1020(it) = other {
+                    let channel = it.glo_satellite_freq_chan_number;
+                    self.glonass.on(it.glo_satellite_id, Some(channel));
+                }
                 self.stream.skipped += 1;
                 self.passed_over.note(frame);
             }
@@ -143,16 +185,19 @@ impl Reader {
     fn cell(
         &mut self,
         time: i64,
-        (system, number): (u8, u8),
+        (system, number): (System, u8),
         [band, tracking]: [u8; 2],
-        (rough, [code, phase], lock): (Option<f64>, [Option<f64>; 2], u32),
+        (rough, fine, lock): (Option<f64>, [Option<f64>; 2], u32),
     ) {
-        let satellite = if system == b'E' { GALILEO.saturating_add(number) } else { number };
-        let signal = |kind| Signal::new(system, &[kind, band, tracking]);
-        let (Some(rough), Some(of_code), Some(of_phase)) = (rough, signal(b'C'), signal(b'L'))
-        else {
-            return;
-        };
+        let signal = |kind| Signal::new(system.letter(), &[kind, band, tracking]);
+        let (Some(satellite), Some(rough)) = (system.number(number), rough) else { return };
+        let (Some(of_code), Some(of_phase)) = (signal(b'C'), signal(b'L')) else { return };
+        let [code, phase] = fine.map(|fine| fine.map(|fine| rough + fine));
+        if system == System::Glonass {
+            let both = [(of_code, code), (of_phase, phase)];
+            let locks = (&mut self.locks, lock);
+            return self.glonass.take((self.epochs.len(), time), number, both, locks);
+        }
         if self.epochs.last().is_none_or(|(last, _)| *last != time) {
             self.epochs.push((time, Vec::new()));
         }
@@ -161,25 +206,25 @@ impl Reader {
             satellites.push((satellite, Vec::new()));
         }
         let Some((_, raw)) = satellites.last_mut() else { return };
-        let milliseconds = |fine: f64| 1e-3 * (rough + fine);
         if let Some(code) = code {
-            let value = SPEED_OF_LIGHT * milliseconds(code);
+            let value = SPEED_OF_LIGHT * 1e-3 * code;
             raw.push(Raw { signal: of_code, value, lock_lost: false });
         }
         if let Some(phase) = phase {
             let lock_lost = self.locks.lost(satellite, of_phase, time, lock);
-            let value = of_phase.frequency() * milliseconds(phase);
+            let value = of_phase.frequency(system) * 1e-3 * phase;
             raw.push(Raw { signal: of_phase, value, lock_lost });
         }
     }
 
-    fn ephemeris(&mut self, satellite: u8, ephemeris: Ephemeris) {
+    fn ephemeris(&mut self, satellite: Option<u8>, ephemeris: Ephemeris) {
+        let Some(satellite) = satellite else { return };
         self.ephemerides.push((self.epochs.len().saturating_sub(1), satellite, ephemeris));
     }
 
     /// Gives epochs and ephemerides their weeks.
     fn finish(self, text: &Text) -> Result<Stream, Error> {
-        let Self { mut stream, epochs, ephemerides, passed_over, .. } = self;
+        let Self { mut stream, mut epochs, ephemerides, glonass, passed_over, .. } = self;
         stream.warnings.extend(passed_over.sentence().map(|it| text.warning(it)));
         stream.observed = passed_over.observed;
         stream.unread = passed_over.ephemerides;
@@ -188,9 +233,11 @@ impl Reader {
         let near =
             dated(&ephemerides, &seconds, true).or_else(|| dated(&ephemerides, &seconds, false));
         let Some((place, near)) = near else {
-            let problem = "expected a message that tells the week (1019, 1045 or 1046), found none";
+            let problem =
+                "expected a message that tells the week (1019, 1042, 1045 or 1046), found none";
             return if epochs.is_empty() { Ok(stream) } else { Err(text.error(problem)) };
         };
+        stream.channels = glonass.join(&mut epochs, 1_000 * near.leap_seconds() as i64);
         let elapsed = elapsed(&epochs);
         let since_first = elapsed.get(place).copied().unwrap_or_default();
         let first = GpsTime::new(near.day(), near.second() - 1e-3 * since_first as f64);

@@ -1,4 +1,6 @@
 //! UBX: observations (RXM-RAWX), and the messages of GPS on L1 and of Galileo on E1 and E5b (RXM-SFRBX).
+//!
+//! (u-blox, ZED-F9P Interface Description, 3.17.5 and 3.17.9; numbers of signals and satellites: 1.5.)
 
 use std::ops::RangeInclusive;
 
@@ -11,8 +13,8 @@ use super::collection::Collection;
 use super::inav::{self, Word};
 use super::lnav::{self, Subframe};
 use super::{Locks, Signals, Stream};
-use crate::fields::GALILEO;
-use crate::observations::{Raw, Signal};
+use crate::observations::{CHANNELS, Raw, Signal};
+use crate::system::System;
 use crate::text::Text;
 use crate::time::GpsTime;
 use crate::unserved::Unserved;
@@ -21,12 +23,16 @@ use crate::unserved::Unserved;
 const LONGEST: usize = 8_192;
 /// What is told at most of how long a phase has been tracked, ms.
 const LONGEST_LOCK: u16 = 64_500;
-/// `gnssId` of GPS and of Galileo.
+/// `gnssId` of the systems that are served.
 const OF_GPS: u8 = 0;
 const OF_GALILEO: u8 = 2;
+const OF_BEIDOU: u8 = 3;
+const OF_GLONASS: u8 = 6;
+/// `freqId` of GLONASS is the channel and this.
+const FREQUENCY_OF_CHANNEL_0: i8 = 7;
 /// `sigId` of L1 C/A, the signal that carries the message which is read.
 const L1: u8 = 0;
-/// The letters of systems that are not served by their `gnssId`, and what is taken off a satellite's number for the one that
+/// The letters of systems of which the message is not read by their `gnssId`, and what is taken off a satellite's number for the one that
 /// RINEX has.
 const OTHERS: [(u8, u8, u8); 5] =
     [(1, b'S', 100), (3, b'C', 0), (5, b'J', 0), (6, b'R', 0), (7, b'I', 0)];
@@ -87,11 +93,19 @@ impl Reader {
         let mut satellites: Vec<Signals> = Vec::new();
         for it in message.measurements() {
             // The driver's name of the signal: it was reserved before there were receivers of two carriers.
-            let Some((satellite, [code, phase])) = told(it.gnss_id(), it.sv_id(), it.reserved2())
-            else {
-                note(&mut self.stream.observed, it.gnss_id(), it.sv_id());
+            let (system, number) = (it.gnss_id(), it.sv_id());
+            let Some((satellite, [code, phase])) = told(system, number, it.reserved2()) else {
+                if !matches!(system, OF_BEIDOU | OF_GLONASS) {
+                    note(&mut self.stream.observed, system, number);
+                }
                 continue;
             };
+            if system == OF_GLONASS {
+                let channel = it.freq_id().cast_signed().wrapping_sub(FREQUENCY_OF_CHANNEL_0);
+                if CHANNELS.contains(&channel) {
+                    self.stream.channels.insert(satellite, channel);
+                }
+            }
             let known = satellites.iter().position(|(other, _)| *other == satellite);
             let place = known.unwrap_or_else(|| {
                 satellites.push((satellite, Vec::new()));
@@ -154,7 +168,8 @@ impl Reader {
                 Part::Galileo(word) => {
                     let ephemeris = |parts| inav::ephemeris(parts, near);
                     let ephemeris = of_galileo.take(number, (word.number(), word), ephemeris);
-                    (GALILEO + number, ephemeris)
+                    let Some(satellite) = System::Galileo.number(number) else { continue };
+                    (satellite, ephemeris)
                 }
             };
             stream.ephemerides.extend(ephemeris.map(|ephemeris| (satellite, ephemeris)));
@@ -174,22 +189,32 @@ fn note(unserved: &mut Unserved, system: u8, number: u8) {
 /// The satellite and its code and phase of a signal, by the numbers that the receiver has for it; none of a signal that is not
 /// used.
 fn told(system: u8, number: u8, signal: u8) -> Option<(u8, [Signal; 2])> {
-    let (letter, satellite) = match system {
-        OF_GPS => (b'G', number),
-        OF_GALILEO => (b'E', GALILEO.checked_add(number)?),
+    let of = match system {
+        OF_GPS => System::Gps,
+        OF_GALILEO => System::Galileo,
+        OF_BEIDOU => System::BeiDou,
+        OF_GLONASS => System::Glonass,
         _ => return None,
     };
     let [band, tracking] = match (system, signal) {
+        // B1I with the message of most satellites, and with that of geostationary ones.
+        (OF_BEIDOU, 0 | 1) => *b"2I",
+        (OF_BEIDOU, 2 | 3) | (OF_GALILEO, 5) => *b"7I",
+        (OF_BEIDOU, 4 | 10) => *b"6I",
+        (OF_BEIDOU, 5) => *b"1P",
+        (OF_BEIDOU, 6) => *b"1D",
+        (OF_BEIDOU, 7) => *b"5P",
+        (OF_BEIDOU, 8) => *b"5D",
+        (OF_GLONASS, 2) => *b"2C",
         (_, 0) => *b"1C",
         (OF_GPS, 3) => *b"2L",
         (OF_GPS, 4) => *b"2S",
         (OF_GALILEO, 1) => *b"1B",
         (OF_GALILEO, 3) => *b"5I",
         (OF_GALILEO, 4) => *b"5Q",
-        (OF_GALILEO, 5) => *b"7I",
         (OF_GALILEO, 6) => *b"7Q",
         _ => return None,
     };
-    let of = |kind| Signal::new(letter, &[kind, band, tracking]);
-    Some((satellite, [of(b'C')?, of(b'L')?]))
+    let signal = |kind| Signal::new(of.letter(), &[kind, band, tracking]);
+    Some((of.number(number)?, [signal(b'C')?, signal(b'L')?]))
 }

@@ -40,8 +40,8 @@ impl<const N: usize> Running<N> {
             }
             let offset = match observation.carriers.constellation() {
                 Constellation::Gps => None,
-                Constellation::Galileo => {
-                    let Some(offset) = self.offset_state(observations) else { continue };
+                system => {
+                    let Some(offset) = self.offset_state(system, observations) else { continue };
                     Some(offset)
                 }
             };
@@ -111,7 +111,8 @@ impl<const N: usize> Running<N> {
             let jump = arc.jump(self.repaired(observation), observation.code);
             (self.time.since(arc.last()).abs() <= config.slips.gap).then_some(jump)
         }));
-        ClockJump::of(&jumps, median(&jumps, |jump| *jump))
+        let median = median(|| jumps.iter().copied()).unwrap_or_default();
+        ClockJump::of(&jumps, median)
     }
 
     /// Phases without the milliseconds by which they are ahead of the codes, cycles.
@@ -131,14 +132,21 @@ impl<const N: usize> Running<N> {
         self.channels.get(state)?.as_ref()
     }
 
-    /// The state that is the clock of Galileo, begun if there is none.
-    fn offset_state(&mut self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
-        if self.offset.is_none() {
-            let state = self.free(observations)?;
-            *self.channels.get_mut(state)? = None;
-            self.offset = Some(state);
+    /// The state that is the clock of a system beside that of GPS, begun if there is none.
+    fn offset_state(
+        &mut self,
+        system: Constellation,
+        observations: &[SatelliteObservation<'_>],
+    ) -> Option<usize> {
+        let place = (system as usize).checked_sub(1)?;
+        let known = *self.offsets.get(place)?;
+        if known.is_some() {
+            return known;
         }
-        self.offset
+        let state = self.free(observations)?;
+        *self.channels.get_mut(state)? = None;
+        *self.offsets.get_mut(place)? = Some(state);
+        Some(state)
     }
 
     /// A state that is no satellite's, or that of the satellite unseen for longest.
@@ -152,7 +160,7 @@ impl<const N: usize> Running<N> {
             }
             Some(channel) => Some(self.time.since(channel.arc.last()).abs()),
         };
-        let states = (self.first..N).filter(|state| self.offset != Some(*state));
+        let states = (self.first..N).filter(|state| !self.offsets.contains(&Some(*state)));
         let free = states.filter_map(|state| Some((state, unseen(state)?)));
         free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
     }

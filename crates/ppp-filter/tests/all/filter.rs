@@ -2,7 +2,7 @@
 
 use crate::sky::{START, marker, observe, spoil};
 use core::slice;
-use kestirim_gnss_ppp::{Carriers, FREQUENCY, Receiver, Site, Slip};
+use kestirim_gnss_ppp::{Carriers, Constellation, FREQUENCY, Receiver, Site, Slip};
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation,
     SatelliteReport, Slipped, Solution, states,
@@ -396,6 +396,49 @@ fn galileo_beside_gps() {
         let alone =
             run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, true));
         assert!(error(alone.last().unwrap()) < 5e-3, "{}", error(alone.last().unwrap()));
+    }
+}
+
+/// What the receiver would observe if a third of the satellites were of GLONASS and a third of BeiDou, whose clocks it saw
+/// elsewhere, and if each satellite's codes of these were off by metres of their own.
+fn of_three_systems(observations: &mut [SatelliteObservation<'static>]) {
+    for observation in observations {
+        let number = observation.satellite;
+        let (carriers, clock, off) = match number % 3 {
+            0 => continue,
+            1 => (Carriers::G1G2 { channel: number.cast_signed() % 14 - 7 }, -70.0, 1.0),
+            _ => (Carriers::B1B3, 110.0, -1.0),
+        };
+        observation.carriers = carriers;
+        let [before, after] = [Carriers::L1L2, carriers].map(Carriers::wavelength);
+        for carrier in 0..2 {
+            observation.phase[carrier] *= before[carrier] / after[carrier];
+            observation.phase[carrier] += clock / after[carrier];
+            observation.code[carrier] += clock + off * (f64::from(number % 5) - 2.0);
+        }
+    }
+}
+
+#[test]
+fn three_systems_have_clocks_of_their_own() {
+    for motion in [Motion::Static, SLOW] {
+        let all = run(&mut filter(motion), 3600.0, |_, seen| of_three_systems(seen));
+        let last = all.last().unwrap();
+        assert!(error(last) < 2e-2, "{}", error(last));
+        // Without GPS from some time on, and from the beginning.
+        for from in [1800.0, -1.0] {
+            let lost = |seconds: f64, observations: &mut Vec<_>| {
+                of_three_systems(observations);
+                observations.retain(|it: &SatelliteObservation<'_>| {
+                    seconds < from || it.carriers.constellation() != Constellation::Gps
+                });
+            };
+            let few = run(&mut filter(motion), 3600.0, lost);
+            // Five satellites on two clocks do not know it better.
+            let last = few.last().unwrap();
+            let deviation = Vector3::from(last.deviations_enu()).norm();
+            assert!(error(last) < 2.0 * deviation, "{from}: {} {deviation}", error(last));
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! Positions from the codes of one epoch each.
 
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{FREQUENCY, Geodetic, Klobuchar, Pattern, Receiver, SatelliteState, Site};
+use kestirim_gnss_ppp::{
+    Carriers, FREQUENCY, Geodetic, Klobuchar, Pattern, Receiver, SatelliteState, Site,
+};
 use kestirim_ppp_filter::{
     CodeObservation, Config, Error, Health, Motion, Solution, single_point, states,
 };
@@ -110,4 +112,28 @@ fn too_few_are_refused() {
     let nothing: Vec<_> =
         codes.iter().map(|it| CodeObservation { code: [None, it.code[0]], ..*it }).collect();
     assert_eq!(solve(&nothing).err(), Some(Error::TooFewSatellites));
+}
+
+/// A third of the satellites are of GLONASS, and a third of BeiDou.
+#[test]
+fn each_system_has_a_clock_of_its_own() {
+    let mut codes = codes(false);
+    let mut others = 0;
+    for it in &mut codes {
+        let (carriers, clock) = match it.satellite % 3 {
+            0 => continue,
+            1 => (Carriers::G1G2 { channel: 3 }, -400.0),
+            _ => (Carriers::B1B3, 700.0),
+        };
+        others += 1;
+        it.carriers = carriers;
+        let range = Carriers::L1L2.ionosphere_free(it.code.map(|code| code.expect("both")));
+        it.code = [Some(range + clock); 2];
+    }
+    let solution = solve(&codes).expect("a position");
+    assert!(others > 4 && (solution.position - crate::sky::marker()).norm() < 1.5);
+    // Three coordinates and three clocks take more than six satellites to be checked.
+    let few = codes.get(..6).expect("six satellites");
+    let few = solve(few).expect("a position");
+    assert_eq!(few.health, Health::Unchecked);
 }

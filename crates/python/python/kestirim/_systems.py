@@ -330,7 +330,7 @@ def gnss(
     erp: Optional[Path] = None,
     process_noise: Optional[float] = None,
     filter: Literal["default", "gkf", "rkf", "skf", "ikf", "adaptive"] = "default",
-    systems: Literal["all", "gps", "galileo"] = "all",
+    systems: Literal["all", "gps", "galileo", "gps-galileo"] = "all",
     ambiguities: Literal["float", "fixed"] = "float",
     mask: Optional[float] = None,
     gradient: Optional[float] = None,

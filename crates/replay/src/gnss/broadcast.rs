@@ -68,6 +68,8 @@ impl Broadcast {
                 Carriers::L1L2 => Own { first: of(Message::Lnav), ..Own::default() },
                 Carriers::E1E5a => Own { first: of(Message::Fnav), other: of(Message::Inav) },
                 Carriers::E1E5b => Own { first: of(Message::Inav), ..Own::default() },
+                Carriers::B1B3 | Carriers::B1B2 => Own { first: of(Message::D1), ..Own::default() },
+                Carriers::G1G2 { .. } | Carriers::B1cB2a => Own::default(),
             };
             broadcast.satellites.insert(satellite, own);
         }
@@ -96,6 +98,12 @@ impl Broadcast {
             accuracy: ephemeris.accuracy,
         };
         Ok((state, ephemeris.group_delay))
+    }
+
+    /// Whether there is any ephemeris for the signals of a satellite.
+    pub(super) fn knows(&self, satellite: u8) -> bool {
+        let own = self.satellites.get(&satellite);
+        own.is_some_and(|own| !own.first.is_empty() || !own.other.is_empty())
     }
 
     /// The ionosphere, if it is broadcast.

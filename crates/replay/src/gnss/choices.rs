@@ -1,16 +1,19 @@
 //! Which filter, and of which systems the satellites.
 
+use kestirim_gnss_files::System;
 use kestirim_ppp_filter::{Config, Estimator, Motion, states};
 
 /// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
 pub const STATES: usize = states(20);
-/// The same where satellites of Galileo are among them.
+/// The same where satellites of Galileo are among them …
 pub const STATES_WITH_GALILEO: usize = states(34);
+/// … and where those of more systems are.
+pub const STATES_OF_ALL: usize = states(50);
 
 /// Satellites of which systems serve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Systems {
     /// Those of all that are observed and known
     #[default]
@@ -19,15 +22,23 @@ pub enum Systems {
     Gps,
     /// Of Galileo alone
     Galileo,
+    /// Of GPS and Galileo
+    GpsGalileo,
 }
 
 impl Systems {
-    /// Whether a satellite serves, by its number: those of Galileo begin at 101.
+    /// Whether a satellite serves, by its number.
     pub const fn has(self, satellite: u8) -> bool {
+        self.has_system(System::of(satellite))
+    }
+
+    /// Whether satellites of a system serve.
+    pub const fn has_system(self, system: System) -> bool {
         match self {
             Self::All => true,
-            Self::Gps => satellite <= 100,
-            Self::Galileo => satellite > 100,
+            Self::Gps => matches!(system, System::Gps),
+            Self::Galileo => matches!(system, System::Galileo),
+            Self::GpsGalileo => matches!(system, System::Gps | System::Galileo),
         }
     }
 }

@@ -4,17 +4,15 @@ use std::collections::BTreeSet;
 
 use kestirim_gnss_files::{
     AntennaModel, Antennas, GpsTime as Time, Message, Navigation, Observations, Orbits, Signals,
-    satellite_name,
+    System, satellite_name,
 };
 use kestirim_gnss_ppp::{Correction, GpsTime};
 
+use super::broadcast::Broadcast;
 use super::model::{self, patterns};
 use super::products::Products;
 
-/// The number of the first satellite of Galileo, `E01`.
-pub(super) const FIRST_GALILEO: u8 = 101;
-
-/// Galileo satellites that are not to be used, and warnings about those of which something is not known.
+/// Satellites beside those of GPS that are not to be used, and warnings about those of which something is not known.
 pub(super) fn left_out(
     observations: &Observations,
     orbits: &Orbits,
@@ -23,28 +21,33 @@ pub(super) fn left_out(
     warnings: &mut Vec<(Option<Correction>, String)>,
 ) -> BTreeSet<u8> {
     let is_unknown = |(number, signals): &(&u8, &Signals)| {
-        let carriers = model::carriers(signals.carriers);
         let antenna = antennas.satellite(**number, start);
-        let antenna = antenna.and_then(|antenna| patterns(antenna, carriers));
+        let antenna = antenna.and_then(|antenna| patterns(antenna, signals.carriers));
         !orbits.satellite(**number).is_empty() && antenna.is_none()
     };
     let all = observations.signals.iter();
     let without = |(number, _): &(&u8, &Signals)| orbits.satellite(**number).is_empty();
-    let is_galileo = |(number, _): &(&u8, &Signals)| **number >= FIRST_GALILEO;
-    // A metre off is worse than nothing, where GPS serves without.
-    let left_out = all.clone().filter(is_galileo);
-    let left_out = left_out.filter(|it| without(it) || is_unknown(it));
-    let left_out: BTreeSet<u8> = left_out.map(|(number, _)| *number).collect();
-    if !left_out.is_empty() {
-        warnings.push((
-            None,
-            format!(
-                "{} are left out: orbits or antennas of them are not known",
-                names(left_out.iter().copied()),
-            ),
-        ));
+    let is_gps = |(number, _): &(&u8, &Signals)| System::of(**number) == System::Gps;
+    // A metre off is worse than nothing, where GPS serves without; so are the orbits of geostationary ones.
+    let (mut left_out, mut far) = (BTreeSet::new(), BTreeSet::new());
+    for (&number, signals) in all.clone().filter(|it| !is_gps(it)) {
+        if System::is_geostationary(number) {
+            far.insert(number);
+        } else if without(&(&number, signals)) || is_unknown(&(&number, signals)) {
+            left_out.insert(number);
+        }
     }
-    let unknown = all.filter(|it| !is_galileo(it)).filter(is_unknown);
+    let reasons = [
+        (&left_out, "orbits or antennas of them are not known"),
+        (&far, "orbits of geostationary satellites are not known well enough"),
+    ];
+    for (satellites, reason) in reasons.into_iter().filter(|(satellites, _)| !satellites.is_empty())
+    {
+        let names = names(satellites.iter().copied());
+        warnings.push((None, format!("{names} are left out: {reason}")));
+    }
+    left_out.append(&mut far);
+    let unknown = all.filter(is_gps).filter(is_unknown);
     let unknown: Vec<_> = unknown.map(|(number, _)| *number).collect();
     if !unknown.is_empty() {
         warnings.push((
@@ -54,6 +57,21 @@ pub(super) fn left_out(
                 names(unknown),
             ),
         ));
+    }
+    left_out
+}
+
+/// Satellites beside those of GPS of which no ephemeris is known, and a warning about them.
+pub(super) fn without_ephemerides(
+    observations: &Observations,
+    broadcast: &Broadcast,
+    warnings: &mut Vec<(Option<Correction>, String)>,
+) -> BTreeSet<u8> {
+    let others = observations.signals.keys().filter(|it| System::of(**it) != System::Gps);
+    let left_out: BTreeSet<u8> = others.copied().filter(|it| !broadcast.knows(*it)).collect();
+    if !left_out.is_empty() {
+        let names = names(left_out.iter().copied());
+        warnings.push((None, format!("{names} are left out: ephemerides of them are not known")));
     }
     left_out
 }
@@ -91,8 +109,7 @@ pub(super) fn span(orbits: &Orbits, midnight: GpsTime) -> [f64; 2] {
 pub(super) fn span_of_broadcast(navigation: &Navigation, midnight: GpsTime) -> [f64; 2] {
     const HOLDS: f64 = 7_200.0;
     let all = navigation.satellites().flat_map(|number| {
-        let messages = [Message::Lnav, Message::Inav, Message::Fnav];
-        messages.into_iter().flat_map(move |message| navigation.satellite(number, message))
+        Message::ALL.into_iter().flat_map(move |message| navigation.satellite(number, message))
     });
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[first, last], it| {
         let at = model::time(it.time).since(midnight);

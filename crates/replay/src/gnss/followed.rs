@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::choices::{Ambiguities, Method, STATES, STATES_WITH_GALILEO, Systems};
+use super::choices::{Ambiguities, Method, STATES, STATES_OF_ALL, STATES_WITH_GALILEO, Systems};
 use super::fixing::{Fixer, Fixing};
 use super::model::Epoch;
 use super::outage::{Outage, Outages, Unused};
 use super::products::Unusable;
 use super::recording::Recording;
 use super::single::{bound, single};
+use kestirim_gnss_files::System;
 use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
 use kestirim_ppp_filter::{
     Config, Contradiction, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped,
@@ -193,12 +194,21 @@ pub fn follow(
     if pass.method == Method::Single {
         return single(recording, epochs, receiver, &config, pass, next);
     }
-    if recording.has_galileo() && pass.systems != Systems::Gps {
-        let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
-        feed(filter, recording, epochs, receiver, pass, next)
-    } else {
-        let filter = PppFilter::<STATES>::new(config);
-        feed(filter, recording, epochs, receiver, pass, next)
+    let others =
+        recording.systems().filter(|it| *it != System::Gps && pass.systems.has_system(*it));
+    match others.count() {
+        0 => {
+            let filter = PppFilter::<STATES>::new(config);
+            feed(filter, recording, epochs, receiver, pass, next)
+        }
+        1 => {
+            let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
+            feed(filter, recording, epochs, receiver, pass, next)
+        }
+        _ => {
+            let filter = PppFilter::<STATES_OF_ALL>::new(config);
+            feed(filter, recording, epochs, receiver, pass, next)
+        }
     }
 }
 

@@ -24,7 +24,9 @@ mod whole_biases;
 
 pub use self::accuracy::{Accuracy, BEGINNING};
 pub use self::check::check;
-pub use self::choices::{Ambiguities, FilterKind, Method, STATES, STATES_WITH_GALILEO, Systems};
+pub use self::choices::{
+    Ambiguities, FilterKind, Method, STATES, STATES_OF_ALL, STATES_WITH_GALILEO, Systems,
+};
 pub use self::coverage::names;
 pub use self::fixing::Fixing;
 pub use self::followed::{Both, Fix, Followed, Last, Order, Pass, Slips, Tally, follow};

@@ -40,8 +40,10 @@ pub(super) fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f6
 
 /// An ephemeris of GPS holds for half its fit interval, which is four hours unless it tells another one …
 const USUAL_FIT: f64 = 14_400.0;
-/// … and one of Galileo is not to be used when it is older, s (Galileo OS service definition).
+/// … one of Galileo is not to be used when it is older, s (Galileo OS service definition), …
 const OLDEST_GALILEO: f64 = 14_400.0;
+/// … and one of BeiDou is sent for an hour (BDS-SIS-ICD-B1I, 5.2.4.2) and serves for another, s.
+const OLDEST_BEIDOU: f64 = 7_200.0;
 
 /// An ephemeris with the clock of two carriers; none of which the group delay between its own carriers and these is not told. The
 /// accuracy is infinite where the satellite calls itself unhealthy or tells none: such an ephemeris must not be used.
@@ -52,12 +54,16 @@ pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<E
         (Carriers::E1E5b, Message::Inav) => (second, second),
         // Galileo OS SIS ICD 5.1.5: the clock of E1 alone is the same, whichever it is taken from.
         (Carriers::E1E5a, Message::Inav) => (first, second),
+        // BDS-SIS-ICD-B1I 5.2.4.10: the clock is that of B3I, and those of B1I and B2I are behind by their delays.
+        (Carriers::B1B3, Message::D1) => (first - carriers.ionosphere_free([first, 0.0]), first),
+        (Carriers::B1B2, Message::D1) => (first - carriers.ionosphere_free([first, second]), first),
         _ => return None,
     };
     let constellation = carriers.constellation();
     let holds = match constellation {
         Constellation::Gps => told.fit.unwrap_or(USUAL_FIT) / 2.0,
         Constellation::Galileo => OLDEST_GALILEO,
+        Constellation::Glonass | Constellation::BeiDou => OLDEST_BEIDOU,
     };
     let [offset, drift, ageing] = told.clock;
     let accuracy = told.accuracy.filter(|_| told.is_healthy).unwrap_or(f64::INFINITY);
@@ -90,27 +96,28 @@ pub(super) const fn carriers(carriers: files::Carriers) -> Carriers {
         files::Carriers::L1L2 => Carriers::L1L2,
         files::Carriers::E1E5a => Carriers::E1E5a,
         files::Carriers::E1E5b => Carriers::E1E5b,
+        files::Carriers::G1G2 { channel } => Carriers::G1G2 { channel },
+        files::Carriers::B1B3 => Carriers::B1B3,
+        files::Carriers::B1B2 => Carriers::B1B2,
+        files::Carriers::B1cB2a => Carriers::B1cB2a,
     }
 }
 
 /// An antenna's phase centres on two carriers, if both are known.
-pub(super) fn patterns(antenna: &files::Antenna, carriers: Carriers) -> Option<[Pattern<'_>; 2]> {
-    let ([l1, l2], [e1, e5a, e5b]) = (&antenna.frequencies, &antenna.galileo);
-    let (first, second) = match carriers {
-        Carriers::L1L2 => (l1, l2),
-        Carriers::E1E5a => (e1, e5a),
-        Carriers::E1E5b => (e1, e5b),
-    };
-    Some([pattern(first.as_ref()?), pattern(second.as_ref()?)])
+pub(super) fn patterns(
+    antenna: &files::Antenna,
+    carriers: files::Carriers,
+) -> Option<[Pattern<'_>; 2]> {
+    antenna.on(carriers).map(|both| both.map(pattern))
 }
 
-/// The same of a receiver's antenna: one that was calibrated for GPS alone is taken to be on E1 as on L1, and on E5a
-/// and E5b as on L2.
+/// The same of a receiver's antenna: one that was calibrated for GPS alone is taken to be on the first carrier of another system
+/// as on L1, and on the second as on L2.
 pub(super) fn receiver_patterns(
     antenna: &files::Antenna,
-    carriers: Carriers,
+    carriers: files::Carriers,
 ) -> Option<[Pattern<'_>; 2]> {
-    patterns(antenna, carriers).or_else(|| patterns(antenna, Carriers::L1L2))
+    patterns(antenna, carriers).or_else(|| patterns(antenna, files::Carriers::L1L2))
 }
 
 fn pattern(centre: &files::PhaseCentre) -> Pattern<'_> {

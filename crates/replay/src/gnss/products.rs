@@ -13,9 +13,6 @@ use super::whole_biases::WholeBiases;
 
 /// Clocks are bridged over the interval of the coarsest products, s.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
-/// The largest number of a satellite: of Galileo those of their names and 100.
-const SATELLITES: u8 = 136;
-
 /// Why a satellite that was observed does not serve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unusable {
@@ -64,7 +61,7 @@ impl Products {
     ) -> Self {
         let reference = GpsTime::new(start.day(), 0.0);
         let model = antenna_model(orbits, clocks);
-        let satellites = (0..=SATELLITES).map(|prn| {
+        let satellites = (0..=u8::MAX).map(|prn| {
             // A sample of a manoeuvre or of a jumping clock belongs to neither side.
             let samples = orbits.satellite(prn);
             let steady = samples.iter().filter(|sample| !sample.manoeuvre);
@@ -180,7 +177,7 @@ impl Products {
     /// The antenna of an observed satellite, where known; what satellites broadcast needs none.
     fn antenna(&self, observed: &Observed) -> Option<[Pattern<'_>; 2]> {
         let satellite = self.satellites.get(usize::from(observed.prn))?;
-        patterns(satellite.antenna.as_ref()?, carriers(observed.carriers))
+        patterns(satellite.antenna.as_ref()?, observed.carriers)
     }
 
     /// The state of a satellite when it sent what was received at `time` with a code of so many m, and by what its clock is ahead

@@ -2,15 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use kestirim_gnss_files::{Antenna, EarthRotation, Error, Observations, StationLoading};
-use kestirim_gnss_ppp::{Carriers, Correction, Corrections, GpsTime, OceanLoading, Receiver};
+use kestirim_gnss_files::{
+    Antenna, Carriers, EarthRotation, Error, Observations, StationLoading, System,
+};
+use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
 use kestirim_ppp_filter::Config;
 use nalgebra::Vector3;
 
 use super::calendar::{calendar, in_words};
-use super::coverage::FIRST_GALILEO;
-use super::model::{self, Epoch, patterns, receiver_patterns};
+use super::model::{self, Epoch, receiver_patterns};
 use super::products::Products;
 use super::shelf::Shelf;
 use super::told::{Served, Told};
@@ -53,8 +54,8 @@ pub struct Recording {
     antenna_delta_hen: [f64; 3],
     products: Products,
     antenna: Option<Antenna>,
-    /// On which carriers satellites of Galileo are observed.
-    galileo: Option<Carriers>,
+    /// On which carriers satellites are observed, one pair of each system.
+    carriers: Vec<Carriers>,
     loading: Option<OceanLoading>,
     /// Where the Earth's axis is, rad.
     pole: Option<[f64; 2]>,
@@ -113,7 +114,12 @@ impl Recording {
         let antennas_of = (&*antennas, &*antex);
         let Served { products, left_out, span } =
             satellites.serve(start, &observations, biases, antennas_of, &mut warnings);
-        let galileo = observations.signals.range(FIRST_GALILEO..).next();
+        let mut carriers: Vec<Carriers> = Vec::new();
+        for (_, signals) in observations.signals.iter().filter(|(it, _)| !left_out.contains(it)) {
+            if carriers.iter().all(|it| it.system() != signals.carriers.system()) {
+                carriers.push(signals.carriers);
+            }
+        }
         let loading = loading.and_then(|station| station.loading);
         Ok(Self {
             path: paths.obs.to_path_buf(),
@@ -130,7 +136,7 @@ impl Recording {
             approximate_position: observations.approximate_position,
             antenna_delta_hen: observations.antenna_delta_hen,
             antenna: antennas.receiver.clone(),
-            galileo: galileo.map(|(_, signals)| model::carriers(signals.carriers)),
+            carriers,
             loading: loading.as_ref().map(model::ocean_loading),
             pole,
             utc_minus_gps: -start.leap_seconds(),
@@ -157,7 +163,7 @@ impl Recording {
             antenna_delta_hen: [0.0; 3],
             products,
             antenna: None,
-            galileo: None,
+            carriers: vec![Carriers::L1L2],
             loading: None,
             pole: None,
             utc_minus_gps,
@@ -224,9 +230,14 @@ impl Recording {
         self.approximate_position
     }
 
-    /// Whether satellites of Galileo are observed.
-    pub const fn has_galileo(&self) -> bool {
-        self.galileo.is_some()
+    /// The systems whose satellites are observed and known.
+    pub fn systems(&self) -> impl Iterator<Item = System> {
+        self.carriers.iter().map(|carriers| carriers.system())
+    }
+
+    /// Whether satellites of other systems than GPS are.
+    pub fn has_others(&self) -> bool {
+        self.systems().any(|system| system != System::Gps)
     }
 
     /// Orbits, clocks and antennas of satellites.
@@ -271,10 +282,15 @@ impl Recording {
     /// What is known of the receiver, of which some `corrections` are applied.
     pub fn receiver(&self, corrections: Corrections) -> Receiver<'_> {
         let [up, east, north] = self.antenna_delta_hen;
+        let antenna = |system| {
+            let carriers = self.carriers.iter().find(|carriers| carriers.system() == system)?;
+            receiver_patterns(self.antenna.as_ref()?, *carriers)
+        };
         Receiver {
-            antenna: self.antenna.as_ref().and_then(|it| patterns(it, Carriers::L1L2)),
-            galileo_antenna: (self.galileo)
-                .and_then(|carriers| receiver_patterns(self.antenna.as_ref()?, carriers)),
+            antenna: antenna(System::Gps),
+            galileo_antenna: antenna(System::Galileo),
+            glonass_antenna: antenna(System::Glonass),
+            beidou_antenna: antenna(System::BeiDou),
             eccentricity: [east, north, up],
             ocean_loading: self.loading.as_ref(),
             pole: self.pole,

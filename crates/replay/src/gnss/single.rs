@@ -3,7 +3,7 @@
 use kestirim_gnss_ppp::Receiver;
 use kestirim_ppp_filter::{CodeObservation, Config, Error, Solution, single_point};
 
-use super::choices::{STATES_WITH_GALILEO, Systems};
+use super::choices::{STATES_OF_ALL, Systems};
 use super::followed::{Followed, Pass};
 use super::model::Epoch;
 use super::outage::{Outage, Unused};
@@ -68,7 +68,7 @@ fn position(
     receiver: &Receiver<'_>,
     codes: &[CodeObservation<'_>],
     config: &Config,
-) -> Result<Solution<STATES_WITH_GALILEO>, Error> {
+) -> Result<Solution<STATES_OF_ALL>, Error> {
     let broadcast = recording.products().broadcast();
     let ionosphere = broadcast.and_then(|broadcast| broadcast.ionosphere());
     single_point(epoch.time, receiver, codes, ionosphere, config)

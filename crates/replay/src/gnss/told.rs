@@ -97,9 +97,10 @@ impl Told {
                         ),
                     ));
                 }
+                let left_out = coverage::without_ephemerides(observations, &broadcast, warnings);
                 let span = coverage::span_of_broadcast(navigation, midnight);
                 let products = Products::of_broadcast(start, broadcast);
-                Served { products, left_out: BTreeSet::new(), span }
+                Served { products, left_out, span }
             }
         }
     }

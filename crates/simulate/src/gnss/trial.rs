@@ -106,6 +106,8 @@ fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: &Co
     let receiver = Receiver {
         antenna: None,
         galileo_antenna: None,
+        glonass_antenna: None,
+        beidou_antenna: None,
         eccentricity: [0.0; 3],
         ocean_loading: None,
         pole: None,

@@ -44,7 +44,7 @@ impl System for Gnss {
     const FILES: &'static [FileField] = &[
         FileField::required(
             "obs",
-            "What the receiver observed: RINEX 2, 3 or 4, CRINEX, or a recorded stream, UBX (RXM-RAWX, RXM-SFRBX) or RTCM 3; GPS on L1 and L2, Galileo on E1 and E5a or E5b; any file may be packed with gzip",
+            "What the receiver observed: RINEX 2, 3 or 4, CRINEX, or a recorded stream, UBX (RXM-RAWX, RXM-SFRBX) or RTCM 3; GPS on L1 and L2, Galileo on E1 and E5a or E5b, GLONASS on G1 and G2, BeiDou on B1I and B3I or B2I or on B1C and B2a; any file may be packed with gzip",
         ),
         FileField::optional(
             "sp3",
@@ -104,8 +104,8 @@ impl System for Gnss {
 
     fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
         match recording {
-            Some(recording) if name == "systems" && !recording.has_galileo() => {
-                Some(Idle::foreign("is for recordings with satellites of Galileo"))
+            Some(recording) if name == "systems" && !recording.has_others() => {
+                Some(Idle::foreign("is for recordings with satellites of other systems than GPS"))
             }
             Some(recording) if name == "gradient" && recording.hides_gradients() => {
                 Some(Idle::foreign("is for precise clocks every five minutes or more often"))

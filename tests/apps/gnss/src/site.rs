@@ -52,6 +52,8 @@ pub const fn receiver() -> Receiver<'static> {
     Receiver {
         antenna: Some(RECEIVER_ANTENNA),
         galileo_antenna: None,
+        glonass_antenna: None,
+        beidou_antenna: None,
         eccentricity: [0.0, 0.0, 0.0083],
         ocean_loading: Some(&OCEAN_LOADING),
         pole: None,

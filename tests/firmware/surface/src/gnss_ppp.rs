@@ -31,7 +31,7 @@ fn direction() -> Direction {
 }
 
 fn carriers() -> Carriers {
-    one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b])
+    one_of([Carriers::L1L2, Carriers::G1G2 { channel: whole() }, Carriers::B1B3])
 }
 
 fn times() {
@@ -68,6 +68,8 @@ fn site(pattern: Pattern<'_>) {
     let receiver = any(Receiver {
         antenna: maybe([pattern; 2]),
         galileo_antenna: maybe([pattern; 2]),
+        glonass_antenna: maybe([pattern; 2]),
+        beidou_antenna: maybe([pattern; 2]),
         eccentricity: numbers(),
         ocean_loading: maybe(&ocean),
         pole: maybe(numbers()),
@@ -105,7 +107,7 @@ fn satellites() {
 
 fn broadcast() {
     let ephemeris = Ephemeris {
-        constellation: one_of([Constellation::Gps, Constellation::Galileo]),
+        constellation: one_of(Constellation::ALL),
         time: time(),
         clock_time: time(),
         clock: numbers(),

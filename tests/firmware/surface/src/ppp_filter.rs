@@ -59,6 +59,8 @@ fn filters<const N: usize>() {
     let receiver = any(Receiver {
         antenna,
         galileo_antenna: antenna,
+        glonass_antenna: antenna,
+        beidou_antenna: antenna,
         eccentricity: numbers(),
         ocean_loading: maybe(&ocean),
         pole: maybe(numbers()),
@@ -74,7 +76,7 @@ fn filters<const N: usize>() {
         accuracy: number(),
     });
     let (satellite, code, phase, lock_lost) = (whole(), numbers(), numbers(), yes_or_no());
-    let carriers = one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::E1E5b]);
+    let carriers = one_of([Carriers::L1L2, Carriers::G1G2 { channel: whole() }, Carriers::B1B3]);
     let observation =
         SatelliteObservation { satellite, carriers, code, phase, lock_lost, state, antenna };
     keep(SatelliteObservation::hides_gradients(&observation));

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use kestirim_gnss_files::{
-    Antennas, Clocks, GpsTime as FileTime, Orbits, PhaseCentre, satellite_name,
+    self as files, Antennas, Clocks, GpsTime as FileTime, Orbits, PhaseCentre, satellite_name,
 };
 use kestirim_gnss_ppp::constants::{EARTH_GRAVITY, EARTH_ROTATION};
 use kestirim_gnss_ppp::{
@@ -84,14 +84,13 @@ impl Precise<'_> {
     fn to_phase_centre(&self, centre: &Vector3<f64>, time: GpsTime) -> Option<Vector3<f64>> {
         let antenna =
             self.antennas.satellite(self.number, FileTime::new(time.day(), time.second()))?;
-        let ([l1, l2], [e1, e5a, _]) = (&antenna.frequencies, &antenna.galileo);
-        let (first, second, carriers) = match self.constellation() {
-            Constellation::Gps => (l1, l2, Carriers::L1L2),
-            Constellation::Galileo => (e1, e5a, Carriers::E1E5a),
+        let (carriers, on) = match self.constellation() {
+            Constellation::Gps => (Carriers::L1L2, files::Carriers::L1L2),
+            _ => (Carriers::E1E5a, files::Carriers::E1E5a),
         };
         let axes = BodyAxes::nominal(centre, &Bodies::at(time, -18.0).sun)?;
         let offset = |centre: &PhaseCentre| pattern(centre.offset).satellite_offset(&axes);
-        let [first, second] = [offset(first.as_ref()?), offset(second.as_ref()?)];
+        let [first, second] = antenna.on(on)?.map(offset);
         Some(Vector3::from_fn(|axis, _| carriers.ionosphere_free([first[axis], second[axis]])))
     }
 

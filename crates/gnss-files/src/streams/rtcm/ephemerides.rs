@@ -1,6 +1,6 @@
-//! Ephemerides: messages 1019, 1045 and 1046.
+//! Ephemerides: messages 1019, 1042, 1045 and 1046.
 
-use rtcm_rs::msg::{Msg1019T, Msg1045T, Msg1046T};
+use rtcm_rs::msg::{Msg1019T, Msg1042T, Msg1045T, Msg1046T};
 
 use crate::navigation::{Ephemeris, Message as Of, time_of_week};
 use crate::streams::indices::{SEMICIRCLE, sisa, ura};
@@ -13,13 +13,16 @@ pub(super) const WEEK: i32 = 7;
 pub(super) const ROLLOVER: i32 = 1_024;
 const ROLLED_OVER: i32 = 2 * ROLLOVER;
 const GALILEO_WEEK: i32 = ROLLOVER;
+/// The first week of BeiDou's time, which is so many s behind that of GPS.
+const BEIDOU_WEEK: i32 = 1_356;
+const BEIDOU_BEHIND: f64 = 14.0;
 
 /// The instant of a second of a week, counted from the first week of GPS.
 fn instant(week: u16, behind: i32, second: f32) -> GpsTime {
     GpsTime::new(GpsTime::EPOCH.day() + WEEK * (i32::from(week) + behind), f64::from(second))
 }
 
-/// What all three messages tell, with the field that each has for it.
+/// What the messages of GPS and Galileo tell, with the field that each has for it.
 macro_rules! ephemeris {
     ($message:ident, $of:expr, $week:ident, $behind:ident, $issue:ident, $rest:expr) => {{
         let it = $message;
@@ -95,4 +98,35 @@ pub(super) fn inav(it: &Msg1046T) -> Ephemeris {
             ..Ephemeris::NOTHING
         }
     )
+}
+
+pub(super) fn beidou(it: &Msg1042T) -> Ephemeris {
+    let single = |number: f32| f64::from(number);
+    let second = |second: f32| {
+        let time = instant(it.bds_week_number, BEIDOU_WEEK, second);
+        GpsTime::new(time.day(), time.second() + BEIDOU_BEHIND)
+    };
+    Ephemeris {
+        message: Of::D1,
+        time: second(it.toe_s),
+        clock_time: second(it.toc_s),
+        clock: [it.a0_s, it.a1_s_s, single(it.a2_s_s2)],
+        issue: u16::from(it.aode),
+        root_of_axis: it.sqrt_a_sqrt_m,
+        eccentricity: it.eccentricity,
+        mean_anomaly: SEMICIRCLE * it.m0_sc,
+        mean_motion_correction: SEMICIRCLE * single(it.delta_n_sc_s),
+        perigee: SEMICIRCLE * it.omega_sc,
+        node: SEMICIRCLE * it.omega0_sc,
+        node_rate: SEMICIRCLE * f64::from(it.omegadot_sc_s),
+        inclination: SEMICIRCLE * it.i0_sc,
+        inclination_rate: SEMICIRCLE * f64::from(it.idot_sc_s),
+        latitude_terms: [single(it.cuc_rad), single(it.cus_rad)],
+        radius_terms: [single(it.crc_m), single(it.crs_m)],
+        inclination_terms: [single(it.cic_rad), single(it.cis_rad)],
+        group_delays: [it.tgd1_s, it.tgd2_s].map(f64::from),
+        accuracy: ura(it.ura_index),
+        is_healthy: it.sv_health_flag == 0,
+        fit: None,
+    }
 }

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use rtcm_rs::MessageFrame;
 
 use crate::streams::bits::Fields;
+use crate::system::System;
 use crate::unserved::Unserved;
 
 /// The numbers of messages of observations with several signals (MSM): ten for each system.
@@ -20,8 +21,7 @@ const SIGNALS: (usize, usize) = (137, 32);
 const OLD_OF_GPS: RangeInclusive<u16> = 1001..=1004;
 const OLD_OF_GLONASS: RangeInclusive<u16> = 1009..=1012;
 /// Ephemerides of other systems: the message, the letter, and the bits of the satellite's number.
-const EPHEMERIDES: [(u16, u8, usize); 4] =
-    [(1020, b'R', 6), (1041, b'I', 6), (1042, b'C', 6), (1044, b'J', 4)];
+const EPHEMERIDES: [(u16, u8, usize); 3] = [(1020, b'R', 6), (1041, b'I', 6), (1044, b'J', 4)];
 /// Behind the number of the message.
 const BEGINNING: usize = 12;
 
@@ -45,7 +45,7 @@ impl PassedOver {
     pub(super) fn note(&mut self, frame: &MessageFrame<'_>) {
         let number = number(frame);
         if let Some((letter, offset)) = system(number) {
-            if matches!(letter, b'G' | b'E') {
+            if System::of_letter(letter).is_some() {
                 self.messages.insert(number);
             } else {
                 ones(frame, SATELLITES).for_each(|it| self.observed.note(letter, it + offset));

@@ -3,12 +3,15 @@
 use std::f64::consts::PI;
 
 use rtcm_rs::msg::{
-    GpsSigId, Msg1019T, Msg1045T, Msg1077Data, Msg1077Sig, Msg1077T, Msm57Sat, message,
+    BdsSigId, GloSigId, GpsSigId, Msg1019T, Msg1042T, Msg1045T, Msg1077Data, Msg1077Sig, Msg1077T,
+    Msg1087Data, Msg1087Sig, Msg1087T, Msg1127Data, Msg1127Sig, Msg1127T, Msm57GloSat, Msm57Sat,
+    message,
 };
 use rtcm_rs::prelude::MessageBuilder;
 use rtcm_rs::util::DataVec;
 
 use super::*;
+use crate::Carriers;
 use crate::streams::frames::crc_24q;
 
 fn frame(message: &message::Message) -> Vec<u8> {
@@ -107,6 +110,123 @@ pub(super) fn observed(milliseconds: u32, lock: u16) -> Vec<u8> {
     }))
 }
 
+/// Two signals of a satellite of GLONASS in Moscow, on Thursday.
+fn of_glonass(milliseconds: u32, number: u8, channel: Option<i8>) -> Vec<u8> {
+    let mut data = Msg1087Data::default();
+    data.satellite_data.push(Msm57GloSat {
+        satellite_id: number,
+        gnss_satellite_rough_range_integer_ms: Some(65),
+        gnss_satellite_rough_range_mod1ms_ms: 0.25,
+        glonass_satellite_frequency_channel_number: channel,
+        ..Msm57GloSat::default()
+    });
+    let mut signals = DataVec::new();
+    for (band, fine) in [(1, 0.000_1), (2, 0.000_3)] {
+        signals.push(Msg1087Sig {
+            satellite_id: number,
+            signal_id: GloSigId::new(band, 'C'),
+            gnss_signal_fine_pseudorange_ext_ms: Some(fine),
+            gnss_signal_fine_phaserange_ext_ms: Some(fine),
+            gnss_phaserange_lock_time_ext_ind: 7,
+            ..Msg1087Sig::default()
+        });
+    }
+    data.signal_data = signals;
+    frame(&message::Message::Msg1087(Msg1087T {
+        glo_day_of_week: Some(4),
+        glo_epoch_time_ms: milliseconds,
+        data_segment: data,
+        ..Msg1087T::default()
+    }))
+}
+
+/// Two signals of a satellite of BeiDou.
+fn of_beidou(milliseconds: u32) -> Vec<u8> {
+    let mut data = Msg1127Data::default();
+    data.satellite_data.push(Msm57Sat {
+        satellite_id: 19,
+        gnss_satellite_rough_range_integer_ms: Some(80),
+        ..Msm57Sat::default()
+    });
+    let mut signals = DataVec::new();
+    for band in [2, 6] {
+        signals.push(Msg1127Sig {
+            satellite_id: 19,
+            signal_id: BdsSigId::new(band, 'I'),
+            gnss_signal_fine_pseudorange_ext_ms: Some(0.0),
+            gnss_signal_fine_phaserange_ext_ms: Some(0.0),
+            gnss_phaserange_lock_time_ext_ind: 7,
+            ..Msg1127Sig::default()
+        });
+    }
+    data.signal_data = signals;
+    frame(&message::Message::Msg1127(Msg1127T {
+        bds_epoch_time_ms: milliseconds,
+        data_segment: data,
+        ..Msg1127T::default()
+    }))
+}
+
+/// An epoch on Thursday at 4 o'clock, GLONASS before or behind the others, and one without GPS, to which GLONASS belongs.
+#[test]
+fn glonass_and_beidou_are_put_to_the_epochs_of_gps() -> Result<(), Error> {
+    const AT: u32 = 4 * 86_400_000 + 14_400_000;
+    const OF_DAY: u32 = 14_400_000 + 10_800_000 - 18_000;
+    let dated = ephemerides(&broadcast()?);
+    let [gps, beidou] = [observed(AT, 7), of_beidou(AT - 14_000)];
+    let glonass = [of_glonass(OF_DAY, 7, Some(5)), of_glonass(OF_DAY, 22, None)].concat();
+    // Of no epoch of other systems.
+    let alone = of_glonass(OF_DAY + 500, 7, Some(5));
+    for stream in [
+        [&dated, &gps, &beidou, &glonass, &alone].map(Vec::as_slice).concat(),
+        [&glonass, &dated, &beidou, &gps, &alone].map(Vec::as_slice).concat(),
+    ] {
+        let observations = Observations::parse(&text(stream))?;
+        let [epoch] = &observations.epochs[..] else { panic!("one epoch") };
+        assert_eq!(epoch.time, crate::GpsTime::new(59_025, 14_400.0));
+        let of = |number| *epoch.satellites.iter().find(|it| it.prn == number).expect("observed");
+        assert_eq!(epoch.satellites.len(), 3, "R22 has no channel");
+        let (glonass, beidou) = (of(157), of(199));
+        assert_eq!(glonass.carriers, Carriers::G1G2 { channel: 5 });
+        let c = 299_792_458.0;
+        let first = c / (1_602e6 + 5.0 * 562_500.0) * glonass.phase[0].expect("a phase");
+        assert!((first - c * 1e-3 * 65.250_1).abs() < 1e-4, "{first}");
+        let second = c / (1_246e6 + 5.0 * 437_500.0) * glonass.phase[1].expect("a phase");
+        assert!((second - c * 1e-3 * 65.250_3).abs() < 1e-4, "{second}");
+        assert_eq!((beidou.carriers, beidou.code), (Carriers::B1B3, [Some(c * 0.08); 2]));
+        let phase = c / 1_561.098e6 * beidou.phase[0].expect("a phase");
+        assert!((phase - c * 0.08).abs() < 1e-4, "{phase}");
+        let [warning] = &observations.warnings[..] else { panic!("one warning") };
+        assert!(warning.to_string().contains("tells no channel of R22"), "{warning}");
+    }
+    Ok(())
+}
+
+#[test]
+fn weeks_of_beidou_are_its_own() -> Result<(), Error> {
+    let [(_, gps), _] = broadcast()?;
+    let of = |satellite| {
+        let told = Msg1042T {
+            bds_satellite_id: satellite,
+            bds_week_number: 2111 - 1356,
+            toe_s: second_of_week(gps.time) - 14.0,
+            toc_s: second_of_week(gps.time) - 14.0,
+            sqrt_a_sqrt_m: gps.root_of_axis,
+            eccentricity: gps.eccentricity,
+            tgd1_s: 1e-8,
+            ura_index: 1,
+            ..Msg1042T::default()
+        };
+        frame(&message::Message::Msg1042(told))
+    };
+    let read = Navigation::parse(&[text([of(19), of(3)].concat())])?;
+    let [one] = read.satellite(199, Message::D1) else { panic!("one ephemeris") };
+    assert!(one.time.since(gps.time).abs() < 8.0, "{:?}", one.time);
+    assert!((one.group_delays[0] - 1e-8).abs() < 1e-10 && one.is_healthy);
+    assert_eq!(read.satellites().collect::<Vec<_>>(), [199], "C03 is geostationary");
+    Ok(())
+}
+
 #[test]
 fn ephemerides_are_what_the_file_has() -> Result<(), Error> {
     let told = broadcast()?;
@@ -161,25 +281,24 @@ fn renumbered(frame: &[u8], number: u16) -> Vec<u8> {
 fn what_is_passed_over_is_named() -> Result<(), Error> {
     let read = [ephemerides(&broadcast()?), observed(345_600_000, 7)].concat();
     let [gps, of_gps] = [observed(345_600_000, 7), ephemerides(&broadcast()?)];
-    // GLONASS, SBAS, BeiDou and a number that none has; GPS as MSM5 and as it was before; ephemerides of BeiDou and QZSS.
-    let others = [1087, 1107, 1124, 1138, 1075].map(|number| renumbered(&gps, number)).concat();
+    // SBAS, NavIC and a number that none has; GPS and GLONASS as MSM5, and GPS as it was before; ephemerides of GLONASS and QZSS.
+    let others = [1107, 1137, 1138, 1075, 1085].map(|number| renumbered(&gps, number)).concat();
     let end = 6 + usize::from(of_gps[2]);
-    let broadcast = [1042, 1044].map(|number| renumbered(&of_gps[..end], number)).concat();
+    let broadcast = [1020, 1044].map(|number| renumbered(&of_gps[..end], number)).concat();
     let old = renumbered(&of_gps[..end], 1004);
     let stream = text([read.clone(), others, broadcast, old].concat());
 
     let observations = Observations::parse(&stream)?;
     let told = observations.unserved.map(|it| it.to_string());
-    let expected =
-        "file: satellites of GLONASS (1), BeiDou (1), SBAS (1) are in the file, but are not read";
+    let expected = "file: satellites of NavIC (1), SBAS (1) are in the file, but are not read";
     assert_eq!(told.as_deref(), Some(expected));
     let [warning] = &observations.warnings[..] else { panic!("one warning") };
     let expected =
-        "file: observations in messages 1004, 1075 are not read, only those in MSM4 and MSM7";
+        "file: observations in messages 1004, 1075, 1085 are not read, only those in MSM4 and MSM7";
     assert_eq!(warning.to_string(), expected);
     let navigation = Navigation::parse(&[stream])?;
     let [unserved] = &navigation.unserved[..] else { panic!("one warning") };
-    let expected = "file: ephemerides of BeiDou (1), QZSS (1) are in the file, but are not read";
+    let expected = "file: ephemerides of GLONASS (1), QZSS (1) are in the file, but are not read";
     assert_eq!(unserved.to_string(), expected);
 
     let stream = text(read);

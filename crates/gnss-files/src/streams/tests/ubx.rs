@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::Carriers;
 use crate::streams::frames::crc_24q;
 
 fn frame(id: u8, held: &[u8]) -> Vec<u8> {
@@ -15,7 +16,7 @@ fn frame(id: u8, held: &[u8]) -> Vec<u8> {
     [&[0xb5, 0x62], &*summed, &sums].concat()
 }
 
-/// G05 on both carriers and E02 on the first, as it was tracked for `lock` ms.
+/// G05 on both carriers, E02 and R02 on the first, and a satellite of QZSS, as it was tracked for `lock` ms.
 pub(super) fn observed(second: f64, lock: u16) -> Vec<u8> {
     observed_in_week(2111, second, lock)
 }
@@ -27,6 +28,7 @@ fn observed_in_week(week: u16, second: f64, lock: u16) -> Vec<u8> {
         // Half a cycle is not known.
         (2, 2, 0, 24e6, 1.2e8, 3),
         (6, 2, 0, 19e6, 1.0e8, 7),
+        (5, 2, 0, 39e6, 2.0e8, 7),
     ];
     let mut held = second.to_le_bytes().to_vec();
     held.extend(week.to_le_bytes());
@@ -35,7 +37,8 @@ fn observed_in_week(week: u16, second: f64, lock: u16) -> Vec<u8> {
         held.extend(f64::to_le_bytes(code));
         held.extend(f64::to_le_bytes(phase));
         held.extend([0; 4]);
-        held.extend([system, number, signal, 0]);
+        // R02 is on channel −4.
+        held.extend([system, number, signal, if system == 6 { 3 } else { 0 }]);
         held.extend(lock.to_le_bytes());
         held.extend([40, 0, 0, 0, status, 0]);
     }
@@ -261,14 +264,16 @@ fn observations_are_read_to_the_last_bit() -> Result<(), Error> {
     ];
     let observations = Observations::parse(&text(stream.concat()))?;
     let epoch = &observations.epochs[0];
-    assert_eq!((epoch.time.day(), epoch.satellites.len()), (59_025, 2));
+    assert_eq!(epoch.time.day(), 59_025);
     assert!((epoch.time.second() - 0.000_5).abs() < 1e-9);
-    let [gps, galileo] = [epoch.satellites[0], epoch.satellites[1]];
+    let [gps, galileo, glonass] = epoch.satellites[..] else { panic!("three satellites") };
     assert_eq!(
         (gps.prn, gps.code, gps.phase),
         (5, [Some(21e6), Some(21e6 + 3.0)], [Some(1.1e8), Some(0.9e8)])
     );
     assert_eq!((galileo.prn, galileo.code, galileo.phase), (102, [Some(24e6), None], [None; 2]));
+    assert_eq!((glonass.prn, glonass.carriers), (152, Carriers::G1G2 { channel: -4 }));
+    assert_eq!((glonass.code, glonass.phase), ([Some(19e6), None], [Some(1.0e8), None]));
     let lost: Vec<_> =
         observations.epochs.iter().map(|it| it.satellites[0].loss_of_lock[0]).collect();
     assert_eq!(lost, [false, false, true]);
@@ -299,7 +304,7 @@ fn what_is_passed_over_is_named() -> Result<(), Error> {
     let others = [[1, 123], [5, 2], [6, 255]].map(|sender| subframe_of(sender, 1, &[])).concat();
     let stream = text([observed(345_600.0, 1_000), subframes(&told), others].concat());
     let observed = Observations::parse(&stream)?.unserved.map(|it| it.to_string());
-    let expected = "file: satellites of GLONASS (1) are in the file, but are not read";
+    let expected = "file: satellites of QZSS (1) are in the file, but are not read";
     assert_eq!(observed.as_deref(), Some(expected));
     let navigation = Navigation::parse(&[stream])?;
     let [unserved] = &navigation.unserved[..] else { panic!("one warning") };

@@ -76,7 +76,7 @@ macro_rules! impl_whole {
         }
     )*};
 }
-impl_whole!(u8, u16, u32, u64, usize, i32);
+impl_whole!(u8, u16, u32, u64, usize, i8, i32);
 
 /// Any random numbers.
 pub struct AnyRng;
