@@ -711,12 +711,13 @@ kestirim_status kestirim_gnss_init(void *memory,
                                    const struct kestirim_gnss_config *config,
                                    struct kestirim_gnss **filter);
 
-// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations.
+// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations. The clock
+// of each system beside GPS takes the room of one: what there is no room for is left out.
 // `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is not known; for the carriers of
 // other systems it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
 //
 // Errors: `TOO_FEW` satellites; `TOO_MANY`; `GEOMETRY`; `OUT_OF_ORDER`; `CONTRADICTORY`; `NOT_FINITE`;
-// `INVALID_ARGUMENT` of carriers or settings.
+// `INVALID_ARGUMENT` of carriers, a channel or settings.
 kestirim_status kestirim_gnss_update(struct kestirim_gnss *filter,
                                      const struct kestirim_gnss_time *time,
                                      const struct kestirim_gnss_pattern (*receiver)[2],

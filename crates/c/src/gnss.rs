@@ -260,7 +260,7 @@ impl GnssObservation {
             0 => Carriers::L1L2,
             1 => Carriers::E1E5a,
             2 => Carriers::E1E5b,
-            3 => Carriers::G1G2 { channel: self.channel },
+            3 if (-7..=6).contains(&self.channel) => Carriers::G1G2 { channel: self.channel },
             4 => Carriers::B1B3,
             5 => Carriers::B1B2,
             6 => Carriers::B1cB2a,
@@ -313,12 +313,13 @@ pub unsafe extern "C" fn kestirim_gnss_init(
     unsafe { memory::init(memory, size, filter, || Positioning::new(&argument(config)?)) }
 }
 
-/// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations.
+/// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations. The clock
+/// of each system beside GPS takes the room of one: what there is no room for is left out.
 /// `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is not known; for the carriers of
 /// other systems it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
 ///
 /// Errors: `TOO_FEW` satellites; `TOO_MANY`; `GEOMETRY`; `OUT_OF_ORDER`; `CONTRADICTORY`; `NOT_FINITE`;
-/// `INVALID_ARGUMENT` of carriers or settings.
+/// `INVALID_ARGUMENT` of carriers, a channel or settings.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_update(
     filter: *mut Gnss,

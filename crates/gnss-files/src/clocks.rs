@@ -7,7 +7,7 @@ use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
 use crate::fields::{blank_separated, decimal, first_field, integer};
 use crate::satellites::PerSatellite;
-use crate::system::satellite;
+use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
@@ -100,7 +100,7 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
             [b'A', b'S', b' ', b'G' | b'E' | b'R' | b'C' | b' ', ..] => {
                 let (prn, sample) = record(line.bytes, &mut dated)
                     .ok_or_else(|| line.expected("a satellite's clock"))?;
-                if sample.bias.abs() < NO_BIAS {
+                if let Some(prn) = prn.filter(|_| sample.bias.abs() < NO_BIAS) {
                     samples.push(prn, sample);
                 }
             }
@@ -176,14 +176,19 @@ fn time_system(line: &Line<'_>) -> Result<(), Error> {
 type Dated<'a> = Option<(&'a [u8], GpsTime)>;
 
 /// Columns differ between versions, the order of the fields does not. The satellites of an epoch have one date: it is read
-/// once.
-fn record<'a>(bytes: &'a [u8], dated: &mut Dated<'a>) -> Option<(u8, ClockSample)> {
+/// once. Without a satellite if none has the number.
+fn record<'a>(bytes: &'a [u8], dated: &mut Dated<'a>) -> Option<(Option<u8>, ClockSample)> {
     let (_, rest) = first_field(bytes)?;
-    let (prn, rest) = match first_field(rest)? {
-        (b"G", rest) => first_field(rest)?,
-        named => named,
+    let (letter, digits, rest) = match first_field(rest)? {
+        ([letter @ b'A'..=b'Z'], rest) => {
+            let (digits, rest) = first_field(rest)?;
+            (*letter, digits, rest)
+        }
+        ([letter @ b'A'..=b'Z', digits @ ..], rest) => (*letter, digits, rest),
+        (digits, rest) => (b'G', digits, rest),
     };
-    let prn = satellite(prn)?;
+    let number = u8::try_from(integer(digits)?).ok()?;
+    let prn = System::of_letter(letter).and_then(|system| system.number(number));
     let known = dated.as_ref().and_then(|(date, time)| {
         let rest = rest.strip_prefix(*date)?;
         rest.first().is_none_or(u8::is_ascii_whitespace).then_some((*time, rest))
@@ -260,6 +265,17 @@ mod tests {
         assert_eq!(clocks.around(5, time(30.1)), None);
         assert_eq!(clocks.around(5, time(-0.1)), None);
         assert_eq!(clocks.around(6, time(0.0)), None);
+        Ok(())
+    }
+
+    #[test]
+    fn a_number_that_no_satellite_has_is_passed_over() -> Result<(), Error> {
+        let of = |name: &str| Clocks::parse(&[text(clocks().replace("AS J07", name))]);
+        for (name, expected) in [("AS R00", None), ("AS C76", None), ("AS R 7", Some(157))] {
+            let numbers: Vec<_> = of(name)?.satellites().collect();
+            assert_eq!(numbers, [5].into_iter().chain(expected).collect::<Vec<_>>());
+        }
+        assert!(of("AS R0x").is_err());
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use crate::fields::integer;
 
-/// A system that is served.
+/// A satellite system that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum System {
     /// GPS.

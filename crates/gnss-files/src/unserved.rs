@@ -1,7 +1,7 @@
 //! Satellites of systems that are not served.
 
-/// Systems by the letter of their satellites, in the order in which they are named. Galileo stands here for RINEX 2, of
-/// which it is not read.
+/// Systems by the letter of their satellites, in the order in which they are named. Galileo, GLONASS and BeiDou stand here for RINEX 2,
+/// of which they are not read, and for what is not read of them elsewhere.
 const SYSTEMS: [(u8, &str); 6] = [
     (b'E', "Galileo"),
     (b'R', "GLONASS"),

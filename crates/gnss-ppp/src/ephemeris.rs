@@ -16,7 +16,7 @@ const STEPS: usize = 6;
 /// An ephemeris as a satellite of GPS, Galileo or BeiDou broadcasts it, in m, s and rad.
 ///
 /// Positions are those of IS-GPS-200, table 20-IV, which are the Galileo OS SIS ICD's, too (5.1.1), and with constants of their own
-/// those of BeiDou's satellites that are not geostationary (BDS-SIS-ICD-B1I, 5.2.4.12): where the phase centre of the
+/// those of BeiDou's satellites that are not geostationary (BDS-SIS-ICD-B1I, ephemeris parameters): where the phase centre of the
 /// satellite's antenna is, not its centre of mass. What the documents call by symbols stands behind each name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -110,7 +110,7 @@ impl Ephemeris {
         let tilt = self.inclination + self.inclination_rate * elapsed + tilt;
         let of_tilt = self.inclination_rate + of_tilt;
         // By the week of the ephemeris, even when that is over.
-        let second = second_of_week(self.time) + elapsed - self.behind();
+        let second = second_of_week(self.time.plus(-self.behind())) + elapsed;
         let node = self.node + self.node_rate * elapsed - self.rotation() * second;
 
         // In the plane of the orbit, x to the ascending node.

@@ -12,7 +12,7 @@ pub const WAVELENGTH: [f64; 2] = [SPEED_OF_LIGHT / FREQUENCY[0], SPEED_OF_LIGHT 
 const E5A: f64 = 1_176.45e6;
 const E5B: f64 = 1_207.14e6;
 
-/// G1 and G2 of GLONASS on channel 0, Hz (GLONASS ICD L1, L2, 3.3.1.1), and which part of both a channel is away from that.
+/// G1 and G2 of GLONASS on channel 0, Hz (GLONASS ICD L1, L2, 3.3.1.1), and the step of a channel, as a share of either.
 const G1: f64 = 1_602e6;
 const G2: f64 = 1_246e6;
 const CHANNEL: f64 = 1.0 / 2_848.0;
@@ -59,7 +59,7 @@ pub enum Carriers {
     E1E5b,
     /// G1 and G2 of GLONASS.
     G1G2 {
-        /// Of the satellite: −7 to 6.
+        /// The satellite's frequency channel, −7 to 6.
         channel: i8,
     },
     /// B1I and B3I of BeiDou.

@@ -9,11 +9,11 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Receiver<'a> {
     /// Antenna on L1 and L2, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
-    /// The same on the two carriers of Galileo that are observed, …
+    /// The same on the two carriers of Galileo that are observed.
     pub galileo_antenna: Option<[Pattern<'a>; 2]>,
-    /// … on those of GLONASS, …
+    /// The same on the two carriers of GLONASS.
     pub glonass_antenna: Option<[Pattern<'a>; 2]>,
-    /// … and on those of BeiDou.
+    /// The same on the two carriers of BeiDou that are observed.
     pub beidou_antenna: Option<[Pattern<'a>; 2]>,
     /// From the marker to the antenna's reference point: east, north, up, m.
     pub eccentricity: [f64; 3],

@@ -212,9 +212,15 @@ impl<const N: usize> Running<N> {
         let mut clock = median_code(lines, None);
         // Without GPS the clock is that of a system beside it, best of one that is known.
         for begins in [false, true] {
-            for (state, known) in self.offsets.into_iter().zip(known) {
+            for (place, (state, known)) in self.offsets.into_iter().zip(known).enumerate() {
                 let Some(state) = state.filter(|_| known.is_none() == begins) else { continue };
-                let Some(code) = median_code(lines, Some(state)) else { continue };
+                let Some(code) = median_code(lines, Some(state)) else {
+                    // There was no room for an ambiguity of its first satellite.
+                    if let (true, Some(offset)) = (begins, self.offsets.get_mut(place)) {
+                        *offset = None;
+                    }
+                    continue;
+                };
                 let beside = if begins { 0.0 } else { self.state(state) };
                 let clock = *clock.get_or_insert(code - beside);
                 if begins {

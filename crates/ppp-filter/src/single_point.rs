@@ -8,7 +8,7 @@ use crate::{Config, Error, Health, SatelliteObservation, SatelliteReport, Soluti
 use heapless::Vec;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{
-    Carriers, Constellation, Expected, Geodetic, GpsTime, Klobuchar, Pattern, Receiver,
+    Carriers, Constellation, Expected, FREQUENCY, Geodetic, GpsTime, Klobuchar, Pattern, Receiver,
     SatelliteState, Site,
 };
 use kestirim_kalman::{Covariance, Gaussian};
@@ -110,6 +110,7 @@ pub fn single_point<const N: usize>(
 #[derive(Clone, Copy, Debug)]
 struct Line {
     satellite: u8,
+    system: Constellation,
     expected: Expected,
     /// Observed less expected, m.
     innovation: f64,
@@ -123,8 +124,6 @@ struct Epoch<const N: usize> {
     clock: f64,
     estimate: Gaussian<f64, STATES>,
     lines: Vec<Line, N>,
-    /// Of how many systems the lines are.
-    systems: usize,
     decisions: Vec<Decision<f64>, N>,
 }
 
@@ -132,7 +131,7 @@ impl<const N: usize> Epoch<N> {
     fn at(place: Vector3<f64>, clock: f64) -> Self {
         let covariance = Covariance::from_variances(&[UNKNOWN; STATES]);
         let estimate = Gaussian::new(SVector::zeros(), covariance);
-        Self { place, clock, estimate, lines: Vec::new(), systems: 0, decisions: Vec::new() }
+        Self { place, clock, estimate, lines: Vec::new(), decisions: Vec::new() }
     }
 
     fn observe(
@@ -149,7 +148,6 @@ impl<const N: usize> Epoch<N> {
         // To the clock of the first system the others are beside.
         let is_there = |of: &Constellation| codes.iter().any(|it| system(it) == *of);
         let there = || Constellation::ALL.into_iter().filter(is_there);
-        self.systems = there().count();
         self.lines = collected(codes.iter().enumerate().filter_map(|(index, it)| {
             let before = codes.get(..index).unwrap_or(&[]);
             if before.iter().any(|other| other.satellite == it.satellite) {
@@ -164,13 +162,15 @@ impl<const N: usize> Epoch<N> {
                 return None;
             }
             let sine = libm::sin(direction.elevation);
+            // Both are told of L1.
+            let ratio = FREQUENCY[0] / it.carriers.frequency()[0];
             let (delay, left) = match (is_alone, ionosphere) {
                 (false, _) => (0.0, 0.0),
                 (true, Some(model)) => {
-                    let delay = model.delay(&place, &direction, time);
+                    let delay = square(ratio) * model.delay(&place, &direction, time);
                     (delay, LEFT * delay)
                 }
-                (true, None) => (0.0, NOT_TOLD / sine.max(LOWEST)),
+                (true, None) => (0.0, square(ratio) * NOT_TOLD / sine.max(LOWEST)),
             };
             let noise = config.code.variance(sine) + code_bias(it.carriers);
             let noise = noise * if is_alone { ALONE * ALONE } else { 1.0 };
@@ -181,6 +181,7 @@ impl<const N: usize> Epoch<N> {
             let own = beside.map_or((COMMON, 0.0), |place| (COMMON + place, 1.0));
             Some(Line {
                 satellite: it.satellite,
+                system: system(it),
                 expected,
                 innovation: range - expected.range - known,
                 variance: noise + square(left) + square(wet) + square(it.state.accuracy),
@@ -190,7 +191,7 @@ impl<const N: usize> Epoch<N> {
     }
 
     fn update(&mut self, config: &Config) -> Result<(), Error> {
-        if self.lines.len() < 4 {
+        if self.lines.len() < self.unknowns() {
             return Err(Error::TooFewSatellites);
         }
         let measurements: Vec<_, N> = collected(self.lines.iter().map(|line| Measurement {
@@ -202,6 +203,12 @@ impl<const N: usize> Epoch<N> {
         let robust = Robust { adaptive: None, ..config.estimator.robust };
         robust.update(&mut self.estimate, &measurements, &mut self.decisions)?;
         Ok(())
+    }
+
+    /// How many numbers the lines are to tell: coordinates, and the clock of each of their systems.
+    fn unknowns(&self) -> usize {
+        let is_heard = |of: &Constellation| self.lines.iter().any(|line| line.system == *of);
+        3 + Constellation::ALL.iter().filter(|of| is_heard(of)).count().max(1)
     }
 
     fn solution(&self, time: GpsTime, position: Vector3<f64>) -> Solution<N> {
@@ -226,7 +233,7 @@ impl<const N: usize> Epoch<N> {
             wet_delay: WET_DELAY,
             gradients: [0.0; 2],
             // Metres, whatever comes: no ambiguity is ever known.
-            health: if heard > COMMON + self.systems {
+            health: if heard > self.unknowns() + 1 {
                 Health::Converging
             } else {
                 Health::Unchecked

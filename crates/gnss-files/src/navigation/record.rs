@@ -156,7 +156,7 @@ impl<'a> Record<'a> {
             (Some(b'C'), b"D1") => Message::D1,
             _ => return Self::Other,
         };
-        match (kind, satellite(name)) {
+        match (kind, satellite(name).filter(|number| has_orbit(*number))) {
             (b"EPH", Some(number)) => Self::Ephemeris(number, Some(message), numbers),
             (b"ION", _) if message == Message::Lnav => Self::Ionosphere(numbers),
             _ => Self::Other,

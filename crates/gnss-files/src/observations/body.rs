@@ -71,7 +71,7 @@ impl Body {
         }
         if self.raw.is_empty() {
             return Err(
-                text.error("expected observations of GPS satellites on L1 or L2, found none")
+                text.error("expected observations of GPS, Galileo, GLONASS or BeiDou, found none")
             );
         }
         Ok(())

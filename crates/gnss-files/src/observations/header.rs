@@ -93,7 +93,7 @@ impl Header {
         Ok(())
     }
 
-    /// Takes up to eight satellites of GLONASS with their channels; none of which one of both cannot be read.
+    /// Takes up to eight satellites of GLONASS with their channels; skips one whose number or channel cannot be read.
     fn channels(&mut self, line: &Line<'_>) {
         for field in (0..8).map(|place| 4 + 7 * place) {
             let number = satellite(line.columns(field, field + 3));

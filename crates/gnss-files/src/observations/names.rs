@@ -50,8 +50,11 @@ impl Named {
 pub(super) fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
     match name {
         [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
-        [b'E' | b'R' | b'C', ..] if !old => system::satellite(&name).map(Named::Known),
-        [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => Some(Named::Other(name)),
+        [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => {
+            // Of a system that is read a number that no satellite has is passed over, too.
+            let known = system::satellite(&name).filter(|_| !old);
+            Some(known.map_or(Named::Other(name), Named::Known))
+        }
         _ => None,
     }
 }

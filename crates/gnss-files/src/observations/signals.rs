@@ -41,7 +41,7 @@ pub enum Carriers {
     E1E5b,
     /// G1 and G2 of GLONASS.
     G1G2 {
-        /// Of the satellite: −7 to 6.
+        /// The satellite's frequency channel, −7 to 6.
         channel: i8,
     },
     /// B1I and B3I of BeiDou.
@@ -106,6 +106,10 @@ impl Signal {
     /// The signal of an observation code of RINEX 3 or 2; none if it is not used.
     pub(crate) fn new(system: u8, code: &[u8]) -> Option<Self> {
         let (kind, band, tracking) = match (system, code) {
+            // RINEX 3.02 has B1I on band 1, where no such signal of BeiDou is otherwise.
+            (b'C', &[kind @ (b'C' | b'L'), b'1', tracking @ (b'I' | b'Q')]) => {
+                (kind, b'2', tracking)
+            }
             (_, &[kind @ (b'C' | b'L'), band, tracking]) => (kind, band, tracking),
             (b'G', &[b'P', band @ (b'1' | b'2')]) => (b'C', band, b'W'),
             (b'G', [b'C', b'1']) => (b'C', b'1', b'C'),
@@ -179,7 +183,7 @@ impl Seen {
         }
     }
 
-    /// The signals of each satellite; those of GLONASS are on `channels`, and of one of which that is not known, there is nothing.
+    /// The signals of each satellite; none of a satellite of GLONASS that has none of the `channels`.
     pub(super) fn choose(&self, channels: &BTreeMap<u8, i8>) -> BTreeMap<u8, Signals> {
         let (galileo, beidou) = (self.galileo(), self.beidou());
         let carriers = |number| match System::of(number) {
@@ -213,10 +217,13 @@ impl Seen {
         if b > 2 * a { Carriers::E1E5b } else { Carriers::E1E5a }
     }
 
-    /// The carriers of BeiDou: B1I and the one of B3I, B2I and B2a, then with B1C, that is observed most, the first of equals.
+    /// The carriers of BeiDou that are observed most, of equals the first of B1I and B3I, B1I and B2I, B1C and B2a.
     fn beidou(&self) -> Carriers {
         let pairs = [Carriers::B1cB2a, Carriers::B1B2, Carriers::B1B3];
-        let count = |pair: &Carriers| self.count_of(System::BeiDou, pair.bands()[1]);
+        let count = |pair: &Carriers| {
+            let [first, second] = pair.bands().map(|band| self.count_of(System::BeiDou, band));
+            first.min(second)
+        };
         pairs.into_iter().max_by_key(count).unwrap_or(Carriers::B1B3)
     }
 }

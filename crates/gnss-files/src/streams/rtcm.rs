@@ -142,25 +142,29 @@ impl Reader {
                 long_cells!(self, it, of_beidou(it.bds_epoch_time_ms), System::BeiDou);
             }
             Message::Msg1084(it) => {
-                let Some(time) = OfGlonass::time(it.glo_day_of_week, it.glo_epoch_time_ms) else {
-                    return;
-                };
-                short_cells!(self, it, time, System::Glonass);
+                match OfGlonass::time(it.glo_day_of_week, it.glo_epoch_time_ms) {
+                    Some(time) => short_cells!(self, it, time, System::Glonass),
+                    None => self.stream.skipped += 1,
+                }
             }
             Message::Msg1087(it) => {
-                let Some(time) = OfGlonass::time(it.glo_day_of_week, it.glo_epoch_time_ms) else {
-                    return;
-                };
                 for of in it.data_segment.satellite_data.iter() {
                     let channel = of.glonass_satellite_frequency_channel_number;
                     self.glonass.on(of.satellite_id, channel);
                 }
-                long_cells!(self, it, time, System::Glonass);
+                match OfGlonass::time(it.glo_day_of_week, it.glo_epoch_time_ms) {
+                    Some(time) => long_cells!(self, it, time, System::Glonass),
+                    None => self.stream.skipped += 1,
+                }
             }
             Message::Msg1042(it) => {
                 let satellite = System::BeiDou.number(it.bds_satellite_id);
-                let satellite = satellite.filter(|number| !System::is_geostationary(*number));
-                self.ephemeris(satellite, beidou(it));
+                if satellite.is_some_and(System::is_geostationary) {
+                    self.stream.skipped += 1;
+                    self.passed_over.ephemerides.note(b'C', it.bds_satellite_id);
+                } else {
+                    self.ephemeris(satellite, beidou(it));
+                }
             }
             Message::Msg1019(it) => self.ephemeris(Some(it.gps_satellite_id), gps(it)),
             Message::Msg1045(it) => {
@@ -229,7 +233,7 @@ impl Reader {
         stream.observed = passed_over.observed;
         stream.unread = passed_over.ephemerides;
         let seconds: Vec<_> = epochs.iter().map(|(time, _)| 1e-3 * *time as f64).collect();
-        // Weeks of Galileo are told without a doubt.
+        // Weeks of Galileo and BeiDou are told without a doubt.
         let near =
             dated(&ephemerides, &seconds, true).or_else(|| dated(&ephemerides, &seconds, false));
         let Some((place, near)) = near else {

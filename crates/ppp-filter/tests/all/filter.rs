@@ -442,6 +442,42 @@ fn three_systems_have_clocks_of_their_own() {
     }
 }
 
+/// A filter that GPS fills but for one state has no room for the first satellite of another system; once it has, that serves as any.
+#[test]
+fn a_system_without_room_begins_when_there_is_some() {
+    const SEEN: usize = 9;
+    let config = Config { gradient: 0.0, ..Config::new(Motion::Static) };
+    let mut full = PppFilter::<{ states(SEEN) }>::new(config);
+    // The last one is of GLONASS, and the first one goes after a while.
+    let solutions = run(&mut full, 1800.0, |seconds, observations| {
+        let is_high = |it: &SatelliteObservation<'_>| {
+            let site = Site::new(&Receiver::default(), &marker(), START.plus(seconds));
+            let expected = site.expect(&it.state, it.carriers, None, None);
+            expected.is_some_and(|it| it.direction.elevation > config.elevation_mask)
+        };
+        observations.retain(is_high);
+        observations.truncate(SEEN);
+        if seconds > 600.0 {
+            observations.remove(0);
+        }
+        let last = observations.last_mut().expect("a satellite");
+        let before = last.carriers.wavelength();
+        last.carriers = Carriers::G1G2 { channel: 2 };
+        for carrier in 0..2 {
+            let after = last.carriers.wavelength()[carrier];
+            last.phase[carrier] = (last.phase[carrier] * before[carrier] - 70.0) / after;
+            last.code[carrier] -= 70.0;
+        }
+    });
+    let used = |at: usize| solutions[at].satellites.len();
+    assert_eq!((used(0), used(solutions.len() - 1)), (SEEN - 1, SEEN - 1));
+    for solution in &solutions {
+        let deviation = Vector3::from(solution.deviations_enu()).norm();
+        assert!(error(solution) < 2.0 * deviation, "{} {deviation}", error(solution));
+        assert!(solution.satellites.iter().all(|it| it.code.weight > 0.0 && it.phase.weight > 0.0));
+    }
+}
+
 /// A troposphere that is 0.8 mm thicker to the north, and 0.6 mm thinner to the east: 2 and 3 cm at 10° of elevation.
 #[test]
 fn gradients_are_found_where_they_can_be() {

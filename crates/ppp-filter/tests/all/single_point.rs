@@ -136,4 +136,6 @@ fn each_system_has_a_clock_of_its_own() {
     let few = codes.get(..6).expect("six satellites");
     let few = solve(few).expect("a position");
     assert_eq!(few.health, Health::Unchecked);
+    let fewer = codes.get(..5).expect("five satellites");
+    assert_eq!(solve(fewer).err(), Some(Error::TooFewSatellites));
 }

@@ -337,7 +337,7 @@ def gnss(
     until: Optional[float] = None,
     smooth: bool = False,
 ) -> ReceiverTrack:
-    """Where a GPS and Galileo receiver is, to a centimetre, from files; any may be packed with gzip.
+    """Where a receiver of GPS, Galileo, GLONASS and BeiDou is, to a centimetre, from files; any may be packed with gzip.
 
     obs: what the receiver observed, RINEX 2, 3 or 4 or Compact RINEX. sp3: precise orbits. antex: phase centres of
     antennas. clk: precise clocks, RINEX; else those of the orbit files. bias: biases of codes and phases, Bias-SINEX.
@@ -345,7 +345,7 @@ def gnss(
 
     process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
     for one at rest. filter: what is done about observations that do not fit.
-    systems: satellites that serve. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo
+    systems: satellites of which systems serve, "all" those that are observed and known. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo
     with integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. gradient: m,
     standard deviation of the troposphere's gradients (0: none), 0.0005 of the default filter. until: s, the last epoch.
     smooth: put together what is found forwards and backwards, from the first epoch on.

@@ -5,9 +5,9 @@ use kestirim_ppp_filter::{Config, Estimator, Motion, states};
 
 /// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
 pub const STATES: usize = states(20);
-/// The same where satellites of Galileo are among them …
+/// The same where satellites of Galileo are among them.
 pub const STATES_WITH_GALILEO: usize = states(34);
-/// … and where those of more systems are.
+/// The same where satellites of any system are.
 pub const STATES_OF_ALL: usize = states(50);
 
 /// Satellites of which systems serve.

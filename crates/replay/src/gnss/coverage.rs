@@ -61,7 +61,7 @@ pub(super) fn left_out(
     left_out
 }
 
-/// Satellites beside those of GPS of which no ephemeris is known, and a warning about them.
+/// Satellites beside those of GPS of which no ephemeris for the observed signals is known, and a warning about them.
 pub(super) fn without_ephemerides(
     observations: &Observations,
     broadcast: &Broadcast,
@@ -71,7 +71,10 @@ pub(super) fn without_ephemerides(
     let left_out: BTreeSet<u8> = others.copied().filter(|it| !broadcast.knows(*it)).collect();
     if !left_out.is_empty() {
         let names = names(left_out.iter().copied());
-        warnings.push((None, format!("{names} are left out: ephemerides of them are not known")));
+        warnings.push((
+            None,
+            format!("{names} are left out: ephemerides for their signals are not known"),
+        ));
     }
     left_out
 }

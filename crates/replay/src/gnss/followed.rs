@@ -194,14 +194,14 @@ pub fn follow(
     if pass.method == Method::Single {
         return single(recording, epochs, receiver, &config, pass, next);
     }
-    let others =
-        recording.systems().filter(|it| *it != System::Gps && pass.systems.has_system(*it));
-    match others.count() {
-        0 => {
+    let serves = |system: &System| *system != System::Gps && pass.systems.has_system(*system);
+    let mut others = recording.systems().filter(serves);
+    match (others.next(), others.next()) {
+        (None, _) => {
             let filter = PppFilter::<STATES>::new(config);
             feed(filter, recording, epochs, receiver, pass, next)
         }
-        1 => {
+        (Some(System::Galileo), None) => {
             let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
             feed(filter, recording, epochs, receiver, pass, next)
         }

@@ -42,7 +42,7 @@ pub(super) fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f6
 const USUAL_FIT: f64 = 14_400.0;
 /// … one of Galileo is not to be used when it is older, s (Galileo OS service definition), …
 const OLDEST_GALILEO: f64 = 14_400.0;
-/// … and one of BeiDou is sent for an hour (BDS-SIS-ICD-B1I, 5.2.4.2) and serves for another, s.
+/// … and one of BeiDou is sent for an hour (BDS-SIS-ICD-B1I) and serves for another, s.
 const OLDEST_BEIDOU: f64 = 7_200.0;
 
 /// An ephemeris with the clock of two carriers; none of which the group delay between its own carriers and these is not told. The
@@ -54,7 +54,7 @@ pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<E
         (Carriers::E1E5b, Message::Inav) => (second, second),
         // Galileo OS SIS ICD 5.1.5: the clock of E1 alone is the same, whichever it is taken from.
         (Carriers::E1E5a, Message::Inav) => (first, second),
-        // BDS-SIS-ICD-B1I 5.2.4.10: the clock is that of B3I, and those of B1I and B2I are behind by their delays.
+        // BDS-SIS-ICD-B1I, TGD1 and TGD2: the clock is that of B3I, and those of B1I and B2I are behind by their delays.
         (Carriers::B1B3, Message::D1) => (first - carriers.ionosphere_free([first, 0.0]), first),
         (Carriers::B1B2, Message::D1) => (first - carriers.ionosphere_free([first, second]), first),
         _ => return None,

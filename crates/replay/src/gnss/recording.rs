@@ -95,7 +95,8 @@ impl Recording {
         let loading = paths.blq.map(read).transpose()?;
         let rotation = paths.erp.map(EarthRotation::read).transpose()?;
         let Some(start) = observations.epochs.first().map(|epoch| epoch.time) else {
-            let problem = "expected observations of GPS satellites, found none".to_owned();
+            let problem =
+                "expected observations of GPS, Galileo, GLONASS or BeiDou, found none".to_owned();
             return Err(Error::File { path: paths.obs.to_path_buf(), problem });
         };
         let of_loading = loading.as_ref().map_or(&[][..], |loading| &loading.warnings);

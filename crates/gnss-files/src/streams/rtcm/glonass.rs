@@ -71,8 +71,8 @@ impl OfGlonass {
         let Self { cells, channels } = self;
         for Cell { place, time, satellite, mut raw } in cells {
             let time = (time - MOSCOW + ahead).rem_euclid(WEEK_MS);
-            // A message of GLONASS may come first in an epoch.
-            let near = epochs.iter_mut().skip(place).take(2);
+            // A message of GLONASS may come first in an epoch, or behind the first one of the next.
+            let near = epochs.iter_mut().skip(place.saturating_sub(1)).take(3);
             let Some((_, satellites)) = near.into_iter().find(|(of, _)| *of == time) else {
                 continue;
             };

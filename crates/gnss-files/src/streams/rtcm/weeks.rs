@@ -10,7 +10,7 @@ const HALF_WEEK: i64 = 302_400_000;
 /// The same in s.
 const HALF_WEEK_S: f64 = 302_400.0;
 
-/// The place of an epoch, and an instant near it, by the ephemerides of Galileo or of GPS; `seconds` are those of the epochs in
+/// The place of an epoch, and an instant near it, by the ephemerides of Galileo and BeiDou, or of GPS; `seconds` are those of the epochs in
 /// their weeks. Some senders tell the week of the transmission, as satellites do, others that of the ephemeris: those are
 /// preferred of which both are the same.
 pub(super) fn dated(
