@@ -19,6 +19,9 @@ pub struct GpsTime {
 }
 
 impl GpsTime {
+    /// By so much BeiDou's time is behind that of GPS, s.
+    pub(crate) const BEIDOU_BEHIND: f64 = 14.0;
+
     /// The instant at which GPS time began.
     #[cfg(any(feature = "rtcm", feature = "ubx"))]
     pub(crate) const EPOCH: Self = Self { day: 44_244, second: 0.0 };
@@ -34,6 +37,11 @@ impl GpsTime {
         let second = second - days * DAY;
         let (days, second) = if second < DAY { (days, second) } else { (days + 1.0, 0.0) };
         Self { day: day.saturating_add(days as i32), second }
+    }
+
+    /// The same instant by GPS, of one that is told by BeiDou.
+    pub(crate) fn beidou_to_gps(self) -> Self {
+        Self::new(self.day, self.second + Self::BEIDOU_BEHIND)
     }
 
     /// The instant of a year, month, day, hour and minute of the Gregorian calendar and a second, all in GPS time;

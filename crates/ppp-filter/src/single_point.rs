@@ -147,7 +147,8 @@ impl<const N: usize> Epoch<N> {
         let system = |it: &CodeObservation<'_>| it.carriers.constellation();
         // To the clock of the first system the others are beside.
         let is_there = |of: &Constellation| codes.iter().any(|it| system(it) == *of);
-        let there = || Constellation::ALL.into_iter().filter(is_there);
+        let there: Vec<_, { Constellation::ALL.len() }> =
+            collected(Constellation::ALL.into_iter().filter(is_there));
         self.lines = collected(codes.iter().enumerate().filter_map(|(index, it)| {
             let before = codes.get(..index).unwrap_or(&[]);
             if before.iter().any(|other| other.satellite == it.satellite) {
@@ -177,7 +178,7 @@ impl<const N: usize> Epoch<N> {
             let wet = config.wet_delay * expected.wet_mapping;
             let known = self.clock + expected.wet_mapping * WET_DELAY + delay;
             let [x, y, z] = *expected.sight.as_array();
-            let beside = there().skip(1).position(|of| of == system(it));
+            let beside = there.iter().skip(1).position(|of| *of == system(it));
             let own = beside.map_or((COMMON, 0.0), |place| (COMMON + place, 1.0));
             Some(Line {
                 satellite: it.satellite,

@@ -9,8 +9,6 @@ use crate::time::GpsTime;
 const WEEK: f64 = 604_800.0;
 /// As files write it that a satellite of GPS tells no accuracy: index 15 (IS-GPS-200, 20.3.3.3.1.3) is 6144 m and more.
 const NO_ACCURACY: f64 = 6_144.0;
-/// By so much BeiDou's time is behind that of GPS, s.
-const BEIDOU_BEHIND: f64 = 14.0;
 /// The longest fit that a message can tell, h.
 const LONGEST_FIT: f64 = 194.0;
 
@@ -132,8 +130,8 @@ impl Ephemeris {
             _ => Message::Lnav,
         });
         let accuracy = needed(23)?;
-        let behind = if system == System::BeiDou { BEIDOU_BEHIND } else { 0.0 };
-        let by_gps = |time: GpsTime| GpsTime::new(time.day(), time.second() + behind);
+        let is_beidou = system == System::BeiDou;
+        let by_gps = |time: GpsTime| if is_beidou { time.beidou_to_gps() } else { time };
         Ok(Self {
             message,
             time: by_gps(time_of_week(clock_time, needed(11)?)),

@@ -22,9 +22,6 @@ use crate::system::System;
 use crate::text::Text;
 use crate::time::GpsTime;
 
-/// By so much BeiDou's time is behind that of GPS, ms.
-const BEIDOU_BEHIND: i64 = 14_000;
-
 /// Most cells of satellites and signals that a message of observations may have.
 const MOST_CELLS: u32 = 64;
 
@@ -121,7 +118,8 @@ macro_rules! long_cells {
 
 impl Reader {
     fn take(&mut self, frame: &MessageFrame<'_>) {
-        let of_beidou = |time: u32| (i64::from(time) + BEIDOU_BEHIND).rem_euclid(WEEK_MS);
+        let behind = (1e3 * GpsTime::BEIDOU_BEHIND) as i64;
+        let of_beidou = |time: u32| (i64::from(time) + behind).rem_euclid(WEEK_MS);
         match &frame.get_message() {
             Message::Msg1074(it) => {
                 short_cells!(self, it, i64::from(it.gps_epoch_time_ms), System::Gps);

@@ -13,6 +13,7 @@ use super::whole_biases::WholeBiases;
 
 /// Clocks are bridged over the interval of the coarsest products, s.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
+
 /// Why a satellite that was observed does not serve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unusable {

@@ -13,26 +13,20 @@ pub(super) const WEEK: i32 = 7;
 pub(super) const ROLLOVER: i32 = 1_024;
 const ROLLED_OVER: i32 = 2 * ROLLOVER;
 const GALILEO_WEEK: i32 = ROLLOVER;
-/// The first week of BeiDou's time, which is so many s behind that of GPS.
+/// The first week of BeiDou's time.
 const BEIDOU_WEEK: i32 = 1_356;
-const BEIDOU_BEHIND: f64 = 14.0;
 
 /// The instant of a second of a week, counted from the first week of GPS.
 fn instant(week: u16, behind: i32, second: f32) -> GpsTime {
     GpsTime::new(GpsTime::EPOCH.day() + WEEK * (i32::from(week) + behind), f64::from(second))
 }
 
-/// What the messages of GPS and Galileo tell, with the field that each has for it.
-macro_rules! ephemeris {
-    ($message:ident, $of:expr, $week:ident, $behind:ident, $issue:ident, $rest:expr) => {{
+/// The orbit that a message tells.
+macro_rules! orbit {
+    ($message:ident, $rest:expr) => {{
         let it = $message;
         let single = |number: f32| f64::from(number);
         Ephemeris {
-            message: $of,
-            time: instant(it.$week, $behind, it.toe_s),
-            clock_time: time_of_week(instant(it.$week, $behind, it.toe_s), single(it.toc_s)),
-            clock: [it.af0_s, f64::from(it.af1_s_s), single(it.af2_s_s2)],
-            issue: u16::from(it.$issue),
             root_of_axis: it.sqrt_a_sqrt_m,
             eccentricity: it.eccentricity,
             mean_anomaly: SEMICIRCLE * it.m0_sc,
@@ -47,6 +41,23 @@ macro_rules! ephemeris {
             inclination_terms: [single(it.cic_rad), single(it.cis_rad)],
             ..$rest
         }
+    }};
+}
+
+/// What the messages of GPS and Galileo tell, with the field that each has for it.
+macro_rules! ephemeris {
+    ($message:ident, $of:expr, $week:ident, $behind:ident, $issue:ident, $rest:expr) => {{
+        let it = $message;
+        let time = instant(it.$week, $behind, it.toe_s);
+        let told = Ephemeris {
+            message: $of,
+            time,
+            clock_time: time_of_week(time, f64::from(it.toc_s)),
+            clock: [it.af0_s, f64::from(it.af1_s_s), f64::from(it.af2_s_s2)],
+            issue: u16::from(it.$issue),
+            ..$rest
+        };
+        orbit!(it, told)
     }};
 }
 
@@ -101,32 +112,17 @@ pub(super) fn inav(it: &Msg1046T) -> Ephemeris {
 }
 
 pub(super) fn beidou(it: &Msg1042T) -> Ephemeris {
-    let single = |number: f32| f64::from(number);
-    let second = |second: f32| {
-        let time = instant(it.bds_week_number, BEIDOU_WEEK, second);
-        GpsTime::new(time.day(), time.second() + BEIDOU_BEHIND)
-    };
-    Ephemeris {
+    let by_gps = |second| instant(it.bds_week_number, BEIDOU_WEEK, second).beidou_to_gps();
+    let told = Ephemeris {
         message: Of::D1,
-        time: second(it.toe_s),
-        clock_time: second(it.toc_s),
-        clock: [it.a0_s, it.a1_s_s, single(it.a2_s_s2)],
+        time: by_gps(it.toe_s),
+        clock_time: by_gps(it.toc_s),
+        clock: [it.a0_s, it.a1_s_s, f64::from(it.a2_s_s2)],
         issue: u16::from(it.aode),
-        root_of_axis: it.sqrt_a_sqrt_m,
-        eccentricity: it.eccentricity,
-        mean_anomaly: SEMICIRCLE * it.m0_sc,
-        mean_motion_correction: SEMICIRCLE * single(it.delta_n_sc_s),
-        perigee: SEMICIRCLE * it.omega_sc,
-        node: SEMICIRCLE * it.omega0_sc,
-        node_rate: SEMICIRCLE * it.omegadot_sc_s,
-        inclination: SEMICIRCLE * it.i0_sc,
-        inclination_rate: SEMICIRCLE * it.idot_sc_s,
-        latitude_terms: [single(it.cuc_rad), single(it.cus_rad)],
-        radius_terms: [single(it.crc_m), single(it.crs_m)],
-        inclination_terms: [single(it.cic_rad), single(it.cis_rad)],
         group_delays: [it.tgd1_s, it.tgd2_s].map(f64::from),
         accuracy: ura(it.ura_index),
         is_healthy: it.sv_health_flag == 0,
-        fit: None,
-    }
+        ..Ephemeris::NOTHING
+    };
+    orbit!(it, told)
 }
