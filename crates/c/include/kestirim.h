@@ -17,7 +17,7 @@
 #ifndef KESTIRIM_H
 #define KESTIRIM_H
 
-// Made by cbindgen of crates/c: do not edit. `crates/c/tests/header.rs` compares it.
+// Made by cbindgen of crates/c: do not edit. `crates/c/tests/c/header.rs` compares it.
 
 #include <stddef.h>
 #include <stdint.h>

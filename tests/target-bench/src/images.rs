@@ -21,8 +21,7 @@ const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
 const TARGETS: &str = "KESTIRIM_TARGETS";
 
 /// Targets and profiles of the short form: without and with a floating-point unit, at the level of the applications,
-/// whose dependencies they share; of what takes longest one alone: estimators wake on the first, of which every bit is our
-/// own arithmetic, and the surface is looked at on the second.
+/// whose dependencies they share. What takes longest, the surface, is looked at on the second alone, where estimators wake.
 const SHORT_FORM: [(&Target, Profile); 2] =
     [(&CORTEX_M0, Profile::Speed), (&CORTEX_M4F, Profile::Speed)];
 
@@ -136,8 +135,7 @@ impl Images {
     ) -> Result<Option<Self>> {
         let is_this = |(of, at): &(&Target, Profile)| of.triple == target.triple && *at == profile;
         let short = match packages {
-            SNAPSHOTS => &SHORT_FORM[..1],
-            SURFACE => &SHORT_FORM[1..],
+            SNAPSHOTS | SURFACE => &SHORT_FORM[1..],
             _ => &SHORT_FORM[..],
         };
         if Self::is_short() && !short.iter().any(is_this) {

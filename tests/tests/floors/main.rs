@@ -224,6 +224,24 @@ fn packages_hold_what_they_need() -> Result<()> {
     Ok(())
 }
 
+/// A library is compiled a second time for the tests in its sources only if there are some.
+#[test]
+fn libraries_are_built_for_tests_of_their_own_where_they_have_some() -> Result<()> {
+    for package in &metadata()?.packages {
+        for library in package.targets.iter().filter(|target| target.is_lib()) {
+            let folder = library.src_path.parent().context("a library's sources")?;
+            let (mut files, mut has_tests) = (Vec::new(), false);
+            sources(folder.as_std_path(), &mut files)?;
+            for path in files {
+                has_tests |= fs::read_to_string(path)?.contains("#[test]");
+            }
+            let said = if has_tests { "no `test = false`" } else { "`test = false`" };
+            ensure!(library.test == has_tests, "[lib] of {} needs {said}", package.name);
+        }
+    }
+    Ok(())
+}
+
 /// Folders of `host-sim/src/systems`: the names of the systems.
 fn systems() -> Result<BTreeSet<String>> {
     let entries = fs::read_dir(root().join("host-sim/src/systems"))?;

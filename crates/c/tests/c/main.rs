@@ -1,7 +1,7 @@
 //! The C interface, from C: the header is what cbindgen makes of the sources and compiles without a warning, and C
 //! programs tell on a computer and on three emulated targets the very bits that the crates compute here.
 //!
-//! What a machine does not have is said: SKIPPED. With `KESTIRIM_REQUIRE_C=1` a missing compiler, emulator or cbindgen is
+//! What a machine does not have is said: SKIPPED. With `KESTIRIM_REQUIRE_C=1` a missing compiler or emulator is
 //! a failure, with `KESTIRIM_REQUIRE_DATA=1` missing recordings are.
 
 mod header;
