@@ -196,7 +196,7 @@ impl Target {
     /// Builds the static library for it; none without the tools.
     fn library(&self) -> Result<Option<PathBuf>> {
         let Some(mut cargo) = self.cargo()? else { return Ok(None) };
-        if cargo.get_program() == "/usr/bin/cargo" {
+        if self.cargo_with_core()?.is_none() {
             // The flags stand before cargo's own command, where it takes them as well.
             cargo.env("CARGO_UNSTABLE_BUILD_STD", "core");
             cargo.env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "compiler-builtins-mem");
