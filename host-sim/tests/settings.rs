@@ -1,12 +1,13 @@
 //! A setting is said once: the command line, the page and a live stream have the same ones, each does something or
 //! says why not, and what is set can be typed again and put into firmware.
 
+use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use clap::Arg;
 use host_sim::commands;
@@ -47,6 +48,22 @@ fn with(opened: &dyn Opened, given: &[(&'static str, SettingValue)]) -> Settings
     let mut settings = Settings::new(opened.settings());
     settings.give(given.to_vec());
     settings
+}
+
+/// What a recording answers with these values, or that it refuses them; computed once, whichever test asks first.
+fn answer(
+    system: &dyn AnySystem,
+    recording: &str,
+    opened: &dyn Opened,
+    given: &[(&'static str, SettingValue)],
+) -> Option<Arc<Answer>> {
+    type Answered = Arc<OnceLock<Option<Arc<Answer>>>>;
+    static ANSWERED: Mutex<Option<HashMap<String, Answered>>> = Mutex::new(None);
+    let key = format!("{} {recording} {given:?}", system.name());
+    let mut all = ANSWERED.lock().unwrap_or_else(PoisonError::into_inner);
+    let answered = all.get_or_insert_default().entry(key).or_default().clone();
+    drop(all);
+    answered.get_or_init(|| opened.answer(&with(opened, given)).ok()).clone()
 }
 
 /// Values that a setting does not have at first.
@@ -162,7 +179,8 @@ fn every_setting_changes_the_page_or_says_why_not() {
         for (recording, _) in system.synthetic() {
             let opened = open(system, recording);
             for context in contexts(&*opened) {
-                let Ok(before) = opened.answer(&with(&*opened, &context)) else { continue };
+                let answer = |given: &[_]| answer(system, recording, &*opened, given);
+                let Some(before) = answer(&context) else { continue };
                 for setting in opened.settings() {
                     let unfound = waiting.contains(&setting.name);
                     if !unfound || context.iter().any(|(name, _)| *name == setting.name) {
@@ -173,8 +191,7 @@ fn every_setting_changes_the_page_or_says_why_not() {
                     }
                     let changes = |value: SettingValue| {
                         let given = [&context[..], &[(setting.name, value)]].concat();
-                        let after = opened.answer(&with(&*opened, &given));
-                        after.is_ok_and(|after| seen(&after) != seen(&before))
+                        answer(&given).is_some_and(|after| seen(&after) != seen(&before))
                     };
                     if others(&setting).into_iter().any(changes) {
                         waiting.retain(|name| *name != setting.name);
@@ -197,7 +214,7 @@ fn every_setting_changes_the_page_or_says_why_not() {
             );
             for (recording, _) in system.synthetic() {
                 let opened = open(system, recording);
-                let answer = opened.answer(&with(&*opened, &[])).expect("an answer");
+                let answer = answer(system, recording, &*opened, &[]).expect("an answer");
                 let is_there = opened.settings().iter().any(|setting| setting.name == name);
                 let says = !is_there || is_idle(&answer, name);
                 assert!(says, "{} {recording}: {name} was never tried", system.name());
@@ -214,9 +231,9 @@ fn the_command_gives_the_same_result_again() {
             for setting in std::iter::once(None).chain(opened.settings().into_iter().map(Some)) {
                 let given =
                     setting.and_then(|setting| Some((setting.name, others(&setting).pop()?)));
-                let settings = with(&*opened, &given.clone().into_iter().collect::<Vec<_>>());
-                let Ok(answer) = opened.answer(&settings) else { continue };
-                if given.as_ref().is_some_and(|(name, _)| is_idle(&answer, name)) {
+                let given: Vec<_> = given.into_iter().collect();
+                let Some(answer) = answer(system, recording, &*opened, &given) else { continue };
+                if given.iter().any(|(name, _)| is_idle(&answer, name)) {
                     continue;
                 }
                 let words = words(&answer.command);
@@ -260,7 +277,7 @@ fn the_firmware_literal_compiles() {
             let mut literals: Vec<_> = std::iter::once(Vec::new())
                 .chain(each)
                 .filter_map(|given| {
-                    Some(opened.answer(&with(&*opened, &given)).ok()?.firmware.clone())
+                    Some(answer(system, recording, &*opened, &given)?.firmware.clone())
                 })
                 .collect();
             literals.sort();

@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use anyhow::{Error, Result, bail};
 
 use crate::elf::Elf;
+use crate::form::{SHORT, is_short};
 use crate::output::Output;
 use crate::qemu;
 use crate::target::{CORTEX_M0, CORTEX_M4F, Target};
@@ -16,9 +17,6 @@ use crate::toolchain::{Apart, Toolchain, is_installed};
 
 /// Set to 1, a missing tool is a failure instead of a reason to skip: CI cannot skip unseen.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
-
-/// Set to `short`, images are built and looked at for [`SHORT_FORM`] alone: CI has half an hour.
-const TARGETS: &str = "KESTIRIM_TARGETS";
 
 /// Targets and profiles of the short form: without and with a floating-point unit, at the level of the applications,
 /// whose dependencies they share. What takes longest, the surface, is looked at on the second alone, where estimators wake.
@@ -86,13 +84,13 @@ impl Images {
     /// Builds the images, or finds them built: a second call in this process costs nothing, one in
     /// another process as much as cargo needs to see that nothing changed.
     ///
-    /// `None` on a machine without the tools, and for what the short form leaves out (`KESTIRIM_TARGETS=short`);
+    /// `None` on a machine without the tools, and for what the short form leaves out (`KESTIRIM_SHORT=1`);
     /// both are said once on the standard error stream.
     ///
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
     pub fn of(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        let packages = if Self::is_short() { OURS } else { WORKLOADS };
+        let packages = if is_short() { OURS } else { WORKLOADS };
         Self::of_form(packages, target, profile)
     }
 
@@ -101,7 +99,7 @@ impl Images {
     /// # Errors
     /// As [`Images::of`].
     pub fn of_peers(target: &'static Target, profile: Profile) -> Result<Option<Self>> {
-        if Self::is_short() {
+        if is_short() {
             return left_out("the peers' images");
         }
         Self::of(target, profile)
@@ -123,11 +121,6 @@ impl Images {
         Self::of_form(SNAPSHOTS, target, profile)
     }
 
-    /// Whether only what CI has time for is asked for (`KESTIRIM_TARGETS=short`).
-    pub fn is_short() -> bool {
-        env::var(TARGETS).is_ok_and(|form| form == "short")
-    }
-
     fn of_form(
         packages: Packages,
         target: &'static Target,
@@ -138,7 +131,7 @@ impl Images {
             SNAPSHOTS | SURFACE => &SHORT_FORM[1..],
             _ => &SHORT_FORM[..],
         };
-        if Self::is_short() && !short.iter().any(is_this) {
+        if is_short() && !short.iter().any(is_this) {
             let (triple, opt) = (target.triple, profile.opt());
             return left_out(&format!("images for {triple} at {opt}"));
         }
@@ -225,7 +218,7 @@ pub(crate) fn build_apart(
     package: Apart,
     profile: Profile,
 ) -> Result<Option<PathBuf>> {
-    if Images::is_short() {
+    if is_short() {
         return left_out(package.name);
     }
     match Toolchain::find(target) {
@@ -237,7 +230,7 @@ pub(crate) fn build_apart(
 /// Says that the short form leaves something out.
 fn left_out<T>(what: &str) -> Result<Option<T>> {
     // Not `eprintln!`, which the test runner swallows when the test passes.
-    writeln!(io::stderr(), "SKIPPED: {what}: {TARGETS}=short")?;
+    writeln!(io::stderr(), "SKIPPED: {what}: {SHORT}=1")?;
     Ok(None)
 }
 

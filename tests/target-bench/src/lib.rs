@@ -17,6 +17,7 @@ mod app;
 pub mod augmented_model;
 pub mod baseline;
 mod elf;
+mod form;
 mod images;
 mod output;
 mod qemu;
@@ -31,6 +32,7 @@ pub mod workloads;
 
 pub use app::{App, Run};
 pub use elf::Elf;
+pub use form::is_short;
 pub use images::{Images, Profile};
 pub use output::{Cost, Output, Position};
 pub use row::Row;

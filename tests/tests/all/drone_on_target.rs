@@ -10,7 +10,9 @@ use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use target_bench::streams::{Encode, Records, circle};
-use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
+use target_bench::{
+    CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target, is_short,
+};
 
 /// Bit for bit the same arithmetic; the numbers are told with the 24 bits of an `f32`, in micrometres (m).
 const SAME: f64 = 0.5e-6;
@@ -71,7 +73,7 @@ fn check<const L: usize>(target: &'static Target, budgets: [f64; 2]) -> Result<(
         ("locator-fixed", estimates::<Q16_16, L>(&records)),
     ];
     for ((image, host), budget) in cases.into_iter().zip(budgets) {
-        if Images::is_short() && budget.is_infinite() {
+        if is_short() && budget.is_infinite() {
             continue;
         }
         let output = agree(&images, image, &stream, &host)?;

@@ -9,9 +9,12 @@ use host_sim::systems::drone::simulate::trial::{self, Job, Outcome};
 use kestirim_particle_filter::Resampler;
 use kestirim_replay::ScalarKind;
 use rayon::prelude::*;
+use target_bench::is_short;
 
 /// Trials of a cell: our own error is then half of that of the published hundred.
 const TRIALS: u64 = 400;
+/// One in so many geometries is flown in the short form; fewer trials would weaken the bounds.
+const SOME: usize = 4;
 const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
 
 fn fly(job: &Job, scalar: ScalarKind, trials: u64) -> Vec<Outcome> {
@@ -25,7 +28,7 @@ fn published_numbers_are_within_their_own_error_and_ours_are_on_the_limit() {
     for (number, job) in sweeps.jobs.iter().enumerate() {
         let cells: Vec<_> =
             sweeps.cells.iter().filter(|cell| cell.job == number && wanted(cell.table)).collect();
-        if cells.is_empty() {
+        if cells.is_empty() || (is_short() && !number.is_multiple_of(SOME)) {
             continue;
         }
         let outcomes = fly(job, ScalarKind::F32, TRIALS);

@@ -12,7 +12,7 @@ use anyhow::{Context, Result};
 use target_bench::baseline::Baseline;
 use target_bench::streams::{Common, Encode};
 use target_bench::{
-    CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, TARGETS, Target, workloads,
+    CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, TARGETS, Target, is_short, workloads,
 };
 
 /// Everything that was measured, and by what compilers: nothing without the tools, less in the short form.
@@ -133,7 +133,7 @@ fn single_precision_without_a_unit_for_it_is_within_its_bars() {
 /// Everywhere more; almost twice as many in single precision at opt-level 3.
 #[test]
 fn peers_take_more_instructions() {
-    if Images::is_short() {
+    if is_short() {
         return; // The next test says so.
     }
     let (rows, _) = measured();

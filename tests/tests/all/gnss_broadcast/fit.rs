@@ -104,7 +104,7 @@ impl Precise<'_> {
         let powers =
             DMatrix::from_fn(samples.len(), 3, |row, power| samples[row].0.powi(power as i32));
         let biases = DVector::from_fn(samples.len(), |row, _| samples[row].1 - first);
-        let found = powers.svd(true, true).solve(&biases, 1e-12).ok()?;
+        let found = powers.tr_mul(&powers).cholesky()?.solve(&powers.tr_mul(&biases));
         Some([found[0] + first, found[1] / REACH, found[2] / (REACH * REACH)])
     }
 }
@@ -203,7 +203,10 @@ fn improve(ephemeris: &mut Ephemeris, positions: &[(GpsTime, Vector3<f64>)]) {
         *numbers(&mut changed)[place] += change;
         jacobian.set_column(place, &(at(&changed) - &now));
     }
-    let step = jacobian.svd(true, true).solve(&(wanted - now), 1e-9).expect("both were asked for");
+    let factors = jacobian.qr();
+    let mut residuals = wanted - now;
+    factors.q_tr_mul(&mut residuals);
+    let step = factors.r().solve_upper_triangular(&residuals.rows(0, NUMBERS)).expect("full rank");
     for (place, number) in numbers(ephemeris).into_iter().enumerate() {
         *number += step[place] * CHANGES[place];
     }
