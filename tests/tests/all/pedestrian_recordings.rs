@@ -4,7 +4,11 @@
 //! tests say SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each walk
 //! is printed.
 
+use std::path::PathBuf;
+
 use host_sim::metrics::{mean, median};
+use host_sim::system::{AnySystem, Files, SettingValue, Settings, Source, Wanted};
+use host_sim::systems::pedestrian::Pedestrian;
 use host_sim::systems::pedestrian::recording::log;
 use kestirim_replay::ScalarKind;
 use kestirim_replay::pedestrian::{Options, SensorClass, TrackPoint, Walk, walk};
@@ -82,6 +86,53 @@ fn smoothed_no_foot_jumps_as_it_lands() {
     }
     assert!(median(&ratios) < 0.1, "{ratios:?}");
     assert!(ratios.iter().all(|ratio| *ratio < 0.25), "{ratios:?}");
+}
+
+/// What a replay reports, without a magnetometer, of a walk that may be said to go along right angles.
+fn report(log: PathBuf, truth: Option<PathBuf>, right_angles: bool) -> serde_json::Value {
+    let mut files = Files::default();
+    files.add("log", log);
+    truth.into_iter().for_each(|truth| files.add("truth", truth));
+    let mut settings = Settings::new(AnySystem::settings(&Pedestrian));
+    let switches = [("right-angles", right_angles), ("magnetometer", false)];
+    settings.give(switches.map(|(name, is_on)| (name, SettingValue::Switch(is_on))).to_vec());
+    let opened = Pedestrian.open(Source::Files(files), &settings).expect("a recording");
+    opened.replay(&settings, &Wanted::default()).expect("a walk").report
+}
+
+/// At 50 Hz and 0.01 °/s the heading drifts most. Walks along a line and back, along rectangles, and around columns.
+#[test]
+fn right_angles_correct_the_heading_where_there_are_some() {
+    let Some(folder) = recordings::folder() else { return };
+    let mut ratios = Vec::new();
+    for walk in [31, 36, 48, 57, 72, 81] {
+        let [before, after] = [false, true].map(|right_angles| {
+            let log = folder.join(format!("razor_format/exp{walk}_50Hz.txt"));
+            let truth = folder.join(format!("gcp/exp{walk}_gcp.csv"));
+            let report = report(log, Some(truth), right_angles);
+            let rmse_m = report["accuracy"]["rmse_m"].as_f64().expect("footprints");
+            (rmse_m, report["right_angles"].as_f64())
+        });
+        println!("exp{walk}: {:.3} m, with right angles {:.3} m, {:?}", before.0, after.0, after.1);
+        if after.1.is_some() {
+            ratios.push(after.0 / before.0);
+        } else {
+            assert_eq!(before.0.to_bits(), after.0.to_bits(), "exp{walk} has none and stays");
+        }
+    }
+    assert_eq!(ratios.len(), 4, "all but two short or crooked walks");
+    assert!(ratios.iter().all(|ratio| *ratio < 1.01), "{ratios:?}");
+    assert!(ratios.iter().filter(|ratio| **ratio < 0.7).count() >= 3, "{ratios:?}");
+    let mut closures = [Vec::new(), Vec::new()];
+    for loop_ in [31, 33, 36, 44] {
+        let log = folder.join(format!("openshoe/Measurement_100521_{loop_}.csv"));
+        for (closures, right_angles) in closures.iter_mut().zip([false, true]) {
+            let report = report(log.clone(), None, right_angles);
+            closures.push(report["closure_m"].as_f64().expect("a loop"));
+        }
+    }
+    println!("OpenShoe's loops close to {closures:?} m");
+    assert!(mean(&closures[1]) < 0.7 * mean(&closures[0]), "{closures:?}");
 }
 
 #[test]

@@ -15,7 +15,8 @@ use super::choices::{WithDetector, with_detector};
 use super::smoothed::smooth;
 use super::trace::{Moment, OnlyAtStart, See, Updates};
 use super::{
-    DetectorKind, Error, Options, Sample, SensorClass, TrackPoint, TrackerKind, sentences,
+    DetectorKind, Error, Options, RightAngles, Sample, SensorClass, TrackPoint, TrackerKind,
+    sentences,
 };
 use crate::{Number, ScalarKind};
 
@@ -32,6 +33,8 @@ pub struct Walk {
     pub closure_m: f64,
     /// The rate at which the heading drifted, rad/s, as a magnetometer or a closed path showed it and as it was corrected by.
     pub heading_rate: Option<f64>,
+    /// How well it went along walls at right angles, if it was [corrected by them](Self::align_to_right_angles).
+    pub right_angles: Option<RightAngles>,
     /// How far from the start the end was, m, before the walk was [closed](Self::close).
     pub gap_m: Option<f64>,
     /// What is suspicious about the sensor or the walk.

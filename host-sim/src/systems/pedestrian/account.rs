@@ -21,6 +21,7 @@ struct Report {
     path_length_m: f64,
     closure_m: f64,
     heading_rate_deg_per_min: Option<f64>,
+    right_angles: Option<f64>,
     gap_m: Option<f64>,
     strides: Vec<StrideReport>,
     import: Vec<String>,
@@ -58,6 +59,7 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         path_length_m: walk.path_length_m,
         closure_m: walk.closure_m,
         heading_rate_deg_per_min: walk.heading_rate.map(|rate| 60.0 * rate.to_degrees()),
+        right_angles: walk.right_angles.map(|angles| angles.share),
         gap_m: walk.gap_m,
         strides: strides.collect(),
         import: log.import.clone(),
@@ -73,11 +75,17 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));
     account.fact("start to end", format!("{:.2} m", report.closure_m));
+    if let Some(angles) = walk.right_angles {
+        let (percent, sigma) = (100.0 * angles.share, 60.0 * angles.rate_sigma.to_degrees());
+        let share = format!("{percent:.0} % of the path; heading's drift ± {sigma:.2} °/min");
+        account.fact("along right angles", share);
+    }
     if let Some(gap_m) = report.gap_m {
         account.fact("start to end, before it was closed", format!("{gap_m:.2} m"));
     }
     if let Some(rate) = report.heading_rate_deg_per_min {
-        let from = if report.gap_m.is_some() { "taken back" } else { "from the magnetometer" };
+        let is_from_the_path = report.gap_m.is_some() || report.right_angles.is_some();
+        let from = if is_from_the_path { "taken back" } else { "from the magnetometer" };
         account.fact(format!("drift of the heading, {from}"), format!("{rate:+.2} °/min"));
     }
     if let Some([x, y, z]) = walk.strides.last().map(|stride| stride.sigma_m) {

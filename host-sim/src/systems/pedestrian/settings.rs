@@ -53,6 +53,11 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
             true,
         ),
         Setting::switch(
+            "right-angles",
+            "The walk goes along walls at right angles: correct the heading by that, or say that it does not",
+            false,
+        ),
+        Setting::switch(
             "closed",
             "The walk ends where it began, within about 0.1 m: correct heading, scale and height by that",
             false,
@@ -79,7 +84,7 @@ pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> 
         "factor" if !scaled.contains(&detector) => {
             Some(Idle::foreign("is for --detector variance, angular-rate or shoe"))
         }
-        "magnetometer" | "closed" if !turns_back(settings) => {
+        "magnetometer" | "right-angles" | "closed" if !turns_back(settings) => {
             Some(Idle::foreign("is for --tracker ekf and --detector adaptive, without --causal"))
         }
         "magnetometer" if has_field == Some(false) => {
@@ -100,6 +105,11 @@ fn turns_back(settings: &Settings) -> bool {
     settings.chosen::<TrackerKind>("tracker") == TrackerKind::Ekf
         && settings.chosen::<DetectorName>("detector") == DetectorName::Adaptive
         && !settings.is_on("causal")
+}
+
+/// Whether the walk is said to go along walls at right angles.
+pub(super) fn is_at_right_angles(settings: &Settings) -> bool {
+    settings.is_on("right-angles") && turns_back(settings)
 }
 
 /// Whether the walk is said to end where it began.

@@ -4,7 +4,7 @@ use kestirim_pedestrian::SensorClass;
 use kestirim_replay::pedestrian::{self, Trace, heading_rate, sensor_class, trace, walk};
 
 use super::recording::Recording;
-use super::settings::{is_closed, options};
+use super::settings::{is_at_right_angles, is_closed, options};
 use crate::Error;
 use crate::system::{Detail, Settings};
 
@@ -38,6 +38,11 @@ impl Track {
         let mut trace = tracked.map_err(|error| refused(recording, &error))?;
         if let Some(rate) = rate {
             trace.walk.turn_back(rate);
+        }
+        if is_at_right_angles(settings)
+            && let Err(refused) = trace.walk.align_to_right_angles()
+        {
+            trace.walk.warnings.push(refused);
         }
         if is_closed(settings)
             && let Err(refused) = trace.walk.close()
