@@ -92,7 +92,9 @@ fn smoothed_no_foot_jumps_as_it_lands() {
 fn report(log: PathBuf, truth: Option<PathBuf>, right_angles: bool) -> serde_json::Value {
     let mut files = Files::default();
     files.add("log", log);
-    truth.into_iter().for_each(|truth| files.add("truth", truth));
+    if let Some(truth) = truth {
+        files.add("truth", truth);
+    }
     let mut settings = Settings::new(AnySystem::settings(&Pedestrian));
     let switches = [("right-angles", right_angles), ("magnetometer", false)];
     settings.give(switches.map(|(name, is_on)| (name, SettingValue::Switch(is_on))).to_vec());
