@@ -2,7 +2,7 @@
 //! `try_on` takes it): everything that a crate offers (`tests/firmware/surface`) is called with numbers drawn at random, NaN, infinities
 //! and the rails of fixed point among them. Tests are built with overflow checks.
 //!
-//! `KESTIRIM_SEEDS` sets how often (`kalman` is called less often by the same factor); a failure names the seed it happened at.
+//! `KESTIRIM_SEEDS` sets how often, `kalman` a seventh as often; a failure names the seed it happened at.
 
 use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -19,8 +19,8 @@ const SEEDS: u64 = 300;
 /// One in so many numbers is wild: none to speak of, some, many.
 const TAME: [u64; 4] = [1_000_000, 100, 20, 3];
 
-/// How much less often `kalman`'s are: its gain of a steady state takes a hundred thousand steps where there is none.
-const RARELY: u64 = 7;
+/// In so many `kalman`'s are called once: its gain of a steady state takes a hundred thousand steps where there is none.
+const SEEDS_OF_KALMAN: u64 = 7;
 
 fn seeds() -> u64 {
     let told = env::var("KESTIRIM_SEEDS");
@@ -56,5 +56,5 @@ test_each!(
 
 #[test]
 fn kalman() {
-    run(surface::kalman::run, seeds().div_ceil(RARELY));
+    run(surface::kalman::run, seeds().div_ceil(SEEDS_OF_KALMAN));
 }

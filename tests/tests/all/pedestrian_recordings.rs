@@ -113,16 +113,17 @@ fn right_angles_correct_the_heading_where_there_are_some() {
             let truth = folder.join(format!("gcp/exp{walk}_gcp.csv"));
             let report = report(log, Some(truth), right_angles);
             let rmse_m = report["accuracy"]["rmse_m"].as_f64().expect("footprints");
-            (rmse_m, report["right_angles"].as_f64())
+            (rmse_m, report["right_angles_share"].as_f64())
         });
         println!("exp{walk}: {:.3} m, with right angles {:.3} m, {:?}", before.0, after.0, after.1);
+        // A short walk in one direction, and a crooked one.
+        assert_eq!(after.1.is_none(), [48, 81].contains(&walk), "exp{walk}");
         if after.1.is_some() {
             ratios.push(after.0 / before.0);
         } else {
             assert_eq!(before.0.to_bits(), after.0.to_bits(), "exp{walk} has none and stays");
         }
     }
-    assert_eq!(ratios.len(), 4, "all but two short or crooked walks");
     assert!(ratios.iter().all(|ratio| *ratio < 1.01), "{ratios:?}");
     assert!(ratios.iter().filter(|ratio| **ratio < 0.7).count() >= 3, "{ratios:?}");
     let mut closures = [Vec::new(), Vec::new()];

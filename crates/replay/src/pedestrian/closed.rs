@@ -116,7 +116,7 @@ impl Prior {
         let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
         let count = walk.strides.len() as f64;
         Self {
-            rate: class.heading_rate(),
+            rate: walk.right_angles.map_or(class.heading_rate(), |angles| angles.rate_sigma),
             scale: class.stride_scale(),
             strides: count * PathUncertainty::<f64>::FOOTPRINT.powi(2),
             heights: count * PathUncertainty::<f64>::HEIGHT.powi(2),
@@ -135,13 +135,13 @@ impl Prior {
 }
 
 /// Steps from stance to stance, and when each was made after the start, s.
-struct Path {
-    steps: Vec<(f64, Vector2<f64>)>,
+pub(super) struct Path {
+    pub(super) steps: Vec<(f64, Vector2<f64>)>,
 }
 
 impl Path {
     /// The time of a step is the mean over its way: a pause before or after it turns no step.
-    fn of(walk: &Walk) -> Self {
+    pub(super) fn of(walk: &Walk) -> Self {
         let mut pairs = walk.track.windows(2).peekable();
         let start_us = walk.track.first().map_or(0, |point| point.time_us);
         let step = |stride: &Stride| {

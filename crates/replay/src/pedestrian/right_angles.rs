@@ -6,21 +6,27 @@ use kestirim_pedestrian::PathUncertainty;
 use nalgebra::{Matrix2, Vector2};
 
 use super::Walk;
+use super::closed::Path;
 
-/// Standard deviation of a leg's direction from that of the walls, rad: 1.5°. Between 1° and 3° the recordings are corrected alike.
+/// Standard deviation of a leg's direction from that of the walls, rad: 1.5°.
 const ALONG: f64 = 0.026;
-/// Strides of a leg lead nowhere else by more than this, rad, and are so many at least.
+/// A stride belongs to a leg if it leads where the leg has led so far, within this, rad.
 const BEND: f64 = 0.26;
+/// Strides of a leg, at least.
 const STRIDES: usize = 3;
-/// Legs of a walk, and their share of its path along the walls, at least.
-const LEGS: usize = 4;
-const SHARE: f64 = 0.6;
-/// How much likelier the legs' directions are with right angles than without, at least.
-const LIKELIER: f64 = 1e3;
 /// The share of legs that are taken to go anywhere.
 const ASTRAY: f64 = 0.2;
-/// Rates to either side of none, and directions of the walls, that are tried; the last rate is so many standard deviations away.
-const TRIED: (i32, i32, f64) = (40, 90, 4.0);
+/// Legs along the walls, at least.
+const LEGS: usize = 4;
+/// The share of the path that they are, at least.
+const SHARE: f64 = 0.6;
+/// How much likelier the directions are with walls than without, at least, whatever rate and walls those are.
+const LIKELIER: f64 = 100.0;
+/// How many standard deviations the last of the rates is away that are tried to either side, and how many those are at most.
+const FURTHEST: f64 = 4.0;
+const RATES: f64 = 1000.0;
+/// Directions of walls that are tried.
+const DIRECTIONS: i32 = 45;
 
 /// How well a walk went along walls at right angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,22 +43,32 @@ impl Walk {
     /// drift elimination for personnel tracking systems, J. Navigation 63, 2010, here over the whole walk and with its likelihood).
     ///
     /// The rate is the likeliest, given how gyroscopes of the class drift: legs that say little change little. Standard
-    /// deviations of the path stay those of an uncorrected one.
+    /// deviations of the path stay those of an uncorrected one, until it is [closed](Self::close), which knows what is left.
     ///
     /// # Errors
-    /// A sentence if the walk does not go along right angles: it stays as it was.
+    /// A sentence if the walk does not go along right angles, or cannot tell: it stays as it was.
     pub fn align_to_right_angles(&mut self) -> Result<RightAngles, String> {
-        let legs = legs(self);
-        let path_m: f64 = self.strides.iter().map(|stride| stride.length_m).sum();
+        let path = Path::of(self);
+        let path_m: f64 = path.steps.iter().map(|(_, step)| step.norm()).sum();
+        if path.steps.is_empty() {
+            return Err("no right angles: there is no stride".to_owned());
+        }
+        let legs = legs(&path);
         let sensor = kestirim_pedestrian::SensorClass::from(self.sensor);
-        let walls = Walls::likeliest(&legs, sensor.heading_rate());
-        let along = legs.iter().filter(|leg| walls.has(leg)).map(|leg| leg.length_m);
-        let along_m = along.fold(0.0, |sum, length_m| sum + length_m);
-        if legs.len() < LEGS || along_m < SHARE * path_m || walls.evidence(&legs) < LIKELIER.ln() {
-            let percent = 100.0 * SHARE;
+        let (walls, evidence) = Walls::likeliest(&legs, sensor.heading_rate());
+        let along: Vec<_> = legs.iter().filter(|leg| walls.has(leg)).collect();
+        let along_m = along.iter().fold(0.0, |sum, leg| sum + leg.length_m);
+        if along.len() < LEGS || along_m < SHARE * path_m {
+            let (count, percent) = (along.len(), 100.0 * SHARE);
             return Err(format!(
-                "no right angles: of {path_m:.0} m walked {along_m:.0} m are straight legs along two directions at right angles; \
-                 {percent:.0} % and {LEGS} legs are needed"
+                "no right angles: of {path_m:.0} m walked {along_m:.0} m are straight along two directions at right angles, in \
+                 {count} legs; {percent:.0} % and {LEGS} legs are needed"
+            ));
+        }
+        if evidence < LIKELIER.ln() {
+            let count = legs.len();
+            return Err(format!(
+                "no right angles: the directions of {count} straight legs may be so by chance"
             ));
         }
         let before = self.heading_rate.unwrap_or(0.0);
@@ -75,32 +91,22 @@ struct Leg {
     sigma: f64,
 }
 
-fn legs(walk: &Walk) -> Vec<Leg> {
-    let Some(start) = walk.track.first() else { return Vec::new() };
-    let mut from = Vector2::new(start.position[0], start.position[1]);
-    let steps: Vec<_> = (walk.strides.iter())
-        .map(|stride| {
-            let to = Vector2::new(stride.position[0], stride.position[1]);
-            let step = to - std::mem::replace(&mut from, to);
-            let since_s = stride.time_us.saturating_sub(start.time_us) as f64 * 1e-6;
-            (step, since_s - stride.duration_s / 2.0)
-        })
-        .collect();
-    let (mut legs, mut rest) = (Vec::new(), &steps[..]);
-    while let [(first, _), ..] = rest {
+fn legs(path: &Path) -> Vec<Leg> {
+    let (mut legs, mut rest) = (Vec::new(), &path.steps[..]);
+    while let [(_, first), others @ ..] = rest {
         let mut chord = *first;
-        let goes_on = |(step, _): &&(Vector2<f64>, f64)| {
+        let goes_on = |(_, step): &&(f64, Vector2<f64>)| {
             let is_straight = turn(&chord, step).abs() < BEND;
             if is_straight {
                 chord += step;
             }
             is_straight
         };
-        let count = 1 + rest[1..].iter().take_while(goes_on).count();
+        let count = 1 + others.iter().take_while(goes_on).count();
         let (leg, others) = rest.split_at(count);
         rest = others;
-        let length_m: f64 = leg.iter().map(|(step, _)| step.norm()).sum();
-        let moment: f64 = leg.iter().map(|(step, time_s)| step.norm() * time_s).sum();
+        let length_m: f64 = leg.iter().map(|(_, step)| step.norm()).sum();
+        let moment: f64 = leg.iter().map(|(time_s, step)| step.norm() * time_s).sum();
         if count >= STRIDES && length_m > 0.0 {
             let of_its_ends = PathUncertainty::<f64>::FOOTPRINT * 2.0_f64.sqrt() / length_m;
             legs.push(Leg {
@@ -130,39 +136,58 @@ struct Walls {
 }
 
 impl Walls {
-    /// The likeliest, where rates have this standard deviation before.
-    fn likeliest(legs: &[Leg], prior: f64) -> Self {
-        let (rates, directions, furthest) = TRIED;
-        let tried = (-rates..=rates).flat_map(|rate| {
-            let rate = f64::from(rate) / f64::from(rates) * furthest * prior;
-            (0..directions).map(move |direction| {
-                let direction = f64::from(direction) / f64::from(directions) * FRAC_PI_2;
-                Self { direction, rate, rate_sigma: prior }
-            })
-        });
-        let likely = |it: &Self| it.evidence(legs) - 0.5 * (it.rate / prior).powi(2);
-        let mut walls = tried.max_by(|a, b| likely(a).total_cmp(&likely(b))).unwrap_or(Self {
-            direction: 0.0,
-            rate: 0.0,
-            rate_sigma: prior,
-        });
-        for _ in 0..10 {
-            let mut information = Matrix2::new(prior.powi(-2), 0.0, 0.0, 0.0);
-            let mut gradient = Vector2::new(-walls.rate / prior.powi(2), 0.0);
-            for leg in legs {
-                let [along, astray] = walls.densities(leg);
-                let weight = along / (along + astray) / leg.sigma.powi(2);
-                let row = Vector2::new(leg.time_s, 1.0);
-                information += row * row.transpose() * weight;
-                gradient += row * (weight * walls.off(leg));
+    /// The likeliest, where rates have this standard deviation before, and the logarithm of how much likelier the legs are with
+    /// any walls and rate, as likely as they are before, than without walls.
+    fn likeliest(legs: &[Leg], prior: f64) -> (Self, f64) {
+        let furthest = FURTHEST * prior;
+        let longest_s = legs.iter().map(|leg| leg.time_s).fold(0.0, f64::max);
+        // From one rate to the next the last leg turns by two standard deviations.
+        let rates = (furthest * longest_s / (2.0 * ALONG)).ceil().clamp(10.0, RATES);
+        let unlikely = |it: &Self| 0.5 * (it.rate / prior).powi(2);
+        let (mut walls, mut best) =
+            (Self { direction: 0.0, rate: 0.0, rate_sigma: prior }, f64::NEG_INFINITY);
+        // Sums of probabilities, relative to the largest so far.
+        let (mut of_all, mut of_rates) = (0.0, 0.0);
+        for index in -(rates as i32)..=rates as i32 {
+            let rate = f64::from(index) / rates * furthest;
+            for direction in 0..DIRECTIONS {
+                let direction = f64::from(direction) / f64::from(DIRECTIONS) * FRAC_PI_2;
+                let tried = Self { direction, rate, rate_sigma: prior };
+                let likely = tried.evidence(legs) - unlikely(&tried);
+                if likely > best {
+                    of_all *= (best - likely).exp();
+                    (walls, best) = (tried, likely);
+                }
+                of_all += (likely - best).exp();
+                of_rates += (-unlikely(&tried)).exp();
             }
-            let Some(inverse) = information.try_inverse() else { break };
-            let step = inverse * gradient;
-            walls.rate += step.x;
-            walls.direction += step.y;
-            walls.rate_sigma = inverse[(0, 0)].max(0.0).sqrt();
         }
-        walls
+        let tried = walls;
+        for _ in 0..10 {
+            walls.improve(legs, prior);
+        }
+        if walls.evidence(legs) - unlikely(&walls) < best {
+            walls = Self { rate_sigma: walls.rate_sigma, ..tried };
+        }
+        (walls, best + (of_all / of_rates).ln())
+    }
+
+    /// A step of Gauss and Newton towards the likeliest, each leg weighted by how likely it goes along the walls.
+    fn improve(&mut self, legs: &[Leg], prior: f64) {
+        let mut information = Matrix2::new(prior.powi(-2), 0.0, 0.0, 0.0);
+        let mut gradient = Vector2::new(-self.rate / prior.powi(2), 0.0);
+        for leg in legs {
+            let [along, astray] = self.densities(leg);
+            let weight = along / (along + astray) / leg.sigma.powi(2);
+            let row = Vector2::new(leg.time_s, 1.0);
+            information += row * row.transpose() * weight;
+            gradient += row * (weight * self.off(leg));
+        }
+        let Some(inverse) = information.try_inverse() else { return };
+        let step = inverse * gradient;
+        self.rate += step.x;
+        self.direction += step.y;
+        self.rate_sigma = inverse[(0, 0)].max(0.0).sqrt();
     }
 
     /// How far a leg is from along them, rad.
@@ -182,7 +207,7 @@ impl Walls {
         [(1.0 - ASTRAY) * along, ASTRAY * 2.0 / PI]
     }
 
-    /// How much likelier the legs are than ones that go anywhere: the logarithm of the ratio.
+    /// How much likelier the legs are with them than without: the logarithm of the ratio.
     fn evidence(&self, legs: &[Leg]) -> f64 {
         let anywhere = 2.0 / PI;
         legs.iter().map(|leg| (self.densities(leg).iter().sum::<f64>() / anywhere).ln()).sum()

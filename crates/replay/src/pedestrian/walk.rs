@@ -31,7 +31,8 @@ pub struct Walk {
     pub path_length_m: f64,
     /// Horizontal distance from start to end, m.
     pub closure_m: f64,
-    /// The rate at which the heading drifted, rad/s, as a magnetometer or a closed path showed it and as it was corrected by.
+    /// The rate at which the heading drifted, rad/s, as a magnetometer, right angles and a closed path showed it and as it was
+    /// corrected by: the sum.
     pub heading_rate: Option<f64>,
     /// How well it went along walls at right angles, if it was [corrected by them](Self::align_to_right_angles).
     pub right_angles: Option<RightAngles>,

@@ -21,7 +21,8 @@ struct Report {
     path_length_m: f64,
     closure_m: f64,
     heading_rate_deg_per_min: Option<f64>,
-    right_angles: Option<f64>,
+    heading_rate_sigma_deg_per_min: Option<f64>,
+    right_angles_share: Option<f64>,
     gap_m: Option<f64>,
     strides: Vec<StrideReport>,
     import: Vec<String>,
@@ -58,8 +59,12 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         sensor: format!("{:?}", walk.sensor).to_lowercase(),
         path_length_m: walk.path_length_m,
         closure_m: walk.closure_m,
-        heading_rate_deg_per_min: walk.heading_rate.map(|rate| 60.0 * rate.to_degrees()),
-        right_angles: walk.right_angles.map(|angles| angles.share),
+        heading_rate_deg_per_min: walk.heading_rate.map(degrees_per_minute),
+        // Closing changes the rate once more.
+        heading_rate_sigma_deg_per_min: (walk.right_angles)
+            .filter(|_| walk.gap_m.is_none())
+            .map(|angles| degrees_per_minute(angles.rate_sigma)),
+        right_angles_share: walk.right_angles.map(|angles| angles.share),
         gap_m: walk.gap_m,
         strides: strides.collect(),
         import: log.import.clone(),
@@ -75,18 +80,18 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));
     account.fact("start to end", format!("{:.2} m", report.closure_m));
-    if let Some(angles) = walk.right_angles {
-        let (percent, sigma) = (100.0 * angles.share, 60.0 * angles.rate_sigma.to_degrees());
-        let share = format!("{percent:.0} % of the path; heading's drift ± {sigma:.2} °/min");
-        account.fact("along right angles", share);
+    if let Some(share) = report.right_angles_share {
+        account.fact("along right angles", format!("{:.0} % of the path", 100.0 * share));
     }
     if let Some(gap_m) = report.gap_m {
         account.fact("start to end, before it was closed", format!("{gap_m:.2} m"));
     }
     if let Some(rate) = report.heading_rate_deg_per_min {
-        let is_from_the_path = report.gap_m.is_some() || report.right_angles.is_some();
+        let is_from_the_path = walk.gap_m.is_some() || walk.right_angles.is_some();
         let from = if is_from_the_path { "taken back" } else { "from the magnetometer" };
-        account.fact(format!("drift of the heading, {from}"), format!("{rate:+.2} °/min"));
+        let sigma = report.heading_rate_sigma_deg_per_min;
+        let spread = sigma.map(|sigma| format!(" ± {sigma:.2}")).unwrap_or_default();
+        account.fact(format!("drift of the heading, {from}"), format!("{rate:+.2}{spread} °/min"));
     }
     if let Some([x, y, z]) = walk.strides.last().map(|stride| stride.sigma_m) {
         account.fact("standard deviations of the end", format!("{x:.2}, {y:.2}, {z:.2} m"));
@@ -95,6 +100,11 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         account.fact(name, value);
     }
     Ok(account)
+}
+
+/// From rad/s.
+fn degrees_per_minute(rate: f64) -> f64 {
+    60.0 * rate.to_degrees()
 }
 
 /// Time, position and its standard deviations of every sample.
