@@ -58,6 +58,24 @@ fn a_drift_in_a_building_is_taken_back() {
 }
 
 #[test]
+fn a_round_that_is_closed_too_keeps_what_the_walls_showed() {
+    let around = [(12, 20.0), (9, 110.0), (12, 200.0), (9, 290.0)];
+    let twice = [around, around].concat();
+    let (truth, mut found) = (walk(&twice, 0.0), walk(&twice, DRIFT));
+    let angles = found.align_to_right_angles().expect("a building");
+    let shown = found.heading_rate.expect("a rate");
+    found.close().expect("a round");
+    let rate = found.heading_rate.expect("a rate");
+    assert!((rate - shown).abs() < 2.0 * angles.rate_sigma, "{rate} after {shown}");
+    assert!(found.closure_m < 0.1 && off(&found, &truth) < 0.5, "{} m", off(&found, &truth));
+    // What is left of the rate is less than the class has.
+    let mut closed = walk(&twice, DRIFT);
+    closed.close().expect("a round");
+    let sigma = |walk: &Walk| walk.strides[20].sigma_m[0].hypot(walk.strides[20].sigma_m[1]);
+    assert!(sigma(&found) < sigma(&closed), "{} and {} m", sigma(&found), sigma(&closed));
+}
+
+#[test]
 fn a_pause_turns_nothing() {
     let rest = |mut walk: Walk| {
         let rests =
