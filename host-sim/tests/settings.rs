@@ -1,7 +1,7 @@
 //! A setting is said once: the command line, the page and a live stream have the same ones, each does something or
 //! says why not, and what is set can be typed again and put into firmware.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fmt::Write;
 use std::fs;
@@ -58,11 +58,11 @@ fn answer(
     given: &[(&'static str, SettingValue)],
 ) -> Option<Arc<Answer>> {
     type Answered = Arc<OnceLock<Option<Arc<Answer>>>>;
-    static ANSWERED: Mutex<Option<HashMap<String, Answered>>> = Mutex::new(None);
+    static ANSWERED: Mutex<BTreeMap<String, Answered>> = Mutex::new(BTreeMap::new());
+    // Whoever comes second waits for this answer, and for no other.
     let key = format!("{} {recording} {given:?}", system.name());
-    let mut all = ANSWERED.lock().unwrap_or_else(PoisonError::into_inner);
-    let answered = all.get_or_insert_default().entry(key).or_default().clone();
-    drop(all);
+    let answered =
+        ANSWERED.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
     answered.get_or_init(|| opened.answer(&with(opened, given)).ok()).clone()
 }
 

@@ -36,9 +36,7 @@ impl Walk {
                  which errors of this sensor do not explain"
             ));
         }
-        let before = self.heading_rate.unwrap_or(0.0);
         self.turn_back(rate);
-        self.heading_rate = Some(before + rate);
         self.shorten(start, scale);
         self.spread(start, &prior);
         for (stride, sigma_m) in self.strides.iter_mut().zip(path.remaining(&prior, rate, scale)) {

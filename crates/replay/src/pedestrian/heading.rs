@@ -50,7 +50,7 @@ impl Walk {
             stride.heading_change_rad -= rate * stride.duration_s;
         }
         self.closure_m = now[0].hypot(now[1]);
-        self.heading_rate = Some(rate);
+        self.heading_rate = Some(self.heading_rate.unwrap_or(0.0) + rate);
     }
 }
 

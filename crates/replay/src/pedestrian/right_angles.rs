@@ -49,14 +49,15 @@ impl Walk {
     /// A sentence if the walk does not go along right angles, or cannot tell: it stays as it was.
     pub fn align_to_right_angles(&mut self) -> Result<RightAngles, String> {
         let path = Path::of(self);
-        let path_m: f64 = path.steps.iter().map(|(_, step)| step.norm()).sum();
         if path.steps.is_empty() {
             return Err("no right angles: there is no stride".to_owned());
         }
+        let path_m: f64 = path.steps.iter().map(|(_, step)| step.norm()).sum();
         let legs = legs(&path);
         let sensor = kestirim_pedestrian::SensorClass::from(self.sensor);
         let (walls, evidence) = Walls::likeliest(&legs, sensor.heading_rate());
         let along: Vec<_> = legs.iter().filter(|leg| walls.has(leg)).collect();
+        // Not `sum`, which is -0 of nothing, and is told.
         let along_m = along.iter().fold(0.0, |sum, leg| sum + leg.length_m);
         if along.len() < LEGS || along_m < SHARE * path_m {
             let (count, percent) = (along.len(), 100.0 * SHARE);
@@ -71,9 +72,7 @@ impl Walk {
                 "no right angles: the directions of {count} straight legs may be so by chance"
             ));
         }
-        let before = self.heading_rate.unwrap_or(0.0);
         self.turn_back(walls.rate);
-        self.heading_rate = Some(before + walls.rate);
         let found = RightAngles { share: along_m / path_m, rate_sigma: walls.rate_sigma };
         self.right_angles = Some(found);
         Ok(found)
@@ -96,7 +95,7 @@ fn legs(path: &Path) -> Vec<Leg> {
     while let [(_, first), others @ ..] = rest {
         let mut chord = *first;
         let goes_on = |(_, step): &&(f64, Vector2<f64>)| {
-            let is_straight = turn(&chord, step).abs() < BEND;
+            let is_straight = chord.angle(step) < BEND;
             if is_straight {
                 chord += step;
             }
@@ -120,11 +119,6 @@ fn legs(path: &Path) -> Vec<Leg> {
     legs
 }
 
-/// The angle from one direction to another, rad.
-fn turn(from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
-    from.perp(to).atan2(from.dot(to))
-}
-
 /// What the legs of a walk say of walls and heading.
 #[derive(Clone, Copy)]
 struct Walls {
@@ -143,30 +137,32 @@ impl Walls {
         let longest_s = legs.iter().map(|leg| leg.time_s).fold(0.0, f64::max);
         // From one rate to the next the last leg turns by two standard deviations.
         let rates = (furthest * longest_s / (2.0 * ALONG)).ceil().clamp(10.0, RATES);
-        let unlikely = |it: &Self| 0.5 * (it.rate / prior).powi(2);
+        // The logarithm of how likely a rate is before.
+        let known = |rate: f64| -0.5 * (rate / prior).powi(2);
         let (mut walls, mut best) =
             (Self { direction: 0.0, rate: 0.0, rate_sigma: prior }, f64::NEG_INFINITY);
         // Sums of probabilities, relative to the largest so far.
         let (mut of_all, mut of_rates) = (0.0, 0.0);
         for index in -(rates as i32)..=rates as i32 {
             let rate = f64::from(index) / rates * furthest;
+            let known = known(rate);
+            of_rates += f64::from(DIRECTIONS) * known.exp();
             for direction in 0..DIRECTIONS {
                 let direction = f64::from(direction) / f64::from(DIRECTIONS) * FRAC_PI_2;
                 let tried = Self { direction, rate, rate_sigma: prior };
-                let likely = tried.evidence(legs) - unlikely(&tried);
+                let likely = tried.evidence(legs) + known;
                 if likely > best {
                     of_all *= (best - likely).exp();
                     (walls, best) = (tried, likely);
                 }
                 of_all += (likely - best).exp();
-                of_rates += (-unlikely(&tried)).exp();
             }
         }
         let tried = walls;
         for _ in 0..10 {
             walls.improve(legs, prior);
         }
-        if walls.evidence(legs) - unlikely(&walls) < best {
+        if walls.evidence(legs) + known(walls.rate) < best {
             walls = Self { rate_sigma: walls.rate_sigma, ..tried };
         }
         (walls, best + (of_all / of_rates).ln())

@@ -1,5 +1,6 @@
 use super::*;
 use crate::pedestrian::{SensorClass, TrackPoint};
+use rand_distr::{Distribution, StandardNormal};
 
 /// A round of 120 strides, one a second and 0.8 m long, with a heading that drifts, a scale, and a height that rises.
 fn round(rate: f64, scale: f64, rise: f64) -> Walk {
@@ -113,11 +114,12 @@ fn remaining_deviations_are_those_of_many_walks() {
     let truth = round(0.0, 0.0, 0.0);
     let (mut squares, mut expected) = (0.0, 0.0);
     for _ in 0..300 {
-        let mut walk = round(0.00048 * normal(&mut rng), 0.005 * normal(&mut rng), 0.0);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let mut walk = round(0.00048 * normal(), 0.005 * normal(), 0.0);
         let mut own = [0.0; 2];
         for (index, stride) in walk.strides.iter_mut().enumerate() {
             for axis in 0..2 {
-                own[axis] += 0.028 * normal(&mut rng);
+                own[axis] += 0.028 * normal();
                 stride.position[axis] += own[axis];
             }
             walk.track[index + 1].position = stride.position;
@@ -132,9 +134,4 @@ fn remaining_deviations_are_those_of_many_walks() {
     }
     let ratio = (squares / expected).sqrt();
     assert!((0.85..1.15).contains(&ratio), "error over standard deviation {ratio}");
-}
-
-/// A standard normal number, near enough.
-fn normal(rng: &mut impl rand_xoshiro::rand_core::Rng) -> f64 {
-    (0..12).map(|_| f64::from(rng.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0
 }
