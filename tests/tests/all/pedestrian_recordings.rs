@@ -88,12 +88,11 @@ fn smoothed_no_foot_jumps_as_it_lands() {
     assert!(ratios.iter().all(|ratio| *ratio < 0.25), "{ratios:?}");
 }
 
-/// What a replay reports, without a magnetometer, of a walk that may be said to go along right angles.
-fn report(log: PathBuf, truth: Option<PathBuf>, right_angles: bool) -> serde_json::Value {
+/// What a replay reports, without a magnetometer, of files and their fields: of a walk that may be said to go along right angles.
+fn report(given: &[(&str, PathBuf)], right_angles: bool) -> serde_json::Value {
     let mut files = Files::default();
-    files.add("log", log);
-    if let Some(truth) = truth {
-        files.add("truth", truth);
+    for (field, path) in given {
+        files.add(*field, path);
     }
     let mut settings = Settings::new(AnySystem::settings(&Pedestrian));
     let switches = [("right-angles", right_angles), ("magnetometer", false)];
@@ -111,7 +110,7 @@ fn right_angles_correct_the_heading_where_there_are_some() {
         let [before, after] = [false, true].map(|right_angles| {
             let log = folder.join(format!("razor_format/exp{walk}_50Hz.txt"));
             let truth = folder.join(format!("gcp/exp{walk}_gcp.csv"));
-            let report = report(log, Some(truth), right_angles);
+            let report = report(&[("log", log), ("truth", truth)], right_angles);
             let rmse_m = report["accuracy"]["rmse_m"].as_f64().expect("footprints");
             (rmse_m, report["right_angles_share"].as_f64())
         });
@@ -130,7 +129,7 @@ fn right_angles_correct_the_heading_where_there_are_some() {
     for loop_ in [31, 33, 36, 44] {
         let log = folder.join(format!("openshoe/Measurement_100521_{loop_}.csv"));
         for (closures, right_angles) in closures.iter_mut().zip([false, true]) {
-            let report = report(log.clone(), None, right_angles);
+            let report = report(&[("log", log.clone())], right_angles);
             closures.push(report["closure_m"].as_f64().expect("a loop"));
         }
     }
@@ -155,6 +154,37 @@ fn loops_of_a_bare_chip_close() {
         logs += 1;
     }
     assert_eq!(logs, 4);
+}
+
+/// The logs of each pair are of one foot: its stances are at the same moments.
+#[test]
+fn two_sensors_on_one_walk_agree_and_those_of_two_walks_do_not() {
+    let Some(folder) = recordings::folder() else { return };
+    let logs =
+        |walk: &str| [1, 2].map(|foot| folder.join(format!("mpu6050/{walk}_foot{foot}.csv")));
+    let pairs = ["conf-1111-coleta03-14-06-21-10ds_03", "conf-3333-coleta04-02-06-21-5ds_03"];
+    let pairs = pairs.map(logs);
+    let closure_m = |report: &serde_json::Value| report["closure_m"].as_f64().expect("a loop");
+    let (mut alone, mut together) = (Vec::new(), Vec::new());
+    for [first, second] in &pairs {
+        for (log, other) in [(first, second), (second, first)] {
+            alone.push(closure_m(&report(&[("log", log.clone())], false)));
+            let both = report(&[("log", log.clone()), ("other-foot", other.clone())], false);
+            let [meetings, apart_m] = ["other_foot_meetings", "other_foot_apart_m"]
+                .map(|name| both[name].as_f64().expect("two sensors"));
+            println!("{meetings} meetings, {apart_m:.3} m apart");
+            assert!(meetings > 15.0 && apart_m < 0.08, "{meetings}, {apart_m} m");
+            together.push(closure_m(&both));
+        }
+    }
+    println!("alone {alone:.2?} m, together {together:.2?} m");
+    assert!(together.iter().all(|closure_m| *closure_m < 0.15), "{together:?}");
+    let of_two_walks =
+        report(&[("log", pairs[0][0].clone()), ("other-foot", pairs[1][1].clone())], false);
+    assert!(of_two_walks["other_foot_meetings"].is_null(), "{of_two_walks}");
+    assert_eq!(closure_m(&of_two_walks).to_bits(), alone[0].to_bits());
+    let warnings = of_two_walks["warnings"].to_string();
+    assert!(warnings.contains("the other foot is not used"), "{warnings}");
 }
 
 /// Error over standard deviation, of all walks together and of each.

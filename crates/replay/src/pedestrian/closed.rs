@@ -3,7 +3,8 @@
 use kestirim_pedestrian::PathUncertainty;
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Stride, Walk};
+use super::Walk;
+use super::path::{Path, PathErrors};
 
 /// Standard deviation of how near the start a walk ends that ends where it began, m.
 const PUT_BACK: f64 = 0.1;
@@ -22,10 +23,10 @@ impl Walk {
     /// A sentence if there is no stride, or if these errors do not explain how far the end is from the start: the walk
     /// stays as it was.
     pub fn close(&mut self) -> Result<(), String> {
-        let (Some(first), Some(last)) = (self.track.first().copied(), self.strides.last()) else {
+        let Some(last) = self.strides.last() else {
             return Err("the path is not closed: there is no stride".to_owned());
         };
-        let start = first.position;
+        let start = self.start();
         let path = Path::of(self);
         let prior = Prior::of(self);
         let (rate, scale, unlikely) = path.closing(&prior);
@@ -37,62 +38,18 @@ impl Walk {
             ));
         }
         self.turn_back(rate);
-        self.shorten(start, scale);
-        self.spread(start, &prior);
+        self.shorten(scale);
+        // What is left at the end, from each stride the same.
+        let end = self.strides.last().map_or(start, |stride| stride.position);
+        let taken = prior.shares_of_a_stride();
+        let taken = [0, 1, 2].map(|axis| -taken[axis] * (end[axis] - start[axis]));
+        let strides = 1..=self.strides.len();
+        self.displace(&strides.map(|count| taken.map(|of| count as f64 * of)).collect::<Vec<_>>());
         for (stride, sigma_m) in self.strides.iter_mut().zip(path.remaining(&prior, rate, scale)) {
             stride.sigma_m = sigma_m;
         }
         self.gap_m = Some(gap_m);
-        if let Some([x, y, _]) = self.track.last().map(|point| point.position) {
-            self.closure_m = (x - start[0]).hypot(y - start[1]);
-        }
         Ok(())
-    }
-
-    /// Makes the path shorter by a scale, in the plane.
-    fn shorten(&mut self, start: [f64; 3], scale: f64) {
-        let shorter = |[x, y, z]: [f64; 3]| {
-            [
-                start[0] + (x - start[0]) * (1.0 - scale),
-                start[1] + (y - start[1]) * (1.0 - scale),
-                z,
-            ]
-        };
-        self.track.iter_mut().for_each(|point| point.position = shorter(point.position));
-        for stride in &mut self.strides {
-            stride.position = shorter(stride.position);
-            stride.length_m *= 1.0 - scale;
-        }
-        self.path_length_m *= 1.0 - scale;
-    }
-
-    /// Takes back what is left at the end, from each stride the same, while the foot moves.
-    fn spread(&mut self, start: [f64; 3], prior: &Prior) {
-        let end = self.strides.last().map_or(start, |stride| stride.position);
-        let of_a_stride = [
-            prior.share_of_a_stride() * (end[0] - start[0]),
-            prior.share_of_a_stride() * (end[1] - start[1]),
-            prior.height_share_of_a_stride() * (end[2] - start[2]),
-        ];
-        let taken = |place: [f64; 3], strides: f64| {
-            [0, 1, 2].map(|axis| place[axis] - strides * of_a_stride[axis])
-        };
-        let (mut done, mut from) = (0, start);
-        for point in &mut self.track {
-            while let Some(stride) = self.strides.get(done).filter(|it| it.time_us < point.time_us)
-            {
-                (done, from) = (done + 1, stride.position);
-            }
-            let way = |to: [f64; 3]| (to[0] - from[0]).hypot(to[1] - from[1]);
-            let share = self.strides.get(done).map_or(0.0, |stride| {
-                let length_m = way(stride.position);
-                if length_m > 0.0 { (way(point.position) / length_m).min(1.0) } else { 1.0 }
-            });
-            point.position = taken(point.position, done as f64 + share);
-        }
-        for (index, stride) in self.strides.iter_mut().enumerate() {
-            stride.position = taken(stride.position, (index + 1) as f64);
-        }
     }
 }
 
@@ -111,67 +68,24 @@ struct Prior {
 
 impl Prior {
     fn of(walk: &Walk) -> Self {
-        let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
-        let count = walk.strides.len() as f64;
+        let (left, count) = (PathErrors::of(walk), walk.strides.len() as f64);
         Self {
-            rate: walk.right_angles.map_or(class.heading_rate(), |angles| angles.rate_sigma),
-            scale: class.stride_scale(),
-            strides: count * PathUncertainty::<f64>::FOOTPRINT.powi(2),
+            rate: left.rate,
+            scale: left.scale,
+            strides: count * left.stride.powi(2),
             heights: count * PathUncertainty::<f64>::HEIGHT.powi(2),
             count,
         }
     }
 
-    /// What a stride takes of what is left at the end.
-    fn share_of_a_stride(&self) -> f64 {
-        self.strides / (self.strides + PUT_BACK * PUT_BACK) / self.count.max(1.0)
+    /// What a stride takes of what is left at the end, in the plane and in height.
+    fn shares_of_a_stride(&self) -> [f64; 3] {
+        let of = |variance: f64| variance / (variance + PUT_BACK * PUT_BACK) / self.count.max(1.0);
+        [self.strides, self.strides, self.heights].map(of)
     }
-
-    fn height_share_of_a_stride(&self) -> f64 {
-        self.heights / (self.heights + PUT_BACK * PUT_BACK) / self.count.max(1.0)
-    }
-}
-
-/// Steps from stance to stance, and when each was made after the start, s.
-pub(super) struct Path {
-    pub(super) steps: Vec<(f64, Vector2<f64>)>,
 }
 
 impl Path {
-    /// The time of a step is the mean over its way: a pause before or after it turns no step.
-    pub(super) fn of(walk: &Walk) -> Self {
-        let mut pairs = walk.track.windows(2).peekable();
-        let start_us = walk.track.first().map_or(0, |point| point.time_us);
-        let step = |stride: &Stride| {
-            let (mut step, mut timed) = (Vector2::zeros(), Vector2::zeros());
-            while let Some([a, b]) = pairs.next_if(|pair| pair[1].time_us <= stride.time_us) {
-                let [from, to] = [a, b].map(|point| Vector2::from(point.horizontal()));
-                step += to - from;
-                timed += (to - from) * (b.time_us.saturating_sub(start_us) as f64 * 1e-6);
-            }
-            let length = step.norm_squared();
-            (if length > 0.0 { timed.dot(&step) / length } else { 0.0 }, step)
-        };
-        Self { steps: walk.strides.iter().map(step).collect() }
-    }
-
-    /// The path so far after each stride, turned back at a rate and less long by a scale, and how it changes with both.
-    fn walked(&self, rate: f64, scale: f64) -> impl Iterator<Item = (Vector2<f64>, Matrix2<f64>)> {
-        let (mut sum, mut turned) = (Vector2::zeros(), Vector2::zeros());
-        self.steps.iter().map(move |(seconds, step)| {
-            let (sine, cosine) = (-rate * seconds).sin_cos();
-            let step = Matrix2::new(cosine, -sine, sine, cosine) * step;
-            sum += step;
-            turned += Vector2::new(step.y, -step.x) * *seconds;
-            let place = sum * (1.0 - scale);
-            (place, Matrix2::from_columns(&[turned * (1.0 - scale), -sum]))
-        })
-    }
-
-    fn end(&self, rate: f64, scale: f64) -> Vector2<f64> {
-        self.walked(rate, scale).last().map_or_else(Vector2::zeros, |(place, _)| place)
-    }
-
     /// χ² of these errors.
     fn unlikeliness(&self, prior: &Prior, [rate, scale]: [f64; 2]) -> f64 {
         let of_the_end =

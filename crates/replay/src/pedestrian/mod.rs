@@ -11,11 +11,13 @@ mod closed;
 mod error;
 mod heading;
 mod live;
+mod path;
 mod position;
 mod right_angles;
 mod sensor;
 mod smoothed;
 mod trace;
+mod two_feet;
 mod walk;
 mod warning;
 
@@ -30,6 +32,7 @@ pub use self::position::{Footprint, TrackPoint, position_at};
 pub use self::right_angles::RightAngles;
 pub use self::sensor::sensor_class;
 pub use self::trace::{Moment, Trace, trace, without_updates};
+pub use self::two_feet::BothFeet;
 pub use self::walk::{Stride, Walk, walk};
 pub use self::warning::sentences;
 

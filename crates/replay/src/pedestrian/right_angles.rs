@@ -6,7 +6,7 @@ use kestirim_pedestrian::PathUncertainty;
 use nalgebra::{Matrix2, Vector2};
 
 use super::Walk;
-use super::closed::Path;
+use super::path::{Path, PathErrors};
 
 /// Standard deviation of a leg's direction from that of the walls, rad: 1.5°.
 const ALONG: f64 = 0.026;
@@ -43,7 +43,7 @@ impl Walk {
     /// drift elimination for personnel tracking systems, J. Navigation 63, 2010, here over the whole walk and with its likelihood).
     ///
     /// The rate is the likeliest, given how gyroscopes of the class drift: legs that say little change little. Standard
-    /// deviations of the path stay those of an uncorrected one, until it is [closed](Self::close), which knows what is left.
+    /// deviations of the path stay as they were, until it is [closed](Self::close), which knows what is left.
     ///
     /// # Errors
     /// A sentence if the walk does not go along right angles, or cannot tell: it stays as it was.
@@ -54,8 +54,7 @@ impl Walk {
         }
         let path_m: f64 = path.steps.iter().map(|(_, step)| step.norm()).sum();
         let legs = legs(&path);
-        let sensor = kestirim_pedestrian::SensorClass::from(self.sensor);
-        let (walls, evidence) = Walls::likeliest(&legs, sensor.heading_rate());
+        let (walls, evidence) = Walls::likeliest(&legs, PathErrors::of(self).rate);
         let along: Vec<_> = legs.iter().filter(|leg| walls.has(leg)).collect();
         // Not `sum`, which is -0 of nothing, and is told.
         let along_m = along.iter().fold(0.0, |sum, leg| sum + leg.length_m);

@@ -15,8 +15,8 @@ use super::choices::{WithDetector, with_detector};
 use super::smoothed::smooth;
 use super::trace::{Moment, OnlyAtStart, See, Updates};
 use super::{
-    DetectorKind, Error, Options, RightAngles, Sample, SensorClass, TrackPoint, TrackerKind,
-    sentences,
+    BothFeet, DetectorKind, Error, Options, RightAngles, Sample, SensorClass, TrackPoint,
+    TrackerKind, sentences,
 };
 use crate::{Number, ScalarKind};
 
@@ -31,11 +31,13 @@ pub struct Walk {
     pub path_length_m: f64,
     /// Horizontal distance from start to end, m.
     pub closure_m: f64,
-    /// The rate at which the heading drifted, rad/s, as a magnetometer, right angles and a closed path showed it and as it was
-    /// corrected by: the sum.
+    /// The rate at which the heading drifted, rad/s, as a magnetometer, the other foot, right angles and a closed path showed it
+    /// and as it was corrected by: the sum.
     pub heading_rate: Option<f64>,
     /// How well it went along walls at right angles, if it was [corrected by them](Self::align_to_right_angles).
     pub right_angles: Option<RightAngles>,
+    /// How well the other sensor fitted, if there was one and the walk was [corrected by it](Self::join_other_foot).
+    pub both_feet: Option<BothFeet>,
     /// How far from the start the end was, m, before the walk was [closed](Self::close).
     pub gap_m: Option<f64>,
     /// What is suspicious about the sensor or the walk.

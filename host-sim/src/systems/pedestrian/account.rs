@@ -22,6 +22,8 @@ struct Report {
     closure_m: f64,
     heading_rate_deg_per_min: Option<f64>,
     heading_rate_sigma_deg_per_min: Option<f64>,
+    other_foot_meetings: Option<usize>,
+    other_foot_apart_m: Option<f64>,
     right_angles_share: Option<f64>,
     gap_m: Option<f64>,
     strides: Vec<StrideReport>,
@@ -61,9 +63,12 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         closure_m: walk.closure_m,
         heading_rate_deg_per_min: walk.heading_rate.map(degrees_per_minute),
         // Closing changes the rate once more.
-        heading_rate_sigma_deg_per_min: (walk.right_angles)
+        heading_rate_sigma_deg_per_min: (walk.right_angles.map(|angles| angles.rate_sigma))
+            .or(walk.both_feet.map(|feet| feet.rate_sigma))
             .filter(|_| walk.gap_m.is_none())
-            .map(|angles| degrees_per_minute(angles.rate_sigma)),
+            .map(degrees_per_minute),
+        other_foot_meetings: walk.both_feet.map(|feet| feet.meetings),
+        other_foot_apart_m: walk.both_feet.map(|feet| feet.distance_m),
         right_angles_share: walk.right_angles.map(|angles| angles.share),
         gap_m: walk.gap_m,
         strides: strides.collect(),
@@ -80,6 +85,10 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     account.fact("strides", report.strides.len().to_string());
     account.fact("path length", format!("{:.2} m", report.path_length_m));
     account.fact("start to end", format!("{:.2} m", report.closure_m));
+    if let Some(feet) = walk.both_feet {
+        let (count, apart_m) = (feet.meetings, feet.distance_m);
+        account.fact("meetings with the other sensor", format!("{count}, {apart_m:.2} m apart"));
+    }
     if let Some(share) = report.right_angles_share {
         account.fact("along right angles", format!("{:.0} % of the path", 100.0 * share));
     }
@@ -87,7 +96,8 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         account.fact("start to end, before it was closed", format!("{gap_m:.2} m"));
     }
     if let Some(rate) = report.heading_rate_deg_per_min {
-        let is_from_the_path = walk.gap_m.is_some() || walk.right_angles.is_some();
+        let is_from_the_path =
+            walk.gap_m.is_some() || walk.right_angles.is_some() || walk.both_feet.is_some();
         let from = if is_from_the_path { "taken back" } else { "from the magnetometer" };
         let sigma = report.heading_rate_sigma_deg_per_min;
         let spread = sigma.map(|sigma| format!(" ± {sigma:.2}")).unwrap_or_default();

@@ -60,6 +60,11 @@ impl System for Pedestrian {
             "Measured footprints: CSV t,x,y (s, m); replaces a truth that the log carries",
         ),
         FileField::optional(
+            "other-foot",
+            "Log of the other foot, or of a second sensor on this one, on the same clock and read as --log: both paths stay \
+             together; not causally",
+        ),
+        FileField::optional(
             "calibration",
             "What the IMU measures wrong: CSV parameter,value, as calibrate pedestrian writes it",
         )
@@ -100,17 +105,20 @@ impl System for Pedestrian {
 
     fn read(files: &Files, _: &Settings) -> Result<Recording, Error> {
         let calibration = files.one("calibration").map(calibration::read).transpose()?;
-        let recording =
-            Recording::read(files.required("log")?, files.one("truth"), files.reading.options())?;
-        Ok(match calibration {
-            Some(calibration) => recording.calibrated(calibration),
-            None => recording,
-        })
+        let options = files.reading.options();
+        let mut recording = Recording::read(files.required("log")?, files.one("truth"), options)?;
+        if let Some(calibration) = calibration {
+            recording = recording.calibrated(calibration);
+        }
+        if let Some(path) = files.one("other-foot") {
+            recording.other_foot = Some(Box::new(Recording::read(path, None, options)?));
+        }
+        Ok(recording)
     }
 
     fn fits(field: &str, path: &Path, files: &Files) -> bool {
         match field {
-            "log" => recording::log::read(path, files.reading.options()).is_ok(),
+            "log" | "other-foot" => recording::log::read(path, files.reading.options()).is_ok(),
             "truth" => table::has(path, ["t", "x", "y"]),
             _ => calibration::read(path).is_ok(),
         }

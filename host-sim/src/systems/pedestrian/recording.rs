@@ -29,6 +29,8 @@ pub struct Recording {
     pub log: Log,
     /// Where the foot stood; empty if nobody measured it.
     pub footprints: Vec<Footprint>,
+    /// What the other foot's sensor said, if it had one.
+    pub other_foot: Option<Box<Self>>,
     /// What the sensor measured wrong, and what it said before that was corrected; none if nobody knows.
     calibrated: Option<(Calibration<f64>, Vec<Sample>)>,
     /// The class of the sensor, once it was looked for.
@@ -108,8 +110,11 @@ impl Recording {
     /// As [`resample::average_down`].
     pub fn at_rate(&self, rate_hz: f64) -> Result<Self, Error> {
         let log = resample::average_down(&self.log, rate_hz)?;
+        let other_foot =
+            self.other_foot.as_ref().map(|other| other.at_rate(rate_hz)).transpose()?;
+        let other_foot = other_foot.map(Box::new);
         let footprints = self.footprints.clone();
-        Ok(Self { log, path: self.path.clone(), footprints, ..Self::default() })
+        Ok(Self { log, path: self.path.clone(), footprints, other_foot, ..Self::default() })
     }
 
     /// Where the foot or the sensor truly was, as far as anybody knows: measured footprints replace what the

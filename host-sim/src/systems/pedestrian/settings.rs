@@ -11,6 +11,10 @@ use crate::system::{Given, Idle, Literal, Setting, SettingValue, Settings, Short
 /// Least and greatest multiple of a detector's default threshold.
 const FACTORS: [f64; 2] = [1e-6, 1e6];
 
+/// What a correction afterwards needs.
+pub(super) const LOOKING_BACK: &str =
+    "is for --tracker ekf and --detector adaptive, without --causal";
+
 /// What can be set, for a recording that can be averaged down to these rates, Hz.
 pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
     let rates = rates.unwrap_or([1.0, 10_000.0, 1.0]);
@@ -85,7 +89,7 @@ pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> 
             Some(Idle::foreign("is for --detector variance, angular-rate or shoe"))
         }
         "magnetometer" | "right-angles" | "closed" if !turns_back(settings) => {
-            Some(Idle::foreign("is for --tracker ekf and --detector adaptive, without --causal"))
+            Some(Idle::foreign(LOOKING_BACK))
         }
         "magnetometer" if has_field == Some(false) => {
             Some(Idle::implied("is of no use: the log has no magnetometer"))
@@ -101,7 +105,7 @@ pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> 
 }
 
 /// Whether the heading may be corrected afterwards: that of the other trackers does not drift at a constant rate.
-fn turns_back(settings: &Settings) -> bool {
+pub(super) fn turns_back(settings: &Settings) -> bool {
     settings.chosen::<TrackerKind>("tracker") == TrackerKind::Ekf
         && settings.chosen::<DetectorName>("detector") == DetectorName::Adaptive
         && !settings.is_on("causal")

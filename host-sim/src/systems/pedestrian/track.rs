@@ -1,10 +1,10 @@
 //! Tracks a recording.
 
 use kestirim_pedestrian::SensorClass;
-use kestirim_replay::pedestrian::{self, Trace, heading_rate, sensor_class, trace, walk};
+use kestirim_replay::pedestrian::{self, Trace, Walk, heading_rate, sensor_class, trace, walk};
 
 use super::recording::Recording;
-use super::settings::{is_at_right_angles, is_closed, options};
+use super::settings::{LOOKING_BACK, is_at_right_angles, is_closed, options, turns_back};
 use crate::Error;
 use crate::system::{Detail, Settings};
 
@@ -23,21 +23,12 @@ impl Track {
     /// # Errors
     /// [`Error::File`] if no tracker takes the log, [`Error::Usage`] for a rate that it does not have.
     pub fn of(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Self, Error> {
-        let (rate_hz, options) = (settings.number("rate"), options(settings));
+        let rate_hz = settings.number("rate");
         let averaged = rate_hz.map(|rate_hz| recording.at_rate(rate_hz)).transpose()?;
         let tracked = averaged.as_ref().unwrap_or(recording);
-        let (samples, options) = (&tracked.log.samples, options.with_sensor(|| class_of(tracked)));
-        let field = tracked.log.field.as_ref().filter(|_| options.magnetometer);
-        let rate = field.and_then(|field| heading_rate(samples, field, &options));
-        let tracked = match detail {
-            Detail::Result => {
-                walk(samples, &options).map(|walk| Trace { walk, ..Trace::default() })
-            }
-            Detail::Every => trace(samples, &options),
-        };
-        let mut trace = tracked.map_err(|error| refused(recording, &error))?;
-        if let Some(rate) = rate {
-            trace.walk.turn_back(rate);
+        let mut trace = foot(tracked, settings, detail)?;
+        if let Some(other) = &tracked.other_foot {
+            join(&mut trace.walk, other, settings)?;
         }
         if is_at_right_angles(settings)
             && let Err(refused) = trace.walk.align_to_right_angles()
@@ -56,6 +47,39 @@ impl Track {
     pub fn tracked<'a>(&'a self, recording: &'a Recording) -> &'a Recording {
         self.averaged.as_ref().unwrap_or(recording)
     }
+}
+
+/// Tracks one foot, and corrects its heading by the magnetometer.
+fn foot(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Trace, Error> {
+    let samples = &recording.log.samples;
+    let options = options(settings).with_sensor(|| class_of(recording));
+    let field = recording.log.field.as_ref().filter(|_| options.magnetometer);
+    let rate = field.and_then(|field| heading_rate(samples, field, &options));
+    let tracked = match detail {
+        Detail::Result => walk(samples, &options).map(|walk| Trace { walk, ..Trace::default() }),
+        Detail::Every => trace(samples, &options),
+    };
+    let mut trace = tracked.map_err(|error| refused(recording, &error))?;
+    if let Some(rate) = rate {
+        trace.walk.turn_back(rate);
+    }
+    Ok(trace)
+}
+
+/// Corrects a foot by the other one, or warns why not; what is suspicious about the other's log is told, too.
+fn join(walk: &mut Walk, other: &Recording, settings: &Settings) -> Result<(), Error> {
+    if !turns_back(settings) {
+        walk.warnings.push(format!("the other foot is not used: it {LOOKING_BACK}"));
+        return Ok(());
+    }
+    let other_walk = foot(other, settings, Detail::Result)?.walk;
+    match walk.join_other_foot(&other_walk) {
+        Ok(_) => walk.doubts = walk.doubts.and(other_walk.doubts),
+        Err(refused) => walk.warnings.push(refused),
+    }
+    let warnings = other.log.warnings.iter().chain(&other_walk.warnings);
+    walk.warnings.extend(warnings.map(|warning| format!("the other foot: {warning}")));
+    Ok(())
 }
 
 /// A complaint that no tracker takes a recording.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::pedestrian::{SensorClass, TrackPoint};
+use crate::pedestrian::{SensorClass, Stride, TrackPoint};
 use rand_distr::{Distribution, StandardNormal};
 
 /// A round of 120 strides, one a second and 0.8 m long, with a heading that drifts, a scale, and a height that rises.

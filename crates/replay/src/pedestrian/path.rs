@@ -1,0 +1,134 @@
+//! A walked path step by step: what its errors make of it, and how they are taken back.
+
+use kestirim_pedestrian::PathUncertainty;
+use nalgebra::{Matrix2, Rotation2, Vector2};
+
+use super::{Stride, Walk};
+
+/// Steps from stance to stance, and when each was made after the start, s.
+pub(super) struct Path {
+    pub(super) steps: Vec<(f64, Vector2<f64>)>,
+}
+
+/// Standard deviations of what still makes a path wrong in the plane ([`PathUncertainty`]).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PathErrors {
+    /// Of the heading's rate, rad/s.
+    pub(super) rate: f64,
+    /// Of the scale.
+    pub(super) scale: f64,
+    /// Of each stride by itself, each axis, m.
+    pub(super) stride: f64,
+}
+
+impl PathErrors {
+    /// As the class of the sensor has them, or as the other foot and right angles left them.
+    pub(super) fn of(walk: &Walk) -> Self {
+        let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
+        let mut left = Self {
+            rate: class.heading_rate(),
+            scale: class.stride_scale(),
+            stride: PathUncertainty::<f64>::FOOTPRINT,
+        };
+        if let Some(feet) = walk.both_feet {
+            (left.rate, left.stride) = (feet.rate_sigma, feet.stride_sigma);
+        }
+        if let Some(angles) = walk.right_angles {
+            left.rate = angles.rate_sigma;
+        }
+        left
+    }
+}
+
+impl Path {
+    /// The time of a step is the mean over its way: a pause before or after it turns no step.
+    pub(super) fn of(walk: &Walk) -> Self {
+        let mut pairs = walk.track.windows(2).peekable();
+        let start_us = walk.track.first().map_or(0, |point| point.time_us);
+        let step = |stride: &Stride| {
+            let (mut step, mut timed) = (Vector2::zeros(), Vector2::zeros());
+            while let Some([a, b]) = pairs.next_if(|pair| pair[1].time_us <= stride.time_us) {
+                let [from, to] = [a, b].map(|point| Vector2::from(point.horizontal()));
+                step += to - from;
+                timed += (to - from) * (b.time_us.saturating_sub(start_us) as f64 * 1e-6);
+            }
+            let length = step.norm_squared();
+            (if length > 0.0 { timed.dot(&step) / length } else { 0.0 }, step)
+        };
+        Self { steps: walk.strides.iter().map(step).collect() }
+    }
+
+    /// The path so far after each stride, turned back at a rate and less long by a scale, and how it changes with both.
+    pub(super) fn walked(
+        &self,
+        rate: f64,
+        scale: f64,
+    ) -> impl Iterator<Item = (Vector2<f64>, Matrix2<f64>)> {
+        let (mut sum, mut turned) = (Vector2::zeros(), Vector2::zeros());
+        self.steps.iter().map(move |(seconds, step)| {
+            let step = Rotation2::new(-rate * seconds) * step;
+            sum += step;
+            turned += Vector2::new(step.y, -step.x) * *seconds;
+            let place = sum * (1.0 - scale);
+            (place, Matrix2::from_columns(&[turned * (1.0 - scale), -sum]))
+        })
+    }
+
+    pub(super) fn end(&self, rate: f64, scale: f64) -> Vector2<f64> {
+        self.walked(rate, scale).last().map_or_else(Vector2::zeros, |(place, _)| place)
+    }
+}
+
+impl Walk {
+    /// Where the path begins, m.
+    pub(super) fn start(&self) -> [f64; 3] {
+        self.track.first().map_or([0.0; 3], |point| point.position)
+    }
+
+    /// Makes the path shorter by a scale, in the plane.
+    pub(super) fn shorten(&mut self, scale: f64) {
+        let start = self.start();
+        let shorter = |[x, y, z]: [f64; 3]| {
+            [
+                start[0] + (x - start[0]) * (1.0 - scale),
+                start[1] + (y - start[1]) * (1.0 - scale),
+                z,
+            ]
+        };
+        self.track.iter_mut().for_each(|point| point.position = shorter(point.position));
+        for stride in &mut self.strides {
+            stride.position = shorter(stride.position);
+            stride.length_m *= 1.0 - scale;
+        }
+        self.path_length_m *= 1.0 - scale;
+    }
+
+    /// Moves each footprint by so much, m, and the track between two of them while the foot moves.
+    pub(super) fn displace(&mut self, by: &[[f64; 3]]) {
+        let start = self.start();
+        let (mut done, mut from) = (0, start);
+        for point in &mut self.track {
+            while let Some(stride) = self.strides.get(done).filter(|it| it.time_us < point.time_us)
+            {
+                (done, from) = (done + 1, stride.position);
+            }
+            let way = |to: [f64; 3]| (to[0] - from[0]).hypot(to[1] - from[1]);
+            let share = self.strides.get(done).map_or(0.0, |stride| {
+                let length_m = way(stride.position);
+                if length_m > 0.0 { (way(point.position) / length_m).min(1.0) } else { 1.0 }
+            });
+            let before = done.checked_sub(1).and_then(|last| by.get(last)).copied();
+            let before = before.unwrap_or_default();
+            let after = by.get(done).copied().unwrap_or(before);
+            point.position = [0, 1, 2].map(|axis| {
+                point.position[axis] + before[axis] + share * (after[axis] - before[axis])
+            });
+        }
+        for (stride, by) in self.strides.iter_mut().zip(by) {
+            stride.position = [0, 1, 2].map(|axis| stride.position[axis] + by[axis]);
+        }
+        if let Some([x, y, _]) = self.track.last().map(|point| point.position) {
+            self.closure_m = (x - start[0]).hypot(y - start[1]);
+        }
+    }
+}

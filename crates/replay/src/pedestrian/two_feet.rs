@@ -1,0 +1,121 @@
+//! Two sensors on one walk, one on each foot or both on one: their paths stay together.
+
+mod meeting;
+mod problem;
+
+use nalgebra::Matrix2;
+
+use self::problem::{OWN, Problem, Solved};
+use super::path::PathErrors;
+use super::{Walk, position_at};
+
+/// Meetings without which nothing is said.
+const FEWEST: usize = 8;
+/// Root mean square of what no error of a path explains, m, beyond which the logs are not of two feet of one walk.
+const APART: f64 = 0.35;
+/// Root mean square distance, m, beyond which they are not of two sensors on one foot.
+const APART_ON_ONE_FOOT: f64 = 0.15;
+
+/// How well the other sensor fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BothFeet {
+    /// How often both were at one place.
+    pub meetings: usize,
+    /// How far from each other they were there, root mean square, m.
+    pub distance_m: f64,
+    /// Standard deviation of the rate of the heading, rad/s, that is left …
+    pub rate_sigma: f64,
+    /// … and of each stride by itself, each axis, m.
+    pub stride_sigma: f64,
+}
+
+impl Walk {
+    /// Corrects the path by that of the other foot, on the same clock: where a foot passes the other, both are at nearly the same
+    /// place. Two sensors on one foot are so where they stand. Rate of the heading, scale and errors of strides are the likeliest
+    /// of both, given how large they are for either ([`PathUncertainty`](kestirim_pedestrian::PathUncertainty)), by least squares
+    /// over the whole walk; the frame of the other need not be known. Heights and the lengths of strides stay.
+    ///
+    /// Standard deviations are those that remain, if rates of both are independent, and errors of strides of two feet. Scales are
+    /// not taken to be: what the tracker has wrong of a foot it has wrong of the other.
+    ///
+    /// The idea is that of Skog, Nilsson, Zachariah and Händel (Fusing the information from two navigation systems using an upper
+    /// bound on their maximum spatial separation, IPIN 2012); the bound here is a standard deviation, and at each meeting.
+    ///
+    /// # Errors
+    /// A sentence if both are seldom at one place, if the paths do not fit, if they are the same or were joined before, or if
+    /// another source, a magnetometer, has corrected the heading of one alone: the walk stays as it was.
+    pub fn join_other_foot(&mut self, other: &Self) -> Result<BothFeet, String> {
+        let refused = |why: &str| Err(format!("the other foot is not used: {why}"));
+        if self.track == other.track {
+            return refused("its log is that of this one");
+        }
+        if self.both_feet.is_some() || other.both_feet.is_some() {
+            return refused("both were joined before");
+        }
+        // Half of the one's drift would be put into the other.
+        if self.heading_rate.is_some() != other.heading_rate.is_some() {
+            return refused("a magnetometer has corrected the heading of one alone");
+        }
+        let problem = Problem::of(self, other);
+        let count = problem.meetings.len();
+        if count < FEWEST {
+            return refused(&format!(
+                "{count} times one foot passes the other, or both stand at once; {FEWEST} are needed"
+            ));
+        }
+        let Some(solved) = problem.solve() else { return refused("no solution is found") };
+        let (apart, most) = if problem.is_of_one_foot() {
+            (problem.distance(&solved.guess), APART_ON_ONE_FOOT)
+        } else {
+            (problem.left_over(&solved.guess), APART)
+        };
+        if apart > most {
+            return refused(&format!(
+                "where both should be at one place they are {apart:.2} m apart; are both logs of this walk, and on one clock?"
+            ));
+        }
+        Ok(self.corrected_by(&problem, &solved))
+    }
+
+    fn corrected_by(&mut self, problem: &Problem, solved: &Solved) -> BothFeet {
+        let errors = PathErrors::of(self);
+        let [rate, scale] = [0, 1].map(|of| solved.guess.unknowns[OWN + of]);
+        self.turn_back(rate);
+        self.shorten(scale);
+        let course = problem.corrections(&solved.guess);
+        let half = |time_us: u64| {
+            let [x, y, _] = position_at(&course, time_us).unwrap_or_default();
+            [0.5 * x, 0.5 * y, 0.0]
+        };
+        self.displace(&self.strides.iter().map(|it| half(it.time_us)).collect::<Vec<_>>());
+        let left = |i: usize, j: usize| solved.solution.parameter_covariance[(OWN + i, OWN + j)];
+        let variances = Matrix2::new(left(0, 0), left(0, 1), left(1, 0), errors.scale.powi(2));
+        let walked = problem.own.path.walked(rate, scale);
+        let own = errors.stride.powi(2);
+        let (mut seen, mut stepped) = (0.0, 0.0);
+        for (index, (stride, (_, slope))) in self.strides.iter_mut().zip(walked).enumerate() {
+            let of_both = slope * variances * slope.transpose();
+            if problem.is_seen(stride.time_us) && !problem.is_of_one_foot() {
+                seen += 1.0;
+            }
+            // The half of how far strides lead apart is taken back, as well as it is known; of their sum nothing is known.
+            let known = problem.correction_variance(&solved.solution, stride.time_us);
+            let unseen = (index + 1) as f64 - seen;
+            stepped = own * (unseen + 0.5 * seen) + 0.25 * known.min(2.0 * own * seen);
+            let [_, _, z] = stride.sigma_m;
+            let of_axis = |axis: usize| (of_both[(axis, axis)] + stepped).sqrt();
+            stride.sigma_m = [of_axis(0), of_axis(1), z];
+        }
+        let feet = BothFeet {
+            meetings: problem.meetings.len(),
+            distance_m: problem.distance(&solved.guess),
+            rate_sigma: left(0, 0).max(0.0).sqrt(),
+            stride_sigma: (stepped / self.strides.len().max(1) as f64).sqrt(),
+        };
+        self.both_feet = Some(feet);
+        feet
+    }
+}
+
+#[cfg(test)]
+mod tests;
