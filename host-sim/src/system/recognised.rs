@@ -88,8 +88,8 @@ impl Recognised {
     /// Fills a field with the file that fits it best, or with all that fit if there may be several.
     fn fill(&mut self, field: &'static FileField) {
         let fits = |path: &PathBuf| {
-            !self.is_another_recording(path, field)
-                && self.system.fits(field.name, path, &self.files)
+            self.system.fits(field.name, path, &self.files)
+                && !self.is_another_recording(path, field)
         };
         let mut fitting: Vec<_> = self.left.iter().filter(|path| fits(path)).cloned().collect();
         // Of files that are read alike the names tell which is which.

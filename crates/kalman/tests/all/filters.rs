@@ -251,3 +251,52 @@ fn a_decaying_velocity_hardly_cares_for_the_length_of_its_steps() {
     assert!((still.mean - vector![2.0, 1.5, 0.0, 0.0, 0.1]).abs().max() < 1e-3);
     assert!((still.covariance.variances()[2] - 0.1).abs() < 2e-3);
 }
+
+/// With many states P hᵀ is computed by columns, and what a row does not reach is left out: but for what rounding may take, which
+/// grows with their number, the same numbers.
+fn many_states_are_updated_as_few<T: Scalar>() {
+    const FEW: usize = 4;
+    const MANY: usize = 20;
+    let number = T::from_f64;
+    let mut few = Gaussian::<T, FEW>::new(
+        SVector::zeros(),
+        Covariance::from_variances(&[1.0, 2.0, 0.5, 4.0].map(number)),
+    );
+    // The same four, in the same order, among others that nothing measures.
+    let among = |index: usize| [3, 7, 8, 19][index];
+    let mut variances = [T::ONE; MANY];
+    for index in 0..FEW {
+        variances[among(index)] = few.covariance.get(index, index).expect("a variance");
+    }
+    let mut many = Gaussian::new(SVector::zeros(), Covariance::from_variances(&variances));
+    let is_near = |a: T, b: T| {
+        let (a, b) = (a.to_f64(), b.to_f64());
+        assert!((a - b).abs() < 1e-4 * (1.0 + b.abs()), "{a} and {b}");
+    };
+    let rows = [[(0, 1.0), (2, -0.5)], [(1, 0.75), (3, 1.25)], [(3, -1.0), (0, 0.5)]];
+    for (round, row) in rows.iter().cycle().take(30).enumerate() {
+        let (innovation, variance) = (number(0.1 * round as f64 - 1.0), number(0.3));
+        let row = row.map(|(index, value)| (index, number(value)));
+        let spread = row.map(|(index, value)| (among(index), value));
+        let [told, same] = [
+            few.update(&SparseRow::new(row), innovation, variance).expect("a measurement"),
+            many.update(&SparseRow::new(spread), innovation, variance).expect("a measurement"),
+        ];
+        is_near(told.variance, same.variance);
+    }
+    for i in 0..FEW {
+        is_near(few.mean[i], many.mean[among(i)]);
+        for j in 0..FEW {
+            let entries = [few.covariance.get(i, j), many.covariance.get(among(i), among(j))];
+            let [few, many] = entries.map(|entry| entry.expect("an entry"));
+            is_near(few, many);
+        }
+    }
+}
+
+#[test]
+fn many_states_are_updated_as_few_in_every_number() {
+    many_states_are_updated_as_few::<f32>();
+    many_states_are_updated_as_few::<f64>();
+    many_states_are_updated_as_few::<Q12_20>();
+}

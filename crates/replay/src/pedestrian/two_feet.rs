@@ -21,7 +21,7 @@ const APART_ON_ONE_FOOT: f64 = 0.15;
 pub struct BothFeet {
     /// How often both were at one place.
     pub meetings: usize,
-    /// How far from each other they were there, root mean square, m.
+    /// How far apart they were there, beyond an offset that is the same all the way, root mean square, m.
     pub distance_m: f64,
     /// Standard deviation of the rate of the heading, rad/s, that is left …
     pub rate_sigma: f64,

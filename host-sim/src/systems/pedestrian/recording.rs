@@ -110,9 +110,9 @@ impl Recording {
     /// As [`resample::average_down`].
     pub fn at_rate(&self, rate_hz: f64) -> Result<Self, Error> {
         let log = resample::average_down(&self.log, rate_hz)?;
-        let other_foot =
-            self.other_foot.as_ref().map(|other| other.at_rate(rate_hz)).transpose()?;
-        let other_foot = other_foot.map(Box::new);
+        // A log that is slower stays as it is.
+        let at_rate = |other: &Self| other.at_rate(rate_hz).unwrap_or_else(|_| other.clone());
+        let other_foot = self.other_foot.as_deref().map(|other| Box::new(at_rate(other)));
         let footprints = self.footprints.clone();
         Ok(Self { log, path: self.path.clone(), footprints, other_foot, ..Self::default() })
     }

@@ -218,3 +218,23 @@ fn the_uncertainty_grows_and_stands_beside_the_error() {
     let final_error = format!("{:.3} m", error.last().unwrap());
     assert_eq!(fact(&answer, "error at the end"), final_error);
 }
+
+#[test]
+fn why_another_log_is_not_used_is_told() {
+    let synthetic = |rate_hz, index| Recording::synthetic(Walked::Rounds(2), rate_hz, 0, index);
+    let mut recording = synthetic(200.0, 0).unwrap();
+    let other = synthetic(100.0, 1).unwrap();
+    recording.other_foot = Some(Box::new(other.clone()));
+    let warnings = |sent: Value| {
+        let table = <Pedestrian as System>::settings(Some(&recording));
+        let settings = Settings::sent(table, sent.as_object().unwrap()).unwrap();
+        Track::of(&recording, &settings, Detail::Result).unwrap().trace.walk.warnings.join("; ")
+    };
+    let of_another_walk = warnings(json!({}));
+    assert!(of_another_walk.contains("the other foot is not used: "), "{of_another_walk}");
+    assert!(warnings(json!({ "causal": true })).contains("without --causal"));
+    // The slower log stays as it is.
+    assert!(recording.at_rate(150.0).unwrap().other_foot.unwrap().log == other.log);
+    let at_50_hz = recording.at_rate(50.0).unwrap().other_foot.unwrap();
+    assert!(at_50_hz.log.samples.len().abs_diff(other.log.samples.len() / 2) <= 1);
+}
