@@ -254,7 +254,7 @@ fn a_decaying_velocity_hardly_cares_for_the_length_of_its_steps() {
 
 /// With many states P hᵀ is computed by columns, and what a row does not reach is left out: but for what rounding may take, which
 /// grows with their number, the same numbers.
-fn many_states_are_updated_as_few<T: Scalar>() {
+fn many_states_are_updated_as_few<T: Scalar>(tolerance: f64) {
     const FEW: usize = 4;
     const MANY: usize = 20;
     let number = T::from_f64;
@@ -271,7 +271,7 @@ fn many_states_are_updated_as_few<T: Scalar>() {
     let mut many = Gaussian::new(SVector::zeros(), Covariance::from_variances(&variances));
     let is_near = |a: T, b: T| {
         let (a, b) = (a.to_f64(), b.to_f64());
-        assert!((a - b).abs() < 1e-3 * (1.0 + b.abs()), "{a} and {b}");
+        assert!((a - b).abs() < tolerance * (1.0 + b.abs()), "{a} and {b}");
     };
     let rows = [[(0, 1.0), (2, -0.5)], [(1, 0.75), (3, 1.25)], [(3, -1.0), (0, 0.5)]];
     for (round, row) in rows.iter().cycle().take(30).enumerate() {
@@ -296,7 +296,7 @@ fn many_states_are_updated_as_few<T: Scalar>() {
 
 #[test]
 fn many_states_are_updated_as_few_in_every_number() {
-    many_states_are_updated_as_few::<f32>();
-    many_states_are_updated_as_few::<f64>();
-    many_states_are_updated_as_few::<Q12_20>();
+    many_states_are_updated_as_few::<f32>(1e-4);
+    many_states_are_updated_as_few::<f64>(1e-12);
+    many_states_are_updated_as_few::<Q12_20>(5e-3);
 }
