@@ -7,6 +7,7 @@ use super::{Stride, Walk};
 
 /// Steps from stance to stance, and when each was made after the start, s.
 pub(super) struct Path {
+    start_us: u64,
     pub(super) steps: Vec<(f64, Vector2<f64>)>,
 }
 
@@ -45,17 +46,24 @@ impl Path {
     pub(super) fn of(walk: &Walk) -> Self {
         let mut pairs = walk.track.windows(2).peekable();
         let start_us = walk.track.first().map_or(0, |point| point.time_us);
+        let mut path = Self { start_us, steps: Vec::new() };
         let step = |stride: &Stride| {
             let (mut step, mut timed) = (Vector2::zeros(), Vector2::zeros());
             while let Some([a, b]) = pairs.next_if(|pair| pair[1].time_us <= stride.time_us) {
                 let [from, to] = [a, b].map(|point| Vector2::from(point.horizontal()));
                 step += to - from;
-                timed += (to - from) * (b.time_us.saturating_sub(start_us) as f64 * 1e-6);
+                timed += (to - from) * path.seconds(b.time_us);
             }
             let length = step.norm_squared();
             (if length > 0.0 { timed.dot(&step) / length } else { 0.0 }, step)
         };
-        Self { steps: walk.strides.iter().map(step).collect() }
+        path.steps = walk.strides.iter().map(step).collect();
+        path
+    }
+
+    /// Time after the start, s.
+    pub(super) fn seconds(&self, time_us: u64) -> f64 {
+        time_us.saturating_sub(self.start_us) as f64 * 1e-6
     }
 
     /// The path so far after each stride, turned back at a rate and less long by a scale, and how it changes with both.

@@ -92,10 +92,11 @@ impl Walk {
         let variances = Matrix2::new(left(0, 0), left(0, 1), left(1, 0), errors.scale.powi(2));
         let walked = problem.own.path.walked(rate, scale);
         let own = errors.stride.powi(2);
+        let is_of_one_foot = problem.is_of_one_foot();
         let (mut seen, mut stepped) = (0.0, 0.0);
         for (index, (stride, (_, slope))) in self.strides.iter_mut().zip(walked).enumerate() {
             let of_both = slope * variances * slope.transpose();
-            if problem.is_seen(stride.time_us) && !problem.is_of_one_foot() {
+            if !is_of_one_foot && problem.is_seen(stride.time_us) {
                 seen += 1.0;
             }
             // The half of how far strides lead apart is taken back, as well as it is known; of their sum nothing is known.

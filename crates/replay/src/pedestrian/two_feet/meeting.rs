@@ -1,6 +1,7 @@
 //! When two sensors of one walk are at one place.
 
 use super::super::{Stride, Walk, position_at};
+use crate::metrics::distance;
 
 /// A foot that is so near its footprint stands there, m.
 const STANDING: f64 = 0.1;
@@ -52,20 +53,18 @@ fn is_in(walk: &Walk, time_us: u64) -> bool {
     ends.is_some_and(|(first, last)| (first.time_us..=last.time_us).contains(&time_us))
 }
 
-fn footprint(walk: &Walk, index: usize) -> [f64; 3] {
+/// Where a foot stands, in the plane, m.
+fn footprint(walk: &Walk, index: usize) -> [f64; 2] {
     let before = index.checked_sub(1).and_then(|last| walk.strides.get(last));
-    before.map_or(walk.start(), |stride| stride.position)
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    let [x, y, _] = before.map_or(walk.start(), |stride| stride.position);
+    [x, y]
 }
 
 /// The footprint on which a foot stands at a time, if it does.
 fn footprint_at(walk: &Walk, time_us: u64) -> Option<usize> {
-    let place = position_at(&walk.track, time_us).filter(|_| is_in(walk, time_us))?;
+    let [x, y, _] = position_at(&walk.track, time_us).filter(|_| is_in(walk, time_us))?;
     let left = walk.strides.partition_point(|stride| stride.time_us < time_us);
-    let near = |it: &usize| distance(place, footprint(walk, *it)) < STANDING;
+    let near = |it: &usize| distance([x, y], footprint(walk, *it)) < STANDING;
     [left, left + 1].into_iter().filter(|it| *it <= walk.strides.len()).find(near)
 }
 
@@ -78,8 +77,8 @@ fn passings(moving: &Walk, standing: &Walk) -> Vec<(u64, usize, usize)> {
             rest.split_at(rest.partition_point(|point| point.time_us <= stride.time_us));
         rest = after;
         let from = footprint(moving, index);
-        let half = 0.5 * distance(from, stride.position);
-        let passes = during.iter().find(|at| distance(from, at.position) >= half);
+        let half = 0.5 * distance(from, footprint(moving, index + 1));
+        let passes = during.iter().find(|at| distance(from, at.horizontal()) >= half);
         found.extend(passes.and_then(|at| {
             let beside = footprint_at(standing, at.time_us)?;
             Some((at.time_us, index, beside))

@@ -8,6 +8,7 @@ use super::super::path::{Path, PathErrors};
 use super::super::{TrackPoint, Walk};
 use super::meeting::Meeting;
 use crate::chain::{Chain, Solution, Tie, Want};
+use crate::metrics::rms;
 
 /// Standard deviation of where a foot passes the other, each axis, m.
 const BESIDE: f64 = 0.1;
@@ -35,13 +36,11 @@ const UNKNOWNS: usize = 6;
 pub(super) struct Foot {
     pub(super) path: Path,
     errors: PathErrors,
-    start_us: u64,
 }
 
 impl Foot {
     fn of(walk: &Walk) -> Self {
-        let start_us = walk.track.first().map_or(0, |point| point.time_us);
-        Self { path: Path::of(walk), errors: PathErrors::of(walk), start_us }
+        Self { path: Path::of(walk), errors: PathErrors::of(walk) }
     }
 
     /// Footprints from the start on, m.
@@ -59,7 +58,6 @@ pub(super) struct Problem {
 }
 
 /// What is sought.
-#[derive(Clone)]
 pub(super) struct Guess {
     pub(super) unknowns: SVector<f64, UNKNOWNS>,
     /// What is added at each meeting to where this foot is, seen from the other, m: by how much their frames begin apart, and
@@ -117,12 +115,13 @@ impl Problem {
             let difference = f64::from(k) / f64::from(count) * furthest * (own + other).sqrt();
             self.laid_together([own, -other].map(|share| difference * share / (own + other)))
         });
-        tried.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, guess)| guess)
+        let (_, unknowns, correction) = tried.min_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
+        Some(Guess { unknowns, corrections: vec![correction; self.meetings.len()] })
     }
 
     /// The other path turned and moved onto this one (Procrustes), at these rates: the sum of the squared distances that are
-    /// left, m², and the guess.
-    fn laid_together(&self, rates: [f64; 2]) -> (f64, Guess) {
+    /// left, m², the unknowns, and the correction that they share.
+    fn laid_together(&self, rates: [f64; 2]) -> (f64, SVector<f64, UNKNOWNS>, Vector2<f64>) {
         let own = self.own.footprints(rates[0], 0.0);
         let other = self.other.footprints(rates[1], 0.0);
         let places = || self.meetings.iter().map(|it| places(it, &own, &other));
@@ -140,8 +139,7 @@ impl Problem {
         unknowns[TURN] = sine.atan2(cosine);
         [unknowns[OWN], unknowns[OTHER]] = rates;
         let correction = Rotation2::new(unknowns[TURN]) * other_middle - own_middle;
-        let corrections = vec![correction; self.meetings.len()];
-        (squares - 2.0 * cosine.hypot(sine), Guess { unknowns, corrections })
+        (squares - 2.0 * cosine.hypot(sine), unknowns, correction)
     }
 
     /// Where this foot is, seen from the other, at each meeting, with the derivatives by all unknowns.
@@ -170,7 +168,7 @@ impl Problem {
             let left = quarter * ahead.try_normalize(1e-9).unwrap_or_else(Vector2::zeros);
             let time_us = self.meetings[index].time_us;
             for (turned, foot) in turned.iter_mut().zip([&self.own, &self.other]) {
-                let seconds = time_us.saturating_sub(foot.start_us) as f64 * 1e-6;
+                let seconds = foot.path.seconds(time_us);
                 *turned -= quarter * (now - before) * seconds;
             }
             let between = place - beside + guess.corrections[index];
@@ -217,12 +215,12 @@ impl Problem {
 
     /// Root mean square of what no error of a path explains, m.
     pub(super) fn left_over(&self, guess: &Guess) -> f64 {
-        root_mean_square(self.rows(guess).iter().map(|row| row.residual))
+        rms(&self.rows(guess).iter().map(|row| row.residual.norm()).collect::<Vec<_>>())
     }
 
     /// How far apart both are where they meet, root mean square, m.
     pub(super) fn distance(&self, guess: &Guess) -> f64 {
-        root_mean_square(self.rows(guess).iter().map(|row| row.between))
+        rms(&self.rows(guess).iter().map(|row| row.between.norm()).collect::<Vec<_>>())
     }
 
     /// How the correction has changed since the first meeting, m.
@@ -258,9 +256,4 @@ struct Row {
     /// The same but for how far to the side they pass each other.
     residual: Vector2<f64>,
     slopes: [Vector2<f64>; UNKNOWNS],
-}
-
-fn root_mean_square(all: impl ExactSizeIterator<Item = Vector2<f64>>) -> f64 {
-    let count = all.len() as f64;
-    (all.map(|it| it.norm_squared()).sum::<f64>() / count).sqrt()
 }
