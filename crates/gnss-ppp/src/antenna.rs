@@ -48,8 +48,7 @@ impl Pattern<'_> {
         if !(whole && self.azimuth_step > 0.0 && azimuth.is_finite()) {
             return None;
         }
-        let turn = libm::fmod(azimuth, 360.0);
-        let row = if turn < 0.0 { turn + 360.0 } else { turn } / self.azimuth_step;
+        let row = (azimuth - 360.0 * libm::floor(azimuth / 360.0)) / self.azimuth_step;
         let below = libm::floor(row);
         let mut rows = self.by_azimuth.chunks_exact(width);
         let first = rows.clone().next()?;

@@ -2,6 +2,7 @@
 
 use crate::Estimator;
 use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
+use kestirim_robust_kalman::Robust;
 
 /// Motion of the receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +41,7 @@ impl Deviation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Config {
+pub struct Config<R = Robust<f64>> {
     /// Motion of the receiver. The default `estimator` is made for it: change both.
     pub motion: Motion,
     /// Lowest elevation of a satellite, rad.
@@ -66,10 +67,16 @@ pub struct Config {
     /// covariances that are reported count as one what was observed within.
     pub correlation_time: f64,
     /// Treatment of observations that do not fit.
-    pub estimator: Estimator,
+    pub estimator: Estimator<R>,
 }
 
-impl Config {
+/// Neither negative nor without end.
+#[inline(never)] // Asked of each setting.
+fn is_deviation(value: f64) -> bool {
+    value >= 0.0 && value.is_finite()
+}
+
+impl<R> Config<R> {
     /// Whether the filter can work with it.
     pub(crate) fn is_valid(&self) -> bool {
         let motion = match self.motion {
@@ -78,8 +85,10 @@ impl Config {
         };
         let Deviation { zenith: phase, slant: phase_slant } = self.phase;
         let Deviation { zenith: code, slant: code_slant } = self.code;
-        let positive = [phase, code, self.wet_delay];
-        let rest = [
+        let settings = [
+            phase,
+            code,
+            self.wet_delay,
             motion,
             phase_slant,
             code_slant,
@@ -89,8 +98,8 @@ impl Config {
             self.correlation_time,
         ];
         self.elevation_mask.is_finite()
-            && positive.iter().all(|&value| value > 0.0 && value.is_finite())
-            && rest.iter().all(|&value| value >= 0.0 && value.is_finite())
+            && settings.iter().all(|&value| is_deviation(value))
+            && settings.iter().take(3).all(|&value| value > 0.0)
     }
 
     /// Variance that the interpolation of a satellite's clock adds to an observation, m².
@@ -103,6 +112,28 @@ impl Config {
         }
     }
 
+    /// The same settings with another treatment of observations that do not fit.
+    #[must_use]
+    pub fn with_estimator<S>(self, estimator: Estimator<S>) -> Config<S> {
+        let Self { motion, elevation_mask, phase, code, clock_walk, wet_delay, .. } = self;
+        let Self { wet_delay_walk, gradient, slips, correlation_time, .. } = self;
+        Config {
+            motion,
+            elevation_mask,
+            phase,
+            code,
+            clock_walk,
+            wet_delay,
+            wet_delay_walk,
+            gradient,
+            slips,
+            correlation_time,
+            estimator,
+        }
+    }
+}
+
+impl Config {
     /// The settings with ephemerides that satellites broadcast, each at its own accuracy ([`SatelliteState::accuracy`]): these stay
     /// wrong by the same for as long as one serves, up to two hours. Beside that gradients are nothing.
     pub fn broadcast(motion: Motion) -> Self {

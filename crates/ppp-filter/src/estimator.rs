@@ -1,6 +1,6 @@
-use crate::Motion;
+use crate::{Lean, Motion};
 use kestirim_robust_kalman::{
-    Adaptive, Block, Descent, Igg3, Order, Reweighting, Robust, Scale, Weight,
+    Adaptive, Block, Descent, Igg3, NoFactor, Order, Reweighting, Robust, Scale, UnitScale, Weight,
 };
 
 /// The three coordinates among the states.
@@ -10,9 +10,9 @@ pub(crate) const POSITION: Block = Block::new(0, 3);
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Estimator {
-    /// Weighting of an epoch's observations.
-    pub robust: Robust<f64>,
+pub struct Estimator<R = Robust<f64>> {
+    /// Weighting of an epoch's observations: chosen at run time, or of fewer choices and less flash ([`Lean`]).
+    pub robust: R,
     /// After how many epochs in which its phase was rejected a satellite's ambiguity begins anew. With none,
     /// phases are not monitored: slips are those that the combinations show by themselves, no noise is estimated.
     pub patience: Option<u8>,
@@ -56,8 +56,10 @@ impl Estimator {
     /// A receiver that moves is asked first whether its prediction holds: a step that all satellites
     /// show is motion. Each of its epochs has to find its own outliers, so the thresholds are nearer.
     pub fn guarded(motion: Motion) -> Self {
-        let (k0, k1, adaptive) = match motion {
-            Motion::Static => (3.5, 8.0, None),
+        let Estimator { robust, patience } = Estimator::at_rest();
+        let Robust { weight, reweighting, least_redundancy, .. } = robust;
+        let (weight, adaptive) = match motion {
+            Motion::Static => (weight, None),
             Motion::Kinematic { .. } => {
                 let adaptive = Adaptive {
                     order: Order::BeforeWeights,
@@ -66,15 +68,24 @@ impl Estimator {
                     floor: 1e-6,
                     ..Adaptive::new(POSITION)
                 };
-                (2.5, 6.0, Some(adaptive))
+                (Igg3 { k0: 2.5, k1: 6.0, ..weight }, Some(adaptive))
             }
         };
+        let (weight, scale) = (Weight::Igg3(weight), Scale::Unit);
+        let robust = Robust { weight, scale, reweighting, least_redundancy, adaptive };
+        Self { robust, patience }
+    }
+}
+
+impl Estimator<Lean> {
+    /// [`Estimator::guarded`] of a receiver at rest, without the code of what else could be chosen at run time.
+    pub fn at_rest() -> Self {
         let robust = Robust {
-            weight: Weight::Igg3(Igg3 { k0, k1, descent: Descent::Squared }),
-            scale: Scale::Unit,
+            weight: Igg3 { k0: 3.5, k1: 8.0, descent: Descent::Squared },
+            scale: UnitScale,
             reweighting: Reweighting::WorstFirst { most: usize::MAX },
             least_redundancy: 0.01,
-            adaptive,
+            adaptive: NoFactor,
         };
         Self { robust, patience: Some(3) }
     }

@@ -1,30 +1,34 @@
 use crate::running::Running;
-use crate::{Config, Error, SatelliteObservation, Solution};
+use crate::{Config, Error, SatelliteObservation, Solution, Weighting};
 use kestirim_gnss_ppp::{GpsTime, Receiver};
+use kestirim_robust_kalman::Robust;
 
 /// A precise point positioning filter of N states: room for N − 5 satellites at a time, N − 7 with gradients (see
 /// [`states`](crate::states)).
 ///
-/// It starts by itself from the first epoch's codes.
+/// It starts by itself from the first epoch's codes. How it weighs observations is chosen at run time by its settings, unless
+/// R is a type that has the choice made ([`Lean`](crate::Lean)) and so takes less flash.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct PppFilter<const N: usize> {
-    config: Config,
+pub struct PppFilter<const N: usize, R = Robust<f64>> {
+    config: Config<R>,
     pub(crate) running: Option<Running<N>>,
 }
 
-impl<const N: usize> PppFilter<N> {
+impl<const N: usize, R> PppFilter<N, R> {
     /// A filter before its first epoch.
-    pub const fn new(config: Config) -> Self {
+    pub const fn new(config: Config<R>) -> Self {
         const { assert!(N >= crate::states(4), "no position from fewer than four satellites") };
         Self { config, running: None }
     }
 
     /// The settings.
-    pub const fn config(&self) -> &Config {
+    pub const fn config(&self) -> &Config<R> {
         &self.config
     }
+}
 
+impl<const N: usize, R: Weighting> PppFilter<N, R> {
     /// Takes in an epoch, observed at `time` by the receiver's clock.
     ///
     /// # Errors

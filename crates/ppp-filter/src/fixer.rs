@@ -75,7 +75,7 @@ impl<const N: usize> AmbiguityFixer<N> {
     /// must be calibrated.
     pub fn fix(
         &mut self,
-        filter: &PppFilter<N>,
+        filter: &PppFilter<N, impl Sized>,
         solution: &Solution<N>,
         observations: &[SatelliteObservation<'_>],
         bias: impl Fn(u8) -> Option<PhaseBias>,
@@ -122,7 +122,7 @@ impl<const N: usize> AmbiguityFixer<N> {
     fn follow(
         &mut self,
         running: &Running<N>,
-        filter: &PppFilter<N>,
+        filter: &PppFilter<N, impl Sized>,
         solution: &Solution<N>,
         observations: &[SatelliteObservation<'_>],
         bias: impl Fn(u8) -> Option<PhaseBias>,

@@ -60,7 +60,7 @@ impl Line {
         expected: Expected,
         state: usize,
         slipped: Option<Slipped>,
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Self {
         let sine = libm::sin(expected.direction.elevation);
         let clock = config.clock_variance(&observation.state);

@@ -17,7 +17,7 @@ impl<const N: usize> Running<N> {
         site: &Site<'_>,
         lines: &Lines<'_, '_, N>,
         decisions: &Decisions<N>,
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Solution<N> {
         let formal = Matrix3::from_fn(|i, j| self.estimate.covariance.get(i, j).unwrap_or(0.0));
         let covariance = formal * self.repetition(config);
@@ -70,7 +70,7 @@ impl<const N: usize> Running<N> {
     ///
     /// Within the correlation time τ they are the same: n epochs Δt apart tell as much as n·Δt/2τ. A
     /// position that moves does not average them; what it owes to the ambiguities does.
-    pub(crate) fn repetition(&self, config: &Config) -> f64 {
+    pub(crate) fn repetition(&self, config: &Config<impl Sized>) -> f64 {
         let repeated = match self.interval {
             Some(interval) => 1.0 + 2.0 * config.correlation_time / interval,
             None => 1.0,

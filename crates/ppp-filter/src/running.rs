@@ -7,11 +7,12 @@ use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::consistency::Consistency;
 use crate::line::{Line, Row};
+use crate::median::median;
 use crate::phase_monitor::is_judged;
 use crate::rest::Rest;
 use crate::start::code_position;
 use crate::states::{BEHIND_GRADIENTS, CLOCK, COMMON, GRADIENTS, WET};
-use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution};
+use crate::{Config, Error, Motion, SatelliteObservation, Slipped, Solution, Weighting};
 use heapless::Vec;
 use kestirim_gnss_ppp::{Constellation, GpsTime, Receiver, Site};
 use kestirim_kalman::{Covariance, Gaussian};
@@ -105,7 +106,7 @@ impl<const N: usize> Running<N> {
     pub(crate) fn start(
         time: GpsTime,
         observations: &[SatelliteObservation<'_>],
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Result<Self, Error> {
         let start = code_position(observations)?;
         let has_gradients = config.gradient > 0.0
@@ -148,7 +149,7 @@ impl<const N: usize> Running<N> {
         &mut self,
         time: GpsTime,
         direction: f64,
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Result<(), Error> {
         let elapsed = direction * time.since(self.time);
         if elapsed <= 0.0 || elapsed.is_nan() {
@@ -179,7 +180,7 @@ impl<const N: usize> Running<N> {
         &mut self,
         receiver: &Receiver<'_>,
         observations: &[SatelliteObservation<'_>],
-        config: &Config,
+        config: &Config<impl Weighting>,
     ) -> Result<Solution<N>, Error> {
         let mut site = Site::new(receiver, &self.position(), self.time);
         self.jump = self.clock_jump(observations, config);
@@ -240,7 +241,7 @@ impl<const N: usize> Running<N> {
         site: &mut Site<'r>,
         lines: &mut Lines<'_, '_, N>,
         decisions: &mut Decisions<N>,
-        config: &Config,
+        config: &Config<impl Weighting>,
     ) -> Result<(), Error> {
         let predicted = self.estimate;
         let expected = self.position();
@@ -272,7 +273,7 @@ impl<const N: usize> Running<N> {
         lines: &Lines<'_, '_, N>,
         offset: &Vector3<f64>,
         decisions: &mut Decisions<N>,
-        config: &Config,
+        config: &Config<impl Weighting>,
     ) -> Result<(), Error> {
         let rows: Vec<Row, N> = collected(lines.iter().map(|(_, line)| line.row()));
         let measurements = lines.iter().zip(&rows).map(|((_, line), row)| {
@@ -297,10 +298,15 @@ impl<const N: usize> Running<N> {
     }
 
     /// Updates the phases' monitors. An error common to all phases is no noise of any one.
-    fn monitor(&mut self, lines: &Lines<'_, '_, N>, decisions: &Decisions<N>, config: &Config) {
+    fn monitor(
+        &mut self,
+        lines: &Lines<'_, '_, N>,
+        decisions: &Decisions<N>,
+        config: &Config<impl Sized>,
+    ) {
         let judged = decisions.iter().map(|[_, phase]| phase).filter(|phase| is_judged(phase));
         let squares: Vec<f64, N> = collected(judged.map(|it| it.standardised * it.standardised));
-        let median = median(|| squares.iter().copied()).unwrap_or_default();
+        let median = median(&squares).unwrap_or_default();
         let common = (median / MEDIAN_OF_SQUARES).max(1.0);
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
@@ -336,17 +342,6 @@ impl<const N: usize> Running<N> {
 /// The median code of the satellites of a system, by the state of its clock beside that of GPS, if there are any.
 #[inline(never)]
 fn median_code<const N: usize>(lines: &Lines<'_, '_, N>, state: Option<usize>) -> Option<f64> {
-    let of_system = || lines.iter().map(|(_, line)| line).filter(|it| it.offset == state);
-    median(|| of_system().map(|line| line.code))
-}
-
-/// The median, if there are any values. By counting: sorting would bring panics along.
-fn median<I: Iterator<Item = f64>>(values: impl Fn() -> I) -> Option<f64> {
-    let middle = values().count() / 2;
-    let is_median = |candidate: &f64| {
-        let below = values().filter(|other| other.total_cmp(candidate).is_lt()).count();
-        let up_to = values().filter(|other| other.total_cmp(candidate).is_le()).count();
-        below <= middle && middle < up_to
-    };
-    values().find(is_median)
+    let of_system = lines.iter().map(|(_, line)| line).filter(|it| it.offset == state);
+    median(&collected::<_, N>(of_system.map(|line| line.code)))
 }

@@ -1,8 +1,9 @@
 //! What stored estimators are. Raise the version of one that is stored otherwise than before.
 
-use crate::PppFilter;
+use crate::{Lean, PppFilter};
 use kestirim_snapshot::layout;
 
 layout! {
     [const N: usize] for PppFilter<N> as "ppp", 3, f64, [N];
+    [const N: usize] for PppFilter<N, Lean> as "ppp/lean", 1, f64, [N];
 }

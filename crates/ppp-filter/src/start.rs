@@ -43,10 +43,17 @@ pub(crate) fn code_position(
     }
     // Each system has a clock of its own: the codes of one of them tell the place.
     let system = |it: &SatelliteObservation<'_>| it.carriers.constellation();
-    let count = |of| observations.iter().filter(|it| system(it) == of).count();
+    let mut counts = Constellation::ALL.map(|of| (of, 0));
+    for observation in observations {
+        if let Some((_, count)) = counts.get_mut(system(observation) as usize) {
+            *count += 1;
+        }
+    }
     // Of as many the first.
-    let most = Constellation::ALL.into_iter().rev().max_by_key(|of| count(*of));
-    if let Some(most) = most.filter(|of| count(*of) >= 4) {
+    let (most, count) = counts
+        .into_iter()
+        .fold((Constellation::Gps, 0), |most, it| if it.1 > most.1 { it } else { most });
+    if count >= 4 {
         for (index, observation) in observations.iter().enumerate() {
             dropped |= u64::from(system(observation) != most) << index;
         }
@@ -54,16 +61,19 @@ pub(crate) fn code_position(
     loop {
         let used = |index: usize| dropped & (1 << index) == 0;
         let solution = least_squares(observations, used)?;
-        let misfits = || {
-            let known = observations.iter().enumerate().filter(|&(index, _)| used(index));
-            known.filter_map(|(index, it)| Some((index, compare(it, &solution)?.0.abs())))
-        };
-        match misfits().max_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((index, misfit)) if misfit > LARGEST_RESIDUAL && misfits().count() > 5 => {
-                dropped |= 1 << index;
+        let (mut worst, mut most, mut count) = (0, 0.0, 0);
+        for (index, observation) in observations.iter().enumerate() {
+            if let Some((misfit, _)) = compare(observation, &solution).filter(|_| used(index)) {
+                count += 1;
+                if misfit.abs() >= most {
+                    (worst, most) = (index, misfit.abs());
+                }
             }
-            _ => return Ok(solution),
         }
+        if most <= LARGEST_RESIDUAL || count <= 5 {
+            return Ok(solution);
+        }
+        dropped |= 1 << worst;
     }
 }
 

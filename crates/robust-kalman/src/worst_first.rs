@@ -146,12 +146,12 @@ impl<T: Scalar, W, S, A, const N: usize> Run<'_, '_, T, W, S, A, N> {
 
 /// The index of the measurement that stands out most of those that were judged.
 fn worst<T: Scalar>(decisions: &[Decision<T>]) -> Option<usize> {
-    let all = decisions.iter().enumerate();
-    let judged = all.filter(|(_, decision)| decision.reason == Reason::Agrees);
-    let worst = judged.reduce(
-        |worst, other| {
-            if other.1.statistic > worst.1.statistic { other } else { worst }
-        },
-    );
+    let mut worst: Option<(usize, T)> = None;
+    for (index, decision) in decisions.iter().enumerate() {
+        let further = worst.is_none_or(|(_, statistic)| decision.statistic > statistic);
+        if decision.reason == Reason::Agrees && further {
+            worst = Some((index, decision.statistic));
+        }
+    }
     worst.map(|(index, _)| index)
 }

@@ -4,7 +4,8 @@
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result, ensure};
-use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteReport};
+use kestirim_ppp_filter::{Config, Estimator, Lean, Motion, SatelliteReport};
+use kestirim_robust_kalman::Reweighting;
 use kestirim_scalar::Components;
 use kestirim_tests::ppp::{EPOCHS, Epoch, Epochs, Filter, OUTLIERS, receiver, station};
 use nalgebra::Vector3;
@@ -19,14 +20,16 @@ const FLASH: u64 = 256 << 10;
 type Told = ([f64; 5], [i64; 2]);
 
 /// Settings of the image's filters by their names.
-fn config(filter: &str) -> Config {
-    let gradients = Config::new(Motion::Static);
-    let default = Config { gradient: 0.0, ..gradients };
-    match filter {
-        "gradients" => gradients,
-        "plain" => Config { estimator: Estimator::plain(), ..default },
-        _ => default,
+fn config(filter: &str) -> Config<Lean> {
+    let mut config = Config::new(Motion::Static).with_estimator(Estimator::at_rest());
+    if filter != "gradients" {
+        config.gradient = 0.0;
     }
+    if filter == "plain" {
+        config.estimator.robust.reweighting = Reweighting::Never;
+        config.estimator.patience = None;
+    }
+    config
 }
 
 /// The image `ppp` on the host.

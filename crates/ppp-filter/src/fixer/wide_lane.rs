@@ -46,7 +46,7 @@ impl WideLane {
 
 /// Variance of an epoch's wide lane at an elevation of which the sine is given, cycles²: of the codes, of which the
 /// ionosphere-free one is three times as noisy as one.
-pub(super) fn variance(config: &Config, carriers: Carriers, sine: f64) -> f64 {
+pub(super) fn variance(config: &Config<impl Sized>, carriers: Carriers, sine: f64) -> f64 {
     let [first, second] = carriers.frequency();
     let one = config.code.variance(sine) / 9.0;
     let share = (first * first + second * second) / ((first + second) * (first + second));

@@ -3,11 +3,12 @@
 use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Constellation, Expected, Site, Slip};
 
-use super::{Lines, Running, median};
+use super::{Lines, Running};
 use crate::channel::Channel;
 use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::line::Line;
+use crate::median::median;
 use crate::phase_monitor::PhaseMonitor;
 use crate::{Config, SatelliteObservation, Slipped};
 
@@ -17,7 +18,7 @@ impl<const N: usize> Running<N> {
         &mut self,
         site: &Site<'_>,
         observations: &'a [SatelliteObservation<'b>],
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Lines<'a, 'b, N> {
         let mut lines = Vec::new();
         for observation in observations {
@@ -69,7 +70,7 @@ impl<const N: usize> Running<N> {
         state: usize,
         observation: &SatelliteObservation<'_>,
         expected: &Expected,
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Option<Slipped> {
         let SatelliteObservation { satellite, code, lock_lost, .. } = *observation;
         let phase = self.repaired(observation);
@@ -104,14 +105,14 @@ impl<const N: usize> Running<N> {
     pub(super) fn clock_jump(
         &self,
         observations: &[SatelliteObservation<'_>],
-        config: &Config,
+        config: &Config<impl Sized>,
     ) -> Option<ClockJump> {
         let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
             let arc = self.channel(self.find(observation.satellite)?)?.arc;
             let jump = arc.jump(self.repaired(observation), observation.code);
             (self.time.since(arc.last()).abs() <= config.slips.gap).then_some(jump)
         }));
-        let median = median(|| jumps.iter().copied()).unwrap_or_default();
+        let median = median(&jumps).unwrap_or_default();
         ClockJump::of(&jumps, median)
     }
 
@@ -151,17 +152,23 @@ impl<const N: usize> Running<N> {
 
     /// A state that is no satellite's, or that of the satellite unseen for longest.
     fn free(&self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
-        let unseen = |state: usize| match self.channel(state) {
-            None => Some(f64::INFINITY),
-            Some(Channel { satellite, .. })
-                if observations.iter().any(|observation| observation.satellite == *satellite) =>
-            {
-                None
+        let (mut free, mut longest) = (None, 0.0);
+        for (state, channel) in self.channels.iter().enumerate().skip(self.first) {
+            let unseen = match channel {
+                _ if self.offsets.contains(&Some(state)) => continue,
+                Some(channel) if is_seen(channel.satellite, observations) => continue,
+                Some(channel) => self.time.since(channel.arc.last()).abs(),
+                None => f64::INFINITY,
+            };
+            if unseen >= longest {
+                (free, longest) = (Some(state), unseen);
             }
-            Some(channel) => Some(self.time.since(channel.arc.last()).abs()),
-        };
-        let states = (self.first..N).filter(|state| !self.offsets.contains(&Some(*state)));
-        let free = states.filter_map(|state| Some((state, unseen(state)?)));
-        free.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(state, _)| state)
+        }
+        free
     }
+}
+
+#[inline(never)] // Small beside the loop that it is called in, which would be there several times.
+fn is_seen(satellite: u8, observations: &[SatelliteObservation<'_>]) -> bool {
+    observations.iter().any(|observation| observation.satellite == satellite)
 }

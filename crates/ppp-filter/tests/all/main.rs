@@ -1,5 +1,6 @@
 //! Tests of the crate from outside, in one program: less is compiled and linked.
 
 mod filter;
+mod lean;
 mod single_point;
 mod sky;

@@ -3,7 +3,7 @@
 use embedded_io::{Read, ReadReady, Write};
 use heapless::Vec;
 use kestirim_gnss_ppp::GpsTime;
-use kestirim_ppp_filter::{PppFilter, SatelliteObservation, Solution, states};
+use kestirim_ppp_filter::{Lean, PppFilter, SatelliteObservation, Solution, states};
 use kestirim_telemetry::{GlobalPosition, Health, Transmitter};
 
 use crate::lines::Lines;
@@ -42,7 +42,7 @@ pub struct App<R, M, W> {
     modem: Lines<M>,
     telemetry: Transmitter<W>,
     products: Products,
-    filter: PppFilter<STATES>,
+    filter: PppFilter<STATES, Lean>,
     solved: Option<GpsTime>,
     accepted: u32,
     rejected: u32,

@@ -1,7 +1,7 @@
 //! The receiver, and how it is filtered: what is to be changed first when this is copied.
 
 use kestirim_gnss_ppp::{Corrections, OceanLoading, Pattern, Receiver};
-use kestirim_ppp_filter::{Config, Motion};
+use kestirim_ppp_filter::{Config, Estimator, Lean, Motion};
 
 /// Phase centres of the satellites, as files of the IGS (ANTEX) tell them: nadir angles of 0°, 7° and 14°. Those of
 /// a GPS IIF, here for all.
@@ -68,6 +68,7 @@ pub const fn satellite_antenna() -> Option<[Pattern<'static>; 2]> {
 }
 
 /// A station that stands still; gradients of the troposphere would take the room of two satellites.
-pub fn config() -> Config {
-    Config { gradient: 0.0, ..Config::new(Motion::Static) }
+pub fn config() -> Config<Lean> {
+    let config = Config { gradient: 0.0, ..Config::new(Motion::Static) };
+    config.with_estimator(Estimator::at_rest())
 }

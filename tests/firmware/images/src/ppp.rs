@@ -3,7 +3,7 @@
 
 use kestirim_gnss_ppp::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
 use kestirim_gnss_ppp::{Carriers, FREQUENCY, Geodetic, GpsTime, SatelliteState, Site, WAVELENGTH};
-use kestirim_ppp_filter::{PppFilter, SatelliteObservation, states};
+use kestirim_ppp_filter::{Lean, PppFilter, SatelliteObservation, states};
 use nalgebra::Vector3;
 
 /// The receiver and its antennas: those of the application, which a user edits.
@@ -14,7 +14,7 @@ pub use site::receiver;
 use site::satellite_antenna;
 
 /// Room for twelve satellites.
-pub type Filter = PppFilter<{ states(12) }>;
+pub type Filter = PppFilter<{ states(12) }, Lean>;
 /// How many satellites there are.
 pub const SATELLITES: usize = 10;
 /// How many epochs there are.

@@ -1,12 +1,14 @@
 //! Everything of `kestirim-ppp-filter`.
 
+use core::fmt::Debug;
+
 use kestirim_gnss_ppp::{
     Carriers, Corrections, GpsTime, Klobuchar, OceanLoading, Pattern, Receiver, SatelliteState,
     SlipLimits,
 };
 use kestirim_ppp_filter::{
     AmbiguityFixer, CodeObservation, Config, Deviation, Error, Estimator, Health, Motion,
-    PhaseBias, PppFilter, SatelliteObservation, Solution, single_point, states,
+    PhaseBias, PppFilter, SatelliteObservation, Solution, Weighting, single_point, states,
 };
 
 use super::values::{
@@ -26,6 +28,7 @@ fn estimators() {
     keep(Estimator::adaptive());
     keep(Estimator::guarded(motion()));
     keep(Config::broadcast(motion()));
+    keep(Estimator::at_rest());
     keep(states(whole()));
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
     keep::<Error>(From::from(any(kestirim_robust_kalman::Error::InvalidBlock)));
@@ -49,7 +52,7 @@ fn config() -> Config {
     })
 }
 
-fn filters<const N: usize>() {
+fn filters<const N: usize, R: Weighting + Debug>(estimator: fn() -> Estimator<R>) {
     let (mean, by_azimuth) = (numbers::<f64, 4>(), numbers::<f64, 4>());
     let (mean, by_azimuth) = (slice(&mean), slice(&by_azimuth));
     let (offset, first, step) = (numbers(), number(), number());
@@ -88,7 +91,8 @@ fn filters<const N: usize>() {
     let (codes, ionosphere) = (any([code; 5]), maybe(&ionosphere));
     let time = any(GpsTime::new(whole(), number()));
     keep(single_point::<N>(time, &receiver, slice(&codes), ionosphere, &config()));
-    let mut filter = any(PppFilter::<N>::new(config()));
+    let config = Config::with_estimator(config(), any(estimator()));
+    let mut filter = any(PppFilter::<N, R>::new(config));
     keep(PppFilter::config(&filter));
     keep(<AmbiguityFixer<N> as Default>::default());
     let mut fixer = any(AmbiguityFixer::<N>::new());
@@ -112,5 +116,9 @@ fn filters<const N: usize>() {
 
 /// Calls it all.
 pub fn run() {
-    call_each([estimators, filters::<{ states(10) }>, filters::<9>]);
+    call_each([
+        estimators,
+        || filters::<{ states(10) }, _>(|| Estimator::guarded(motion())),
+        || filters::<9, _>(Estimator::at_rest),
+    ]);
 }

@@ -14,7 +14,8 @@
 use core::hint::black_box;
 
 use images::ppp::{Epochs, Filter, OUTLIERS, receiver, station};
-use kestirim_ppp_filter::{Config, Error, Estimator, Motion};
+use kestirim_ppp_filter::{Config, Error, Estimator, Lean, Motion};
+use kestirim_robust_kalman::Reweighting;
 use kestirim_scalar::Components;
 use support::{Class, Meter, fail, image, line, line_of_text};
 
@@ -25,7 +26,7 @@ fn run() {
     line_of_text("name", "ppp");
     line_of_text("scalar", "f64");
     line("object_bytes", &[size_of::<Filter>() as i64]);
-    let gradients = Config::new(Motion::Static);
+    let gradients = Config::new(Motion::Static).with_estimator(Estimator::at_rest());
     let default = Config { gradient: 0.0, ..gradients };
     position(
         &["default.solution", "default.treated"],
@@ -37,7 +38,9 @@ fn run() {
         ["gradients first", "gradients clean", "gradients outliers"],
         gradients,
     );
-    let plain = Config { estimator: Estimator::plain(), ..default };
+    let mut plain = Config { gradient: 0.0, ..gradients };
+    plain.estimator.robust.reweighting = Reweighting::Never;
+    plain.estimator.patience = None;
     position(
         &["plain.solution", "plain.treated"],
         ["plain first", "plain clean", "plain outliers"],
@@ -46,7 +49,7 @@ fn run() {
 }
 
 #[inline(never)] // One filter's code for all.
-fn position(keys: &[&str; 2], names: [&str; 3], config: Config) {
+fn position(keys: &[&str; 2], names: [&str; 3], config: Config<Lean>) {
     let mut filter = Filter::new(black_box(config));
     let mut meters = names.map(|name| (name, Meter::reaching(REACH)));
     let [(_, first), (_, clean), (_, outliers)] = &mut meters;

@@ -1,0 +1,10 @@
+/// The median, if there are any values. By counting: sorting would bring panics along.
+#[inline(never)] // Wanted at several places, once in flash.
+pub(crate) fn median(values: &[f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    values.iter().copied().find(|candidate| {
+        let below = values.iter().filter(|other| other.total_cmp(candidate).is_lt()).count();
+        let up_to = values.iter().filter(|other| other.total_cmp(candidate).is_le()).count();
+        below <= middle && middle < up_to
+    })
+}
