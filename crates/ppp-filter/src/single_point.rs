@@ -1,6 +1,7 @@
 //! Positions from the codes of one epoch each.
 
 use crate::collected::collected;
+use crate::consistency::Consistency;
 use crate::line::code_bias;
 use crate::running::GROUND;
 use crate::start::code_position;
@@ -80,7 +81,8 @@ impl<'a> CodeObservation<'a> {
 }
 
 /// The position of an epoch from its codes alone: free of the ionosphere where there are two, else with `ionosphere`. Outliers
-/// lose weight as in the filter of the same settings. No phase is used, and nothing of any other epoch.
+/// lose weight as in the filter of the same settings; the covariance is as large as the residuals of the others have it. No phase is
+/// used, and nothing of any other epoch.
 ///
 /// # Errors
 /// [`Error`]: why there is no position.
@@ -212,9 +214,21 @@ impl<const N: usize> Epoch<N> {
         3 + Constellation::ALL.iter().filter(|of| is_heard(of)).count().max(1)
     }
 
+    /// The variance of one code in its own as the residuals of those that were used have it, at least 1: by so much more than is said
+    /// of codes a receiver may be noisy, or its surroundings reflect.
+    fn variance_factor(&self) -> f64 {
+        let used = || self.lines.iter().zip(&self.decisions).filter(|(_, it)| it.weight > 0.0);
+        let squares = used().map(|(line, it)| it.weight * square(it.residual) / line.variance);
+        let spare = used().count().saturating_sub(self.unknowns());
+        if spare == 0 { 1.0 } else { (squares.sum::<f64>() / spare as f64).max(1.0) }
+    }
+
     fn solution(&self, time: GpsTime, position: Vector3<f64>) -> Solution<N> {
         let estimate = &self.estimate;
-        let covariance = Matrix3::from_fn(|i, j| estimate.covariance.get(i, j).unwrap_or(0.0));
+        let formal = Matrix3::from_fn(|i, j| estimate.covariance.get(i, j).unwrap_or(0.0));
+        let covariance = formal * self.variance_factor();
+        let mut consistency = Consistency::default();
+        consistency.update(self.decisions.iter());
         let rotation = Geodetic::from_ecef(&position).enu_from_ecef();
         let satellites =
             self.lines.iter().zip(&self.decisions).map(|(line, code)| SatelliteReport {
@@ -234,7 +248,9 @@ impl<const N: usize> Epoch<N> {
             wet_delay: WET_DELAY,
             gradients: [0.0; 2],
             // Metres, whatever comes: no ambiguity is ever known.
-            health: if heard > self.unknowns() + 1 {
+            health: if let Some(contradiction) = consistency.contradiction() {
+                Health::Contradicted(contradiction)
+            } else if heard > self.unknowns() + 1 {
                 Health::Converging
             } else {
                 Health::Unchecked

@@ -44,6 +44,7 @@ impl Body {
 
     /// Reads all epochs.
     pub(super) fn read<'a>(&mut self, text: &'a Text, lines: &mut Lines<'a>) -> Result<(), Error> {
+        self.warnings.extend(self.header.antenna_problem().map(|problem| text.warning(problem)));
         while let Some(line) = lines.next() {
             if line.bytes.trim_ascii().is_empty() {
                 continue;
@@ -271,7 +272,7 @@ impl Body {
             receiver,
             antenna,
             approximate_position,
-            antenna_delta_hen,
+            antenna_delta_hen: antenna_delta_hen.unwrap_or_default(),
             epochs,
             signals,
             unserved: self.unserved.sentence("satellites").map(|it| text.warning(it)),

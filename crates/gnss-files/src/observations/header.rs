@@ -8,6 +8,11 @@ use crate::fields::{blank_separated, decimal, integer};
 use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 
+/// No tripod, mast or pillar raises an antenna's reference point farther above its marker, m, …
+const HIGHEST: f64 = 30.0;
+/// … nor moves it farther aside, m.
+const FARTHEST: f64 = 5.0;
+
 /// A column of observations that is of use.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Observable {
@@ -25,7 +30,8 @@ pub(super) struct Header {
     pub(super) receiver: String,
     pub(super) antenna: String,
     pub(super) approximate_position: Option<[f64; 3]>,
-    pub(super) antenna_delta_hen: [f64; 3],
+    /// If it was told.
+    pub(super) antenna_delta_hen: Option<[f64; 3]>,
     /// In the order of [`System::ALL`].
     lists: [List; System::ALL.len()],
     /// Of the satellites of GLONASS, by number.
@@ -85,12 +91,26 @@ impl Header {
                 self.approximate_position =
                     Some(position).filter(|position| position.iter().any(|&x| x != 0.0));
             }
-            b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = three(line)?,
+            b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = Some(three(line)?),
             b"TIME OF FIRST OBS" => time_system(line)?,
             b"GLONASS SLOT / FRQ #" => self.channels(line),
             _ => self.observables(line)?,
         }
         Ok(())
+    }
+
+    /// What speaks against the antenna's place above its marker, if anything does.
+    pub(super) fn antenna_problem(&self) -> Option<String> {
+        let Some([height, east, north]) = self.antenna_delta_hen else {
+            return Some("no height of the antenna is told, so the position is not the marker's but the antenna's".to_owned());
+        };
+        let absurd = height.abs() > HIGHEST || east.abs() > FARTHEST || north.abs() > FARTHEST;
+        let misplaced = height == 0.0 && (east != 0.0 || north != 0.0);
+        (absurd || misplaced).then(|| {
+            format!(
+                "the antenna is told to be {height} m above its marker, {east} m east and {north} m north of it"
+            )
+        })
     }
 
     /// Takes up to eight satellites of GLONASS with their channels; skips one whose number or channel cannot be read.

@@ -116,6 +116,24 @@ fn a_file_cut_off_loses_its_last_epoch() -> Result<(), Error> {
 }
 
 #[test]
+fn an_antenna_without_a_height_or_with_an_absurd_one_is_told() -> Result<(), Error> {
+    let whole = observations_3();
+    let line = whole.lines().find(|line| line.contains("DELTA H/E/N")).expect("the line");
+    let told = |file: String| Ok(sentences(&Observations::parse(&text(file))?.warnings));
+    for (changed, expected) in [
+        (String::new(), Some("no height of the antenna is told")),
+        (line.replacen("1.5000", "1500.0", 1) + "\n", Some("1500 m above its marker")),
+        (line.replacen("1.5000", "0.0000", 1) + "\n", Some("0 m above its marker, 0.2 m east")),
+        (line.replacen("1.5000", "2.5000", 1) + "\n", None),
+    ] {
+        let warnings: Vec<String> = told(whole.replacen(&format!("{line}\n"), &changed, 1))?;
+        assert_eq!(warnings.len(), usize::from(expected.is_some()), "{changed}: {warnings:?}");
+        assert!(expected.is_none_or(|expected| warnings[0].contains(expected)), "{warnings:?}");
+    }
+    Ok(())
+}
+
+#[test]
 fn garbage_in_the_middle_is_located() {
     let file = observations_3().replace("22000001.000", "2200x001.000");
     assert_eq!(complaint(&file), "file, line 18: expected an observation, found \"2200x001.000\"");

@@ -140,3 +140,22 @@ fn each_system_has_a_clock_of_its_own() {
     let fewer = codes.get(..5).expect("five satellites");
     assert_eq!(solve(fewer).err(), Some(Error::TooFewSatellites));
 }
+
+/// Noise that was not said makes σ larger, and codes that contradict each other a contradiction.
+#[test]
+fn codes_that_do_not_fit_are_told() {
+    let clean = solve(&codes(false)).expect("a position");
+    let spoilt = |by: f64, is: fn(usize) -> bool| {
+        let mut codes = codes(false);
+        for (index, it) in codes.iter_mut().enumerate().filter(|(index, _)| is(*index)) {
+            let by = if index % 4 < 2 { by } else { -by };
+            it.code = it.code.map(|code| Some(code? + by));
+        }
+        solve(&codes).expect("a position")
+    };
+    let noisy = spoilt(2.5, |_| true);
+    assert!(noisy.covariance.trace() > 2.0 * clean.covariance.trace());
+    assert_eq!(noisy.health, Health::Converging);
+    let wrong = spoilt(60.0, |index| index % 2 == 0);
+    assert!(matches!(wrong.health, Health::Contradicted(_)), "{:?}", wrong.health);
+}

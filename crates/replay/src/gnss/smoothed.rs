@@ -1,20 +1,25 @@
 //! Forwards and backwards, put together: where a receiver was, given what was observed before and after.
 
 use kestirim_gnss_ppp::Geodetic;
-use kestirim_ppp_filter::Health;
+use kestirim_ppp_filter::{Contradiction, Health};
 use nalgebra::Vector3;
 
 use super::followed::{Fix, Followed};
 
 /// Times nearer than this are the same, s.
 const SAME: f64 = 1e-3;
+/// Both directions are wrong by what neither knows of if they are farther apart than this, in standard deviations of the difference.
+/// Filters of clean days stay below three.
+const APART: f64 = 5.0;
 
 impl Followed {
     /// What one filter found forwards (`self`) and another `backwards`: the mean of both positions, to the east, north and
     /// up, weighed by the inverse of their variances (Fraser and Potter 1969). An epoch that contradicts one of them is
     /// the other's, and so is one that only one has.
     ///
-    /// Both saw the epoch itself, so its noise is in both, and the mean is reported to be no better than the better of them.
+    /// Both saw the epoch itself, so its noise is in both, and the mean is reported to be no better than the better of them. Where they
+    /// are apart by what their variances do not allow, as those of a receiver that is taken to rest and was moved, it is contradicted,
+    /// and known no better than that.
     #[must_use]
     pub fn smoothed(&self, backwards: &Self) -> Self {
         let mut both = Self { epochs: self.epochs, ..Self::default() };
@@ -73,6 +78,11 @@ impl Followed {
         let healths = [ours.healths[at], theirs.healths[there]];
         self.healths[last] =
             if healths.contains(&Health::Converged) { Health::Converged } else { healths[0] };
+        let disagree = |axis: usize| apart[axis].abs() > APART * forth[axis].hypot(back[axis]);
+        for axis in (0..3).filter(|axis| disagree(*axis)) {
+            self.deviations[last][axis] = apart[axis].abs();
+            self.healths[last] = Health::Contradicted(Contradiction::Motion);
+        }
     }
 }
 
@@ -124,5 +134,15 @@ mod tests {
             [Health::Converged, Health::Converged, Health::Converged, Health::Converging];
         assert_eq!(both.healths, expected);
         assert!(Followed::default().smoothed(&Followed::default()).fixes.is_empty());
+    }
+
+    #[test]
+    fn two_directions_that_disagree_contradict_each_other() {
+        let forwards = [(0.0, 0.3, 0.01, Health::Converged), (30.0, 0.02, 0.01, Health::Converged)];
+        let backwards = [0.0, 30.0].map(|t| (t, 0.0, 0.01, Health::Converged));
+        let both = followed(&forwards).smoothed(&followed(&backwards));
+        assert_eq!(both.healths, [Health::Contradicted(Contradiction::Motion), Health::Converged]);
+        let sigmas: Vec<_> = both.deviations.iter().map(|it| it[2]).collect();
+        assert!((sigmas[0] - 0.3).abs() < 1e-9 && sigmas[1] == 0.01, "{sigmas:?}");
     }
 }

@@ -18,7 +18,8 @@ use crate::system::{Account, System};
 
 /// Says why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
-    let contradicted = track.filters.iter().flat_map(|(_, followed)| followed.contradictions());
+    let filters = track.filters.iter().map(|(_, followed)| followed);
+    let contradicted = filters.chain(&track.smoothed).flat_map(Followed::contradictions);
     for (_, contradiction) in contradicted {
         let doubts = Health::Contradicted(contradiction).in_short();
         doubts.reasons().for_each(|reason| account.doubt(reason));
@@ -34,8 +35,9 @@ pub(super) fn account(
     // What of the recording serves is the same for all filters.
     let warnings = warning::of_recording(recording, setup, track.main());
     let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
-        let warnings = [first, &warning::outages(followed)].concat();
         let smoothed = track.smoothed.as_ref().filter(|_| *filter == setup.main());
+        let apart: Vec<_> = smoothed.and_then(warning::apart).into_iter().collect();
+        let warnings = [first, &warning::outages(followed), &apart].concat();
         Report::new(recording, setup, *filter, followed, smoothed, warnings)
     };
     if setup.filter == Choice::All {

@@ -67,6 +67,16 @@ fn contradictions(followed: &Followed) -> Option<String> {
     ))
 }
 
+/// A sentence about epochs in which both directions of a smoothed track disagree.
+pub(super) fn apart(smoothed: &Followed) -> Option<String> {
+    let (first, _) = smoothed.contradictions().next()?;
+    let (count, of) = (smoothed.contradictions().count(), smoothed.fixes.len());
+    Some(format!(
+        "in {count} of {of} smoothed epochs from {first} s on what was observed before and after puts the receiver at different places: \
+         a receiver that was moved is not at rest (--mode kinematic)"
+    ))
+}
+
 /// A sentence about jumps of the receiver's clock that were repaired.
 fn clock_jumps(followed: &Followed) -> Option<String> {
     let (first, milliseconds) = followed.clock_jumps.first()?;
