@@ -20,11 +20,13 @@ const LEVELS_DB: f64 = 100.0;
 const LEVELS: u32 = 41;
 /// How well a path loss is calibrated, dB.
 const CALIBRATION_DB: f64 = 3.0;
+/// Path losses that are off by no more than so many of these are thought possible.
+const LIKELY: f64 = 2.0;
 
 /// The thesis' channel to users within an area.
 type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
-/// A user in the plane, or with D = 3 one whose transmitter's level is unknown.
-type UserLocator<'a, const D: usize> = Locator<f64, POINTS, MOST, D, ChannelWithin<'a>>;
+/// A user in the plane, and by how many dB all path losses are off.
+type UserLocator<'a> = Locator<f64, POINTS, MOST, 3, ChannelWithin<'a>>;
 
 /// As many measurements as can be remembered, evenly chosen; over open ground, where they are thinned by place, all.
 pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop> {
@@ -138,40 +140,26 @@ impl<'a> Search<'a> {
         let Ok(channel) = environment.channel_at(self.wavelength_m) else { return Vec::new() };
         let channel = Within::new(channel, &*self.area);
         let region = self.area.region();
-        match quantity {
-            Quantity::PathLoss => self.follow::<2>(Locator::new(channel, region)),
-            Quantity::Level => {
-                let [width, height] = *region.high();
-                let corners = ([0.0, 0.0, -LEVELS_DB], [width, height, LEVELS_DB]);
-                match Region::new(corners.0, corners.1) {
-                    Ok(region) => self.follow::<3>(Locator::new(channel, &region)),
-                    Err(_) => Vec::new(),
-                }
-            }
-        }
+        let within = match quantity {
+            Quantity::PathLoss => LIKELY * CALIBRATION_DB,
+            Quantity::Level => LEVELS_DB,
+        };
+        let [width, height] = *region.high();
+        let corners = ([0.0, 0.0, -within], [width, height, within]);
+        let Ok(region) = Region::new(corners.0, corners.1) else { return Vec::new() };
+        self.follow(quantity, Locator::new(channel, &region))
     }
 
-    /// Whether the 90 % region of places holds the true one. The level, where it is a third coordinate, is
-    /// integrated over: nobody knows the true one.
-    fn covered<const D: usize>(
-        &self,
-        locator: &UserLocator<'_, D>,
-        truth: [f64; 2],
-    ) -> Option<bool> {
+    /// Whether the 90 % region of places holds the true one. The level, the third coordinate, is integrated over: nobody
+    /// knows the true one.
+    fn covered(&self, locator: &UserLocator<'_>, truth: [f64; 2]) -> Option<bool> {
         let truth = self.inward(truth);
-        if D == 2 {
-            let state = std::array::from_fn(|axis| truth[axis]);
-            return locator.credible(&state, 0.9);
-        }
         let moments = locator.moments();
-        let (level, deviation) = (moments.mean()[D - 1], moments.deviation()[D - 1]);
+        let (level, deviation) = (moments.mean()[2], moments.deviation()[2]);
         let levels = (0..LEVELS)
             .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
         let density = |[x, y]: [f64; 2]| {
-            log_sum(levels.clone().map(|level| {
-                let state = std::array::from_fn(|axis| [x, y, level][axis]);
-                locator.log_posterior(&state)
-            }))
+            log_sum(levels.clone().map(|level| locator.log_posterior(&[x, y, level])))
         };
         let posterior = locator.posterior();
         let mut points: Vec<(f64, f64)> = (0..posterior.len())
@@ -191,7 +179,7 @@ impl<'a> Search<'a> {
         border.map(|(least, _)| density(truth) >= *least)
     }
 
-    fn follow<const D: usize>(&self, locator: UserLocator<'_, D>) -> Vec<Estimate> {
+    fn follow(&self, quantity: Quantity, locator: UserLocator<'_>) -> Vec<Estimate> {
         let mut locator = Box::new(locator);
         let mut estimates = Vec::new();
         for (number, stop) in self.stops.iter().enumerate() {
@@ -209,7 +197,7 @@ impl<'a> Search<'a> {
                 place: self.outward([mean[0], mean[1]]),
                 sd_m: deviation[0].hypot(deviation[1]),
                 // A level received is the negative loss: the more the transmitter sends, the less.
-                level_db: mean.get(2).map(|loss| -loss),
+                level_db: (quantity == Quantity::Level).then_some(-mean[2]),
                 covered,
                 next: None,
                 cloud: self
