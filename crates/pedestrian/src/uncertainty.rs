@@ -9,7 +9,7 @@ use nalgebra::SVector;
 /// ([the book](https://github.com/kestirim/kestirim/blob/main/docs/src/reliability.md) has the table):
 /// - a rate b at which the heading drifts: the error is b·Σ tₖ·J·Δpₖ, with J a quarter turn;
 /// - a scale s of all strides: s times the distance from the start;
-/// - an error of each stride by itself, of the footprint and of the height.
+/// - an error of each stride by itself, of the footprint and of the height, and for the height one that is the same in all.
 ///
 /// The heading at the start is the frame's, so it has no error. A fault of the sensor is no part of it: see
 /// [`Warnings`](crate::Warnings).
@@ -64,7 +64,8 @@ impl<T: Scalar> PathUncertainty<T> {
         let scale = self.sensor.stride_scale::<T>();
         let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());
         let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own * steps);
-        SVector::from([of_axis(x, along), of_axis(y, across), height * steps])
+        let drifted = self.strides * self.sensor.height_drift::<T>();
+        SVector::from([of_axis(x, along), of_axis(y, across), (height * steps).hypot(drifted)])
     }
 }
 
@@ -95,7 +96,7 @@ mod tests {
         // The sum of k seconds of drift over k metres: half of 100 · 101 strides.
         assert!((y - (0.00048_f64 * 5050.0).hypot(0.028 * 101_f64.sqrt())).abs() < 1e-9, "{y} m");
         assert!((x - (0.005_f64 * 100.0).hypot(0.028 * 101_f64.sqrt())).abs() < 1e-9, "{x} m");
-        assert!((z - 0.047 * 101_f64.sqrt()).abs() < 1e-9, "{z} m");
+        assert!((z - (0.047 * 101_f64.sqrt()).hypot(0.012 * 100.0)).abs() < 1e-9, "{z} m");
     }
 
     #[test]

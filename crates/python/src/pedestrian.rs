@@ -1,7 +1,7 @@
 //! Where a foot walked.
 
 use kestirim_replay::pedestrian::{
-    Error, Options, Sample, SensorClass, Stride, Trace, TrackerKind, heading_rate, trace,
+    Error, Options, Sample, SensorClass, Stride, Trace, TrackerKind, trace,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -46,8 +46,8 @@ pub(crate) fn pedestrian<'py>(
     let field = field.filter(|_| !causal && options.tracker == TrackerKind::Ekf);
     let found = py.detach(|| -> Result<Trace, Error> {
         let mut found = trace(&samples, &options)?;
-        if let Some(rate) = field.and_then(|field| heading_rate(&samples, field, &options)) {
-            found.walk.turn_back(rate);
+        if let Some(field) = &field {
+            found.walk.correct_heading(&samples, field, &options);
         }
         Ok(found)
     });

@@ -1,5 +1,7 @@
 //! What the log of a walk shows before it is tracked.
 
+mod repeated;
+
 use kestirim_health::Reason;
 use kestirim_import::inertial::turns;
 
@@ -9,8 +11,6 @@ use crate::metrics::median;
 
 /// Samples farther apart than so many usual steps have others missing between them.
 const GAP: f64 = 3.0;
-/// A sensor that repeats itself bit for bit for so long is stuck, s.
-const STUCK_S: f64 = 0.25;
 /// A value that stands at least so often at an axis's end is its limit, …
 const CLIPPED: usize = 3;
 /// … if that is far out: beyond 1.8 g, beyond 200 °/s.
@@ -38,7 +38,9 @@ pub fn check(samples: &[Sample]) -> Vec<Finding> {
     }
     let mut findings = vec![rate(&steps, usual)];
     findings.extend(gaps(&steps, usual));
-    findings.extend(stuck(samples));
+    findings.extend(repeated::stuck(samples));
+    findings.extend(repeated::block(samples));
+    findings.extend(repeated::zeros(samples));
     findings.extend(clipped(samples));
     findings.extend(rest(samples, usual));
     findings.extend(turned(samples));
@@ -66,38 +68,6 @@ fn gaps(steps: &[f64], usual: f64) -> Option<Finding> {
     let found = format!("{} gaps, the longest {longest:.2} s", gaps.len());
     // Shorter ones are told here alone: they hardly change a path.
     (!gaps.is_empty()).then(|| Finding::note("gaps", found))
-}
-
-/// Runs of samples that are the same bit for bit: a bus that stalls, a buffer that is read again.
-fn stuck(samples: &[Sample]) -> Option<Finding> {
-    let (mut runs, mut longest, mut lost, mut begin) = (0_usize, 0.0_f64, 0.0, 0_usize);
-    let same = |a: &Sample, b: &Sample| {
-        a.specific_force == b.specific_force && a.angular_rate == b.angular_rate
-    };
-    for i in 1..=samples.len() {
-        if i < samples.len() && same(&samples[i], &samples[begin]) {
-            continue;
-        }
-        let seconds = (samples[i - 1].time_us - samples[begin].time_us) as f64 * 1e-6;
-        if seconds >= STUCK_S {
-            runs += 1;
-            longest = longest.max(seconds);
-            lost += seconds;
-        }
-        begin = i;
-    }
-    let times = if runs == 1 { "once".to_owned() } else { format!("{runs} times") };
-    (runs > 0).then(|| {
-        Finding::fault(
-            "repeated samples",
-            Reason::Stuck,
-            format!(
-                "the sensor repeated itself {times}, {lost:.1} s in all, {longest:.1} s at most"
-            ),
-            "what the foot did meanwhile is not in the log",
-            "look at the bus and at the logger's buffer",
-        )
-    })
 }
 
 /// Axes that stand at their end.

@@ -61,19 +61,23 @@ struct Prior {
     scale: f64,
     /// Variance of all strides' own errors, each axis, m².
     strides: f64,
-    /// Of all height errors, m².
+    /// Of all height errors, m², and of one stride what all have alike.
     heights: f64,
+    rise: f64,
     count: f64,
 }
 
 impl Prior {
     fn of(walk: &Walk) -> Self {
         let (left, count) = (PathErrors::of(walk), walk.strides.len() as f64);
+        let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
+        let rise = class.height_drift::<f64>().powi(2);
         Self {
             rate: left.rate,
             scale: left.scale,
             strides: count * left.stride.powi(2),
-            heights: count * PathUncertainty::<f64>::HEIGHT.powi(2),
+            heights: count * PathUncertainty::<f64>::HEIGHT.powi(2) + count * count * rise,
+            rise,
             count,
         }
     }
@@ -119,7 +123,8 @@ impl Path {
         let variances =
             Matrix2::from_diagonal(&Vector2::new(prior.rate.powi(2), prior.scale.powi(2)));
         let Some((_, end)) = self.walked(rate, scale).last() else { return Vec::new() };
-        let [own, height] = [prior.strides, prior.heights].map(|all| all / prior.count);
+        let own = prior.strides / prior.count;
+        let height = prior.heights / prior.count - prior.count * prior.rise;
         let known = PUT_BACK * PUT_BACK;
         let gap = end * variances * end.transpose() + Matrix2::identity() * (prior.strides + known);
         let inverse = gap.try_inverse().unwrap_or_else(Matrix2::zeros);
@@ -129,8 +134,9 @@ impl Path {
             let with_end = slope * variances * end.transpose() + noise;
             let all = slope * variances * slope.transpose() + noise;
             let left = all - with_end * inverse * with_end.transpose();
-            let z = strides * height;
-            let z = z - z * z / (prior.heights + known);
+            let with_last = strides * (height + prior.count * prior.rise);
+            let z = strides * (height + strides * prior.rise);
+            let z = z - with_last * with_last / (prior.heights + known);
             [left[(0, 0)], left[(1, 1)], z].map(|variance| variance.max(0.0).sqrt())
         };
         self.walked(rate, scale).enumerate().map(after).collect()

@@ -9,10 +9,25 @@ use super::{Options, Sample, Walk, position_at};
 /// Standard deviation of where a foot stands that is put back to where it stood, m.
 const PUT_BACK: f64 = 0.1;
 
-/// The rate at which the heading of a walk drifts, rad/s, where the magnetometer shows it.
-///
-/// The `field` is measured at each sample, body axes, in any unit, and not a number where it was not.
-pub fn heading_rate(samples: &[Sample], field: &[[f64; 3]], options: &Options) -> Option<f64> {
+/// The rate at which the heading of a walk drifts, rad/s, where the magnetometer shows it; a sentence if the field turns as no
+/// gyroscope of this class does.
+fn heading_rate(
+    samples: &[Sample],
+    field: &[[f64; 3]],
+    options: &Options,
+) -> Result<Option<f64>, String> {
+    let Some(rate) = shown(samples, field, options) else { return Ok(None) };
+    if MagneticHeading::is_likely(rate, options.config::<f64>().sensor) {
+        return Ok(Some(rate));
+    }
+    Err(format!(
+        "the magnetometer is not used: where the foot stood twice its field turned by {:.0} °/min, as no gyroscope drifts; iron \
+         came near, or it is stuck",
+        60.0 * rate.abs().to_degrees()
+    ))
+}
+
+fn shown(samples: &[Sample], field: &[[f64; 3]], options: &Options) -> Option<f64> {
     let samples: Vec<_> = samples.iter().map(imu_sample::<f64>).collect();
     let config = options.config();
     let mut energy = vec![0.0; samples.len()];
@@ -34,6 +49,17 @@ pub fn heading_rate(samples: &[Sample], field: &[[f64; 3]], options: &Options) -
 }
 
 impl Walk {
+    /// Takes the drift of the heading back where the log's magnetometer shows it, or warns why not.
+    ///
+    /// The `field` is measured at each sample, body axes, in any unit, and not a number where it was not.
+    pub fn correct_heading(&mut self, samples: &[Sample], field: &[[f64; 3]], options: &Options) {
+        match heading_rate(samples, field, options) {
+            Ok(Some(rate)) => self.turn_back(rate),
+            Ok(None) => {}
+            Err(refused) => self.warnings.push(refused),
+        }
+    }
+
     /// Turns each step back by how far the heading has drifted until then, at this rate, rad/s.
     pub fn turn_back(&mut self, rate: f64) {
         let Some(first) = self.track.first().copied() else { return };

@@ -1,7 +1,7 @@
 //! A walk with a sensor on the foot.
 //!
 //! [`walk`] makes a [`Walk`] of [`Sample`]s as the [`Options`] say, [`trace`] keeps velocity, attitude and stance of every
-//! sample, too. [`heading_rate`] finds how the heading drifts where the log has a magnetometer, [`sensor_class`] what kind
+//! sample, too. [`Walk::correct_heading`] takes the drift of the heading back where the log has a magnetometer, [`sensor_class`] what kind
 //! of sensor it was. [`build`] makes what follows a walk while it comes. Frame: *room*, z up, x as the foot pointed at
 //! the start.
 
@@ -26,7 +26,6 @@ pub use kestirim_import::inertial::Sample;
 pub use self::check::check;
 pub use self::choices::{DetectorKind, Options, SensorClass, TrackerKind};
 pub use self::error::Error;
-pub use self::heading::heading_rate;
 pub use self::live::{Follow, build};
 pub use self::position::{Footprint, TrackPoint, position_at};
 pub use self::right_angles::RightAngles;

@@ -20,6 +20,8 @@ use super::{
 };
 use crate::{Number, ScalarKind};
 
+const NO_STRIDE: &str = "no stride was found: the sensor is not on a foot, or nobody walked";
+
 /// What a tracker makes of a walk, in the room frame.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Walk {
@@ -258,6 +260,10 @@ impl Walk {
             self.closure_m = x.hypot(*y);
         }
         (self.warnings, self.doubts) = (sentences(warnings), warnings.health());
+        if self.strides.is_empty() {
+            self.warnings.push(NO_STRIDE.to_owned());
+            self.doubts = self.doubts.with(Reason::NotObservable, true);
+        }
     }
 }
 

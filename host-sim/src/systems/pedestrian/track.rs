@@ -1,7 +1,7 @@
 //! Tracks a recording.
 
 use kestirim_pedestrian::SensorClass;
-use kestirim_replay::pedestrian::{self, Trace, Walk, heading_rate, sensor_class, trace, walk};
+use kestirim_replay::pedestrian::{self, Trace, Walk, sensor_class, trace, walk};
 
 use super::recording::Recording;
 use super::settings::{LOOKING_BACK, is_at_right_angles, is_closed, options, turns_back};
@@ -54,14 +54,13 @@ fn foot(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Tr
     let samples = &recording.log.samples;
     let options = options(settings).with_sensor(|| class_of(recording));
     let field = recording.log.field.as_ref().filter(|_| options.magnetometer);
-    let rate = field.and_then(|field| heading_rate(samples, field, &options));
     let tracked = match detail {
         Detail::Result => walk(samples, &options).map(|walk| Trace { walk, ..Trace::default() }),
         Detail::Every => trace(samples, &options),
     };
     let mut trace = tracked.map_err(|error| refused(recording, &error))?;
-    if let Some(rate) = rate {
-        trace.walk.turn_back(rate);
+    if let Some(field) = field {
+        trace.walk.correct_heading(samples, field, &options);
     }
     Ok(trace)
 }

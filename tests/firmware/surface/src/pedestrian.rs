@@ -131,6 +131,10 @@ fn turns_back<T: Scalar>() {
     }
     MagneticHeading::finish(any(&mut heading), number());
     keep(MagneticHeading::rate(&heading));
+    keep(MagneticHeading::<T>::is_likely(
+        number(),
+        one_of([SensorClass::Industrial, SensorClass::Consumer]),
+    ));
 }
 
 fn all_of<T: Scalar>() {

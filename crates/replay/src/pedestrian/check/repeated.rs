@@ -1,0 +1,154 @@
+//! Samples that were not measured: those of before again, and rates of exactly zero.
+
+use std::collections::HashMap;
+
+use kestirim_health::Reason;
+
+use super::super::Sample;
+use crate::Finding;
+
+/// A sensor that repeats itself bit for bit for so long is stuck, s.
+const STUCK_S: f64 = 0.25;
+/// So many samples in a row that were there before, bit for bit, are no chance.
+const REPEATED: usize = 20;
+/// A rate of exactly zero between two of the same sign that are beyond this is none, rad/s; …
+const TURNING: f64 = 0.5;
+/// … so many of them, and of so many samples one, are told.
+const ZEROS: usize = 3;
+const ONE_IN: usize = 1000;
+
+/// Runs of samples that are the same bit for bit: a bus that stalls, a buffer that is read again.
+pub(super) fn stuck(samples: &[Sample]) -> Option<Finding> {
+    let (mut runs, mut longest, mut lost, mut begin) = (0_usize, 0.0_f64, 0.0, 0_usize);
+    let same = |a: &Sample, b: &Sample| {
+        a.specific_force == b.specific_force && a.angular_rate == b.angular_rate
+    };
+    for i in 1..=samples.len() {
+        if i < samples.len() && same(&samples[i], &samples[begin]) {
+            continue;
+        }
+        let seconds = (samples[i - 1].time_us - samples[begin].time_us) as f64 * 1e-6;
+        if seconds >= STUCK_S {
+            runs += 1;
+            longest = longest.max(seconds);
+            lost += seconds;
+        }
+        begin = i;
+    }
+    let times = if runs == 1 { "once".to_owned() } else { format!("{runs} times") };
+    (runs > 0).then(|| {
+        Finding::fault(
+            "repeated samples",
+            Reason::Stuck,
+            format!(
+                "the sensor repeated itself {times}, {lost:.1} s in all, {longest:.1} s at most"
+            ),
+            "what the foot did meanwhile is not in the log",
+            "look at the bus and at the logger's buffer",
+        )
+    })
+}
+
+/// The longest block of samples that comes again later: of a buffer that is written twice.
+pub(super) fn block(samples: &[Sample]) -> Option<Finding> {
+    let mut seen: HashMap<[u64; 6], usize> = HashMap::new();
+    let (mut count, mut at) = (0, None);
+    let mut longest = (0, 0, 0);
+    for (i, sample) in samples.iter().enumerate() {
+        let values = sample.specific_force.iter().chain(&sample.angular_rate);
+        let mut bits = [0; 6];
+        bits.iter_mut().zip(values).for_each(|(bits, value)| *bits = value.to_bits());
+        let before = seen.insert(bits, i);
+        // What stays the same is stuck, and told so.
+        let before = before.filter(|before| before + 1 < i);
+        let goes_on = before.is_some() && before == at.map(|at: usize| at + 1);
+        count = if goes_on { count + 1 } else { usize::from(before.is_some()) };
+        at = before;
+        if let Some(before) = before.filter(|_| count > longest.0) {
+            longest = (count, before, i);
+        }
+    }
+    let (count, before, now) = longest;
+    let seconds = |i: usize| (samples[i].time_us - samples[0].time_us) as f64 * 1e-6;
+    let is_later = samples[now].time_us > samples[before].time_us;
+    (count >= REPEATED && is_later).then(|| {
+        Finding::fault(
+            "repeated block",
+            Reason::Stuck,
+            format!(
+                "{count} samples up to {:.2} s are those up to {:.2} s again, bit for bit",
+                seconds(now),
+                seconds(before)
+            ),
+            "what the foot did in them is counted twice",
+            "look at the logger's buffer",
+        )
+    })
+}
+
+/// Rates of exactly zero in the midst of a turn: a transfer from the sensor that failed.
+pub(super) fn zeros(samples: &[Sample]) -> Option<Finding> {
+    let is_zero = |three: &&[Sample]| {
+        (0..3).any(|axis| {
+            let [before, now, after] = [0, 1, 2].map(|i| three[i].angular_rate[axis]);
+            now == 0.0 && before * after > 0.0 && before.abs().min(after.abs()) > TURNING
+        })
+    };
+    let count = samples.windows(3).filter(is_zero).count();
+    (count >= ZEROS && count * ONE_IN > samples.len()).then(|| {
+        Finding::fault(
+            "zeros",
+            Reason::Rejected,
+            format!("the gyroscope says exactly 0 {count} times in the midst of a turn"),
+            "the heading misses what was turned meanwhile",
+            "look at the bus: leave out what was not read",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A foot that swings, 100 Hz.
+    fn swings(count: u64) -> Vec<Sample> {
+        let sample = |k: u64| {
+            let phase = 0.1 * k as f64;
+            Sample {
+                time_us: 10_000 * k,
+                specific_force: [phase.sin(), 0.01 * phase, 9.8],
+                angular_rate: [2.0 + phase.cos(), 0.0, 0.02 * phase],
+            }
+        };
+        (0..count).map(sample).collect()
+    }
+
+    #[test]
+    fn a_block_that_comes_again_is_told() {
+        let mut samples = swings(400);
+        assert!(block(&samples).is_none());
+        for k in 200..219 {
+            samples[k] = Sample { time_us: samples[k].time_us, ..samples[k - 100] };
+        }
+        assert!(block(&samples).is_none(), "nineteen may be chance");
+        for k in 219..230 {
+            samples[k] = Sample { time_us: samples[k].time_us, ..samples[k - 100] };
+        }
+        let found = block(&samples).expect("a finding");
+        assert!(
+            found.found.contains("30 samples up to 2.29 s are those up to 1.29 s"),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn rates_of_zero_are_none_in_a_turn() {
+        let mut samples = swings(400);
+        for k in [50, 150] {
+            samples[k].angular_rate[0] = 0.0;
+        }
+        assert!(zeros(&samples).is_none(), "two");
+        samples[250].angular_rate[0] = 0.0;
+        assert!(zeros(&samples).is_some());
+    }
+}
