@@ -4,7 +4,7 @@ use kestirim_health::Reason;
 
 use super::{Log, Model, STATE_COLUMNS};
 use crate::Finding;
-use crate::metrics::{median, standard_deviation};
+use crate::metrics::median;
 
 /// A measurement that jumps by so many usual changes and back is a spike.
 const SPIKE: f64 = 30.0;
@@ -24,17 +24,21 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
         Some(model) => model.outputs.get(output).map_or("", |(name, _)| name),
         None => STATE_COLUMNS.get(output).copied().unwrap_or_default(),
     };
-    for (column, &output) in log.outputs.iter().enumerate() {
+    let columns: Vec<Vec<f64>> = (0..log.outputs.len())
+        .map(|column| {
+            log.samples.iter().filter_map(|s| s.measured.get(column).copied().flatten()).collect()
+        })
+        .collect();
+    let flies = columns.iter().any(|values| varies(values));
+    for (values, &output) in columns.iter().zip(&log.outputs) {
         let name = name(output);
-        let values: Vec<f64> =
-            log.samples.iter().filter_map(|s| s.measured.get(column).copied().flatten()).collect();
         let missing = count - values.len();
         if missing > 0 {
             let share = 100.0 * missing as f64 / count as f64;
             findings.push(Finding::note("missing", format!("{name}: {share:.1} % of the samples")));
         }
-        findings.extend(spikes(name, &values));
-        findings.extend(stuck(name, &values));
+        findings.extend(spikes(name, values));
+        findings.extend(stuck(name, values).filter(|_| flies));
     }
     findings
 }
@@ -58,9 +62,13 @@ fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
     })
 }
 
+fn varies(values: &[f64]) -> bool {
+    values.windows(2).any(|pair| pair[0] != pair[1])
+}
+
 fn stuck(name: &str, values: &[f64]) -> Option<Finding> {
     let longest = values.chunk_by(|a, b| a == b).map(<[f64]>::len).max().unwrap_or(0);
-    (longest >= STUCK && longest < values.len() && standard_deviation(values) > 0.0).then(|| {
+    (longest >= STUCK).then(|| {
         Finding::fault(
             "stuck",
             Reason::Stuck,
