@@ -158,6 +158,12 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
             format!("expected ranges to anchors {}, found {}", known.join(", "), names.join(", "));
         return Err(Error::log(problem));
     }
+    if let Some([listed, heard]) = counted_apart(&found.labels, anchors) {
+        let problem = format!(
+            "expected anchors counted from {listed}, as the list has them, found them counted from {heard}: name them in the list as the log does"
+        );
+        return Err(Error::log(problem));
+    }
     let all = found.times().count();
     let anchor = |label: usize| places.get(label).copied().flatten();
     let range = |&(time_us, label, metres)| Some(Range { time_us, anchor: anchor(label)?, metres });
@@ -197,6 +203,23 @@ fn place(label: &str, anchors: &[String]) -> Option<usize> {
     let number = number(label)?;
     let mut numbered = (0..anchors.len()).filter(|&i| self::number(&anchors[i]) == Some(number));
     numbered.next().filter(|_| numbered.next().is_none())
+}
+
+/// Where the list and the log begin to count, if both number as many anchors one after the other, and not from the same number
+/// on: most names are found in the list then, each for another anchor.
+fn counted_apart(labels: &BTreeMap<String, usize>, anchors: &[String]) -> Option<[u32; 2]> {
+    if labels.len() != anchors.len() || anchors.len() < 3 {
+        return None;
+    }
+    let begin = |mut numbers: Vec<u32>| {
+        numbers.sort_unstable();
+        let begin = *numbers.first()?;
+        let follow = numbers.iter().zip(begin..).all(|(number, expected)| *number == expected);
+        follow.then_some(begin)
+    };
+    let listed = begin(anchors.iter().map(|name| number(name)).collect::<Option<_>>()?)?;
+    let heard = begin(labels.keys().map(|name| number(name)).collect::<Option<_>>()?)?;
+    (listed != heard).then_some([listed, heard])
 }
 
 /// The number at the end of a name, behind letters alone.
@@ -268,6 +291,11 @@ mod tests {
         ] {
             assert_read(text, &["A0", "A1", "A2"], &plain);
         }
+        let four = "t,d1,d2,d3,d4\n0,1.6,1.4,1.3,1.2\n0.1,1.6,1.4,1.3,1.2\n";
+        let error = ranges(four, &["A0", "A1", "A2", "A3"], &plain).unwrap_err();
+        assert!(error.contains("counted from 0") && error.contains("counted from 1"), "{error}");
+        let read = ranges(four, &["A1", "A2", "A3"], &plain).unwrap();
+        assert_eq!((read.ranges.len(), read.unlisted), (6, 2), "an anchor more than listed");
         for text in ["t,anchor,range\n0,A0,1\n", "t,x,y,z\n0,1,2,3\n"] {
             assert_eq!(ranges(text, &["A0", "A1"], &plain).unwrap_err(), "nothing known", "{text}");
         }

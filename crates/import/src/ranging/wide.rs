@@ -22,6 +22,10 @@ struct Ranges {
     at: usize,
     label: String,
     scale: f64,
+    /// The word for a range before the label, if there is one.
+    stem: Option<&'static str>,
+    /// Whether there is such an anchor.
+    is_listed: bool,
 }
 
 /// Reads a table with a column an anchor; none if it is none.
@@ -33,8 +37,8 @@ pub(super) fn read(
     let found = NamedTable::find(text, options, |heading| {
         let time = heading.find("t").ok().flatten();
         let ranges = columns(heading, anchors, options);
-        let is_wide =
-            ranges.len() >= FEWEST && !heading.names().iter().any(|name| name == "anchor");
+        let is_wide = ranges.iter().filter(|it| it.is_listed).count() >= FEWEST
+            && !heading.names().iter().any(|name| name == "anchor");
         time.filter(|_| is_wide).map(|time| (time, ranges)).ok_or(())
     });
     let Some(Ok((table, (time, columns)))) = found else { return Ok(None) };
@@ -80,17 +84,22 @@ pub(super) fn read(
     Ok(Some((found, conclusion, damage)))
 }
 
-/// The columns whose names mean an anchor of the list, or a number behind a word for a range.
+/// The columns whose names mean an anchor of the list, alone or behind a word for a range, and those of other numbers behind the
+/// same word: to anchors that are not listed.
 fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<Ranges> {
     let said = options.units.of("range");
     let names = heading.names().iter().enumerate();
     let column = |(at, name): (usize, &String)| {
         let (base, unit) = taken_apart(name);
-        let label = label(base, anchors)?;
         let scale = said.as_ref().or(unit.as_ref()).map_or(1.0, |unit| unit.scale);
-        Some(Ranges { at, label, scale })
+        let (label, stem, is_listed) = label(base, anchors)?;
+        Some(Ranges { at, label, scale, stem, is_listed })
     };
-    names.filter_map(column).collect()
+    let mut columns: Vec<_> = names.filter_map(column).collect();
+    let listed = columns.iter().filter(|it| it.is_listed).map(|it| it.stem);
+    let stems: Vec<_> = listed.flatten().collect();
+    columns.retain(|it| it.is_listed || it.stem.is_some_and(|stem| stems.contains(&stem)));
+    columns
 }
 
 /// A name and the unit in brackets or behind it.
@@ -107,19 +116,19 @@ fn taken_apart(name: &str) -> (&str, Option<Unit>) {
     }
 }
 
-/// The anchor that a column's name means.
-fn label(name: &str, anchors: &[String]) -> Option<String> {
+/// The anchor that a column's name means, the word for a range before it, and whether there is such an anchor.
+fn label(name: &str, anchors: &[String]) -> Option<(String, Option<&'static str>, bool)> {
     let is_anchor = |text: &str| anchors.iter().any(|anchor| anchor.eq_ignore_ascii_case(text));
     let bare = |text: &str| text.trim_matches(|letter: char| !letter.is_alphanumeric()).to_owned();
     if is_anchor(name) {
-        return Some(name.to_owned());
+        return Some((name.to_owned(), None, true));
     }
     let lower = name.to_ascii_lowercase();
     BEFORE.iter().find_map(|before| {
         let behind =
             bare(name.get(lower.strip_prefix(before).map(|rest| lower.len() - rest.len())?..)?);
         let is_number = !behind.is_empty() && behind.bytes().all(|byte| byte.is_ascii_digit());
-        let is_one = is_anchor(&behind) || is_number && place(&behind, anchors).is_some();
-        is_one.then_some(behind)
+        let is_listed = is_anchor(&behind) || is_number && place(&behind, anchors).is_some();
+        (is_listed || is_number).then_some((behind, Some(*before), is_listed))
     })
 }

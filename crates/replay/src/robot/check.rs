@@ -1,8 +1,8 @@
 //! What the ranges of a tag show before it is tracked.
 
 mod geometry;
-
-use std::collections::BTreeMap;
+mod moments;
+mod stuck;
 
 use kestirim_health::Reason;
 
@@ -10,11 +10,6 @@ use super::{Anchors, Event, Range};
 use crate::Finding;
 use crate::metrics::standard_deviation;
 
-/// A range that stays the same to the last digit for so long and so often is stuck, s, …
-const STUCK_S: f64 = 3.0;
-const STUCK: usize = 15;
-/// … if the others change meanwhile by more than noise, m.
-const MOVING_M: f64 = 0.3;
 /// Ranges at the same largest value, of so many and such a share, were cut there.
 const CUT: usize = 20;
 const CUT_SHARE: f64 = 0.03;
@@ -55,11 +50,10 @@ pub fn check<'a>(
     let cut_at = cut_at(&parts);
     findings.extend(cut_at.map(cut));
     let cut_at = cut_at.map(|(_, metres)| metres);
-    findings.extend(parts.iter().find_map(|ranges| stuck(ranges, cut_at, &name)));
+    findings.extend(parts.iter().find_map(|ranges| stuck::one(ranges, cut_at, &name)));
+    findings.extend(parts.iter().find_map(|ranges| stuck::all(ranges, cut_at)));
     findings.extend(geometry::check(anchors, &parts, height));
-    if height == KnownHeight::Unknown {
-        findings.extend(geometry::mirror(anchors));
-    }
+    findings.extend(geometry::mirror(anchors, height));
     findings
 }
 
@@ -109,67 +103,6 @@ fn links<'a>(
     findings
 }
 
-/// An anchor whose range stays while those of others change.
-fn stuck<'a>(
-    ranges: &[Range],
-    cut_at: Option<f64>,
-    name: &impl Fn(usize) -> &'a str,
-) -> Option<Finding> {
-    runs(ranges).into_iter().find_map(|run| {
-        let Run { anchor, metres, count, first, last } = run;
-        let seconds = (ranges[last].time_us - ranges[first].time_us) as f64 * 1e-6;
-        if count < STUCK || seconds < STUCK_S || Some(metres) == cut_at {
-            return None;
-        }
-        let mut others: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        let during = ranges[first..=last].iter();
-        for other in during.filter(|it| it.anchor != anchor && it.metres.is_finite()) {
-            others.entry(other.anchor).or_default().push(other.metres);
-        }
-        let moving = others.values().filter(|its| standard_deviation(its) > MOVING_M).count();
-        (moving >= 2).then(|| {
-            let name = name(anchor);
-            Finding::fault(
-                "stuck",
-                Reason::Stuck,
-                format!(
-                    "the range to {name} stays at {metres:.3} m for {seconds:.1} s while others change"
-                ),
-                "the position is drawn to a circle that is not there",
-                "look at what the anchor or the logger repeats",
-            )
-        })
-    })
-}
-
-/// Ranges to an anchor that are all the same.
-struct Run {
-    anchor: usize,
-    metres: f64,
-    count: usize,
-    /// Their places in the log.
-    first: usize,
-    last: usize,
-}
-
-/// The runs of each anchor, in the order in which they end: looked at once each, however long they are.
-fn runs(ranges: &[Range]) -> Vec<Run> {
-    let mut going: BTreeMap<usize, Run> = BTreeMap::new();
-    let mut runs = Vec::new();
-    for (i, range) in ranges.iter().enumerate() {
-        let Range { anchor, metres, .. } = *range;
-        match going.get_mut(&anchor) {
-            Some(run) if run.metres == metres => (run.count, run.last) = (run.count + 1, i),
-            _ => {
-                let run = Run { anchor, metres, count: 1, first: i, last: i };
-                runs.extend(going.insert(anchor, run));
-            }
-        }
-    }
-    runs.extend(going.into_values());
-    runs
-}
-
 /// How many ranges were cut at a largest value, and that value, m.
 fn cut_at(parts: &[Vec<Range>]) -> Option<(usize, f64)> {
     let all: Vec<&Range> = parts.iter().flatten().filter(|it| it.metres.is_finite()).collect();
@@ -180,7 +113,7 @@ fn cut_at(parts: &[Vec<Range>]) -> Option<(usize, f64)> {
     let is_often = at_most.len() >= CUT && at_most.len() as f64 >= CUT_SHARE * metres.len() as f64;
     // A tag that stands gives the same range to one anchor again and again.
     let of_several = at_most.iter().any(|anchor| *anchor != at_most[0]);
-    let is_cut = is_often && of_several && standard_deviation(&metres) > MOVING_M;
+    let is_cut = is_often && of_several && standard_deviation(&metres) > stuck::MOVING_M;
     is_cut.then_some((at_most.len(), most))
 }
 

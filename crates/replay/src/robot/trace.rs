@@ -172,7 +172,7 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
             Event::EpochEnd { .. } => {
                 let (position, spread) = (tracker.position(), tracker.spread());
                 let height_variance = tracker.height_variance();
-                let health = recent.health(time_us, &trace.ranges);
+                let health = recent.health(time_us, &trace.ranges).max(tracker.health().state());
                 let mut epoch = Epoch { time_us, position, spread, height_variance, health };
                 if epoch.is_vague() && epoch.health == State::Good {
                     epoch.health = Reason::NotObservable.state();

@@ -44,6 +44,11 @@ pub trait Follow: Debug {
         None
     }
 
+    /// What speaks against its position now, of a tracker that knows.
+    fn health(&self) -> kestirim_health::Health {
+        kestirim_health::Health::GOOD
+    }
+
     /// All that it needs to go on elsewhere, to the bit; none if it cannot be stored.
     fn snapshot(&self) -> Option<Vec<u8>> {
         None

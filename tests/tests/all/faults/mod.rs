@@ -24,6 +24,11 @@ const UNSEEN: &[(&str, &str, &str)] = &[
     ("esp32_los2", "room mirrored", "a mirrored room has the same ranges"),
     ("lias_mid_tag1", "room mirrored", "the same"),
     ("trek_m1l", "room mirrored", "the same"),
+    (
+        "trek_m1l",
+        "anchors counted from another number",
+        "turned by a quarter, a square has the same ranges",
+    ),
     ("kinematic", "orbits a kilometre off", "all orbits moved alike move the position, and fit"),
 ];
 

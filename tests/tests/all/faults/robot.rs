@@ -1,5 +1,6 @@
 //! Faults of radios, anchors and the lists of them.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -53,6 +54,16 @@ impl Room {
         );
     }
 
+    fn stick_all(&mut self) {
+        let from = self.ranges.rows.len() / 2;
+        let column = self.ranges.column("anchor");
+        let names: Vec<_> = self.ranges.rows.iter().map(|row| row[column].clone()).collect();
+        let mut last = BTreeMap::new();
+        self.ranges.map(&["range"], |row, range| {
+            if row < from { range } else { *last.entry(names[row].clone()).or_insert(range) }
+        });
+    }
+
     fn lose(&mut self, anchor: usize) {
         let name = self.anchors.rows[anchor][0].clone();
         let column = self.ranges.column("anchor");
@@ -87,6 +98,16 @@ const FAULTS: &[Fault] = &[
     ("rows twice", |it| it.ranges.duplicate()),
     ("neighbours reordered", |it| it.ranges.reorder()),
     ("all ranges 1 m long", |it| it.ranges(None, |_, v| v + 1.0)),
+    ("all ranges doubled", |it| it.ranges(None, |_, v| 2.0 * v)),
+    ("all ranges halved", |it| it.ranges(None, |_, v| v / 2.0)),
+    ("all ranges stuck from the middle on", Room::stick_all),
+    ("anchors counted from another number", |it| {
+        let mut names: Vec<_> = it.anchors.rows.iter().map(|row| row[0].clone()).collect();
+        names.rotate_left(1);
+        for (row, name) in it.anchors.rows.iter_mut().zip(names) {
+            row[0] = name;
+        }
+    }),
     ("all ranges negative", |it| it.ranges(None, |_, v| -v)),
     ("room mirrored", |it| it.anchors.map(&["x"], |_, x| -x)),
 ];

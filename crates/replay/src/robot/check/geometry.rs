@@ -5,16 +5,13 @@ use kestirim_uwb_ranging::{Observation, Solver};
 use nalgebra::{Matrix3, Vector3};
 
 use super::KnownHeight;
+use super::moments::{self, Moment};
 use crate::Finding;
 use crate::metrics::median;
 use crate::robot::{Anchors, Range};
 
-/// So many moments are looked at, spread over the recording.
-const MOMENTS: usize = 80;
 /// Fewer say nothing.
 const FEWEST: usize = 12;
-/// Ranges of so long make a moment, µs: a robot moves 10 cm meanwhile.
-const WINDOW_US: i64 = 200_000;
 /// What the ranges leave over is a contradiction from here on, m: beyond biases of 30 cm and a wall.
 const CONTRADICTION_M: f64 = 0.6;
 /// … and one that nothing explains, where walls and people alone may do as much, from here on, m and of the usual range.
@@ -32,17 +29,24 @@ const CLEARLY: f64 = 6.0;
 const COMMON_BIAS_M: f64 = 0.5;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
-const FOOT: f64 = 0.3048;
+/// What a range may be taken in or as, in m, and what to do about it.
+const SCALES: [(f64, &str, &str); 4] = [
+    (0.3048, "in feet", ": --units range=ft"),
+    (0.9144, "in yards", ""),
+    (0.5, "halved", ": they may be those of there and back"),
+    (2.0, "doubled", ": they may have been halved twice"),
+];
 
 /// Anchors that are no farther from a plane than so on average lie in it: places are measured to centimetres, m.
 const FLAT_M: f64 = 0.05;
 
-/// The ranges of a moment: a range an anchor.
-type Moment = Vec<(usize, f64)>;
-
-/// Whether a tag in space has the ranges of another: its mirror image, where the anchors lie in one plane.
-pub(super) fn mirror(anchors: &Anchors) -> Option<Finding> {
-    if anchors.positions.is_empty() || !anchors.positions.iter().flatten().all(|it| it.is_finite())
+/// Whether a tag has the ranges of another: its mirror image, where the anchors of a tag in space lie in one plane, or those of a tag
+/// in the plane stand in one line.
+pub(super) fn mirror(anchors: &Anchors, height: KnownHeight) -> Option<Finding> {
+    let is_in_space = height == KnownHeight::Unknown;
+    let fewest = if is_in_space { 1 } else { 3 };
+    if anchors.positions.len() < fewest
+        || !anchors.positions.iter().flatten().all(|it| it.is_finite())
     {
         return None;
     }
@@ -50,7 +54,22 @@ pub(super) fn mirror(anchors: &Anchors) -> Option<Finding> {
     let places = || anchors.positions.iter().map(|place| Vector3::from(*place));
     let centre = places().sum::<Vector3<f64>>() / count;
     let spread = places().map(|place| place - centre).map(|it| it * it.transpose() / count);
-    let least = spread.sum::<Matrix3<f64>>().symmetric_eigenvalues().min().max(0.0).sqrt();
+    let spread = spread.sum::<Matrix3<f64>>();
+    let least = if is_in_space {
+        spread.symmetric_eigenvalues().min()
+    } else {
+        spread.fixed_view::<2, 2>(0, 0).into_owned().symmetric_eigenvalues().min()
+    };
+    let least = least.max(0.0).sqrt();
+    if least < FLAT_M && !is_in_space {
+        return Some(Finding::fault(
+            "geometry",
+            Reason::Geometry,
+            format!("all anchors stand in one line, within {:.0} cm", 100.0 * least),
+            "a tag has the same ranges on both sides of it, so the position may be the mirror image's",
+            "say the room (--room), or hang an anchor well beside the line",
+        ));
+    }
     (least < FLAT_M).then(|| {
         Finding::fault(
             "geometry",
@@ -75,7 +94,10 @@ pub(super) fn check(
         KnownHeight::Found(metres) => (Some(metres), false),
         KnownHeight::Said(metres) => (Some(metres), true),
     };
-    let moments = moments(parts);
+    let mut moments = moments::at_once(parts);
+    if moments.len() < FEWEST {
+        moments = moments::interpolated(parts);
+    }
     let places: Vec<Vector3<f64>> =
         anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
     let tried = Tried { moments: &moments, anchors: &places, height };
@@ -86,41 +108,13 @@ pub(super) fn check(
     if left < SUSPICION_M || (left < CONTRADICTION_M && !is_given) {
         return Some(agree());
     }
-    let explains = if left < CONTRADICTION_M { CLEARLY } else { EXPLAINS };
-    let name = |anchor: usize| anchors.names[anchor].as_str();
     let found = format!("ranges and anchors disagree by {left:.1} m");
-    let explained =
-        |with: Option<f64>| with.filter(|with| *with < EXPLAINED_M && *with * explains < left);
     let consequence = "positions may be wrong by as much";
-    if let Some(with) = explained(tried.scaled(FOOT)) {
-        let remedy = format!("in feet they would agree within {with:.2} m: --units range=ft");
-        return Some(Finding::fault("geometry", Reason::Units, found, consequence, remedy));
-    }
-    if let Some((with, [a, b])) =
-        tried.swapped().filter(|(with, _)| explained(Some(*with)).is_some())
-    {
-        let remedy =
-            format!("with {} and {} swapped they would agree within {with:.2} m", name(a), name(b));
-        return Some(Finding::fault("geometry", Reason::Anchor, found, consequence, remedy));
+    if let Some((reason, remedy)) = tried.explanation(left, is_given, &anchors.names) {
+        return Some(Finding::fault("geometry", reason, found, consequence, remedy));
     }
     if left < CONTRADICTION_M {
         return Some(agree());
-    }
-    if let Some((with, by)) =
-        tried.higher().filter(|(with, _)| is_given && explained(Some(*with)).is_some())
-    {
-        let remedy =
-            format!("with the tag {by:+.1} m higher they would agree within {with:.2} m: --height");
-        return Some(Finding::fault("geometry", Reason::Height, found, consequence, remedy));
-    }
-    if let Some((with, anchor)) =
-        tried.without_one().filter(|(with, _)| explained(Some(*with)).is_some())
-    {
-        let remedy = format!(
-            "without {} the others would agree within {with:.2} m: look where it stands, and what it measures",
-            name(anchor)
-        );
-        return Some(Finding::fault("geometry", Reason::Anchor, found, consequence, remedy));
     }
     let ranges: Vec<f64> = moments.iter().flatten().map(|(_, range)| *range).collect();
     if left < UNEXPLAINED_M + UNEXPLAINED_SHARE * median(&ranges) {
@@ -128,37 +122,6 @@ pub(super) fn check(
     }
     let remedy = "look at the anchors' places and names, at the unit, and at what stands between";
     Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy))
-}
-
-/// Moments at which several anchors were heard, spread over the recording.
-fn moments(parts: &[Vec<Range>]) -> Vec<Moment> {
-    let mut all = Vec::new();
-    for ranges in parts {
-        let mut begin = 0;
-        for i in 1..=ranges.len() {
-            let is_over =
-                i == ranges.len() || ranges[i].time_us - ranges[begin].time_us > WINDOW_US;
-            if is_over {
-                all.push(moment(&ranges[begin..i]));
-                begin = i;
-            }
-        }
-    }
-    all.retain(|moment| moment.len() >= 3);
-    let every = (all.len() / MOMENTS).max(1);
-    all.into_iter().step_by(every).collect()
-}
-
-/// The last range of each anchor.
-fn moment(ranges: &[Range]) -> Moment {
-    let mut moment: Moment = Vec::new();
-    for range in ranges.iter().rev() {
-        let is_new = moment.iter().all(|(anchor, _)| *anchor != range.anchor);
-        if is_new && range.metres.is_finite() && range.metres > 0.0 {
-            moment.push((range.anchor, range.metres));
-        }
-    }
-    moment
 }
 
 /// What is tried.
@@ -187,6 +150,60 @@ impl Tried<'_> {
         (each.len() >= FEWEST).then(|| median(&each))
     }
 
+    /// The one change with which ranges and anchors agree, if there is one: the reason, and what is to be done.
+    fn explanation(
+        &self,
+        left: f64,
+        height_is_given: bool,
+        names: &[String],
+    ) -> Option<(Reason, String)> {
+        let is_contradiction = left >= CONTRADICTION_M;
+        let explains = if is_contradiction { EXPLAINS } else { CLEARLY };
+        let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
+        let agree = |with: f64| format!("they would agree within {with:.2} m");
+        let scaled = SCALES.into_iter().filter_map(|scale| {
+            let with = self.scaled(scale.0).and_then(explained)?;
+            Some((with, scale))
+        });
+        if let Some((with, (_, how, what))) = scaled.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            return Some((Reason::Units, format!("{how} {}{what}", agree(with))));
+        }
+        if let Some((with, [a, b])) = self.swapped()
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!("with {} and {} swapped {}", names[a], names[b], agree(with));
+            return Some((Reason::Anchor, remedy));
+        }
+        if let Some((with, by)) = self.shifted()
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!(
+                "with each anchor at the place of the one {by} before it in the list {}: look from which number both count",
+                agree(with)
+            );
+            return Some((Reason::Anchor, remedy));
+        }
+        if let Some((with, by)) = self.higher().filter(|_| is_contradiction && height_is_given)
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!("with the tag {by:+.1} m higher {}: --height", agree(with));
+            return Some((Reason::Height, remedy));
+        }
+        // Of four anchors three are left, and one range to spare.
+        if let Some((with, anchor)) =
+            self.without_one().filter(|_| is_contradiction || self.anchors.len() > 4)
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!(
+                "without {} the others {}: look where it stands, and what it measures",
+                names[anchor],
+                agree(with).trim_start_matches("they ")
+            );
+            return Some((Reason::Anchor, remedy));
+        }
+        None
+    }
+
     fn scaled(&self, by: f64) -> Option<f64> {
         let change = |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
         self.left(change, self.anchors, self.height)
@@ -199,6 +216,16 @@ impl Tried<'_> {
             let mut anchors = self.anchors.to_vec();
             anchors.swap(pair[0], pair[1]);
             Some((self.left(Moment::clone, &anchors, self.height)?, pair))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// As if the log counted the anchors from another number on than the list.
+    fn shifted(&self) -> Option<(f64, usize)> {
+        let each = (1..self.anchors.len()).filter_map(|by| {
+            let mut anchors = self.anchors.to_vec();
+            anchors.rotate_right(by);
+            Some((self.left(Moment::clone, &anchors, self.height)?, by))
         });
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -237,4 +264,27 @@ fn left_over(observations: &[Observation<f64>], height: Option<f64>) -> Option<f
         None => solver.solve::<3>(observations, None).ok()?.cost,
     };
     Some((cost / spare as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(places: &[[f64; 3]], height: KnownHeight) -> bool {
+        let names = (0..places.len()).map(|k| k.to_string()).collect();
+        mirror(&Anchors { names, positions: places.to_vec() }, height).is_some()
+    }
+
+    #[test]
+    fn anchors_in_a_line_or_a_plane_have_a_mirror_image() {
+        let line = [[0.0, 0.0, 2.0], [3.0, 3.02, 2.4], [5.0, 4.98, 1.0]];
+        let corner = [[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [0.0, 4.0, 2.0], [3.0, 4.0, 2.0]];
+        for height in [KnownHeight::Said(1.0), KnownHeight::Found(1.0), KnownHeight::Varying] {
+            assert!(told(&line, height) && !told(&corner, height), "{height:?}");
+        }
+        assert!(told(&corner, KnownHeight::Unknown));
+        let raised = corner.map(|[x, y, z]| [x, y, if x > 0.0 && y > 0.0 { z - 1.5 } else { z }]);
+        assert!(!told(&raised, KnownHeight::Unknown));
+        assert!(!told(&line[..2], KnownHeight::Said(1.0)), "of two anchors all know");
+    }
 }

@@ -52,6 +52,10 @@ impl Follow for Elsewhere {
         self.tracker.height_variance()
     }
 
+    fn health(&self) -> kestirim_health::Health {
+        self.tracker.health()
+    }
+
     fn snapshot(&self) -> Option<Vec<u8>> {
         self.tracker.snapshot()
     }

@@ -80,6 +80,13 @@ impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
         self.ranges.height_variance()
     }
 
+    fn health(&self) -> kestirim_health::Health {
+        if self.listens {
+            return self.tracker.health(self.now_us).in_short();
+        }
+        self.ranges.health()
+    }
+
     fn snapshot(&self) -> Option<Vec<u8>> {
         // Most tags never listen.
         let tracker = if self.listens { self.tracker.stored()? } else { Vec::new() };

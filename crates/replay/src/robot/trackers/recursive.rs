@@ -84,6 +84,10 @@ impl<T: Number, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
         Some(covariance.get(2, 2)?.to_f64() + self.bias_variance())
     }
 
+    fn health(&self) -> kestirim_health::Health {
+        self.tracker.health(self.now_us).in_short()
+    }
+
     fn snapshot(&self) -> Option<Vec<u8>> {
         Some(behind([self.now_us, self.height_m.to_bits()], &self.tracker.stored()?))
     }

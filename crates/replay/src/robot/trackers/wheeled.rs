@@ -60,4 +60,8 @@ impl<T: Scalar> Follow for Wheeled<T> {
         let bias = bias_variance(&self.tracker.health(self.now_us), 2);
         with_bias(&self.tracker.estimate()?.covariance, bias)
     }
+
+    fn health(&self) -> kestirim_health::Health {
+        self.tracker.health(self.now_us).in_short()
+    }
 }

@@ -1,0 +1,105 @@
+//! Ranges that stay the same to the last digit: an anchor's, or those of a hub or a logger that says its last again.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use kestirim_health::Reason;
+
+use crate::Finding;
+use crate::metrics::standard_deviation;
+use crate::robot::Range;
+
+/// A range that stays the same to the last digit for so long and so often is stuck, s, …
+const STUCK_S: f64 = 3.0;
+const STUCK: usize = 15;
+/// … if the others change meanwhile by more than noise, m.
+pub(super) const MOVING_M: f64 = 0.3;
+
+/// An anchor whose range stays while those of others change.
+pub(super) fn one<'a>(
+    ranges: &[Range],
+    cut_at: Option<f64>,
+    name: &impl Fn(usize) -> &'a str,
+) -> Option<Finding> {
+    runs(ranges).into_iter().find_map(|run| {
+        let Run { anchor, metres, count, first, last } = run;
+        let seconds = (ranges[last].time_us - ranges[first].time_us) as f64 * 1e-6;
+        if count < STUCK || seconds < STUCK_S || Some(metres) == cut_at {
+            return None;
+        }
+        let mut others: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        let during = ranges[first..=last].iter();
+        for other in during.filter(|it| it.anchor != anchor && it.metres.is_finite()) {
+            others.entry(other.anchor).or_default().push(other.metres);
+        }
+        let moving = others.values().filter(|its| standard_deviation(its) > MOVING_M).count();
+        (moving >= 2).then(|| {
+            let name = name(anchor);
+            Finding::fault(
+                "stuck",
+                Reason::Stuck,
+                format!(
+                    "the range to {name} stays at {metres:.3} m for {seconds:.1} s while others change"
+                ),
+                "the position is drawn to a circle that is not there",
+                "look at what the anchor or the logger repeats",
+            )
+        })
+    })
+}
+
+/// Ranges to an anchor that are all the same.
+struct Run {
+    anchor: usize,
+    metres: f64,
+    count: usize,
+    /// Their places in the log.
+    first: usize,
+    last: usize,
+}
+
+/// The runs of each anchor, in the order in which they end: looked at once each, however long they are.
+fn runs(ranges: &[Range]) -> Vec<Run> {
+    let mut going: BTreeMap<usize, Run> = BTreeMap::new();
+    let mut runs = Vec::new();
+    for (i, range) in ranges.iter().enumerate() {
+        let Range { anchor, metres, .. } = *range;
+        match going.get_mut(&anchor) {
+            Some(run) if run.metres == metres => (run.count, run.last) = (run.count + 1, i),
+            _ => {
+                let run = Run { anchor, metres, count: 1, first: i, last: i };
+                runs.extend(going.insert(anchor, run));
+            }
+        }
+    }
+    runs.extend(going.into_values());
+    runs
+}
+
+/// All ranges at once, for longer than the noise of radios lets them: what is measured meanwhile is not known.
+pub(super) fn all(ranges: &[Range], cut_at: Option<f64>) -> Option<Finding> {
+    let mut before = BTreeMap::new();
+    let (mut begun_us, mut count, mut heard) = (0, 0, BTreeSet::new());
+    let mut longest_us = 0;
+    for range in ranges.iter().filter(|it| it.metres.is_finite() && Some(it.metres) != cut_at) {
+        if before.insert(range.anchor, range.metres) != Some(range.metres) {
+            (begun_us, count) = (range.time_us, 0);
+            heard.clear();
+            continue;
+        }
+        count += 1;
+        heard.insert(range.anchor);
+        if count >= STUCK && heard.len() >= 2 {
+            longest_us = longest_us.max(range.time_us - begun_us);
+        }
+    }
+    let seconds = longest_us as f64 * 1e-6;
+    (seconds >= STUCK_S).then(|| {
+        Finding::fault(
+            "stuck",
+            Reason::Stuck,
+            format!("all ranges stay the same to the last digit for {seconds:.1} s"),
+            "the positions meanwhile are those of before",
+            "look at what the hub or the logger repeats",
+        )
+    })
+}
