@@ -112,6 +112,7 @@ pub(crate) fn observations_2() -> String {
     let front = [
         header("     2.11           OBSERVATION DATA    M (MIXED)", "RINEX VERSION / TYPE"),
         header("HERE", "MARKER NAME"),
+        header("        0.0000        0.0000        0.0000", "ANTENNA: DELTA H/E/N"),
         header("     6    L1    L2    C1    P2    P1    S1", "# / TYPES OF OBSERV"),
         header("  1999    12    31    23    59   30.0000000", "TIME OF FIRST OBS"),
         header("", "END OF HEADER"),

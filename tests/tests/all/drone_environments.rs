@@ -47,6 +47,7 @@ fn none_of_a_thousand_flights_contradicts_its_own_environment() {
         place: [0.0; 2],
         sd_m: 1.0,
         level_db: None,
+        off_db: 0.0,
         covered: None,
         next: None,
         cloud: None,

@@ -222,6 +222,7 @@ fn glonass_needs_channels_and_beidou_its_most_frequent_carriers() -> Result<(), 
     let file = |channels: &str, bands: &str| {
         lines(&[
             "     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE",
+            "        0.0000        0.0000        0.0000                  ANTENNA: DELTA H/E/N",
             &format!("{channels:60}GLONASS SLOT / FRQ #"),
             "R    5 C1C L1C C2P L2P S1C                                  SYS / # / OBS TYPES",
             &format!("C    6 {bands:<53}SYS / # / OBS TYPES"),

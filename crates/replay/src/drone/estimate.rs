@@ -11,6 +11,8 @@ pub struct Estimate {
     pub sd_m: f64,
     /// The transmitter's level, if it is estimated, dB.
     pub level_db: Option<f64>,
+    /// By how much all losses are larger than those that the environment's channel expects, where that is estimated, dB.
+    pub off_db: f64,
     /// Whether the 90 % region holds the true place, if that is known.
     pub covered: Option<bool>,
     /// Where one more measurement is expected to tell most, of the last estimate over open ground.
@@ -34,7 +36,16 @@ impl Estimate {
     /// The mean of all that is believed.
     pub fn of_cloud(stop: usize, cloud: Cloud) -> Self {
         let (place, sd_m) = (cloud.mean, cloud.spread());
-        Self { stop, place, sd_m, level_db: None, covered: None, next: None, cloud: Some(cloud) }
+        Self {
+            stop,
+            place,
+            sd_m,
+            level_db: None,
+            off_db: 0.0,
+            covered: None,
+            next: None,
+            cloud: Some(cloud),
+        }
     }
 
     /// Effective number of particles or points, if it is known.

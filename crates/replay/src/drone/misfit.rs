@@ -38,11 +38,10 @@ impl Misfit {
     /// Of the measurements, in their order, seen from where the user is believed to be; none if the environment's channel
     /// explains them.
     pub fn find(stops: &[Stop], estimate: &Estimate, channel: &Channel<f64>) -> Option<Self> {
-        let level = estimate.level_db.unwrap_or(0.0);
         let deviation = |stop: &Stop| {
             let far = distance(stop.place, estimate.place);
             let expected = channel.path_loss(far, stop.height).ok()?;
-            Some((stop.loss + level - expected.mean(), expected.sigma()))
+            Some((stop.loss - estimate.off_db - expected.mean(), expected.sigma()))
         };
         let (deviations, sigmas): (Vec<_>, Vec<_>) = stops.iter().filter_map(deviation).unzip();
         let count = deviations.len();

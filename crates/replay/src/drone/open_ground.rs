@@ -62,6 +62,7 @@ impl Search<'_> {
             place: self.outward(found.place),
             sd_m: found.sigma,
             level_db: (quantity == Quantity::Level).then_some(found.fit.level),
+            off_db: 0.0,
             covered,
             next,
             cloud,

@@ -198,6 +198,7 @@ impl<'a> Search<'a> {
                 sd_m: deviation[0].hypot(deviation[1]),
                 // A level received is the negative loss: the more the transmitter sends, the less.
                 level_db: (quantity == Quantity::Level).then_some(-mean[2]),
+                off_db: mean[2],
                 covered,
                 next: None,
                 cloud: self
