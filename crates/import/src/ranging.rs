@@ -160,7 +160,7 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
     }
     if let Some([listed, heard]) = counted_apart(&found.labels, anchors) {
         let problem = format!(
-            "expected anchors counted from {listed}, as the list has them, found them counted from {heard}: name them in the list as the log does"
+            "expected anchors counted from {listed}, as the list has them, found them counted from {heard}: name them in the list as the log does, and none that is not heard"
         );
         return Err(Error::log(problem));
     }
@@ -214,7 +214,7 @@ fn counted_apart(labels: &BTreeMap<String, usize>, anchors: &[String]) -> Option
     let begin = |mut numbers: Vec<u32>| {
         numbers.sort_unstable();
         let begin = *numbers.first()?;
-        let follow = numbers.iter().zip(begin..).all(|(number, expected)| *number == expected);
+        let follow = numbers.windows(2).all(|pair| pair[0].checked_add(1) == Some(pair[1]));
         follow.then_some(begin)
     };
     let listed = begin(anchors.iter().map(|name| number(name)).collect::<Option<_>>()?)?;

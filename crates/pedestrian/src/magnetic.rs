@@ -1,4 +1,4 @@
-use crate::{Estimate, ImuSample, SensorClass};
+use crate::{Estimate, ImuSample};
 use kestirim_attitude::Orientation;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
@@ -102,9 +102,6 @@ impl<T: Scalar> MagneticHeading<T> {
     /// Standard deviation of what two stands at the same place differ by (rad): half a degree, on recorded walks.
     const REPEATABILITY: f64 = 0.0087;
 
-    /// A rate beyond so many standard deviations of the sensor's class is none of its gyroscope.
-    const LIKELY: f64 = 4.0;
-
     /// Takes a sample, the estimate that was made of it, the field at its time (body, in any unit in which its square is a
     /// number) if it was measured, and the standard deviation of the position (m,
     /// [`PathUncertainty`](crate::PathUncertainty)).
@@ -162,17 +159,11 @@ impl<T: Scalar> MagneticHeading<T> {
         }
     }
 
-    /// The rate at which the heading drifts (rad/s, anticlockwise from above), where it shows. See [`MagneticHeading::is_likely`].
+    /// The rate at which the heading drifts (rad/s, anticlockwise from above), where it shows. See [`SensorClass::drifts_by`](crate::SensorClass::drifts_by).
     pub fn rate(&self) -> Option<T> {
         let least = T::from_f64(2.0 * Self::REPEATABILITY) * self.times.sqrt();
         (self.times > T::ZERO && self.turned.abs() > least)
             .then(|| self.turned / self.times * T::from_f64(1.0 / 60.0))
-    }
-
-    /// Whether the heading of a sensor of this class drifts at such a rate: what turns faster is the field, because iron came
-    /// near, or the magnetometer, which then says nothing of the heading.
-    pub fn is_likely(rate: T, sensor: SensorClass) -> bool {
-        rate.abs() < T::from_f64(Self::LIKELY) * sensor.heading_rate::<T>()
     }
 }
 
@@ -257,16 +248,6 @@ mod tests {
             assert!((rate * 58.0 / 0.05 - 1.0).abs() < 0.05, "{rate}");
         }
         assert!(rate::<f64>(Second { samples: 102, ..SAME }).is_some());
-    }
-
-    #[test]
-    fn what_no_gyroscope_drifts_by_is_the_field() {
-        let likely = |rate, sensor| MagneticHeading::<f64>::is_likely(rate, sensor);
-        assert!(
-            likely(0.0015, SensorClass::Industrial) && likely(-0.0015, SensorClass::Industrial)
-        );
-        assert!(!likely(0.0025, SensorClass::Industrial) && likely(0.0025, SensorClass::Consumer));
-        assert!(!likely(f64::NAN, SensorClass::Consumer));
     }
 
     #[test]

@@ -68,7 +68,14 @@ impl SensorClass {
         }
     }
 
-    /// Standard deviation of the height that each stride of a walk gains too much (m): that of 24 and 7 recorded walks on level
+    /// Whether the heading of such a sensor may drift at this rate (rad/s), within four standard deviations. What turns faster where
+    /// a foot stood twice is the field, because iron came near, or the magnetometer, which then says nothing of the heading.
+    #[inline] // As above.
+    pub fn drifts_by<T: Scalar>(self, rate: T) -> bool {
+        rate.abs() < self.heading_rate::<T>() * T::from_f64(4.0)
+    }
+
+    /// Standard deviation of the error in height that all strides of a walk have alike (m): that of 24 and 7 recorded walks on level
     /// ground.
     #[inline] // As above.
     pub fn height_drift<T: Scalar>(self) -> T {
@@ -88,5 +95,18 @@ impl SensorClass {
             velocity_variance: T::from_f64(0.3 * 0.3 * scale),
             attitude_variance: T::from_f64(attitude * attitude * scale),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_gyroscope_drifts_by_is_the_field() {
+        let [calibrated, bare] = [SensorClass::Industrial, SensorClass::Consumer];
+        assert!(calibrated.drifts_by(0.0015) && calibrated.drifts_by(-0.0015));
+        assert!(!calibrated.drifts_by(0.0025) && bare.drifts_by(0.0025));
+        assert!(!bare.drifts_by(f64::NAN));
     }
 }

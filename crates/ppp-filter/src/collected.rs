@@ -3,7 +3,7 @@ use heapless::Vec;
 /// As many values as there is room for. (`collect` would panic beyond, and an image would carry its message.)
 pub(crate) fn collected<T, const N: usize>(items: impl Iterator<Item = T>) -> Vec<T, N> {
     let mut collected = Vec::new();
-    // One loop, however it is put together: a `for` of one that filters is two, each with its copy of the filter.
+    // `for_each` compiles to one loop; a `for` over a filtering iterator becomes two, each with a copy of the filter.
     items.for_each(|item| {
         let _ = collected.push(item);
     });

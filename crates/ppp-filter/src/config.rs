@@ -70,7 +70,7 @@ pub struct Config<R = Robust<f64>> {
     pub estimator: Estimator<R>,
 }
 
-/// Neither negative nor without end.
+/// Finite and not negative.
 #[inline(never)] // Asked of each setting.
 fn is_deviation(value: f64) -> bool {
     value >= 0.0 && value.is_finite()

@@ -73,9 +73,9 @@ impl<const N: usize> AmbiguityFixer<N> {
     /// The position with whole ambiguities after the filter took in `observations` and gave `solution`; none as long as
     /// they are not known well enough. `bias` is that of a satellite's phases by its number, if it is known. The receiver's antenna
     /// must be calibrated.
-    pub fn fix(
+    pub fn fix<R>(
         &mut self,
-        filter: &PppFilter<N, impl Sized>,
+        filter: &PppFilter<N, R>,
         solution: &Solution<N>,
         observations: &[SatelliteObservation<'_>],
         bias: impl Fn(u8) -> Option<PhaseBias>,

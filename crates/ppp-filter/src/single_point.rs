@@ -81,7 +81,7 @@ impl<'a> CodeObservation<'a> {
 }
 
 /// The position of an epoch from its codes alone: free of the ionosphere where there are two, else with `ionosphere`. Outliers
-/// lose weight as in the filter of the same settings; the covariance is as large as the residuals of the others have it. No phase is
+/// lose weight as in the filter of the same settings; the covariance grows with the residuals of the others. No phase is
 /// used, and nothing of any other epoch.
 ///
 /// # Errors
@@ -214,8 +214,8 @@ impl<const N: usize> Epoch<N> {
         3 + Constellation::ALL.iter().filter(|of| is_heard(of)).count().max(1)
     }
 
-    /// The variance of one code in its own as the residuals of those that were used have it, at least 1: by so much more than is said
-    /// of codes a receiver may be noisy, or its surroundings reflect.
+    /// The variance factor of the codes that were used, at least 1: receivers may be noisier than is said of codes, and what is around
+    /// them may reflect.
     fn variance_factor(&self) -> f64 {
         let used = || self.lines.iter().zip(&self.decisions).filter(|(_, it)| it.weight > 0.0);
         let squares = used().map(|(line, it)| it.weight * square(it.residual) / line.variance);

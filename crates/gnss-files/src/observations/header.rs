@@ -12,6 +12,8 @@ use crate::text::{Line, Lines, Text};
 const HIGHEST: f64 = 30.0;
 /// … nor moves it farther aside, m.
 const FARTHEST: f64 = 5.0;
+/// No antenna that stands on its marker is so far beside it, m.
+const ASIDE: f64 = 0.05;
 
 /// A column of observations that is of use.
 #[derive(Debug, Clone, Copy)]
@@ -92,6 +94,10 @@ impl Header {
                     Some(position).filter(|position| position.iter().any(|&x| x != 0.0));
             }
             b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = Some(three(line)?),
+            // Of a vehicle, in axes of its own.
+            b"ANTENNA: DELTA X/Y/Z" => {
+                self.antenna_delta_hen.get_or_insert_default();
+            }
             b"TIME OF FIRST OBS" => time_system(line)?,
             b"GLONASS SLOT / FRQ #" => self.channels(line),
             _ => self.observables(line)?,
@@ -105,10 +111,10 @@ impl Header {
             return Some("no height of the antenna is told, so the position is not the marker's but the antenna's".to_owned());
         };
         let absurd = height.abs() > HIGHEST || east.abs() > FARTHEST || north.abs() > FARTHEST;
-        let misplaced = height == 0.0 && (east != 0.0 || north != 0.0);
+        let misplaced = height == 0.0 && east.abs().max(north.abs()) > ASIDE;
         (absurd || misplaced).then(|| {
             format!(
-                "the antenna is told to be {height} m above its marker, {east} m east and {north} m north of it"
+                "the antenna is told to be {height} m above its marker, {east} m east and {north} m north of it: look at their order"
             )
         })
     }

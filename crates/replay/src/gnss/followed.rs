@@ -133,6 +133,8 @@ pub struct Followed {
     pub heard: Vec<usize>,
     /// When all phases jumped against their codes, s, and by how many milliseconds; that was repaired.
     pub clock_jumps: Vec<(f64, i32)>,
+    /// When both directions of a smoothed track disagreed, s.
+    pub apart: Vec<f64>,
     /// Since when all positions have been converged ones, s.
     pub converged_since: Option<f64>,
     /// Observations that the filter was given.

@@ -19,7 +19,7 @@ impl Followed {
     ///
     /// Both saw the epoch itself, so its noise is in both, and the mean is reported to be no better than the better of them. Where they
     /// are apart by what their variances do not allow, as those of a receiver that is taken to rest and was moved, it is contradicted,
-    /// and known no better than that.
+    /// and known no better than they are apart.
     #[must_use]
     pub fn smoothed(&self, backwards: &Self) -> Self {
         let mut both = Self { epochs: self.epochs, ..Self::default() };
@@ -82,6 +82,9 @@ impl Followed {
         for axis in (0..3).filter(|axis| disagree(*axis)) {
             self.deviations[last][axis] = apart[axis].abs();
             self.healths[last] = Health::Contradicted(Contradiction::Motion);
+        }
+        if (0..3).any(disagree) {
+            self.apart.push(t);
         }
     }
 }

@@ -61,8 +61,10 @@ struct Prior {
     scale: f64,
     /// Variance of all strides' own errors, each axis, m².
     strides: f64,
-    /// Of all height errors, m², and of one stride what all have alike.
+    /// Of all height errors, m².
     heights: f64,
+    /// Of a stride's height, m²: of its own error, and of what all have alike.
+    height: f64,
     rise: f64,
     count: f64,
 }
@@ -72,11 +74,13 @@ impl Prior {
         let (left, count) = (PathErrors::of(walk), walk.strides.len() as f64);
         let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
         let rise = class.height_drift::<f64>().powi(2);
+        let height = PathUncertainty::<f64>::HEIGHT.powi(2);
         Self {
             rate: left.rate,
             scale: left.scale,
             strides: count * left.stride.powi(2),
-            heights: count * PathUncertainty::<f64>::HEIGHT.powi(2) + count * count * rise,
+            heights: count * (height + count * rise),
+            height,
             rise,
             count,
         }
@@ -124,7 +128,6 @@ impl Path {
             Matrix2::from_diagonal(&Vector2::new(prior.rate.powi(2), prior.scale.powi(2)));
         let Some((_, end)) = self.walked(rate, scale).last() else { return Vec::new() };
         let own = prior.strides / prior.count;
-        let height = prior.heights / prior.count - prior.count * prior.rise;
         let known = PUT_BACK * PUT_BACK;
         let gap = end * variances * end.transpose() + Matrix2::identity() * (prior.strides + known);
         let inverse = gap.try_inverse().unwrap_or_else(Matrix2::zeros);
@@ -134,8 +137,8 @@ impl Path {
             let with_end = slope * variances * end.transpose() + noise;
             let all = slope * variances * slope.transpose() + noise;
             let left = all - with_end * inverse * with_end.transpose();
-            let with_last = strides * (height + prior.count * prior.rise);
-            let z = strides * (height + strides * prior.rise);
+            let with_last = strides * (prior.height + prior.count * prior.rise);
+            let z = strides * (prior.height + strides * prior.rise);
             let z = z - with_last * with_last / (prior.heights + known);
             [left[(0, 0)], left[(1, 1)], z].map(|variance| variance.max(0.0).sqrt())
         };

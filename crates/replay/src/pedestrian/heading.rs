@@ -17,12 +17,12 @@ fn heading_rate(
     options: &Options,
 ) -> Result<Option<f64>, String> {
     let Some(rate) = shown(samples, field, options) else { return Ok(None) };
-    if MagneticHeading::is_likely(rate, options.config::<f64>().sensor) {
+    if options.config::<f64>().sensor.drifts_by(rate) {
         return Ok(Some(rate));
     }
     Err(format!(
-        "the magnetometer is not used: where the foot stood twice its field turned by {:.0} °/min, as no gyroscope drifts; iron \
-         came near, or it is stuck",
+        "the magnetometer is not used: where the foot stood twice its field turned by {:.0} °/min, faster than gyroscopes \
+         of this class drift: iron came near, or it is stuck, or the class is another (--sensor)",
         60.0 * rate.abs().to_degrees()
     ))
 }

@@ -29,11 +29,12 @@ pub enum KnownHeight {
     Varying,
 }
 
-/// What the parts of a recording show.
+/// What the parts of a recording show, of a tag whose height and room are known or not.
 pub fn check<'a>(
     anchors: &Anchors,
     parts: impl IntoIterator<Item = &'a [Event]>,
     height: KnownHeight,
+    room_is_known: bool,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     let parts: Vec<&[Event]> = parts.into_iter().collect();
@@ -53,7 +54,7 @@ pub fn check<'a>(
     findings.extend(parts.iter().find_map(|ranges| stuck::one(ranges, cut_at, &name)));
     findings.extend(parts.iter().find_map(|ranges| stuck::all(ranges, cut_at)));
     findings.extend(geometry::check(anchors, &parts, height));
-    findings.extend(geometry::mirror(anchors, height));
+    findings.extend(geometry::mirror(anchors, height, room_is_known));
     findings
 }
 

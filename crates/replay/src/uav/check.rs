@@ -29,7 +29,8 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
             log.samples.iter().filter_map(|s| s.measured.get(column).copied().flatten()).collect()
         })
         .collect();
-    let flies = columns.iter().any(|values| varies(values));
+    let steers = log.samples.windows(2).any(|pair| pair[0].input != pair[1].input);
+    let flies = steers || columns.iter().any(|values| varies(values));
     for (values, &output) in columns.iter().zip(&log.outputs) {
         let name = name(output);
         let missing = count - values.len();

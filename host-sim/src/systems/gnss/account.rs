@@ -33,11 +33,11 @@ pub(super) fn account(
     track: &Track,
 ) -> Result<Account, Error> {
     // What of the recording serves is the same for all filters.
-    let warnings = warning::of_recording(recording, setup, track.main());
+    let mut warnings = warning::of_recording(recording, setup, track.main());
+    warnings.extend(track.smoothed.iter().find_map(|it| warning::apart(it, setup.motion)));
     let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
         let smoothed = track.smoothed.as_ref().filter(|_| *filter == setup.main());
-        let apart: Vec<_> = smoothed.and_then(warning::apart).into_iter().collect();
-        let warnings = [first, &warning::outages(followed), &apart].concat();
+        let warnings = [first, &warning::outages(followed)].concat();
         Report::new(recording, setup, *filter, followed, smoothed, warnings)
     };
     if setup.filter == Choice::All {

@@ -91,7 +91,7 @@ impl System for Robot {
         help: "Write t,x,y,z (point,x,y,z with --points), standard deviations and health of every epoch to this file, with --smooth the smoothed ones",
         endings: &["csv"],
     }];
-    const CHECKED: &'static [&'static str] = &["height", "dim", "calibrated"];
+    const CHECKED: &'static [&'static str] = &["height", "dim", "calibrated", "room"];
     const PANELS: &'static [Panel] = &[Panel::Map, Panel::Ranges];
     const RECORDED: &'static [Study] = recorded::STUDIES;
 
@@ -127,7 +127,8 @@ impl System for Robot {
 
     fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> {
         let parts = recording.parts.iter().map(|part| part.events.as_slice());
-        robot::check(&recording.anchors, parts, settings::known_height(recording, settings))
+        let height = settings::known_height(recording, settings);
+        robot::check(&recording.anchors, parts, height, settings.text("room").is_some())
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Tracks, Error> {

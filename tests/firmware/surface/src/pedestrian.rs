@@ -131,10 +131,8 @@ fn turns_back<T: Scalar>() {
     }
     MagneticHeading::finish(any(&mut heading), number());
     keep(MagneticHeading::rate(&heading));
-    keep(MagneticHeading::<T>::is_likely(
-        number(),
-        one_of([SensorClass::Industrial, SensorClass::Consumer]),
-    ));
+    let class = one_of([SensorClass::Industrial, SensorClass::Consumer]);
+    keep(SensorClass::drifts_by(class, number::<T>()));
 }
 
 fn all_of<T: Scalar>() {

@@ -1,6 +1,7 @@
 //! Samples that were not measured: those of before again, and rates of exactly zero.
 
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 use kestirim_health::Reason;
 
@@ -51,14 +52,16 @@ pub(super) fn stuck(samples: &[Sample]) -> Option<Finding> {
 
 /// The longest block of samples that comes again later: of a buffer that is written twice.
 pub(super) fn block(samples: &[Sample]) -> Option<Finding> {
-    let mut seen: HashMap<[u64; 6], usize> = HashMap::new();
+    let mut seen: HashMap<u64, usize> = HashMap::new();
     let (mut count, mut at) = (0, None);
     let mut longest = (0, 0, 0);
     for (i, sample) in samples.iter().enumerate() {
         let values = sample.specific_force.iter().chain(&sample.angular_rate);
-        let mut bits = [0; 6];
-        bits.iter_mut().zip(values).for_each(|(bits, value)| *bits = value.to_bits());
-        let before = seen.insert(bits, i);
+        let mut hasher = DefaultHasher::new();
+        for value in values {
+            value.to_bits().hash(&mut hasher);
+        }
+        let before = seen.insert(hasher.finish(), i);
         // What stays the same is stuck, and told so.
         let before = before.filter(|before| before + 1 < i);
         let goes_on = before.is_some() && before == at.map(|at: usize| at + 1);
@@ -70,13 +73,14 @@ pub(super) fn block(samples: &[Sample]) -> Option<Finding> {
     }
     let (count, before, now) = longest;
     let seconds = |i: usize| (samples[i].time_us - samples[0].time_us) as f64 * 1e-6;
-    let is_later = samples[now].time_us > samples[before].time_us;
+    // Rows that a recorder wrote twice have the times of before, and steps without noise are the same from the first to the last.
+    let is_later = samples[now].time_us > samples[before].time_us && count <= now - before;
     (count >= REPEATED && is_later).then(|| {
         Finding::fault(
             "repeated block",
             Reason::Stuck,
             format!(
-                "{count} samples up to {:.2} s are those up to {:.2} s again, bit for bit",
+                "{count} samples that end at {:.2} s repeat those that end at {:.2} s bit for bit",
                 seconds(now),
                 seconds(before)
             ),
@@ -136,7 +140,7 @@ mod tests {
         }
         let found = block(&samples).expect("a finding");
         assert!(
-            found.found.contains("30 samples up to 2.29 s are those up to 1.29 s"),
+            found.found.contains("30 samples that end at 2.29 s repeat those that end at 1.29 s"),
             "{found:?}"
         );
     }

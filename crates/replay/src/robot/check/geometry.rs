@@ -21,7 +21,7 @@ const UNEXPLAINED_SHARE: f64 = 0.02;
 const EXPLAINS: f64 = 3.0;
 /// … and no more than this, m.
 const EXPLAINED_M: f64 = 0.35;
-/// Where walls and people might do as much, a unit or two exchanged anchors are told from here on, m, …
+/// Where walls and people might do as much, one of the changes is told from here on, m, …
 const SUSPICION_M: f64 = 0.15;
 /// … if they leave so much less: three anchors have but one range to spare, and noise alone leaves less than that.
 const CLEARLY: f64 = 6.0;
@@ -29,10 +29,9 @@ const CLEARLY: f64 = 6.0;
 const COMMON_BIAS_M: f64 = 0.5;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
-/// What a range may be taken in or as, in m, and what to do about it.
-const SCALES: [(f64, &str, &str); 4] = [
+/// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
+const SCALES: [(f64, &str, &str); 3] = [
     (0.3048, "in feet", ": --units range=ft"),
-    (0.9144, "in yards", ""),
     (0.5, "halved", ": they may be those of there and back"),
     (2.0, "doubled", ": they may have been halved twice"),
 ];
@@ -41,8 +40,8 @@ const SCALES: [(f64, &str, &str); 4] = [
 const FLAT_M: f64 = 0.05;
 
 /// Whether a tag has the ranges of another: its mirror image, where the anchors of a tag in space lie in one plane, or those of a tag
-/// in the plane stand in one line.
-pub(super) fn mirror(anchors: &Anchors, height: KnownHeight) -> Option<Finding> {
+/// in the plane stand in one line, unless the room is known.
+pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Option<Finding> {
     let is_in_space = height == KnownHeight::Unknown;
     let fewest = if is_in_space { 1 } else { 3 };
     if anchors.positions.len() < fewest
@@ -61,8 +60,8 @@ pub(super) fn mirror(anchors: &Anchors, height: KnownHeight) -> Option<Finding> 
         spread.fixed_view::<2, 2>(0, 0).into_owned().symmetric_eigenvalues().min()
     };
     let least = least.max(0.0).sqrt();
-    if least < FLAT_M && !is_in_space {
-        return Some(Finding::fault(
+    if !is_in_space {
+        return (least < FLAT_M && !room).then(|| Finding::fault(
             "geometry",
             Reason::Geometry,
             format!("all anchors stand in one line, within {:.0} cm", 100.0 * least),
@@ -94,14 +93,17 @@ pub(super) fn check(
         KnownHeight::Found(metres) => (Some(metres), false),
         KnownHeight::Said(metres) => (Some(metres), true),
     };
-    let mut moments = moments::at_once(parts);
-    if moments.len() < FEWEST {
-        moments = moments::interpolated(parts);
-    }
     let places: Vec<Vector3<f64>> =
         anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
+    let mut moments = moments::at_once(parts);
+    let left = |moments: &[Moment]| {
+        Tried { moments, anchors: &places, height }.left(Moment::clone, &places, height)
+    };
+    let left = left(&moments).or_else(|| {
+        moments = moments::interpolated(parts);
+        left(&moments)
+    })?;
     let tried = Tried { moments: &moments, anchors: &places, height };
-    let left = tried.left(Moment::clone, &places, height)?;
     let agree =
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
     // A height that was found from the ranges may be wrong by as much.
@@ -161,7 +163,10 @@ impl Tried<'_> {
         let explains = if is_contradiction { EXPLAINS } else { CLEARLY };
         let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
         let agree = |with: f64| format!("they would agree within {with:.2} m");
-        let scaled = SCALES.into_iter().filter_map(|scale| {
+        // Of four anchors three are left without one, and one range to spare; of three anchors there is but one.
+        let is_clear = is_contradiction || self.anchors.len() > 4;
+        let scales = SCALES.into_iter().take(if is_clear { SCALES.len() } else { 1 });
+        let scaled = scales.filter_map(|scale| {
             let with = self.scaled(scale.0).and_then(explained)?;
             Some((with, scale))
         });
@@ -174,11 +179,11 @@ impl Tried<'_> {
             let remedy = format!("with {} and {} swapped {}", names[a], names[b], agree(with));
             return Some((Reason::Anchor, remedy));
         }
-        if let Some((with, by)) = self.shifted()
+        if let Some((with, by)) = self.shifted().filter(|_| is_clear)
             && let Some(with) = explained(with)
         {
             let remedy = format!(
-                "with each anchor at the place of the one {by} before it in the list {}: look from which number both count",
+                "with each anchor {by} places on in the list {}: look from which number both count",
                 agree(with)
             );
             return Some((Reason::Anchor, remedy));
@@ -189,9 +194,7 @@ impl Tried<'_> {
             let remedy = format!("with the tag {by:+.1} m higher {}: --height", agree(with));
             return Some((Reason::Height, remedy));
         }
-        // Of four anchors three are left, and one range to spare.
-        if let Some((with, anchor)) =
-            self.without_one().filter(|_| is_contradiction || self.anchors.len() > 4)
+        if let Some((with, anchor)) = self.without_one().filter(|_| is_clear)
             && let Some(with) = explained(with)
         {
             let remedy = format!(
@@ -272,7 +275,7 @@ mod tests {
 
     fn told(places: &[[f64; 3]], height: KnownHeight) -> bool {
         let names = (0..places.len()).map(|k| k.to_string()).collect();
-        mirror(&Anchors { names, positions: places.to_vec() }, height).is_some()
+        mirror(&Anchors { names, positions: places.to_vec() }, height, false).is_some()
     }
 
     #[test]
@@ -286,5 +289,34 @@ mod tests {
         let raised = corner.map(|[x, y, z]| [x, y, if x > 0.0 && y > 0.0 { z - 1.5 } else { z }]);
         assert!(!told(&raised, KnownHeight::Unknown));
         assert!(!told(&line[..2], KnownHeight::Said(1.0)), "of two anchors all know");
+    }
+
+    /// What is told of ranges of a tag that is carried through a room with anchors in its corners, 1 m below them.
+    fn reason(change: impl Fn(f64) -> f64, places: &[[f64; 3]]) -> Option<Reason> {
+        let names = (0..places.len()).map(|k| k.to_string()).collect();
+        let anchors = Anchors { names, positions: places.to_vec() };
+        let range = |k: usize, anchor: usize| {
+            let turn = 0.1 * k as f64;
+            let tag = Vector3::new(3.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0);
+            let noise = 0.02 * (1.7 * k as f64 + 2.9 * anchor as f64).sin();
+            let metres = change((tag - Vector3::from(places[anchor])).norm() + noise);
+            Range { time_us: 100_000 * k as i64, anchor, metres }
+        };
+        let part = (0..100).flat_map(|k| (0..places.len()).map(move |anchor| (k, anchor)));
+        let part = part.map(|(k, anchor)| range(k, anchor)).collect();
+        check(&anchors, &[part], KnownHeight::Said(1.0))?.reason
+    }
+
+    #[test]
+    fn another_unit_is_told_and_a_delay_of_antennas_is_not() {
+        let corners = [[0.0, 0.0, 2.0], [6.0, 0.0, 2.0], [6.0, 5.0, 2.0], [0.0, 5.0, 2.0]];
+        for places in [&corners[..3], &corners] {
+            assert_eq!(reason(|metres| metres, places), None);
+            assert_eq!(reason(|metres| metres / 0.3048, places), Some(Reason::Units));
+            assert_eq!(reason(|metres| 2.0 * metres, places), Some(Reason::Units));
+            for delay in [-0.3, 0.3, 0.5] {
+                assert_eq!(reason(|metres| metres + delay, places), None, "{delay} m");
+            }
+        }
     }
 }

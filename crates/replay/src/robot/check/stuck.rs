@@ -14,6 +14,9 @@ const STUCK: usize = 15;
 /// … if the others change meanwhile by more than noise, m.
 pub(super) const MOVING_M: f64 = 0.3;
 
+/// If more than one in so many ranges is that of before at other times, too, no hub repeats.
+const COARSE: usize = 10;
+
 /// An anchor whose range stays while those of others change.
 pub(super) fn one<'a>(
     ranges: &[Range],
@@ -79,27 +82,55 @@ fn runs(ranges: &[Range]) -> Vec<Run> {
 pub(super) fn all(ranges: &[Range], cut_at: Option<f64>) -> Option<Finding> {
     let mut before = BTreeMap::new();
     let (mut begun_us, mut count, mut heard) = (0, 0, BTreeSet::new());
-    let mut longest_us = 0;
+    let (mut longest_us, mut in_it, mut repeats, mut all) = (0, 0, 0, 0);
     for range in ranges.iter().filter(|it| it.metres.is_finite() && Some(it.metres) != cut_at) {
+        all += 1;
         if before.insert(range.anchor, range.metres) != Some(range.metres) {
             (begun_us, count) = (range.time_us, 0);
             heard.clear();
             continue;
         }
-        count += 1;
+        (count, repeats) = (count + 1, repeats + 1);
         heard.insert(range.anchor);
-        if count >= STUCK && heard.len() >= 2 {
-            longest_us = longest_us.max(range.time_us - begun_us);
+        if count >= STUCK && heard.len() >= 2 && range.time_us - begun_us > longest_us {
+            (longest_us, in_it) = (range.time_us - begun_us, count);
         }
+    }
+    // Where ranges repeat at other times, too, their last digit is coarser than their noise.
+    if COARSE * (repeats - in_it) > all - in_it {
+        return None;
     }
     let seconds = longest_us as f64 * 1e-6;
     (seconds >= STUCK_S).then(|| {
         Finding::fault(
             "stuck",
             Reason::Stuck,
-            format!("all ranges stay the same to the last digit for {seconds:.1} s"),
+            format!("all ranges that come stay the same to the last digit for {seconds:.1} s"),
             "the positions meanwhile are those of before",
             "look at what the hub or the logger repeats",
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ranges to two anchors, 10 Hz each, which stay for a while.
+    fn ranges(stays: std::ops::Range<i64>, step: f64) -> Vec<Range> {
+        let range = |k: i64| {
+            let moved = if stays.contains(&k) { stays.start } else { k };
+            let metres = 3.0 + ((0.037 * moved as f64) / step).round() * step;
+            [0, 1].map(|anchor| Range { time_us: 100_000 * k, anchor, metres })
+        };
+        (0..200).flat_map(range).collect()
+    }
+
+    #[test]
+    fn a_hub_that_repeats_is_told_and_a_coarse_digit_is_not() {
+        assert!(all(&ranges(100..125, 0.001), None).is_none(), "for two and a half seconds");
+        let found = all(&ranges(100..140, 0.001), None).expect("a finding");
+        assert!(found.found.contains("for 3.9 s"), "{found:?}");
+        assert!(all(&ranges(100..140, 0.1), None).is_none(), "decimetres");
+    }
 }

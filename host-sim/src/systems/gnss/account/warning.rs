@@ -1,6 +1,6 @@
 //! What a user should know of files, and of how they fit each other.
 
-use kestirim_ppp_filter::Contradiction;
+use kestirim_ppp_filter::{Contradiction, Motion};
 use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, Tally, names};
 
 use crate::metrics::median;
@@ -68,12 +68,14 @@ fn contradictions(followed: &Followed) -> Option<String> {
 }
 
 /// A sentence about epochs in which both directions of a smoothed track disagree.
-pub(super) fn apart(smoothed: &Followed) -> Option<String> {
-    let (first, _) = smoothed.contradictions().next()?;
-    let (count, of) = (smoothed.contradictions().count(), smoothed.fixes.len());
+pub(super) fn apart(smoothed: &Followed, motion: Motion) -> Option<String> {
+    let (first, count, of) = (smoothed.apart.first()?, smoothed.apart.len(), smoothed.fixes.len());
+    let remedy = match motion {
+        Motion::Static => ": was the receiver moved (--mode kinematic)?",
+        Motion::Kinematic { .. } => "",
+    };
     Some(format!(
-        "in {count} of {of} smoothed epochs from {first} s on what was observed before and after puts the receiver at different places: \
-         a receiver that was moved is not at rest (--mode kinematic)"
+        "in {count} of {of} smoothed epochs from {first} s on what came before and what came after disagree about the place{remedy}"
     ))
 }
 
