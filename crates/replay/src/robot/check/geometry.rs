@@ -165,8 +165,7 @@ impl Tried<'_> {
         let agree = |with: f64| format!("they would agree within {with:.2} m");
         // Of four anchors three are left without one, and one range to spare; of three anchors there is but one.
         let is_clear = is_contradiction || self.anchors.len() > 4;
-        let scales = SCALES.into_iter().take(if is_clear { SCALES.len() } else { 1 });
-        let scaled = scales.filter_map(|scale| {
+        let scaled = SCALES.into_iter().filter_map(|scale| {
             let with = self.scaled(scale.0).and_then(explained)?;
             Some((with, scale))
         });

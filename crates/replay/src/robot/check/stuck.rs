@@ -14,8 +14,8 @@ const STUCK: usize = 15;
 /// … if the others change meanwhile by more than noise, m.
 pub(super) const MOVING_M: f64 = 0.3;
 
-/// If more than one in so many ranges is that of before at other times, too, no hub repeats.
-const COARSE: usize = 10;
+/// If more than one in so many ranges is that of before at other times, too, no hub repeats: centimetres repeat in one of ten.
+const COARSE: usize = 2;
 
 /// An anchor whose range stays while those of others change.
 pub(super) fn one<'a>(
