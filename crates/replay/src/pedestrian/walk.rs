@@ -262,7 +262,6 @@ impl Walk {
         (self.warnings, self.doubts) = (sentences(warnings), warnings.health());
         if self.strides.is_empty() {
             self.warnings.push(NO_STRIDE.to_owned());
-            self.doubts = self.doubts.with(Reason::NotObservable, true);
         }
     }
 }

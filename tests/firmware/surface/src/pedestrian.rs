@@ -111,6 +111,7 @@ fn looks_back<T: Scalar, N: Navigator<T> + Debug>() {
 fn doubts<T: Scalar>() {
     let sensor = one_of([SensorClass::Industrial, SensorClass::Consumer]);
     keep((SensorClass::heading_rate::<T>(sensor), SensorClass::stride_scale::<T>(sensor)));
+    keep((SensorClass::height_drift::<T>(sensor), SensorClass::drifts_by(sensor, number::<T>())));
     let mut uncertainty = any(PathUncertainty::<T>::new(sensor));
     let (length, duration, heading_change) = (number(), number(), number());
     let stride =
@@ -131,8 +132,6 @@ fn turns_back<T: Scalar>() {
     }
     MagneticHeading::finish(any(&mut heading), number());
     keep(MagneticHeading::rate(&heading));
-    let class = one_of([SensorClass::Industrial, SensorClass::Consumer]);
-    keep(SensorClass::drifts_by(class, number::<T>()));
 }
 
 fn all_of<T: Scalar>() {

@@ -6,10 +6,12 @@ use kestirim_gnss_ppp::{
     Carriers, Corrections, GpsTime, Klobuchar, OceanLoading, Pattern, Receiver, SatelliteState,
     SlipLimits,
 };
+use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_ppp_filter::{
     AmbiguityFixer, CodeObservation, Config, Deviation, Error, Estimator, Health, Motion,
     PhaseBias, PppFilter, SatelliteObservation, Solution, Weighting, single_point, states,
 };
+use kestirim_robust_kalman::{Decision, Measurement};
 
 use super::values::{
     any, call_each, keep, matrix, maybe, number, numbers, one_of, rounds, slice, try_on, whole,
@@ -32,6 +34,17 @@ fn estimators() {
     keep(states(whole()));
     keep::<Error>(From::from(any(kestirim_kalman::Error::NotFinite)));
     keep::<Error>(From::from(any(kestirim_robust_kalman::Error::InvalidBlock)));
+}
+
+fn weighting() {
+    let mut estimate =
+        any(Gaussian::<f64, 9>::new(matrix(), Covariance::from_variances(&numbers())));
+    let row = any([(whole(), number()); 4]);
+    let measurement = Measurement { row: slice(&row), innovation: number(), variance: number() };
+    let measurements = any([measurement; 4]);
+    let mut decisions = any([Decision::NONE; 4]);
+    let robust = any(Estimator::at_rest().robust);
+    keep(Weighting::update(&robust, &mut estimate, slice(&measurements), &mut decisions));
 }
 
 /// Any configuration.
@@ -118,6 +131,7 @@ fn filters<const N: usize, R: Weighting + Debug>(estimator: fn() -> Estimator<R>
 pub fn run() {
     call_each([
         estimators,
+        weighting,
         || filters::<{ states(10) }, _>(|| Estimator::guarded(motion())),
         || filters::<9, _>(Estimator::at_rest),
     ]);
