@@ -79,12 +79,12 @@ impl Followed {
         self.healths[last] =
             if healths.contains(&Health::Converged) { Health::Converged } else { healths[0] };
         let disagree = |axis: usize| apart[axis].abs() > APART * forth[axis].hypot(back[axis]);
-        for axis in (0..3).filter(|axis| disagree(*axis)) {
-            self.deviations[last][axis] = apart[axis].abs();
-            self.healths[last] = Health::Contradicted(Contradiction::Motion);
-        }
         if (0..3).any(disagree) {
             self.apart.push(t);
+            self.healths[last] = Health::Contradicted(Contradiction::Motion);
+        }
+        for axis in (0..3).filter(|axis| disagree(*axis)) {
+            self.deviations[last][axis] = apart[axis].abs();
         }
     }
 }

@@ -54,28 +54,24 @@ pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Opti
     let centre = places().sum::<Vector3<f64>>() / count;
     let spread = places().map(|place| place - centre).map(|it| it * it.transpose() / count);
     let spread = spread.sum::<Matrix3<f64>>();
-    let least = if is_in_space {
-        spread.symmetric_eigenvalues().min()
+    let (least, shape, doubtful, remedy) = if is_in_space {
+        let remedy = "say the height (--height), or hang an anchor well outside the plane";
+        (spread.symmetric_eigenvalues().min(), "lie in one plane", "height", remedy)
     } else {
-        spread.fixed_view::<2, 2>(0, 0).into_owned().symmetric_eigenvalues().min()
+        let in_plane = spread.fixed_view::<2, 2>(0, 0).into_owned();
+        let remedy = "say the room (--room), or hang an anchor well beside the line";
+        (in_plane.symmetric_eigenvalues().min(), "stand in one line", "position", remedy)
     };
     let least = least.max(0.0).sqrt();
-    if !is_in_space {
-        return (least < FLAT_M && !room).then(|| Finding::fault(
-            "geometry",
-            Reason::Geometry,
-            format!("all anchors stand in one line, within {:.0} cm", 100.0 * least),
-            "a tag has the same ranges on both sides of it, so the position may be the mirror image's",
-            "say the room (--room), or hang an anchor well beside the line",
-        ));
-    }
-    (least < FLAT_M).then(|| {
+    (least < FLAT_M && (is_in_space || !room)).then(|| {
         Finding::fault(
             "geometry",
             Reason::Geometry,
-            format!("all anchors lie in one plane, within {:.0} cm", 100.0 * least),
-            "a tag has the same ranges on both sides of it, so the height may be the mirror image's",
-            "say the height (--height), or hang an anchor well outside the plane",
+            format!("all anchors {shape}, within {:.0} cm", 100.0 * least),
+            format!(
+                "a tag has the same ranges on both sides of it, so the {doubtful} may be the mirror image's"
+            ),
+            remedy,
         )
     })
 }
