@@ -40,6 +40,8 @@ impl Page {
         for domain in ["Page", "Runtime", "Log", "Network", "DOM"] {
             page.call(&format!("{domain}.enable"), &json!({}));
         }
+        // As if its window were the one in front.
+        page.call("Emulation.setFocusEmulationEnabled", &json!({ "enabled": true }));
         page.size(900);
         page.call("Page.navigate", &json!({ "url": address }));
         let place = place(address);

@@ -10,6 +10,13 @@ const NUMBERED: &str = "(() => { const all = [...document.querySelectorAll('butt
     .filter(it => !it.disabled && it.checkVisibility()); all.forEach((it, k) => { it.dataset.stop = k; }); \
     return all.map(it => `${it.tagName} ${it.id} ${it.ariaLabel ?? it.textContent.slice(0, 40)}`).join('\\n'); })()";
 
+/// The number of what has the focus, and its outline. From the last to the first the browser itself has the focus for a
+/// moment, in which nothing is outlined yet.
+const FOCUSED: &str = "(async () => { \
+    const now = () => { const it = document.activeElement; return [it.dataset.stop ?? -1, getComputedStyle(it).outlineStyle]; }; \
+    for (let k = 0; k < 100 && now()[1] === 'none' && now()[0] >= 0; k++) await new Promise(it => setTimeout(it, 20)); \
+    return now().join(); })()";
+
 /// Presses Tab until the focus is there.
 fn tab_to(page: &Page, selector: &str) {
     let is_there = format!("document.activeElement.matches('{selector}')");
@@ -44,9 +51,7 @@ fn everything_is_reached_by_tab_and_shows_that_it_is() {
         // Twice round would be a trap.
         for _ in 0..2 * all.len() {
             page.press("Tab");
-            let stop = page.evaluate(
-                "{ const it = document.activeElement; [Number(it.dataset.stop ?? -1), getComputedStyle(it).outlineStyle].join() }",
-            );
+            let stop = page.evaluate(FOCUSED);
             let stop = stop.as_str().expect("text").to_owned();
             let Some((stop, outline)) = stop.split_once(',') else { panic!("{stop}") };
             if let Ok(stop) = stop.parse::<usize>() {
