@@ -6,13 +6,16 @@ use std::path::Path;
 use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
 use crate::fields::{blank_separated, decimal, first_field, integer};
-use crate::satellites::PerSatellite;
+use crate::satellites::{Differing, PerSatellite};
 use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
 /// A bias as large as this stands for one that is not known, s.
 const NO_BIAS: f64 = 0.9;
+
+/// Clocks of one solution are the same in all its files, s.
+const SAME_CLOCK: f64 = 3e-11;
 
 /// The clock of a satellite at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +58,17 @@ impl Clocks {
         let mut clocks = Self::default();
         let files: Result<Vec<_>, _> =
             texts.iter().map(|text| parse_file(text, &mut clocks)).collect();
-        clocks.samples = PerSatellite::merge(files?, |sample| sample.time, |_, _| ());
+        let mut differing = Differing::default();
+        clocks.samples = PerSatellite::merge(
+            files?,
+            |sample| sample.time,
+            |earlier, later| {
+                if (later.bias - earlier.bias).abs() > SAME_CLOCK {
+                    differing.add(later.time);
+                }
+            },
+        );
+        clocks.warnings.extend(differing.warning(texts, "clocks"));
         Ok(clocks)
     }
 

@@ -4,13 +4,16 @@ use std::path::Path;
 
 use crate::antenna_model::AntennaModel;
 use crate::error::{Error, Warning};
-use crate::satellites::PerSatellite;
+use crate::satellites::{Differing, PerSatellite};
 use crate::system::satellite;
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
 
 /// Value that stands for an unknown clock, µs.
 const NO_CLOCK: f64 = 999_999.0;
+
+/// Positions of one solution are the same in all its files, m.
+const SAME_PLACE: f64 = 0.01;
 
 /// The position of a satellite and its clock at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,15 +61,21 @@ impl Orbits {
         let mut orbits = Self::default();
         let files: Result<Vec<_>, _> =
             texts.iter().map(|text| parse_file(text, &mut orbits)).collect();
+        let mut differing = Differing::default();
         orbits.samples = PerSatellite::merge(
             files?,
             |sample| sample.time,
             |earlier, later| {
+                let apart = |axis: usize| (later.position[axis] - earlier.position[axis]).abs();
+                if (0..3).any(|axis| apart(axis) > SAME_PLACE) {
+                    differing.add(later.time);
+                }
                 later.clock = later.clock.or(earlier.clock);
                 later.clock_event |= earlier.clock_event;
                 later.manoeuvre |= earlier.manoeuvre;
             },
         );
+        orbits.warnings.extend(differing.warning(texts, "positions"));
         Ok(orbits)
     }
 
@@ -217,6 +226,25 @@ mod tests {
         let times: Vec<_> = one.satellite(5).iter().map(|sample| sample.time.second()).collect();
         assert_eq!(times, [0.0, 900.0, 1800.0]);
         assert_eq!(one.satellite(5)[1].position[0], 10_000_000.001);
+        Ok(())
+    }
+
+    #[test]
+    fn other_positions_at_the_same_times_are_told() -> Result<(), Error> {
+        let three = orbits().replace(
+            "EOF",
+            "*  2020  1  1  0 30  0.00000000\nPG05  10002.000000 -20001.000000  15001.500000 999999.999999\nEOF",
+        );
+        let told = |other: String| -> Result<usize, Error> {
+            Ok(Orbits::parse(&[text(&three), text(other)])?.warnings.len() - 2)
+        };
+        assert_eq!(told(three.clone())?, 0, "the same");
+        assert_eq!(told(three.replace("PG05  10000", "PG05  10009"))?, 0, "where days meet");
+        let other = three.replace("PG05  1000", "PG05  1100");
+        assert_eq!(told(other.clone())?, 1);
+        let warning = Orbits::parse(&[text(three), text(other)])?.warnings.pop();
+        let sentence = warning.expect("one more").problem;
+        assert!(sentence.contains("different positions at the same 3 times"), "{sentence}");
         Ok(())
     }
 

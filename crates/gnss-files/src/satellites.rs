@@ -1,5 +1,9 @@
 //! Samples of each satellite.
 
+use std::collections::BTreeSet;
+
+use crate::error::Warning;
+use crate::text::Text;
 use crate::time::GpsTime;
 
 /// Times nearer than this are the same instant written twice, s.
@@ -66,5 +70,24 @@ impl<S> PerSatellite<S> {
             });
         }
         merged
+    }
+}
+
+/// Instants at which two files say something else.
+#[derive(Debug, Default)]
+pub(crate) struct Differing(BTreeSet<(i32, i64)>);
+
+impl Differing {
+    pub(crate) fn add(&mut self, time: GpsTime) {
+        self.0.insert((time.day(), (time.second() * 1e3) as i64));
+    }
+
+    /// A warning where files differ at more instants than those at which one day ends and the next begins.
+    pub(crate) fn warning(&self, texts: &[Text], what: &str) -> Option<Warning> {
+        let count = self.0.len();
+        let first = texts.first().filter(|_| count > texts.len())?;
+        Some(first.warning(format!(
+            "it and other files have different {what} at the same {count} times: are they of two services?"
+        )))
     }
 }

@@ -155,7 +155,7 @@ fn results<'py>(
         Results::new(py)
             .table("position", epochs.iter().filter_map(|it| it.position).collect())?
             .table("sigma", epochs.iter().map(of).collect())?
-            .line("health", epochs.iter().map(|epoch| code(epoch.health)).collect())?
+            .line("health", epochs.iter().map(|epoch| code(epoch.health.state())).collect())?
             .table("biases", smoothed.biases)?
             .with("common_bias", smoothed.common[0])?
             .with("excess_in_10_m", smoothed.common[1])
@@ -165,7 +165,7 @@ fn results<'py>(
         .line("t", epochs.iter().map(|epoch| epoch.time_us as f64 / 1e6).collect())?
         .table("position", epochs.iter().map(|it| it.position.unwrap_or([f64::NAN; 3])).collect())?
         .table("sigma", epochs.iter().map(of).collect())?
-        .line("health", epochs.iter().map(|epoch| code(epoch.health)).collect())?
+        .line("health", epochs.iter().map(|epoch| code(epoch.health.state())).collect())?
         .with("lost", lost)?
         .words("reasons", reasons(why))?
         .with("height", found.map(|found| found.metres))?

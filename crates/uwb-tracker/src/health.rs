@@ -41,8 +41,11 @@ pub struct Health<T> {
     pub heard: u8,
     /// Dilution of precision of those anchors; none if they do not determine a position.
     pub dilution: Option<T>,
-    /// Standard deviation of the position, root of its variances' sum, m: the filter's own, and that of the anchors'
-    /// constant errors; none without a position.
+    /// How far the other place is that the ranges allow, m: what [`Tracker::mirror_image`](crate::Tracker::mirror_image) says
+    /// of; none if they allow one only.
+    pub mirror: Option<T>,
+    /// Standard deviation of the position, root of its variances' sum, m: the filter's own, that of the anchors'
+    /// constant errors, and that of being at the other place as likely as here; none without a position.
     pub position_sigma: Option<T>,
     /// The latter alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands, makes of the
     /// position through the anchors heard; where these do not determine it, through all that ever were.
@@ -60,7 +63,10 @@ impl<T: Copy> Health<T> {
         kestirim_health::Health::GOOD
             .with(Reason::Dropout, self.state == State::Coasting)
             .with(Reason::Rejected, self.distrusted)
-            .with(Reason::NotObservable, self.state == State::Lost || is_blind)
+            .with(
+                Reason::NotObservable,
+                self.state == State::Lost || is_blind || self.mirror.is_some(),
+            )
     }
 }
 
@@ -72,6 +78,9 @@ const CHANGING_SPEED: f64 = 0.1;
 
 /// Least weight of a link's constant error beside the best link's.
 const LEAST_WEIGHT: f64 = 1e-3;
+
+/// Standard deviation of one of two places as likely as each other about the other, beside their distance.
+const SQRT_HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// Counters of a tracker.
 #[derive(Clone, Copy, Debug)]
@@ -124,15 +133,17 @@ impl<T: Scalar> Counters<T> {
     }
 }
 
-/// Anchors that were heard lately and of which nothing is in the way.
+/// Anchors that were heard lately and of which nothing is in the way, with their numbers.
 #[inline]
-fn heard_lately<'a, T: Scalar>(
+pub(crate) fn heard_lately<'a, T: Scalar>(
     links: &'a [Link<T>],
     pace: &Pace,
     time_us: u64,
-) -> impl Iterator<Item = &'a Link<T>> + Clone {
+) -> impl Iterator<Item = (usize, &'a Link<T>)> + Clone {
     let fresh_us = pace.fresh_us();
-    links.iter().filter(move |link| !link.is_blocked && link.fresh(time_us, fresh_us).is_some())
+    let is_heard =
+        move |link: &Link<T>| !link.is_blocked && link.fresh(time_us, fresh_us).is_some();
+    links.iter().enumerate().filter(move |(_, link)| is_heard(link))
 }
 
 /// How many they are.
@@ -149,6 +160,8 @@ pub(crate) struct Place<T, const D: usize> {
     pub(crate) variance: T,
     /// Square of the speed, m²/s².
     pub(crate) speed_squared: T,
+    /// How far from it the other place is that the ranges allow, if there is one, m.
+    pub(crate) mirror: Option<T>,
 }
 
 /// Health of a tracker that has this place.
@@ -159,7 +172,7 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     time_us: u64,
     still: bool,
 ) -> Health<T> {
-    let fresh = heard_lately(links, pace, time_us);
+    let fresh = heard_lately(links, pace, time_us).map(|(_, link)| link);
     let heard = fresh.clone().count() as u8;
     let dilution = place.as_ref().and_then(|place| {
         let direction = |link: &Link<T>| direction(place, config, link);
@@ -184,7 +197,11 @@ pub(crate) fn health<T: Scalar, const D: usize>(
         restarts: counters.starts.saturating_sub(1),
         heard,
         dilution,
-        position_sigma: place.map(|place| place.variance.sqrt().hypot(bias_sigma)),
+        mirror: place.as_ref().and_then(|place| place.mirror),
+        position_sigma: place.map(|place| {
+            let either = place.mirror.unwrap_or(T::ZERO) * T::from_f64(SQRT_HALF);
+            place.variance.sqrt().hypot(bias_sigma).hypot(either)
+        }),
         bias_sigma,
         distrusted: counters.distrust > u16::from(heard.max(1)),
         still,

@@ -9,6 +9,7 @@ mod health;
 mod height;
 mod link;
 mod measurement;
+mod mirror;
 mod motion;
 mod pace;
 mod published;

@@ -177,6 +177,22 @@ fn glonass_and_beidou_beside_gps_and_galileo() {
 }
 
 /// A whole day gains less, and its end loses no more than what antennas of types cost.
+/// Orbits of CODE beside clocks of CNES/CLS are told, and those of one service are not.
+#[test]
+fn products_of_two_services() {
+    for (name, orbits, clocks, is_told) in [
+        ("GRG", ESBC.orbits, ESBC.clocks, false),
+        ("CODE", WTZR.orbits, WTZR.clocks, false),
+        ("both", WTZR.orbits, ESBC.clocks, true),
+    ] {
+        let station = Station { orbits, clocks, ..ESBC };
+        let Some(recording) = station.read() else { return };
+        let told: Vec<_> = recording.warnings(Corrections::ALL).collect();
+        let found = told.iter().any(|warning| warning.contains("of two solutions"));
+        assert_eq!(found, is_told, "{name}: {told:?}");
+    }
+}
+
 #[test]
 fn a_day_with_glonass() {
     let Some(recording) = ESBC.read() else { return };

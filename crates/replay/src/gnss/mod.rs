@@ -4,6 +4,7 @@
 //! ECEF, m; times s since the midnight before the first epoch.
 
 mod accuracy;
+mod agreement;
 mod broadcast;
 mod calendar;
 mod check;
@@ -12,6 +13,7 @@ mod coverage;
 mod fixing;
 mod followed;
 mod model;
+mod orbit_jumps;
 mod outage;
 mod products;
 mod recording;

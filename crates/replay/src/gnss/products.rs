@@ -8,7 +8,9 @@ use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Pattern
 use kestirim_ppp_filter::{CodeObservation, SatelliteObservation};
 
 use super::broadcast::Broadcast;
+use super::coverage::names;
 use super::model::{carriers, clock_sample, orbit_sample, patterns};
+use super::orbit_jumps;
 use super::whole_biases::WholeBiases;
 
 /// Clocks are bridged over the interval of the coarsest products, s.
@@ -47,6 +49,8 @@ pub struct Products {
     reference: GpsTime,
     satellites: Vec<Satellite>,
     whole: WholeBiases,
+    /// Satellites with samples off their orbit, how many of each were taken out, and how far they were off, m.
+    jumps: Vec<(u8, usize, f64)>,
     /// In place of all of them, where there are no precise ones.
     broadcast: Option<Broadcast>,
 }
@@ -62,11 +66,15 @@ impl Products {
     ) -> Self {
         let reference = GpsTime::new(start.day(), 0.0);
         let model = antenna_model(orbits, clocks);
+        let mut jumps = Vec::new();
         let satellites = (0..=u8::MAX).map(|prn| {
             // A sample of a manoeuvre or of a jumping clock belongs to neither side.
             let samples = orbits.satellite(prn);
             let steady = samples.iter().filter(|sample| !sample.manoeuvre);
-            let orbit = steady.map(|sample| orbit_sample(reference, sample));
+            let mut orbit: Vec<_> = steady.map(|sample| orbit_sample(reference, sample)).collect();
+            if let Some((count, metres)) = orbit_jumps::remove(&mut orbit) {
+                jumps.push((prn, count, metres));
+            }
             let clock = match clocks {
                 Some(clocks) => clocks
                     .satellite(prn)
@@ -83,14 +91,10 @@ impl Products {
             // Where it is not known how that edition has it, another's is better than none.
             let as_made = antenna.zip(model).and_then(|(antenna, model)| antenna.in_model(model));
             let antenna = as_made.or_else(|| antenna.cloned());
-            Satellite { orbit: orbit.collect(), clock, antenna }
+            Satellite { orbit, clock, antenna }
         });
-        Self {
-            reference,
-            satellites: satellites.collect(),
-            whole: WholeBiases::default(),
-            broadcast: None,
-        }
+        let satellites = satellites.collect();
+        Self { reference, satellites, whole: WholeBiases::default(), jumps, broadcast: None }
     }
 
     /// Products of which all samples count from `reference`: the satellites in the order of their numbers, from 1.
@@ -99,13 +103,24 @@ impl Products {
         satellites: impl IntoIterator<Item = Satellite>,
     ) -> Self {
         let satellites = std::iter::once(Satellite::default()).chain(satellites).collect();
-        Self { reference, satellites, whole: WholeBiases::default(), broadcast: None }
+        let whole = WholeBiases::default();
+        Self { reference, satellites, whole, jumps: Vec::new(), broadcast: None }
     }
 
     /// What satellites broadcast, in place of products.
     pub(super) fn of_broadcast(start: files::GpsTime, broadcast: Broadcast) -> Self {
         let nothing = Self::of_satellites(GpsTime::new(start.day(), 0.0), []);
         Self { broadcast: Some(broadcast), ..nothing }
+    }
+
+    /// A warning of samples that were off their orbit, and are not used.
+    pub(super) fn jumps(&self) -> Option<String> {
+        let farthest = self.jumps.iter().map(|(_, _, metres)| *metres).reduce(f64::max)?;
+        let count: usize = self.jumps.iter().map(|(_, count, _)| count).sum();
+        let names = names(self.jumps.iter().map(|(number, ..)| *number));
+        Some(format!(
+            "orbits of {names} jump by up to {farthest:.0} m at {count} of their samples, around which they are left out"
+        ))
     }
 
     /// What satellites broadcast, if that serves in place of products.

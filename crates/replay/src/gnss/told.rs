@@ -8,6 +8,7 @@ use kestirim_gnss_files::{
 };
 use kestirim_gnss_ppp::Correction;
 
+use super::agreement;
 use super::broadcast::Broadcast;
 use super::coverage::{self, names};
 use super::model;
@@ -81,6 +82,9 @@ impl Told {
                 let left_out = coverage::left_out(observations, orbits, antennas, known, warnings);
                 let model = antenna_model(orbits, clocks);
                 warnings.extend(coverage::other_antennas(observations, &products, model));
+                let apart = clocks.and_then(|clocks| agreement::doubt(orbits, clocks));
+                let sentences = products.jumps().into_iter().chain(apart);
+                warnings.extend(sentences.map(|sentence| (None, sentence)));
                 Served { products, left_out, span: coverage::span(orbits, midnight) }
             }
             Self::Broadcast(navigation) => {

@@ -1,6 +1,7 @@
 //! What the ranges of a tag show before it is tracked.
 
 mod geometry;
+mod jumps;
 mod moments;
 mod stuck;
 
@@ -53,6 +54,7 @@ pub fn check<'a>(
     let cut_at = cut_at.map(|(_, metres)| metres);
     findings.extend(parts.iter().find_map(|ranges| stuck::one(ranges, cut_at, &name)));
     findings.extend(parts.iter().find_map(|ranges| stuck::all(ranges, cut_at)));
+    findings.extend(jumps::find(&parts, &name));
     findings.extend(geometry::check(anchors, &parts, height));
     findings.extend(geometry::mirror(anchors, height, room_is_known));
     findings

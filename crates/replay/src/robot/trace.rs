@@ -1,6 +1,6 @@
 //! Feeds a tracker, and keeps what became of every range.
 
-use kestirim_health::{Health, Reason, State};
+use kestirim_health::{Health, Reason};
 
 use super::{Difference, Error, Event, Follow, FoundHeight, Range, Reception, Setup, build};
 
@@ -24,8 +24,10 @@ pub struct Epoch {
     pub spread: Option<[f64; 3]>,
     /// Variance of z, m², from a tracker that estimates it, or of the height that was found.
     pub height_variance: Option<f64>,
+    /// From there to the other place that the ranges allow, m, if they allow two; the variances are of both.
+    pub mirror: Option<[f64; 3]>,
     /// How far it can be relied upon.
-    pub health: State,
+    pub health: Health,
 }
 
 /// A position of a larger standard deviation is not what anybody ranges for, m.
@@ -52,6 +54,19 @@ impl Epoch {
         if let Some([xx, _, yy]) = self.spread.as_mut() {
             *xx += half;
             *yy += half;
+        }
+    }
+
+    /// Adds that it may be the other place as likely as this one, if the ranges allow one.
+    pub(super) fn doubt_side(&mut self) {
+        let Some([x, y, z]) = self.mirror else { return };
+        if let Some([xx, xy, yy]) = self.spread.as_mut() {
+            *xx += 0.5 * x * x;
+            *xy += 0.5 * x * y;
+            *yy += 0.5 * y * y;
+        }
+        if let Some(variance) = self.height_variance.as_mut() {
+            *variance += 0.5 * z * z;
         }
     }
 
@@ -98,10 +113,19 @@ impl Trace {
         self.epochs.last().and_then(|epoch| epoch.position)
     }
 
-    /// Whether more than a tenth of the positions are vague.
-    pub fn is_vague(&self) -> bool {
-        let vague = self.epochs.iter().filter(|epoch| epoch.is_vague()).count();
-        10 * vague > self.known().count()
+    /// What speaks against more than a tenth of the positions.
+    fn doubts(&self) -> Health {
+        let known = || self.epochs.iter().filter(|epoch| epoch.position.is_some());
+        let often = |reason: &Reason| {
+            10 * known().filter(|epoch| epoch.health.has(*reason)).count() > known().count()
+        };
+        Reason::ALL.into_iter().filter(often).collect()
+    }
+
+    /// For how much of the time at which there is a position the ranges allow two.
+    pub fn mirrored_share(&self) -> f64 {
+        let mirrored = self.epochs.iter().filter(|epoch| epoch.mirror.is_some()).count();
+        mirrored as f64 / self.known().count().max(1) as f64
     }
 
     /// Whether there is no position for more than a tenth of the time.
@@ -134,8 +158,8 @@ impl Recent {
     /// Of fewer ranges no share is taken.
     const FEWEST: usize = 20;
 
-    /// Less than good while more ranges are left out than taken in.
-    fn health(&mut self, now_us: i64, ranges: &[(Range, Reception)]) -> State {
+    /// Whether more ranges are left out than taken in.
+    fn are_rejected(&mut self, now_us: i64, ranges: &[(Range, Reception)]) -> bool {
         let is_rejected = |(_, reception): &(Range, Reception)| usize::from(!reception.taken);
         self.rejected += ranges[self.end..].iter().map(is_rejected).sum::<usize>();
         self.end = ranges.len();
@@ -147,11 +171,7 @@ impl Recent {
             self.first += 1;
         }
         let count = self.end - self.first;
-        if count >= Self::FEWEST && 2 * self.rejected > count {
-            Reason::Rejected.state()
-        } else {
-            State::Good
-        }
+        count >= Self::FEWEST && 2 * self.rejected > count
     }
 }
 
@@ -172,11 +192,15 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
             Event::EpochEnd { .. } => {
                 let (position, spread) = (tracker.position(), tracker.spread());
                 let height_variance = tracker.height_variance();
-                let health = recent.health(time_us, &trace.ranges).max(tracker.health().state());
-                let mut epoch = Epoch { time_us, position, spread, height_variance, health };
-                if epoch.is_vague() && epoch.health == State::Good {
-                    epoch.health = Reason::NotObservable.state();
-                }
+                let are_rejected = recent.are_rejected(time_us, &trace.ranges);
+                let health = tracker.health().with(Reason::Rejected, are_rejected);
+                let mirror = position
+                    .zip(tracker.mirror_image())
+                    .map(|(here, there)| std::array::from_fn(|axis| there[axis] - here[axis]));
+                let mut epoch =
+                    Epoch { time_us, position, spread, height_variance, mirror, health };
+                epoch.doubt_side();
+                epoch.health = epoch.health.with(Reason::NotObservable, epoch.is_vague());
                 trace.epochs.push(epoch);
             }
             _ => {}
@@ -199,8 +223,9 @@ pub fn doubts(traces: &[Trace], is_static: bool) -> Health {
     let taken: usize = traces.iter().map(Trace::taken).sum();
     let rejected: usize = traces.iter().map(Trace::rejected).sum();
     let is_lost = traces.iter().all(|trace| trace.last().is_none());
-    Health::GOOD
+    let of_epochs = traces.iter().map(Trace::doubts).fold(Health::GOOD, Health::and);
+    of_epochs
         .with(Reason::Rejected, rejected > taken)
-        .with(Reason::NotObservable, is_lost || traces.iter().any(Trace::is_vague))
+        .with(Reason::NotObservable, is_lost)
         .with(Reason::Dropout, !is_static && traces.iter().any(Trace::is_interrupted))
 }

@@ -44,6 +44,11 @@ pub trait Follow: Debug {
         None
     }
 
+    /// The other place that the ranges allow, m, of a tracker that knows; none if they allow one only.
+    fn mirror_image(&self) -> Option<[f64; 3]> {
+        None
+    }
+
     /// What speaks against its position now, of a tracker that knows.
     fn health(&self) -> kestirim_health::Health {
         kestirim_health::Health::GOOD

@@ -1,6 +1,6 @@
 //! Smoothed paths of tags.
 
-use kestirim_health::State;
+use kestirim_health::Health;
 use kestirim_replay::robot::{
     Dimensions, Epoch, Event, FoundHeight, RangeRow, Sensors, Setup, Trace, Tracked, Unsmoothed,
     Wheels, smooth, track,
@@ -105,7 +105,8 @@ fn what_cannot_be_smoothed_is_said() {
             position: Some([1.0; 3]),
             spread: Some([0.01, 0.0, 0.01]),
             height_variance: None,
-            health: State::Good,
+            mirror: None,
+            health: Health::GOOD,
         };
         MOST_EPOCHS + 1
     ];

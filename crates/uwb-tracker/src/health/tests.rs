@@ -15,6 +15,7 @@ fn words_are_those_of_what_was_found() {
         restarts: 0,
         heard: 4,
         dilution: Some(1.0),
+        mirror: None,
         position_sigma: Some(0.1),
         bias_sigma: 0.05,
         distrusted: false,
@@ -29,6 +30,7 @@ fn words_are_those_of_what_was_found() {
         (Health { distrusted: true, ..found }, only(Reason::Rejected)),
         (Health { state: State::Lost, dilution: None, ..found }, only(Reason::NotObservable)),
         (Health { dilution: None, ..found }, only(Reason::NotObservable)),
+        (Health { mirror: Some(2.0), ..found }, only(Reason::NotObservable)),
     ] {
         assert_eq!(health.in_short(), words, "{health:?}");
     }
@@ -122,7 +124,8 @@ const OLD_US: u64 = NOW_US - 1_000_001;
 
 /// Health of a tag in the middle of the anchors at this speed (m/s), with a deviation of 10 cm.
 fn in_the_middle(config: &Config<f64>, links: &[Link<f64>], speed: f64) -> Health<f64> {
-    let place = Place { position: vector![0.0, 0.0], variance: 0.01, speed_squared: speed * speed };
+    let speed_squared = speed * speed;
+    let place = Place { position: vector![0.0, 0.0], variance: 0.01, speed_squared, mirror: None };
     let mut counters = Counters::new();
     counters.begun();
     health((&counters, config), (links, &Pace::new(4)), Some(place), NOW_US, false)

@@ -2,9 +2,11 @@
 
 use super::{Place, Tracker};
 use crate::measurement::Range;
+use crate::mirror;
 use crate::take_in::take_in;
 use crate::{Error, Outcome, RangeSample, Report};
 use kestirim_scalar::Scalar;
+use nalgebra::SVector;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Takes in a range at the estimate's own time: whether the common bias is observed, and whether there are more ranges than
@@ -39,8 +41,23 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.reject(is_blocked);
         } else {
             self.counters.take(seen.nis);
+            if self.mirror.is_some() && outcome != Outcome::Recovered {
+                self.tell_apart(&place, (seen.innovation, seen.variance));
+            }
         }
         Ok(Report { outcome, innovation: Some(seen) })
+    }
+
+    /// Forgets the other place if a range of the anchor at `place` that left this innovation (m, with its variance) does not
+    /// fit it.
+    #[inline(never)] // Rare.
+    fn tell_apart(&mut self, place: &SVector<T, 3>, seen: (T, T)) {
+        let Some((mirror, position)) = self.mirror.zip(self.position()) else { return };
+        let across = mirror::across(&mirror, &self.links, &position);
+        let here = (&position, self.config.height);
+        if across.is_some_and(|across| mirror::tells(&across, here, place, seen)) {
+            self.mirror = None;
+        }
     }
 
     /// Counts a range that was left out; when half of them are, the position is given up.
@@ -85,7 +102,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         for link in &mut self.links {
             *link = link.begun(&self.config);
         }
-        self.heard = heard;
+        (self.heard, self.mirror) = (heard, None);
         self.counters.begun();
         true
     }

@@ -5,6 +5,7 @@ mod time;
 use crate::config::{bias_shape, size};
 use crate::health::Counters;
 use crate::link::Link;
+use crate::mirror::{self, Mirror};
 use crate::pace::Pace;
 use crate::start::Start;
 use crate::stillness::Stillness;
@@ -42,6 +43,8 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     doubted_until_us: u64,
     pub(crate) heard: u8,
     pub(crate) pace: Pace,
+    /// The tag may be behind it as well.
+    mirror: Option<Mirror<D>>,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
     /// How the common bias depends on the distance: a constant, and a slope, 1/m.
@@ -102,6 +105,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             doubted_until_us: 0,
             heard: 0,
             pace: Pace::new(anchors.len()),
+            mirror: None,
             lost_sigma: size * T::from_f64(LOST_SIGMA),
             bias_shape: bias_shape(size),
             counters: Counters::new(),
@@ -120,6 +124,18 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     pub fn velocity(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[D + axis]))
+    }
+
+    /// The other place that the ranges allow, m; none if they allow one only, as they mostly do.
+    ///
+    /// Two anchors in the plane, or three in space, see what is in front of their line, or plane, and what is behind it
+    /// alike. A tag that came near it while no other anchor was heard may have crossed it or turned back: the position is
+    /// one of the two until the range of another anchor tells, or the room does.
+    pub fn mirror_image(&self) -> Option<SVector<T, D>> {
+        let position = self.position()?;
+        let other = position - mirror::across(self.mirror.as_ref()?, &self.links, &position)?;
+        let margin = self.config.bias_sigma.hypot(T::ONE);
+        self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(other)
     }
 
     /// Mean and covariance of all states.
@@ -215,6 +231,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Gives the position up: another one is looked for.
     pub(crate) fn give_up(&mut self) {
         self.place = Place::Sought(Start::new());
+        self.mirror = None;
     }
 
     /// Whether a search for a position has begun.

@@ -1,14 +1,16 @@
 //! Time of the estimate, and standstills of the tag.
 
 use super::{LOST_US, Place, Tracker};
-use crate::health::count_heard;
+use crate::health::{count_heard, heard_lately};
 use crate::measurement::{Speed, Standstill};
+use crate::mirror::{self, Mirror};
 use crate::{Error, OdometrySample, motion};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-/// Estimate, its time, anchors heard, end of a doubt.
-pub(crate) type Timed<T, const N: usize> = (Option<Gaussian<T, N>>, u64, u8, u64);
+/// Estimate, its time, anchors heard, end of a doubt, and what the tag may be behind.
+pub(crate) type Timed<T, const D: usize, const N: usize> =
+    (Option<Gaussian<T, N>>, u64, u8, u64, Option<Mirror<D>>);
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Age beyond which odometry is not used (µs).
@@ -24,14 +26,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
 
     /// Fields that [`Tracker::advance`] changes.
     #[inline]
-    pub(crate) fn timed(&self) -> Timed<T, N> {
-        (self.estimate().copied(), self.time_us, self.heard, self.doubted_until_us)
+    pub(crate) fn timed(&self) -> Timed<T, D, N> {
+        (self.estimate().copied(), self.time_us, self.heard, self.doubted_until_us, self.mirror)
     }
 
     #[inline]
-    pub(crate) fn restore(&mut self, before: Timed<T, N>) {
+    pub(crate) fn restore(&mut self, before: Timed<T, D, N>) {
         let estimate;
-        (estimate, self.time_us, self.heard, self.doubted_until_us) = before;
+        (estimate, self.time_us, self.heard, self.doubted_until_us, self.mirror) = before;
         if let Some(estimate) = estimate {
             self.place = Place::Known(estimate);
         }
@@ -72,7 +74,18 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
         self.time_us = time_us;
         self.heard = self.count_heard(time_us);
+        if usize::from(self.heard) == D && self.mirror.is_none() {
+            self.look_behind();
+        }
         Ok(())
+    }
+
+    /// Takes notice of whether the tag is so near the line through the only anchors heard that it may cross it unseen.
+    #[inline(never)] // Rare.
+    fn look_behind(&mut self) {
+        let Place::Known(estimate) = &self.place else { return };
+        let heard = heard_lately(&self.links, &self.pace, self.time_us).map(|(anchor, _)| anchor);
+        self.mirror = mirror::reached(estimate, &self.config, &self.links, heard);
     }
 
     #[inline]

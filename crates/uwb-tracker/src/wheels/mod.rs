@@ -117,6 +117,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
                 position: self.position()?,
                 variance: estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?,
                 speed_squared: speed * speed,
+                // The course tells both sides apart.
+                mirror: None,
             })
         });
         let still = wheels.is_some_and(stands);

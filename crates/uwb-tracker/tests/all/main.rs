@@ -4,6 +4,7 @@ mod anything;
 mod common;
 mod differences;
 mod height;
+mod mirror;
 mod published;
 mod single_parts;
 mod tracking;

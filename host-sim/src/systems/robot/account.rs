@@ -14,6 +14,9 @@ use crate::Error;
 use crate::system::{Account, Settings, System, Table};
 use crate::text::printable;
 
+/// For a larger share of the time two places are worth a sentence.
+const MIRRORED: f64 = 0.01;
+
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
@@ -199,6 +202,14 @@ fn warnings(recording: &Recording, tracks: &Tracks, points: Option<&[PointReport
         }
         None => {}
     }
+    let mirrored = traces.iter().map(Trace::mirrored_share).fold(0.0, f64::max);
+    if mirrored > MIRRORED {
+        let percent = 100.0 * mirrored;
+        warnings.push(format!(
+            "for {percent:.0} % of the time the ranges allow two places, one on either side of the only anchors heard: \
+             --room may tell which"
+        ));
+    }
     warnings
 }
 
@@ -217,7 +228,7 @@ pub(super) fn table(recording: &Recording, tracks: &Tracks) -> Table {
             let numbers = position.map(|metres| format!("{metres:.6}")).into_iter();
             let fields = numbers.chain(epoch.sigmas_m().map(sigma));
             table.rows.push(std::iter::once(label).chain(fields).collect());
-            table.health.push(epoch.health);
+            table.health.push(epoch.health.state());
         }
     }
     table

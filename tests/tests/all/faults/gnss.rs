@@ -242,6 +242,21 @@ const FAULTS: &[Fault] = &[
         };
         it.orbits[1] = it.orbits[1].lines().map(moved).collect();
     }),
+    ("orbits a kilometre off at one time", |it| {
+        let mut is_noon = false;
+        let moved = |line: &str| {
+            if line.starts_with('*') {
+                is_noon = line.starts_with("*  2020  6 25 12  0");
+            }
+            match line.get(4..18).and_then(|x| x.trim().parse::<f64>().ok()) {
+                Some(x) if is_noon && line.starts_with('P') => {
+                    format!("{}{:14.6}{}\n", &line[..4], x + 1.0, &line[18..])
+                }
+                _ => line.to_owned() + "\n",
+            }
+        };
+        it.orbits[1] = it.orbits[1].lines().map(moved).collect();
+    }),
     ("antenna not in the file", |it| {
         it.antennas = it.antennas.replace("ASH701945E_M", "ASH700000X_M");
     }),

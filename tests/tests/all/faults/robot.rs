@@ -69,6 +69,16 @@ impl Room {
         let column = self.ranges.column("anchor");
         self.ranges.rows.retain(|row| row[column] != name);
     }
+
+    /// The last two.
+    fn keep_two(&mut self) {
+        let (anchors, from) = (self.anchors.rows.len(), self.ranges.rows.len() / 3);
+        let lost: Vec<_> =
+            self.anchors.rows[..anchors - 2].iter().map(|row| row[0].clone()).collect();
+        let column = self.ranges.column("anchor");
+        let rest = self.ranges.rows.split_off(from);
+        self.ranges.rows.extend(rest.into_iter().filter(|row| !lost.contains(&row[column])));
+    }
 }
 
 const FAULTS: &[Fault] = &[
@@ -90,6 +100,7 @@ const FAULTS: &[Fault] = &[
         it.ranges(Some(1), |row, v| if row < from { v } else { v + 2.0 });
     }),
     ("an anchor never heard", |it| it.lose(0)),
+    ("two anchors are heard from a third on", Room::keep_two),
     ("dropout 1 s", |it| it.ranges.drop_out(1.0)),
     ("dropout 10 s", |it| it.ranges.drop_out(10.0)),
     ("spikes 1 %", |it| it.ranges(None, |row, v| if one_in(100, row) { v + 40.0 } else { v })),

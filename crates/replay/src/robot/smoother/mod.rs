@@ -11,7 +11,7 @@ mod noise;
 mod problem;
 mod wheels;
 
-use kestirim_health::{Reason, State};
+use kestirim_health::{Health, Reason};
 use kestirim_uwb_tracker::Config;
 
 use self::free::Free;
@@ -135,10 +135,10 @@ fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
     }
     let mut parts: Vec<Vec<Epoch>> = vec![Vec::new(); knots.parts];
     for (knot, mut epoch) in knots.points.iter().zip(solved.epochs) {
-        if epoch.is_vague() {
-            epoch.health = Reason::NotObservable.state();
+        if epoch.is_vague() || epoch.mirror.is_some() {
+            epoch.health = epoch.health.with(Reason::NotObservable, true);
         } else if knot.epoch.is_vague() || knot.epoch.position.is_none() {
-            epoch.health = State::Good;
+            epoch.health = Health::GOOD;
         }
         parts[knot.part].push(epoch);
     }

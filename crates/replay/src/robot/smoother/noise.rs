@@ -151,7 +151,7 @@ mod tests {
     use super::super::super::Epoch;
     use super::super::knots::Knot;
     use super::*;
-    use kestirim_health::State;
+    use kestirim_health::Health;
 
     /// Two anchors, one range of each every tenth of a second.
     fn knots(count: usize) -> Knots {
@@ -163,7 +163,8 @@ mod tests {
                 position: None,
                 spread: None,
                 height_variance: None,
-                health: State::Good,
+                mirror: None,
+                health: Health::GOOD,
             },
         };
         let measured = |knot| [0, 1].map(|anchor| Measured { knot, anchor, metres: 0.0 });

@@ -283,6 +283,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
             if let Some(found) = &self.setup.found {
                 epoch.widen(found);
             }
+            epoch.doubt_side();
             epoch
         });
         let count = self.setup.anchors.len();

@@ -80,6 +80,13 @@ impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
         self.ranges.height_variance()
     }
 
+    fn mirror_image(&self) -> Option<[f64; 3]> {
+        if self.listens {
+            return place(&self.tracker.mirror_image()?, self.height_m);
+        }
+        self.ranges.mirror_image()
+    }
+
     fn health(&self) -> kestirim_health::Health {
         if self.listens {
             return self.tracker.health(self.now_us).in_short();

@@ -1,0 +1,54 @@
+//! Whether orbits and clocks are of one solution: an orbit file has clocks of its own, which are the same then.
+
+use kestirim_gnss_files::{Clocks, OrbitSample, Orbits, System};
+use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
+
+use crate::metrics::median;
+
+/// Clocks of one solution are within 1 cm of each other (a service of rapid products; others to a tenth of a millimetre), those
+/// of two are 5 cm apart: what is in between, m.
+const APART_M: f64 = 0.02;
+/// So many instants are compared.
+const INSTANTS: usize = 24;
+/// Fewer satellites do not tell a common offset.
+const FEWEST: usize = 4;
+
+/// A warning where the clocks of clock files are not those of the orbit files, beside what all of a system have in common.
+pub(super) fn doubt(orbits: &Orbits, clocks: &Clocks) -> Option<String> {
+    let apart: Vec<f64> = [System::Gps, System::Galileo]
+        .into_iter()
+        .flat_map(|it| differences(orbits, clocks, it))
+        .collect();
+    let apart = (!apart.is_empty()).then(|| median(&apart))?;
+    (apart > APART_M).then(|| {
+        format!(
+            "orbits and clocks seem to be of two solutions: clocks in their files are {:.0} cm apart. Take both of one service",
+            100.0 * apart
+        )
+    })
+}
+
+/// How far the clocks of satellites are apart, beside the median of all, m.
+fn differences(orbits: &Orbits, clocks: &Clocks, system: System) -> Vec<f64> {
+    let numbers: Vec<u8> = orbits.satellites().filter(|it| System::of(*it) == system).collect();
+    let longest = numbers.iter().map(|&number| orbits.satellite(number)).max_by_key(|it| it.len());
+    let instants = longest.unwrap_or_default();
+    let every = instants.len().div_ceil(INSTANTS).max(1);
+    let at = |instant: &OrbitSample| {
+        let of = |&number: &u8| {
+            let samples = orbits.satellite(number);
+            let place = samples.partition_point(|sample| sample.time < instant.time);
+            let sample = samples.get(place).filter(|sample| sample.time == instant.time)?;
+            let [before, after] = clocks.around(number, instant.time)?;
+            let is_exact = before.time == instant.time && !sample.clock_event;
+            is_exact.then_some(SPEED_OF_LIGHT * (sample.clock? - after.bias))
+        };
+        let all: Vec<f64> = numbers.iter().filter_map(of).collect();
+        if all.len() < FEWEST {
+            return Vec::new();
+        }
+        let common = median(&all);
+        all.iter().map(|it| (it - common).abs()).collect()
+    };
+    instants.iter().step_by(every).flat_map(at).collect()
+}

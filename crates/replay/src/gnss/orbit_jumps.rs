@@ -1,0 +1,96 @@
+//! Samples of orbits that lie off the curve through their neighbours: a cut digit, a wrong day, a manoeuvre that is not told.
+
+use kestirim_gnss_ppp::OrbitSample;
+
+/// So many samples make a curve with one to spare.
+const POINTS: usize = 9;
+/// Binomials of eight: a sample's share in the eighth difference of nine.
+const SHARES: [f64; POINTS] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
+/// Where a sample may be among them, the best places first: at the ends little is known of it.
+const PLACES: [usize; 5] = [4, 3, 5, 2, 6];
+/// No satellite is so far off a polynomial of its neighbours, m: the eccentric ones of Galileo are 13 m at quarters of an hour.
+const FARTHEST: f64 = 30.0;
+
+/// Takes out what is off the curve, the worst first; what is around a gap then is not used either. How many were taken out, and
+/// how far the worst was off, m.
+pub(super) fn remove(samples: &mut Vec<OrbitSample>) -> Option<(usize, f64)> {
+    let (mut count, mut farthest) = (0, 0.0);
+    let mut from = 0;
+    loop {
+        let misfits =
+            (from..samples.len()).filter_map(|index| Some((index, misfit(samples, index)?)));
+        // The first one that is off, and the worst of those that it draws along.
+        let Some((first, _)) = misfits.clone().find(|(_, misfit)| *misfit > FARTHEST) else {
+            break;
+        };
+        let near = misfits.take_while(|(index, _)| *index < first + POINTS);
+        let Some((worst, most)) = near.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        samples.remove(worst);
+        (count, farthest) = (count + 1, most.max(farthest));
+        from = first.saturating_sub(POINTS);
+    }
+    (count > 0).then_some((count, farthest))
+}
+
+/// How far a sample is off the polynomial through eight others around it, m; none where they are not equidistant.
+fn misfit(samples: &[OrbitSample], index: usize) -> Option<f64> {
+    PLACES.into_iter().find_map(|place| {
+        let first = index.checked_sub(place)?;
+        let window: &[OrbitSample; POINTS] = samples.get(first..)?.first_chunk()?;
+        let step = window[1].second - window[0].second;
+        let is_even = |pair: &[OrbitSample]| (pair[1].second - pair[0].second - step).abs() < 1e-3;
+        if !window.windows(2).all(is_even) {
+            return None;
+        }
+        let signed = window.iter().zip(SHARES).enumerate();
+        let difference: nalgebra::Vector3<f64> = signed
+            .map(|(k, (sample, share))| sample.position * if k % 2 == 0 { share } else { -share })
+            .sum();
+        Some(difference.norm() / SHARES[place])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// A day of a satellite on a circle, each quarter of an hour; some samples are off by so much, m.
+    fn orbit(off: &[(usize, f64)]) -> Vec<OrbitSample> {
+        let sample = |k: usize| {
+            let second = 900.0 * k as f64;
+            let (sine, cosine) = (second * std::f64::consts::TAU / 43_000.0).sin_cos();
+            let by = off.iter().find(|(at, _)| *at == k).map_or(0.0, |(_, by)| *by);
+            let position = Vector3::new(26.6e6 * cosine, 26.6e6 * sine, by);
+            OrbitSample { second, position }
+        };
+        (0..96).map(sample).collect()
+    }
+
+    fn left(off: &[(usize, f64)]) -> (Option<(usize, f64)>, Vec<usize>) {
+        let mut samples = orbit(off);
+        let found = remove(&mut samples);
+        let left: Vec<_> = samples.iter().map(|sample| (sample.second / 900.0) as usize).collect();
+        (found, (0..96).filter(|k| !left.contains(k)).collect())
+    }
+
+    #[test]
+    fn only_what_is_off_is_taken_out() {
+        assert_eq!(left(&[]), (None, vec![]));
+        assert_eq!(left(&[(40, 10.0)]), (None, vec![]));
+        let (found, gone) = left(&[(40, 1000.0), (80, -40.0)]);
+        assert_eq!(gone, [40, 80]);
+        let (count, farthest) = found.expect("both");
+        assert!(count == 2 && (farthest - 1000.0).abs() < 1.0, "{farthest}");
+        assert_eq!(left(&[(2, 500.0)]).1, [2]);
+        assert_eq!(left(&[(93, 500.0)]).1, [93]);
+    }
+
+    #[test]
+    fn what_is_next_to_a_gap_is_looked_at_from_the_other_side() {
+        assert_eq!(left(&[(40, 1000.0), (41, 800.0)]).1, [40, 41]);
+        let mut few = orbit(&[]);
+        few.truncate(8);
+        assert_eq!(remove(&mut few), None);
+    }
+}

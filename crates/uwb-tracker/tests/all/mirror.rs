@@ -1,0 +1,134 @@
+//! A tag of which too few anchors are heard to tell on which side of them it is.
+
+use crate::common::{CORNERS, anchors, distance, sample};
+use kestirim_scalar::{Q12_20, Scalar};
+use kestirim_uwb_ranging::Room;
+use kestirim_uwb_tracker::{CalibratedPlaneTracker, CalibratedSpaceTracker, Config};
+
+/// The corners 0 and 2 of the room make a diagonal, of which the tag is in the middle at a distance, m.
+fn beside_the_diagonal(distance: f64) -> [f64; 3] {
+    [4.0 - 0.6 * distance, 3.0 + 0.8 * distance, 1.0]
+}
+
+/// A tag in a plane that has moved for so many tenths of a second towards the diagonal and back, at 0.4 m/s.
+struct Walk<T: Scalar> {
+    tracker: CalibratedPlaneTracker<T, 4>,
+    time_us: u64,
+}
+
+impl<T: Scalar> Walk<T> {
+    fn new(config: Config<T>) -> Self {
+        let tracker = CalibratedPlaneTracker::new(config, &anchors(&CORNERS, 0.0)).unwrap();
+        Self { tracker, time_us: 0 }
+    }
+
+    /// From one distance of the diagonal to another, where these anchors are heard.
+    fn go(&mut self, from: f64, to: f64, heard: &[usize]) {
+        let steps = ((to - from).abs() / 0.04).round() as usize;
+        for step in 1..=steps {
+            self.time_us += 100_000;
+            let tag = beside_the_diagonal(from + (to - from) * step as f64 / steps as f64);
+            for &anchor in heard {
+                let range = distance(CORNERS[anchor], tag);
+                self.tracker.range(&sample(self.time_us, anchor, range)).unwrap();
+            }
+        }
+    }
+
+    /// Distance of the position from the tag, m, and as much as is said about it.
+    fn error_and_sigma(&self, at: f64) -> (f64, f64) {
+        let tag = beside_the_diagonal(at);
+        let position = self.tracker.position().unwrap().map(T::to_f64);
+        let error = (position[0] - tag[0]).hypot(position[1] - tag[1]);
+        let health = self.tracker.health(self.time_us);
+        (error, health.position_sigma.unwrap().to_f64())
+    }
+
+    /// How far the other place is from where it is to be, m; none if there is none.
+    fn image_beside(&self, at: f64) -> Option<f64> {
+        let place = self.tracker.mirror_image()?.map(T::to_f64);
+        let tag = beside_the_diagonal(at);
+        Some((place[0] - tag[0]).hypot(place[1] - tag[1]))
+    }
+}
+
+fn check_turn<T: Scalar>() {
+    let mut walk = Walk::<T>::new(Config::calibrated(T::ONE));
+    walk.go(2.4, 2.0, &[0, 1, 2, 3]);
+    walk.go(2.0, 1.6, &[0, 2]);
+    assert_eq!(walk.tracker.mirror_image(), None, "not near yet");
+    walk.go(1.6, 0.0, &[0, 2]);
+    assert!(walk.tracker.mirror_image().is_some());
+    // It turns back, and looks as if it had gone on.
+    walk.go(0.0, 2.0, &[0, 2]);
+    let (error, sigma) = walk.error_and_sigma(2.0);
+    assert!(error < 3.0 * sigma, "{error} m with a σ of {sigma} m");
+    let health = walk.tracker.health(walk.time_us);
+    assert_eq!(health.in_short().state(), kestirim_health::State::Degraded, "{health:?}");
+    let apart = health.mirror.unwrap().to_f64();
+    assert!((apart - 4.0).abs() < 0.4, "{apart} m");
+    let places = [error, walk.image_beside(2.0).unwrap()];
+    assert!(places.iter().any(|error| *error < 0.2), "one of both is right: {places:?}");
+    // A third anchor tells at once, or takes the position away if it was the wrong one.
+    walk.go(2.0, 2.4, &[0, 1, 2, 3]);
+    walk.go(2.4, 2.0, &[0, 1, 2, 3]);
+    let (error, sigma) = walk.error_and_sigma(2.0);
+    assert!(error < 0.2 && sigma < 0.3, "{error} m, σ {sigma} m");
+    assert_eq!(walk.tracker.health(walk.time_us).mirror, None);
+}
+
+#[test]
+fn a_turn_at_the_line_of_two_anchors_leaves_two_places() {
+    check_turn::<f64>();
+    check_turn::<f32>();
+    check_turn::<Q12_20>();
+}
+
+#[test]
+fn far_from_the_line_two_anchors_leave_one_place() {
+    let mut walk = Walk::<f64>::new(Config::calibrated(1.0));
+    walk.go(2.4, 2.0, &[0, 1, 2, 3]);
+    walk.go(2.0, 2.6, &[0, 2]);
+    walk.go(2.6, 2.0, &[0, 2]);
+    assert_eq!(walk.tracker.mirror_image(), None);
+    let (error, _) = walk.error_and_sigma(2.0);
+    assert!(error < 0.1, "{error} m");
+}
+
+#[test]
+fn a_wall_tells_which_place_it_is() {
+    // The anchors 0 and 1 are at one wall of the room, behind which the tag cannot be.
+    for room in [None, Some(Room::plane(0.0, 0.0, 8.0, 6.0))] {
+        let config = Config { room, ..Config::calibrated(1.0) };
+        let mut tracker =
+            CalibratedPlaneTracker::<f64, 4>::new(config, &anchors(&CORNERS, 0.0)).unwrap();
+        for step in 0..200_u32 {
+            let tag = [4.0, 0.5 + (f64::from(step) * 0.02 - 2.0).abs(), 1.0];
+            let heard = if step < 20 { 4 } else { 2 };
+            for (anchor, &corner) in CORNERS.iter().enumerate().take(heard) {
+                let range = distance(corner, tag);
+                tracker.range(&sample(u64::from(step) * 100_000, anchor, range)).unwrap();
+            }
+        }
+        assert_eq!(tracker.mirror_image().is_none(), room.is_some());
+    }
+}
+
+#[test]
+fn three_anchors_in_space_leave_two_places_at_their_plane() {
+    let places = [[0.0, 0.0, 2.0], [8.0, 0.0, 2.0], [8.0, 6.0, 2.0], [0.0, 6.0, 0.0]];
+    let config = Config::calibrated(0.0);
+    let mut tracker =
+        CalibratedSpaceTracker::<f64, 4>::new(config, &anchors(&places, 0.0)).unwrap();
+    for step in 0..100_u32 {
+        let tag = [5.0, 2.0, (f64::from(step) * 0.04 - 1.0).min(2.0)];
+        let heard = if step < 30 { 4 } else { 3 };
+        for (anchor, &place) in places.iter().enumerate().take(heard) {
+            let range = distance(place, tag);
+            tracker.range(&sample(u64::from(step) * 100_000, anchor, range)).unwrap();
+        }
+    }
+    let (place, other) = (tracker.position().unwrap(), tracker.mirror_image().unwrap());
+    assert!((place - other).xy().norm() < 1e-6);
+    assert!((place.z + other.z - 4.0).abs() < 1e-6, "{place} and {other}");
+}
