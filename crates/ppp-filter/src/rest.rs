@@ -2,16 +2,19 @@
 
 use nalgebra::Vector3;
 
-/// A receiver that is farther away, in standard deviations, has moved, or those are wrong.
-const FARTHEST: f64 = 10.0;
+/// A receiver at rest that is found farther from where it was known, in standard deviations of that, has moved, or those are
+/// wrong: on clean days it is never farther than 0.9.
+const FARTHEST: f64 = 4.0;
+/// Any receiver that is farther from where it was predicted has leapt.
+const FARTHEST_LEAP: f64 = 10.0;
 /// No receiver gets this far between two epochs unless its process noise says so, m.
 const LEAP: f64 = 100.0;
 /// What remains of an epoch in the sums after the next one.
 const KEPT: f64 = 0.9;
 /// For how many epochs a leap is told of.
 const TOLD: u8 = 30;
-/// The place is compared with where it was known half as well, at the least.
-const BETTER: f64 = 0.5;
+/// The place is compared with where it was known so much worse, at the least.
+const BETTER: f64 = 0.8;
 
 /// Where a receiver was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,7 +38,7 @@ impl Rest {
         deviation: f64,
         found: &Vector3<f64>,
     ) {
-        let leapt = (found - predicted).norm() > LEAP.max(FARTHEST * deviation);
+        let leapt = (found - predicted).norm() > LEAP.max(FARTHEST_LEAP * deviation);
         let told = if leapt { TOLD } else { 0 };
         self.leaping = self.leaping.saturating_sub(1).max(told);
     }
@@ -74,12 +77,12 @@ mod tests {
     #[test]
     fn a_place_that_is_known_better_and_better() {
         let mut rest = Rest::default();
-        for deviation in [0.09, 0.04, 0.015, 0.01] {
+        for deviation in [0.09, 0.04, 0.015, 0.01, 0.009] {
             rest.stay(&Vector3::zeros(), deviation);
         }
-        // Compared with 15 mm, as 10 mm are not half of that.
-        assert!(!rest.has_moved(&Vector3::new(0.149, 0.0, 0.0)));
-        let away = Vector3::new(0.151, 0.0, 0.0);
+        // Compared with 10 mm, as 9 mm are not enough better.
+        assert!(!rest.has_moved(&Vector3::new(0.039, 0.0, 0.0)));
+        let away = Vector3::new(0.041, 0.0, 0.0);
         assert!(rest.has_moved(&away));
         rest.stay(&away, 0.001);
         assert!(rest.has_moved(&away), "what moved is no place to stay");

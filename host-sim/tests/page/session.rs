@@ -6,7 +6,7 @@ use host_sim::systems::pedestrian::simulate::sensor::razor_text;
 
 use crate::browser::{Page, Server};
 use crate::program::Desk;
-use crate::{DRAWN, SETTLED, SYSTEMS, assert_quiet, explore, own_files, text_of, walk};
+use crate::{DRAWN, SETTLED, assert_quiet, explore, own_files, systems, text_of, walk};
 
 /// The control that a test turns: the first slider that has an effect.
 const SLIDER: &str =
@@ -47,7 +47,7 @@ fn address(page: &Page) -> String {
 #[test]
 fn an_address_shows_the_same_picture_and_undo_goes_back_for_every_system() {
     let server = Server::start(&["serve", "--port", "0"]);
-    for system in SYSTEMS {
+    for &system in systems() {
         let Some(page) = explore(&server, system, 1280) else { return };
         let first = picture(&page);
         turn_by(&page, 3);
@@ -87,7 +87,7 @@ fn an_address_shows_the_same_picture_and_undo_goes_back_for_every_system() {
 #[test]
 fn two_settings_are_compared_over_each_other_and_as_a_difference_for_every_system() {
     let server = Server::start(&["serve", "--port", "0"]);
-    for system in SYSTEMS {
+    for &system in systems() {
         let Some(page) = explore(&server, system, 1280) else { return };
         let alone = page.evaluate("document.querySelectorAll('.legend button').length");
         press(&page, "keep");
@@ -134,7 +134,7 @@ fn two_settings_are_compared_over_each_other_and_as_a_difference_for_every_syste
 fn every_download_of_every_system_is_what_it_is_called() {
     let desk = Desk::new();
     let server = Server::start(&["serve", "--port", "0"]);
-    for system in SYSTEMS {
+    for &system in systems() {
         let Some(page) = explore(&server, system, 1280) else { return };
         // What the buttons give is looked at instead of being saved.
         page.evaluate(

@@ -1,7 +1,7 @@
 //! One time for all figures of a page: a window and a cursor.
 
 use crate::browser::{Page, Server};
-use crate::{DRAWN, OVER_TIME, SETTLED, SYSTEMS, WIDTHS, assert_quiet, explore};
+use crate::{DRAWN, OVER_TIME, SETTLED, WIDTHS, assert_quiet, explore, systems};
 
 /// Ranges of the axes of all plots over time, in seconds of the bar.
 fn ranges(page: &Page) -> Vec<[f64; 2]> {
@@ -22,7 +22,7 @@ fn seen(page: &Page, class: &str) -> Option<u64> {
 fn one_window_and_one_cursor_hold_for_all_figures_of_every_system() {
     let server = Server::start(&["serve", "--port", "0"]);
     for width in WIDTHS {
-        for system in SYSTEMS {
+        for &system in systems() {
             let Some(page) = explore(&server, system, width) else { return };
             let slider = "document.querySelector('.clock input')";
             // The bar by keyboard alone.

@@ -43,17 +43,18 @@ pub fn check(recording: &Recording) -> Vec<Finding> {
     };
     findings.push(antenna);
     let [begin, end] = recording.orbits_span;
+    let spans = format!(
+        "orbits from {:.1} h to {:.1} h, observations from {:.1} h to {:.1} h",
+        begin / 3600.0,
+        end / 3600.0,
+        first / 3600.0,
+        last / 3600.0
+    );
     findings.push(if doubts.has(Reason::Time) {
         Finding::fault(
             "products",
             Reason::Time,
-            format!(
-                "orbits from {:.1} h to {:.1} h, observations from {:.1} h to {:.1} h",
-                begin / 3600.0,
-                end / 3600.0,
-                first / 3600.0,
-                last / 3600.0
-            ),
+            spans,
             "what lies outside cannot be solved",
             if recording.products().broadcast().is_some() {
                 "add the navigation file of the day before or after"
@@ -61,6 +62,8 @@ pub fn check(recording: &Recording) -> Vec<Finding> {
                 "add the SP3 file of the day before or after"
             },
         )
+    } else if recording.uncovered().next().is_some() {
+        Finding::note("products", spans)
     } else {
         Finding::note("products", "the orbits cover the observations")
     });

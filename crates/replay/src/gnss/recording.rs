@@ -184,14 +184,19 @@ impl Recording {
         self.epochs.iter().filter(|epoch| epoch.satellites.len() < FEWEST_SATELLITES)
     }
 
-    /// What the files show against the recording before anything is solved: many epochs with fewer than four satellites,
-    /// orbits of another time.
+    /// Epochs before the first or after the last orbit.
+    pub fn uncovered(&self) -> impl Iterator<Item = &Epoch> {
+        let [begin, end] = self.orbits_span;
+        self.epochs.iter().filter(move |epoch| !(begin..=end).contains(&self.seconds(epoch)))
+    }
+
+    /// What the files show against the recording before anything is solved: many epochs with fewer than four satellites, or
+    /// without orbits.
     pub fn doubts(&self) -> Health {
-        let ([first, last], [begin, end]) = (self.span(), self.orbits_span);
-        let few = self.sparse().count();
+        let are_many = |count: usize| count as f64 > POOR * self.epochs.len() as f64;
         Health::GOOD
-            .with(Reason::Dropout, few as f64 > POOR * self.epochs.len() as f64)
-            .with(Reason::Time, begin > first || end < last)
+            .with(Reason::Dropout, are_many(self.sparse().count()))
+            .with(Reason::Time, are_many(self.uncovered().count()))
     }
 
     /// The epochs up to a time, s since the midnight before the first one.
