@@ -25,6 +25,8 @@ pub struct OrbitSample {
     /// The satellite's clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity; none if the
     /// file does not know it.
     pub clock: Option<f64>,
+    /// Whether the clock is predicted, and so none that was measured.
+    pub clock_predicted: bool,
     /// Whether the clock jumped between the sample before and this one.
     pub clock_event: bool,
     /// Whether the satellite was manoeuvred between the sample before and this one: an interpolation across it is
@@ -176,6 +178,7 @@ fn position(line: &Line<'_>, time: GpsTime) -> Result<Option<OrbitSample>, Error
         time,
         position,
         clock: clock.filter(|clock| clock.abs() < NO_CLOCK).map(|clock| clock / 1e6),
+        clock_predicted: line.column(75) == b'P',
         clock_event: line.column(74) == b'E',
         manoeuvre: line.column(78) == b'M',
     }))
@@ -199,7 +202,7 @@ mod tests {
         assert_eq!((first.time, first.clock), (GpsTime::new(58_849, 0.0), Some(1e-4)));
         assert!(!first.clock_event && !first.manoeuvre);
         assert_eq!((second.time, second.clock), (GpsTime::new(58_849, 900.0), None));
-        assert!(second.clock_event && second.manoeuvre);
+        assert!(second.clock_event && second.clock_predicted && second.manoeuvre);
         let warning = "file: holds 1 predicted positions, worse than computed ones";
         assert_eq!(sentences(&orbits.warnings), [warning]);
         Ok(())
@@ -244,7 +247,7 @@ mod tests {
         assert_eq!(told(other.clone())?, 1);
         let warning = Orbits::parse(&[text(three), text(other)])?.warnings.pop();
         let sentence = warning.expect("one more").problem;
-        assert!(sentence.contains("different positions at the same 3 times"), "{sentence}");
+        assert!(sentence.contains("differ in positions at 3 times"), "{sentence}");
         Ok(())
     }
 

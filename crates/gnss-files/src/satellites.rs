@@ -73,7 +73,7 @@ impl<S> PerSatellite<S> {
     }
 }
 
-/// Instants at which two files say something else.
+/// Instants at which files contradict each other.
 #[derive(Debug, Default)]
 pub(crate) struct Differing(BTreeSet<(i32, i64)>);
 
@@ -85,9 +85,9 @@ impl Differing {
     /// A warning where files differ at more instants than those at which one day ends and the next begins.
     pub(crate) fn warning(&self, texts: &[Text], what: &str) -> Option<Warning> {
         let count = self.0.len();
-        let first = texts.first().filter(|_| count > texts.len())?;
+        let first = texts.first().filter(|_| texts.len() > 1 && count > texts.len())?;
         Some(first.warning(format!(
-            "it and other files have different {what} at the same {count} times: are they of two services?"
+            "this file and the others differ in {what} at {count} times, the one that begins later is taken: of two services?"
         )))
     }
 }

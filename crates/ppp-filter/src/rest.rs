@@ -13,7 +13,7 @@ const LEAP: f64 = 100.0;
 const KEPT: f64 = 0.9;
 /// For how many epochs a leap is told of.
 const TOLD: u8 = 30;
-/// The place is compared with where it was known so much worse, at the least.
+/// The place that is known is replaced once the deviation is below this share of its own.
 const BETTER: f64 = 0.8;
 
 /// Where a receiver was found.

@@ -67,11 +67,6 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         self.tracker.velocity()
     }
 
-    /// The other place that the differences allow, m, as [`Tracker::mirror_image`].
-    pub fn mirror_image(&self) -> Option<SVector<T, D>> {
-        self.tracker.mirror_image()
-    }
-
     /// Mean and covariance of all states.
     pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
         self.tracker.estimate()

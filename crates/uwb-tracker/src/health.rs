@@ -41,8 +41,8 @@ pub struct Health<T> {
     pub heard: u8,
     /// Dilution of precision of those anchors; none if they do not determine a position.
     pub dilution: Option<T>,
-    /// How far the other place is that the ranges allow, m: what [`Tracker::mirror_image`](crate::Tracker::mirror_image) says
-    /// of; none if they allow one only.
+    /// How far [`Tracker::mirror_image`](crate::Tracker::mirror_image) is, the other place that the ranges allow, m; none if they
+    /// allow one only, or of a tracker that does not look for it, as that on wheels.
     pub mirror: Option<T>,
     /// Standard deviation of the position, root of its variances' sum, m: the filter's own, that of the anchors'
     /// constant errors, and that of being at the other place as likely as here; none without a position.
@@ -79,7 +79,7 @@ const CHANGING_SPEED: f64 = 0.1;
 /// Least weight of a link's constant error beside the best link's.
 const LEAST_WEIGHT: f64 = 1e-3;
 
-/// Standard deviation of one of two places as likely as each other about the other, beside their distance.
+/// Root mean square error of one of two equally likely places, as a share of their distance.
 const SQRT_HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// Counters of a tracker.

@@ -60,6 +60,12 @@ impl<T: Scalar> Link<T> {
         (self.next_us > 0 && age_us <= fresh_us).then_some((self.range, age_us))
     }
 
+    /// The last range, freed of its bias, m; zero if none came yet.
+    #[inline]
+    pub(crate) fn last(&self) -> T {
+        self.range
+    }
+
     /// Whether a range ever came.
     #[inline]
     pub(crate) fn is_heard(&self) -> bool {

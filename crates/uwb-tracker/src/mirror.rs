@@ -9,61 +9,51 @@ use nalgebra::SVector;
 
 /// So many standard deviations from the line, a tag may have crossed it or turned back.
 const REACH: f64 = 3.0;
-/// By so many standard deviations a range must fit one of both places better.
+/// By so many standard deviations a range must fit the place better than the other one.
 const CLEAR: f64 = 3.0;
+/// Anchors that are nearer to each other in the plane stand above each other, m.
+const NEAREST: f64 = 0.05;
+/// A place outside of the room by no more may still be in it, m, as where a position is looked for.
+pub(crate) const ROOM_MARGIN: f64 = 0.5;
 
 /// Anchors in whose line, or plane, a tag was seen by them alone: on which side of it the tag is now is not known. Their
 /// numbers.
 pub(crate) type Mirror<const D: usize> = SVector<u16, D>;
 
-/// The anchors heard, if they are as many as coordinates, and the tag may be in their line.
+/// The anchors heard (their numbers and ranges, m), if they are as many as coordinates, and the tag may be in their line.
 ///
-/// Beside the line by d, a range of length r is longer than from the line by d²/(2 r) alone, so that the reach is √(2 r σ) for
-/// ranges, and the position's own.
+/// Beside the line by d, a range of length r is longer than on it by d²/(2 r) alone: a constant error of b looks like
+/// √(2 r b). As much, and the position's own deviation, may be between the tag and where it seems to be.
 pub(crate) fn reached<T: Scalar, const D: usize, const N: usize>(
     estimate: &Gaussian<T, N>,
     config: &Config<T>,
     links: &[Link<T>],
-    heard: impl Iterator<Item = usize>,
+    heard: impl Iterator<Item = (usize, T)>,
 ) -> Option<Mirror<D>> {
     let mut mirror = Mirror::<D>::zeros();
-    let mut count = 0;
-    for anchor in heard {
-        *mirror.as_array_mut().get_mut(count)? = u16::try_from(anchor).ok()?;
+    let (mut count, mut far) = (0, T::ZERO);
+    // Not `for`, of which a filter makes two loops.
+    heard.for_each(|(anchor, range)| {
+        if let Some(place) = mirror.as_array_mut().get_mut(count) {
+            *place = anchor as u16;
+        }
+        far = far.max(range);
         count += 1;
-    }
-    if count < D {
+    });
+    if count != D {
         return None;
     }
     let position = SVector::<T, D>::from_fn(|axis, _| estimate.mean.as_array()[axis]);
-    let beside = beside(&mirror, links, &position)?;
-    let distance = T::norm(beside.as_array());
-    let mut far = T::ZERO;
-    for &anchor in &mirror {
-        let place = &links.get(usize::from(anchor))?.anchor.position;
-        far = far.max(expected_range(&position, config.height, place).distance);
-    }
-    let excess = config.range_sigma.hypot(config.bias_sigma) * T::from_f64(REACH);
-    let reach = (far + far).sqrt() * excess.sqrt();
-    let is_near = distance <= reach || {
-        let sigma = sigma(estimate, &beside.as_array().map(|it| it / distance))?;
-        distance <= sigma * T::from_f64(REACH)
-    };
-    is_near.then_some(mirror)
+    let distance = T::norm(beside(&mirror, links, &position)?.as_array());
+    let bent = (far + far).sqrt() * config.bias_sigma.sqrt();
+    (distance <= bent + spread(estimate)).then_some(mirror)
 }
 
-/// Standard deviation of the position in a direction, m.
-fn sigma<T: Scalar, const D: usize, const N: usize>(
-    estimate: &Gaussian<T, N>,
-    direction: &[T; D],
-) -> Option<T> {
-    let mut variance = T::ZERO;
-    for (row, &one) in direction.iter().enumerate() {
-        for (column, &other) in direction.iter().enumerate() {
-            variance += one * estimate.covariance.get(row, column)? * other;
-        }
-    }
-    Some(variance.max(T::ZERO).sqrt())
+/// As far as the tag may be from where it seems to be, m.
+pub(crate) fn spread<T: Scalar, const N: usize>(estimate: &Gaussian<T, N>) -> T {
+    let variances = estimate.covariance.variances();
+    let variance = variances.iter().take(N / 2).fold(T::ZERO, |sum, &variance| sum + variance);
+    variance.sqrt() * T::from_f64(REACH)
 }
 
 /// From the place behind the line, or plane, to this one, m; none where the anchors make none.
@@ -89,6 +79,7 @@ pub(crate) fn tells<T: Scalar, const D: usize>(
 }
 
 /// From the nearest point of the line, or plane, to a place, m.
+#[inline(never)] // Rare, and asked for in several places.
 fn beside<T: Scalar, const D: usize>(
     mirror: &Mirror<D>,
     links: &[Link<T>],
@@ -110,7 +101,7 @@ fn beside<T: Scalar, const D: usize>(
         }
         let rest = T::norm(side.as_array());
         // They stand above each other, or in a line.
-        if rest <= length * T::from_f64(0.05) {
+        if rest <= (length * T::from_f64(0.05)).max(T::from_f64(NEAREST)) {
             return None;
         }
         side.as_array_mut().iter_mut().for_each(|it| *it /= rest);

@@ -38,7 +38,11 @@ const SYSTEMS: [&str; 5] = ["pedestrian", "robot", "drone", "uav", "gnss"];
 /// The systems of which everything on their pages is used: all, and in the short form (`KESTIRIM_SHORT=1`) one with a map and one
 /// with figures over time, since the pages are one program.
 fn systems() -> &'static [&'static str] {
-    if std::env::var_os("KESTIRIM_SHORT").is_some() { &["robot", "uav"] } else { &SYSTEMS }
+    if std::env::var("KESTIRIM_SHORT").is_ok_and(|it| it == "1") {
+        &["robot", "uav"]
+    } else {
+        &SYSTEMS
+    }
 }
 
 /// Chooses an option or moves a slider, as a person does.

@@ -176,7 +176,6 @@ fn glonass_and_beidou_beside_gps_and_galileo() {
     }
 }
 
-/// A whole day gains less, and its end loses no more than what antennas of types cost.
 /// Orbits of CODE beside clocks of CNES/CLS are told, and those of one service are not.
 #[test]
 fn products_of_two_services() {
@@ -193,6 +192,7 @@ fn products_of_two_services() {
     }
 }
 
+/// A whole day gains less, and its end loses no more than what antennas of types cost.
 #[test]
 fn a_day_with_glonass() {
     let Some(recording) = ESBC.read() else { return };

@@ -86,7 +86,8 @@ impl Told {
         for (part, epochs) in recording.parts.iter().zip(parts) {
             // Of a tag put down what counts is the last position.
             let last = if recording.is_static() { epochs.len().saturating_sub(1) } else { 0 };
-            for epoch in &epochs[last..] {
+            // Where the ranges allow two places, the deviation is of both: larger than the error at one of them.
+            for epoch in epochs[last..].iter().filter(|epoch| epoch.mirror.is_none()) {
                 let truth = part.truth.as_ref().and_then(|truth| truth.at(epoch.time_us));
                 let Some(((position, [xx, xy, yy]), truth)) =
                     epoch.position.zip(epoch.spread).zip(truth)

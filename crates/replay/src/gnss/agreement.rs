@@ -15,11 +15,9 @@ const FEWEST: usize = 4;
 
 /// A warning where the clocks of clock files are not those of the orbit files, beside what all of a system have in common.
 pub(super) fn doubt(orbits: &Orbits, clocks: &Clocks) -> Option<String> {
-    let apart: Vec<f64> = [System::Gps, System::Galileo]
-        .into_iter()
-        .flat_map(|it| differences(orbits, clocks, it))
-        .collect();
-    let apart = (!apart.is_empty()).then(|| median(&apart))?;
+    let of = |system| Some(differences(orbits, clocks, system)).filter(|it| !it.is_empty());
+    let systems = [System::Gps, System::Galileo].into_iter().filter_map(of);
+    let apart = systems.map(|differences| median(&differences)).reduce(f64::max)?;
     (apart > APART_M).then(|| {
         format!(
             "orbits and clocks seem to be of two solutions: clocks in their files are {:.0} cm apart. Take both of one service",
@@ -40,8 +38,9 @@ fn differences(orbits: &Orbits, clocks: &Clocks, system: System) -> Vec<f64> {
             let place = samples.partition_point(|sample| sample.time < instant.time);
             let sample = samples.get(place).filter(|sample| sample.time == instant.time)?;
             let [before, after] = clocks.around(number, instant.time)?;
-            let is_exact = before.time == instant.time && !sample.clock_event;
-            is_exact.then_some(SPEED_OF_LIGHT * (sample.clock? - after.bias))
+            let is_its_own = !sample.clock_event && !sample.clock_predicted;
+            (before.time == instant.time && is_its_own)
+                .then_some(SPEED_OF_LIGHT * (sample.clock? - after.bias))
         };
         let all: Vec<f64> = numbers.iter().filter_map(of).collect();
         if all.len() < FEWEST {

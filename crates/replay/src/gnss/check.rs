@@ -63,7 +63,9 @@ pub fn check(recording: &Recording) -> Vec<Finding> {
             },
         )
     } else if recording.uncovered().next().is_some() {
-        Finding::note("products", spans)
+        let outside = recording.uncovered().count();
+        let more = "the files of the day before or after have more";
+        Finding::note("products", format!("{spans}: {outside} epochs are outside, {more}"))
     } else {
         Finding::note("products", "the orbits cover the observations")
     });

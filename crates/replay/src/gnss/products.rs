@@ -119,7 +119,7 @@ impl Products {
         let count: usize = self.jumps.iter().map(|(_, count, _)| count).sum();
         let names = names(self.jumps.iter().map(|(number, ..)| *number));
         Some(format!(
-            "orbits of {names} jump by up to {farthest:.0} m at {count} of their samples, around which they are left out"
+            "orbits of {names} jump by up to {farthest:.0} m at {count} of their samples: these satellites are left out around them"
         ))
     }
 

@@ -26,7 +26,7 @@ pub use self::exchange::Exchange;
 pub use self::height::{FoundHeight, HeightSearch};
 pub use self::setup::{Dimensions, Setup, TrackerKind};
 pub use self::smoother::{Smoothed, Tracked, Unsmoothed, smooth};
-pub use self::trace::{Epoch, Trace, doubts, follow, track};
+pub use self::trace::{Epoch, Trace, doubts, follow, mirrored, track};
 pub use self::trackers::{
     Beginning, Follow, Noise, Reception, build, build_changed, build_published,
 };

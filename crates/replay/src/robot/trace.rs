@@ -24,7 +24,8 @@ pub struct Epoch {
     pub spread: Option<[f64; 3]>,
     /// Variance of z, m², from a tracker that estimates it, or of the height that was found.
     pub height_variance: Option<f64>,
-    /// From there to the other place that the ranges allow, m, if they allow two; the variances are of both.
+    /// From where the tracker found it to the other place that the ranges so far allow, m, if they allow two: the variances are
+    /// of both, also those that a smoother gives.
     pub mirror: Option<[f64; 3]>,
     /// How far it can be relied upon.
     pub health: Health,
@@ -100,6 +101,7 @@ impl Trace {
     fn widen(&mut self, found: &FoundHeight) {
         for epoch in &mut self.epochs {
             epoch.widen(found);
+            epoch.health = epoch.health.with(Reason::NotObservable, epoch.is_vague());
         }
     }
 
@@ -111,21 +113,6 @@ impl Trace {
     /// Where it was at the last epoch, if that is known.
     pub fn last(&self) -> Option<[f64; 3]> {
         self.epochs.last().and_then(|epoch| epoch.position)
-    }
-
-    /// What speaks against more than a tenth of the positions.
-    fn doubts(&self) -> Health {
-        let known = || self.epochs.iter().filter(|epoch| epoch.position.is_some());
-        let often = |reason: &Reason| {
-            10 * known().filter(|epoch| epoch.health.has(*reason)).count() > known().count()
-        };
-        Reason::ALL.into_iter().filter(often).collect()
-    }
-
-    /// For how much of the time at which there is a position the ranges allow two.
-    pub fn mirrored_share(&self) -> f64 {
-        let mirrored = self.epochs.iter().filter(|epoch| epoch.mirror.is_some()).count();
-        mirrored as f64 / self.known().count().max(1) as f64
     }
 
     /// Whether there is no position for more than a tenth of the time.
@@ -217,14 +204,39 @@ pub fn track(setup: &Setup, events: &[Event]) -> Result<Trace, Error> {
     Ok(Trace::by(build(setup)?.as_mut(), setup, events))
 }
 
+/// What is true of more than this share of the positions is told of all.
+const OFTEN: f64 = 0.1;
+
+/// The share of positions of which something is true, if it is often: of those of a tag that moves, or of the last ones of
+/// one that was put down at as many points as there are traces.
+fn often(traces: &[Trace], is_static: bool, is_so: impl Fn(&Epoch) -> bool) -> Option<f64> {
+    let (mut count, mut all) = (0, 0);
+    for trace in traces {
+        let first = if is_static { trace.epochs.len().saturating_sub(1) } else { 0 };
+        for epoch in trace.epochs[first..].iter().filter(|epoch| epoch.position.is_some()) {
+            count += usize::from(is_so(epoch));
+            all += 1;
+        }
+    }
+    let share = f64::from(u32::try_from(count).ok()?) / f64::from(u32::try_from(all).ok()?);
+    (share > OFTEN).then_some(share)
+}
+
+/// The share of positions at which the ranges allow two places, if it is often.
+pub fn mirrored(traces: &[Trace], is_static: bool) -> Option<f64> {
+    often(traces, is_static, |epoch| epoch.mirror.is_some())
+}
+
 /// Why positions cannot be relied upon: those of a tag that moves, or of one that was put down at as many points as there
 /// are traces.
 pub fn doubts(traces: &[Trace], is_static: bool) -> Health {
     let taken: usize = traces.iter().map(Trace::taken).sum();
     let rejected: usize = traces.iter().map(Trace::rejected).sum();
     let is_lost = traces.iter().all(|trace| trace.last().is_none());
-    let of_epochs = traces.iter().map(Trace::doubts).fold(Health::GOOD, Health::and);
-    of_epochs
+    let is_often =
+        |reason: &Reason| often(traces, is_static, |it| it.health.has(*reason)).is_some();
+    let of_positions: Health = Reason::ALL.into_iter().filter(is_often).collect();
+    of_positions
         .with(Reason::Rejected, rejected > taken)
         .with(Reason::NotObservable, is_lost)
         .with(Reason::Dropout, !is_static && traces.iter().any(Trace::is_interrupted))

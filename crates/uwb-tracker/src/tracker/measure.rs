@@ -5,7 +5,7 @@ use crate::measurement::Range;
 use crate::mirror;
 use crate::take_in::take_in;
 use crate::{Error, Outcome, RangeSample, Report};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
@@ -49,13 +49,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     }
 
     /// Forgets the other place if a range of the anchor at `place` that left this innovation (m, with its variance) does not
-    /// fit it.
+    /// fit it, or if enough anchors are heard and both places are one.
     #[inline(never)] // Rare.
     fn tell_apart(&mut self, place: &SVector<T, 3>, seen: (T, T)) {
-        let Some((mirror, position)) = self.mirror.zip(self.position()) else { return };
-        let across = mirror::across(&mirror, &self.links, &position);
+        let (Some(across), Place::Known(estimate)) = (self.across(), &self.place) else { return };
+        let position = SVector::<T, D>::from_fn(|axis, _| estimate.mean.as_array()[axis]);
         let here = (&position, self.config.height);
-        if across.is_some_and(|across| mirror::tells(&across, here, place, seen)) {
+        let is_one =
+            usize::from(self.heard) > D && T::norm(across.as_array()) <= mirror::spread(estimate);
+        if is_one || mirror::tells(&across, here, place, seen) {
             self.mirror = None;
         }
     }

@@ -88,6 +88,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
     pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
         const { assert!(N == 2 * D || N == 2 * D + 1, "positions, velocities and perhaps a bias") };
+        const { assert!(A <= 1 << 16, "anchors are counted in 16 bits") };
         let size = size(anchors);
         let config = config.scaled(size);
         let mut links = Vec::new();
@@ -130,12 +131,17 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     ///
     /// Two anchors in the plane, or three in space, see what is in front of their line, or plane, and what is behind it
     /// alike. A tag that came near it while no other anchor was heard may have crossed it or turned back: the position is
-    /// one of the two until the range of another anchor tells, or the room does.
+    /// one of the two until the range of another anchor tells, or the room does. More anchors that are all in one line, or
+    /// plane, leave the same two places, which is not noticed here.
     pub fn mirror_image(&self) -> Option<SVector<T, D>> {
-        let position = self.position()?;
-        let other = position - mirror::across(self.mirror.as_ref()?, &self.links, &position)?;
-        let margin = self.config.bias_sigma.hypot(T::ONE);
+        let other = self.position()? - self.across()?;
+        let margin = T::from_f64(mirror::ROOM_MARGIN);
         self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(other)
+    }
+
+    /// From the other place to the position, m.
+    pub(crate) fn across(&self) -> Option<SVector<T, D>> {
+        mirror::across(self.mirror.as_ref()?, &self.links, &self.position()?)
     }
 
     /// Mean and covariance of all states.
@@ -181,6 +187,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             .and_then(|()| self.measure(sample, range, self.means()));
         if report.is_err() {
             self.restore(before);
+        } else if usize::from(self.heard) == D && self.mirror.is_none() {
+            self.look_behind();
         }
         report
     }

@@ -74,17 +74,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
         self.time_us = time_us;
         self.heard = self.count_heard(time_us);
-        if usize::from(self.heard) == D && self.mirror.is_none() {
-            self.look_behind();
-        }
         Ok(())
     }
 
     /// Takes notice of whether the tag is so near the line through the only anchors heard that it may cross it unseen.
     #[inline(never)] // Rare.
-    fn look_behind(&mut self) {
+    pub(super) fn look_behind(&mut self) {
         let Place::Known(estimate) = &self.place else { return };
-        let heard = heard_lately(&self.links, &self.pace, self.time_us).map(|(anchor, _)| anchor);
+        let heard = heard_lately(&self.links, &self.pace, self.time_us);
+        let heard = heard.map(|(anchor, link)| (anchor, link.last()));
         self.mirror = mirror::reached(estimate, &self.config, &self.links, heard);
     }
 

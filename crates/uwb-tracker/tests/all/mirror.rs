@@ -85,6 +85,36 @@ fn a_turn_at_the_line_of_two_anchors_leaves_two_places() {
 }
 
 #[test]
+fn where_all_are_heard_again_both_places_are_one_on_the_line() {
+    let mut walk = Walk::<f64>::new(Config::calibrated(1.0));
+    walk.go(2.4, 2.0, &[0, 1, 2, 3]);
+    walk.go(2.0, 0.0, &[0, 2]);
+    assert!(walk.tracker.mirror_image().is_some());
+    walk.go(0.0, 0.08, &[0, 1, 2, 3]);
+    walk.go(0.08, 0.0, &[0, 1, 2, 3]);
+    assert_eq!(walk.tracker.mirror_image(), None);
+    assert!(walk.error_and_sigma(0.0).0 < 0.2);
+}
+
+#[test]
+fn anchors_on_one_mast_make_no_line() {
+    let mut places = CORNERS;
+    places[2] = [0.005, 0.0, 0.3];
+    let mut tracker =
+        CalibratedPlaneTracker::<f64, 4>::new(Config::calibrated(1.0), &anchors(&places, 0.0))
+            .unwrap();
+    for step in 0..100_u32 {
+        let tag = [4.0 - 0.03 * f64::from(step), 3.0 - 0.02 * f64::from(step), 1.0];
+        let heard: &[usize] = if step < 20 { &[0, 1, 2, 3] } else { &[0, 2] };
+        for &anchor in heard {
+            let range = distance(places[anchor], tag);
+            tracker.range(&sample(u64::from(step) * 100_000, anchor, range)).unwrap();
+        }
+    }
+    assert_eq!(tracker.mirror_image(), None);
+}
+
+#[test]
 fn far_from_the_line_two_anchors_leave_one_place() {
     let mut walk = Walk::<f64>::new(Config::calibrated(1.0));
     walk.go(2.4, 2.0, &[0, 1, 2, 3]);

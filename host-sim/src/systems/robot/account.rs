@@ -2,7 +2,7 @@
 
 pub mod accuracy;
 
-use kestirim_replay::robot::{Smoothed, Trace, doubts};
+use kestirim_replay::robot::{Smoothed, Trace, doubts, mirrored};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -13,9 +13,6 @@ use super::{Robot, height, settings};
 use crate::Error;
 use crate::system::{Account, Settings, System, Table};
 use crate::text::printable;
-
-/// For a larger share of the time two places are worth a sentence.
-const MIRRORED: f64 = 0.01;
 
 /// What a replay prints.
 #[derive(Debug, Clone, Serialize)]
@@ -95,7 +92,7 @@ pub(super) fn account(
         lost_s: traces.iter().map(Trace::lost_s).sum(),
         links: Link::all(recording, &setup, traces),
         import: recording.import.clone(),
-        warnings: warnings(recording, tracks, points.as_deref()),
+        warnings: warnings(recording, tracks, points.as_deref(), setup.room.is_some()),
         accuracy: Accuracy::of_recording(recording, traces),
         smoothed: tracks.smoothed().map(|smoothed| of_smoothed(recording, smoothed)),
         height: found.as_ref().map(|found| HeightReport {
@@ -186,7 +183,12 @@ fn of_smoothed(recording: &Recording, smoothed: &Smoothed) -> SmoothedReport {
     }
 }
 
-fn warnings(recording: &Recording, tracks: &Tracks, points: Option<&[PointReport]>) -> Vec<String> {
+fn warnings(
+    recording: &Recording,
+    tracks: &Tracks,
+    points: Option<&[PointReport]>,
+    room_is_known: bool,
+) -> Vec<String> {
     let traces = &tracks.traces;
     let mut warnings = recording.warnings.clone();
     if let Some(Err(reason)) = tracks.smoothed {
@@ -202,12 +204,11 @@ fn warnings(recording: &Recording, tracks: &Tracks, points: Option<&[PointReport
         }
         None => {}
     }
-    let mirrored = traces.iter().map(Trace::mirrored_share).fold(0.0, f64::max);
-    if mirrored > MIRRORED {
-        let percent = 100.0 * mirrored;
+    if let Some(share) = mirrored(traces, recording.is_static()) {
+        let hint = if room_is_known { "" } else { ": --room may tell which" };
         warnings.push(format!(
-            "for {percent:.0} % of the time the ranges allow two places, one on either side of the only anchors heard: \
-             --room may tell which"
+            "at {:.0} % of the positions the ranges allow two places, one on either side of the only anchors heard{hint}",
+            100.0 * share
         ));
     }
     warnings

@@ -57,6 +57,7 @@ fn tracks<T: Scalar, const D: usize, const N: usize, const A: usize>() {
     }
     keep(Tracker::position(&tracker));
     keep(Tracker::velocity(&tracker));
+    keep(Tracker::mirror_image(&tracker));
     keep(Tracker::estimate(&tracker));
     keep(Tracker::range_sigma(&tracker, whole()));
     let health = any(Tracker::health(&tracker, whole()));

@@ -34,7 +34,6 @@ const UNSEEN: &[(&str, &str, &str)] = &[
         "anchors counted from another number",
         "turned by a quarter, a square has the same ranges",
     ),
-    ("kinematic", "orbits a kilometre off", "all orbits moved alike move the position, and fit"),
 ];
 
 /// More characters nobody reads while something is wrong.

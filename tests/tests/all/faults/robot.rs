@@ -100,7 +100,7 @@ const FAULTS: &[Fault] = &[
         it.ranges(Some(1), |row, v| if row < from { v } else { v + 2.0 });
     }),
     ("an anchor never heard", |it| it.lose(0)),
-    ("two anchors are heard from a third on", Room::keep_two),
+    ("two anchors heard from a third of the log on", Room::keep_two),
     ("dropout 1 s", |it| it.ranges.drop_out(1.0)),
     ("dropout 10 s", |it| it.ranges.drop_out(10.0)),
     ("spikes 1 %", |it| it.ranges(None, |row, v| if one_in(100, row) { v + 40.0 } else { v })),

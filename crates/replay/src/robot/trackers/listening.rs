@@ -81,10 +81,7 @@ impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
     }
 
     fn mirror_image(&self) -> Option<[f64; 3]> {
-        if self.listens {
-            return place(&self.tracker.mirror_image()?, self.height_m);
-        }
-        self.ranges.mirror_image()
+        self.ranges.mirror_image().filter(|_| !self.listens)
     }
 
     fn health(&self) -> kestirim_health::Health {
