@@ -32,6 +32,7 @@ mod robot_robust;
 mod robot_sigmas;
 mod robot_smoothed;
 mod robot_table;
+mod robot_two_anchors;
 mod snapshots;
 mod surface_is_complete;
 mod target_costs;
