@@ -50,6 +50,7 @@ pub fn check(recording: &Recording) -> Vec<Finding> {
         first / 3600.0,
         last / 3600.0
     );
+    let outside = recording.uncovered().count();
     findings.push(if doubts.has(Reason::Time) {
         Finding::fault(
             "products",
@@ -62,8 +63,7 @@ pub fn check(recording: &Recording) -> Vec<Finding> {
                 "add the SP3 file of the day before or after"
             },
         )
-    } else if recording.uncovered().next().is_some() {
-        let outside = recording.uncovered().count();
+    } else if outside > 0 {
         let more = "the files of the day before or after have more";
         Finding::note("products", format!("{spans}: {outside} epochs are outside, {more}"))
     } else {

@@ -181,9 +181,7 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
                 let height_variance = tracker.height_variance();
                 let are_rejected = recent.are_rejected(time_us, &trace.ranges);
                 let health = tracker.health().with(Reason::Rejected, are_rejected);
-                let mirror = position
-                    .zip(tracker.mirror_image())
-                    .map(|(here, there)| std::array::from_fn(|axis| there[axis] - here[axis]));
+                let mirror = tracker.mirror();
                 let mut epoch =
                     Epoch { time_us, position, spread, height_variance, mirror, health };
                 epoch.doubt_side();

@@ -44,8 +44,8 @@ pub trait Follow: Debug {
         None
     }
 
-    /// The other place that the ranges allow, m, of a tracker that knows; none if they allow one only.
-    fn mirror_image(&self) -> Option<[f64; 3]> {
+    /// From its position to the other place that the ranges allow, m, of a tracker that knows; none if they allow one only.
+    fn mirror(&self) -> Option<[f64; 3]> {
         None
     }
 

@@ -17,7 +17,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
                 position: self.position()?,
                 variance: coordinates.fold(T::ZERO, |sum, &variance| sum + variance),
                 speed_squared: speed * speed,
-                mirror: self.mirror_image().and(self.across()).map(|it| T::norm(it.as_array())),
+                mirror: self.across_in_room().map(|across| T::norm(across.as_array())),
             })
         });
         let still = self.is_still(time_us);

@@ -134,12 +134,17 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// one of the two until the range of another anchor tells, or the room does. More anchors that are all in one line, or
     /// plane, leave the same two places, which is not noticed here.
     pub fn mirror_image(&self) -> Option<SVector<T, D>> {
-        let other = self.position()? - self.across()?;
-        let margin = T::from_f64(mirror::ROOM_MARGIN);
-        self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(other)
+        Some(self.position()? - self.across_in_room()?)
     }
 
-    /// From the other place to the position, m.
+    /// From there to the position, m.
+    pub(crate) fn across_in_room(&self) -> Option<SVector<T, D>> {
+        let across = self.across()?;
+        let (other, margin) = (self.position()? - across, T::from_f64(mirror::ROOM_MARGIN));
+        self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(across)
+    }
+
+    /// The same, whatever the room says.
     pub(crate) fn across(&self) -> Option<SVector<T, D>> {
         mirror::across(self.mirror.as_ref()?, &self.links, &self.position()?)
     }

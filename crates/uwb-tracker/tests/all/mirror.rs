@@ -1,7 +1,7 @@
 //! A tag of which too few anchors are heard to tell on which side of them it is.
 
-use crate::common::{CORNERS, anchors, distance, sample};
-use kestirim_scalar::{Q12_20, Scalar};
+use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
+use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Room;
 use kestirim_uwb_tracker::{CalibratedPlaneTracker, CalibratedSpaceTracker, Config};
 
@@ -79,9 +79,7 @@ fn check_turn<T: Scalar>() {
 
 #[test]
 fn a_turn_at_the_line_of_two_anchors_leaves_two_places() {
-    check_turn::<f64>();
-    check_turn::<f32>();
-    check_turn::<Q12_20>();
+    in_every_scalar!(check_turn);
 }
 
 #[test]

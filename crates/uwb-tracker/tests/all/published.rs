@@ -1,6 +1,6 @@
 //! The trackers that ours is compared with: a position an epoch, and the paper's filter.
 
-use crate::common::{CORNERS, anchors, distance, sample};
+use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_adaptive_kalman::Error as Refusal;
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Error as NoPosition, Solver};
@@ -86,9 +86,7 @@ fn check_published<T: Scalar>() {
 
 #[test]
 fn an_epoch_is_complete_when_every_anchor_was_heard() {
-    check_published::<f64>();
-    check_published::<f32>();
-    check_published::<Q12_20>();
+    in_every_scalar!(check_published);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What a tracker makes of good and bad ranges, in every scalar.
 
-use crate::common::{CORNERS, anchors, distance, sample};
+use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_tracker::{
     Anchor, CalibratedPlaneTracker, CalibratedSpaceTracker, Config, Error, InertialSample,
@@ -48,14 +48,6 @@ impl<T: Scalar, const N: usize> Bench<T, N> {
         let position = self.tracker.position().expect("there is a position");
         (position[0].to_f64() - tag[0]).hypot(position[1].to_f64() - tag[1])
     }
-}
-
-macro_rules! in_every_scalar {
-    ($check:ident) => {
-        $check::<f64>();
-        $check::<f32>();
-        $check::<Q12_20>();
-    };
 }
 
 fn check_circle<T: Scalar>() {

@@ -1,7 +1,7 @@
 //! A robot whose wheels are counted, in every scalar.
 
-use crate::common::{CORNERS, anchors, distance, sample};
-use kestirim_scalar::{Q12_20, Scalar};
+use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
+use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, Error, OdometrySample, State, WheelTracker};
 
 /// A field of 64 m × 48 m, with anchors in its corners.
@@ -66,14 +66,6 @@ impl<T: Scalar> Drive<T> {
         let position = self.tracker.position().expect("there is a position");
         (position[0].to_f64() - self.place[0]).hypot(position[1].to_f64() - self.place[1])
     }
-}
-
-macro_rules! in_every_scalar {
-    ($check:ident) => {
-        $check::<f64>();
-        $check::<f32>();
-        $check::<Q12_20>();
-    };
 }
 
 #[test]

@@ -166,6 +166,16 @@ const LAMBDA: [f64; 2] = [0.190_293_673, 0.244_210_213];
 /// A millisecond of light, m.
 const MILLISECOND: f64 = 299_792.458;
 
+/// A line of SP3 with the position, if it holds one, moved by a kilometre.
+fn a_kilometre_off(line: &str) -> String {
+    match line.get(4..18).and_then(|x| x.trim().parse::<f64>().ok()) {
+        Some(x) if line.starts_with('P') => {
+            format!("{}{:14.6}{}\n", &line[..4], x + 1.0, &line[18..])
+        }
+        _ => line.to_owned() + "\n",
+    }
+}
+
 const FAULTS: &[Fault] = &[
     ("epochs 18 s late", |it| it.epochs.iter_mut().for_each(|epoch| epoch.second += 18.0)),
     ("epochs 1 s late", |it| it.epochs.iter_mut().for_each(|epoch| epoch.second += 1.0)),
@@ -234,13 +244,7 @@ const FAULTS: &[Fault] = &[
         it.orbits[1].truncate(half);
     }),
     ("orbits a kilometre off", |it| {
-        let moved = |line: &str| match line.get(4..18).and_then(|x| x.trim().parse::<f64>().ok()) {
-            Some(x) if line.starts_with('P') => {
-                format!("{}{:14.6}{}\n", &line[..4], x + 1.0, &line[18..])
-            }
-            _ => line.to_owned() + "\n",
-        };
-        it.orbits[1] = it.orbits[1].lines().map(moved).collect();
+        it.orbits[1] = it.orbits[1].lines().map(a_kilometre_off).collect();
     }),
     ("orbits a kilometre off at one time", |it| {
         let mut is_noon = false;
@@ -248,12 +252,7 @@ const FAULTS: &[Fault] = &[
             if line.starts_with('*') {
                 is_noon = line.starts_with("*  2020  6 25 12  0");
             }
-            match line.get(4..18).and_then(|x| x.trim().parse::<f64>().ok()) {
-                Some(x) if is_noon && line.starts_with('P') => {
-                    format!("{}{:14.6}{}\n", &line[..4], x + 1.0, &line[18..])
-                }
-                _ => line.to_owned() + "\n",
-            }
+            if is_noon { a_kilometre_off(line) } else { line.to_owned() + "\n" }
         };
         it.orbits[1] = it.orbits[1].lines().map(moved).collect();
     }),

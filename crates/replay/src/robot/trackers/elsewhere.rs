@@ -52,9 +52,8 @@ impl Follow for Elsewhere {
         self.tracker.height_variance()
     }
 
-    fn mirror_image(&self) -> Option<[f64; 3]> {
-        let ([x, y, z], [x0, y0]) = (self.tracker.mirror_image()?, self.origin);
-        Some([x0 + x, y0 + y, z])
+    fn mirror(&self) -> Option<[f64; 3]> {
+        self.tracker.mirror()
     }
 
     fn health(&self) -> kestirim_health::Health {

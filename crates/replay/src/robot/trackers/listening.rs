@@ -80,8 +80,8 @@ impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
         self.ranges.height_variance()
     }
 
-    fn mirror_image(&self) -> Option<[f64; 3]> {
-        self.ranges.mirror_image().filter(|_| !self.listens)
+    fn mirror(&self) -> Option<[f64; 3]> {
+        self.ranges.mirror().filter(|_| !self.listens)
     }
 
     fn health(&self) -> kestirim_health::Health {

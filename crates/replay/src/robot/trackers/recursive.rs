@@ -84,8 +84,10 @@ impl<T: Number, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
         Some(covariance.get(2, 2)?.to_f64() + self.bias_variance())
     }
 
-    fn mirror_image(&self) -> Option<[f64; 3]> {
-        place(&self.tracker.mirror_image()?, self.height_m)
+    fn mirror(&self) -> Option<[f64; 3]> {
+        let there = place(&self.tracker.mirror_image()?, self.height_m)?;
+        let here = self.position()?;
+        Some(std::array::from_fn(|axis| there[axis] - here[axis]))
     }
 
     fn health(&self) -> kestirim_health::Health {

@@ -23,3 +23,13 @@ pub(crate) fn distance(place: [f64; 3], tag: [f64; 3]) -> f64 {
 pub(crate) fn sample<T: Scalar>(time_us: u64, anchor: usize, range: f64) -> RangeSample<T> {
     RangeSample { time_us, anchor, range: T::from_f64(range) }
 }
+
+/// A check in double and single precision and in fixed point.
+macro_rules! in_every_scalar {
+    ($check:ident) => {
+        $check::<f64>();
+        $check::<f32>();
+        $check::<kestirim_scalar::Q12_20>();
+    };
+}
+pub(crate) use in_every_scalar;
