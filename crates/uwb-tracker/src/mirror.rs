@@ -1,4 +1,5 @@
-//! The other place that the ranges of too few anchors allow: behind the line through two, or the plane through three.
+//! The other place that the ranges of too few anchors allow: behind the line through two, or the plane through three, or that
+//! in which all are.
 
 use crate::Config;
 use crate::link::Link;
@@ -13,6 +14,8 @@ const REACH: f64 = 3.0;
 const CLEAR: f64 = 3.0;
 /// Anchors that are nearer to each other in the plane stand above each other, m.
 const NEAREST: f64 = 0.05;
+/// Anchors that are no farther from a line, or plane, are in it, m: what they tell of its two sides is less than their errors.
+const FLAT: f64 = 0.1;
 /// A place outside of the room by no more may still be in it, m, as where a position is looked for.
 pub(crate) const ROOM_MARGIN: f64 = 0.5;
 
@@ -44,9 +47,33 @@ pub(crate) fn reached<T: Scalar, const D: usize, const N: usize>(
         return None;
     }
     let position = SVector::<T, D>::from_fn(|axis, _| estimate.mean.as_array()[axis]);
-    let distance = T::norm(beside(&mirror, links, &position)?.as_array());
+    let distance = T::norm(beside(mirror.as_array(), links, &position)?.as_array());
     let bent = (far + far).sqrt() * config.bias_sigma.sqrt();
     (distance <= bent + spread(estimate)).then_some(mirror)
+}
+
+/// Anchors through which a line goes, or a plane, in which all are: none if one of them tells its two sides apart.
+#[inline(never)] // Once a tracker.
+pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirror<D>> {
+    let mut chosen = Mirror::<D>::zeros();
+    // The farthest from those that were chosen before makes it least uncertain.
+    for count in 1..=D {
+        let (mut far, mut farthest) = (T::from_f64(FLAT), None);
+        for (anchor, link) in links.iter().enumerate() {
+            let place: SVector<T, D> = place(link);
+            let from = beside(chosen.as_array().get(..count)?, links, &place)?;
+            let distance = T::norm(from.as_array());
+            if distance > far {
+                (far, farthest) = (distance, Some(anchor as u16));
+            }
+        }
+        match (chosen.as_array_mut().get_mut(count), farthest) {
+            (Some(next), Some(anchor)) => *next = anchor,
+            (None, None) => return Some(chosen),
+            _ => return None,
+        }
+    }
+    None
 }
 
 /// As far as the tag may be from where it seems to be, m.
@@ -62,7 +89,7 @@ pub(crate) fn across<T: Scalar, const D: usize>(
     links: &[Link<T>],
     position: &SVector<T, D>,
 ) -> Option<SVector<T, D>> {
-    let beside = beside(mirror, links, position)?;
+    let beside = beside(mirror.as_array(), links, position)?;
     Some(beside + beside)
 }
 
@@ -78,22 +105,24 @@ pub(crate) fn tells<T: Scalar, const D: usize>(
     there.abs() - innovation.abs() > variance.sqrt() * T::from_f64(CLEAR)
 }
 
-/// From the nearest point of the line, or plane, to a place, m.
+/// Where an anchor is in the tag's dimensions, m.
+fn place<T: Scalar, const D: usize>(link: &Link<T>) -> SVector<T, D> {
+    SVector::from_fn(|axis, _| link.anchor.position.as_array()[axis])
+}
+
+/// From the nearest point of the line, or plane, through these anchors to a place, m; of one anchor, from it.
 #[inline(never)] // Rare, and asked for in several places.
 fn beside<T: Scalar, const D: usize>(
-    mirror: &Mirror<D>,
+    anchors: &[u16],
     links: &[Link<T>],
     position: &SVector<T, D>,
 ) -> Option<SVector<T, D>> {
-    let place = |anchor: u16| {
-        let place = links.get(usize::from(anchor))?.anchor.position;
-        Some(SVector::<T, D>::from_fn(|axis, _| place.as_array()[axis]))
-    };
-    let mut anchors = mirror.iter();
-    let first = place(*anchors.next()?)?;
+    let place = |anchor: &u16| links.get(usize::from(*anchor)).map(place);
+    let (first, others) = anchors.split_first()?;
+    let first = place(first)?;
     let mut beside = position - first;
     let mut along = [SVector::<T, D>::zeros(); D];
-    for (count, &anchor) in anchors.enumerate() {
+    for (count, anchor) in others.iter().enumerate() {
         let mut side = place(anchor)? - first;
         let length = T::norm(side.as_array());
         for known in along.get(..count)? {

@@ -63,16 +63,19 @@ impl Axes {
 #[derive(Debug, Clone)]
 pub(crate) struct Motion {
     stretches: Vec<Stretch>,
+    /// The gyroscope's bias is this, if the moments of rest are any; where a foot never stands, it is the motion that they have
+    /// in common, and none is nearer to the truth.
+    biases: [[f64; 3]; 2],
 }
 
 #[derive(Debug, Clone)]
 struct Stretch {
-    /// Time in the log's own unit since the sample before, the mean rate since then without the bias, the specific force as
-    /// a multiple of its norm at rest.
+    /// Time in the log's own unit since the sample before, the mean rate since then, the specific force as a multiple of its
+    /// norm at rest.
     steps: Vec<(f64, [f64; 3], [f64; 3])>,
     first: [f64; 3],
     last: [f64; 3],
-    /// The integral of the rate's norm.
+    /// The integral of the norm of the rate without its bias.
     turned: f64,
 }
 
@@ -103,7 +106,8 @@ impl Motion {
         let samples: usize =
             stretches.iter().step_by(every).map(|stretch| stretch.steps.len()).sum();
         let every = every * samples.div_ceil(MOST_SAMPLES).max(1);
-        Self { stretches: stretches.into_iter().step_by(every).collect() }
+        let stretches = stretches.into_iter().step_by(every).collect();
+        Self { stretches, biases: [rest.bias, [0.0; 3]] }
     }
 
     /// How many stretches there are.
@@ -114,8 +118,13 @@ impl Motion {
     /// How much is in disagreement if the product of the units of rate and time is `scale`: 0 is perfect, 0.1 are 6° or a
     /// tenth of gravity. It is the mean over the better half of the stretches: in the other there may be slips and impacts.
     pub(crate) fn error(&self, scale: f64, axes: Axes) -> f64 {
-        let mut errors: Vec<_> =
-            self.stretches.iter().map(|stretch| stretch.error(scale, axes).min(1.0)).collect();
+        let [rest, none] = self.biases.map(|bias| self.error_with(bias, scale, axes));
+        rest.min(none)
+    }
+
+    fn error_with(&self, bias: [f64; 3], scale: f64, axes: Axes) -> f64 {
+        let error = |stretch: &Stretch| stretch.error(bias, scale, axes).min(1.0);
+        let mut errors: Vec<_> = self.stretches.iter().map(error).collect();
         errors.sort_by(f64::total_cmp);
         errors.truncate(errors.len().div_ceil(2));
         errors.iter().sum::<f64>() / errors.len() as f64
@@ -157,25 +166,24 @@ impl Stretch {
         let mut turned = 0.0;
         let steps = part.windows(2).map(|pair| {
             let time = pair[1].time - pair[0].time;
-            let rate: [f64; 3] = std::array::from_fn(|axis| {
-                0.5 * (pair[0].rate[axis] + pair[1].rate[axis]) - rest.bias[axis]
-            });
+            let rate: [f64; 3] =
+                std::array::from_fn(|axis| 0.5 * (pair[0].rate[axis] + pair[1].rate[axis]));
             let force = std::array::from_fn(|axis| {
                 0.5 * (pair[0].force[axis] + pair[1].force[axis]) / rest.norm
             });
-            turned += length_of(rate) * time;
+            turned += length_of(difference(rate, rest.bias)) * time;
             (time, rate, force)
         });
         let steps = steps.collect();
         Self { steps, first: unit(first), last: unit(last), turned }
     }
 
-    fn error(&self, scale: f64, axes: Axes) -> f64 {
+    fn error(&self, bias: [f64; 3], scale: f64, axes: Axes) -> f64 {
         // The columns of the turn from the body at the end to the body at the start.
         let mut turn = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (mut sum, mut duration) = ([0.0; 3], 0.0);
         for &(time, rate, force) in &self.steps {
-            let half = turn_of(axes.of(rate).map(|x| 0.5 * x * scale * time));
+            let half = turn_of(axes.of(difference(rate, bias)).map(|x| 0.5 * x * scale * time));
             turn = half.map(|column| apply(turn, column));
             let force = apply(turn, force);
             turn = half.map(|column| apply(turn, column));
@@ -210,6 +218,10 @@ fn turn_of([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
 
 fn apply(columns: [[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|row| (0..3).map(|i| columns[i][row] * vector[i]).sum())
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
 fn unit(vector: [f64; 3]) -> [f64; 3] {

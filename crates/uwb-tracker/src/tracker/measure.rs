@@ -41,7 +41,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.reject(is_blocked);
         } else {
             self.counters.take(seen.nis);
-            if self.mirror.is_some() && outcome != Outcome::Recovered {
+            if self.mirror.is_some() && self.flat.is_none() && outcome != Outcome::Recovered {
                 self.tell_apart(&place, (seen.innovation, seen.variance));
             }
         }
@@ -104,7 +104,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         for link in &mut self.links {
             *link = link.begun(&self.config);
         }
-        (self.heard, self.mirror) = (heard, None);
+        (self.heard, self.mirror) = (heard, self.flat);
         self.counters.begun();
         true
     }

@@ -45,6 +45,8 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     pub(crate) pace: Pace,
     /// The tag may be behind it as well.
     mirror: Option<Mirror<D>>,
+    /// Behind this it always may, as all anchors are in one line, or plane.
+    flat: Option<Mirror<D>>,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
     /// How the common bias depends on the distance: a constant, and a slope, 1/m.
@@ -96,6 +98,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             anchor.check()?;
             links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
         }
+        let flat = mirror::flat(&links);
         Ok(Self {
             config,
             links,
@@ -107,6 +110,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             heard: 0,
             pace: Pace::new(anchors.len()),
             mirror: None,
+            flat,
             lost_sigma: size * T::from_f64(LOST_SIGMA),
             bias_shape: bias_shape(size),
             counters: Counters::new(),
@@ -131,8 +135,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     ///
     /// Two anchors in the plane, or three in space, see what is in front of their line, or plane, and what is behind it
     /// alike. A tag that came near it while no other anchor was heard may have crossed it or turned back: the position is
-    /// one of the two until the range of another anchor tells, or the room does. More anchors that are all in one line, or
-    /// plane, leave the same two places, which is not noticed here.
+    /// one of the two until the range of another anchor tells, or the room does. If all anchors that there are stand in one line,
+    /// or hang in one plane, to a decimetre, only [`Config::room`] can tell, and without one there are two places throughout.
     pub fn mirror_image(&self) -> Option<SVector<T, D>> {
         Some(self.position()? - self.across_in_room()?)
     }

@@ -160,3 +160,57 @@ fn three_anchors_in_space_leave_two_places_at_their_plane() {
     assert!((place - other).xy().norm() < 1e-6);
     assert!((place.z + other.z - 4.0).abs() < 1e-6, "{place} and {other}");
 }
+
+/// Anchors along one wall: which side of it the tag is on is in no range.
+fn check_wall<T: Scalar>() {
+    let wall = [[0.0, 0.0, 2.0], [4.0, 0.03, 2.4], [8.0, 0.0, 1.6], [6.0, -0.04, 2.0]];
+    let bent = [wall[0], wall[1], [8.0, 0.5, 1.6], wall[3]];
+    let room = Room::plane(T::ZERO, T::ZERO, T::from_f64(8.0), T::from_f64(6.0));
+    for (places, room, is_told) in
+        [(wall, None, true), (wall, Some(room), false), (bent, None, false)]
+    {
+        let config = Config { room, ..Config::calibrated(T::ONE) };
+        let mut tracker =
+            CalibratedPlaneTracker::<T, 4>::new(config, &anchors(&places, 0.0)).unwrap();
+        let mut tag = [0.0; 3];
+        for step in 0..100_u32 {
+            tag = [2.0 + 0.04 * f64::from(step), 4.0, 1.0];
+            for (anchor, &place) in places.iter().enumerate() {
+                let range = distance(place, tag);
+                tracker.range(&sample(u64::from(step) * 100_000, anchor, range)).unwrap();
+            }
+        }
+        let health = tracker.health(9_900_000);
+        let apart = health.mirror.map(T::to_f64);
+        assert_eq!(apart.is_some_and(|apart| (apart - 8.0).abs() < 0.4), is_told, "{apart:?}");
+        let position = tracker.position().unwrap().map(T::to_f64);
+        let error = (position[0] - tag[0]).hypot(position[1] - tag[1]);
+        assert!(error < 3.0 * health.position_sigma.unwrap().to_f64(), "{error} m, {health:?}");
+    }
+}
+
+#[test]
+fn anchors_in_one_line_leave_two_places_unless_the_room_is_known() {
+    in_every_scalar!(check_wall);
+}
+
+#[test]
+fn anchors_under_one_ceiling_leave_two_heights_unless_the_room_is_known() {
+    let ceiling = [[0.0, 0.0, 3.0], [8.0, 0.0, 3.0], [8.0, 6.0, 3.05], [0.0, 6.0, 3.0]];
+    let below = Room { low: [0.0, 0.0, 0.0], high: [8.0, 6.0, 3.0] };
+    for room in [None, Some(below)] {
+        let config = Config { room, ..Config::calibrated(0.0) };
+        let mut tracker =
+            CalibratedSpaceTracker::<f64, 4>::new(config, &anchors(&ceiling, 0.0)).unwrap();
+        for step in 0..50_u32 {
+            let tag = [2.0 + 0.04 * f64::from(step), 4.0, 1.0];
+            for (anchor, &place) in ceiling.iter().enumerate() {
+                let range = distance(place, tag);
+                tracker.range(&sample(u64::from(step) * 100_000, anchor, range)).unwrap();
+            }
+        }
+        assert_eq!(tracker.mirror_image().is_some(), room.is_none());
+        let z = tracker.position().unwrap()[2];
+        assert!((z - 1.0).abs() < 0.3 || (z - 5.0).abs() < 0.3 && room.is_none(), "{z} m");
+    }
+}
