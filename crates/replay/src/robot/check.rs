@@ -1,6 +1,7 @@
 //! What the ranges of a tag show before it is tracked.
 
 mod geometry;
+mod in_space;
 mod jumps;
 mod moments;
 mod stuck;
@@ -46,6 +47,9 @@ pub fn check<'a>(
         findings.push(Finding::note("differences", format!("{differences} of distances")));
         return findings;
     }
+    let raised = matches!(height, KnownHeight::Said(_) | KnownHeight::Found(_))
+        .then(|| in_space::height(anchors, &parts))
+        .flatten();
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, anchors.names.len(), &name));
@@ -57,6 +61,7 @@ pub fn check<'a>(
     findings.extend(jumps::find(&parts, &name));
     findings.extend(geometry::check(anchors, &parts, height));
     findings.extend(geometry::mirror(anchors, height, room_is_known));
+    findings.extend(raised);
     findings
 }
 

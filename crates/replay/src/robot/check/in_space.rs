@@ -1,0 +1,98 @@
+//! Whether a tag that is taken to keep its height does, as a tracker in space sees it.
+
+use kestirim_health::{Health, Reason};
+
+use crate::robot::{Anchors, Dimensions, Event, Setup, track};
+use crate::{Finding, ScalarKind};
+
+/// A tag is at one height if eight of ten are no farther apart, m, …
+const SPAN_M: f64 = 0.5;
+/// … or than so many standard deviations: of a normal distribution they are 2.6 apart, and what the anchors measure wrong
+/// changes with the place.
+const SPAN_SIGMAS: f64 = 5.0;
+/// Fewer positions say nothing.
+const FEWEST: usize = 50;
+
+/// The finding that the tag's height changes; none if it does not, or the anchors do not tell heights.
+pub(super) fn height(anchors: &Anchors, parts: &[&[Event]]) -> Option<Finding> {
+    let mean = anchors.mean_height();
+    let plane = Setup::new(&anchors.positions, mean);
+    let setup = Setup { dimensions: Dimensions::Three, scalar: ScalarKind::F64, ..plane };
+    let traces: Vec<_> = parts.iter().filter_map(|events| track(&setup, events).ok()).collect();
+    let (mut heights, mut sigmas, mut positions) = (Vec::new(), Vec::new(), 0);
+    for epoch in traces.iter().flat_map(|trace| &trace.epochs) {
+        let Some([_, _, z]) = epoch.position else { continue };
+        positions += 1;
+        if let [.., Some(sigma)] = epoch.sigmas_m()
+            && epoch.health == Health::GOOD
+        {
+            heights.push(z);
+            sigmas.push(sigma);
+        }
+    }
+    if heights.len() < FEWEST || 2 * heights.len() < positions {
+        return None;
+    }
+    heights.sort_by(f64::total_cmp);
+    sigmas.sort_by(f64::total_cmp);
+    let [low, high] = [1, 9].map(|tenths| heights[heights.len() * tenths / 10]);
+    let limit = SPAN_M.max(SPAN_SIGMAS * sigmas[sigmas.len() / 2]);
+    (high - low > limit).then(|| {
+        Finding::fault(
+            "height",
+            Reason::Height,
+            format!("the tag's height changes: in space it is between {low:.1} and {high:.1} m"),
+            "in the plane, positions are wrong where it is not as high as supposed",
+            "--dim 3, or a file of heights (--height)",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::robot::Range;
+
+    const PLACES: [[f64; 3]; 5] =
+        [[0.0, 0.0, 0.2], [6.0, 0.0, 2.5], [6.0, 5.0, 0.2], [0.0, 5.0, 2.5], [3.0, 0.0, 1.8]];
+    /// What each measures too long, m.
+    const BIASES: [f64; 5] = [0.1, -0.05, 0.15, 0.0, -0.1];
+
+    /// What is told of a tag that is carried round at these heights.
+    fn told(places: &[[f64; 3]], height: impl Fn(f64) -> f64) -> Option<Finding> {
+        let names = (0..places.len()).map(|k| k.to_string()).collect();
+        let anchors = Anchors { names, positions: places.to_vec() };
+        let mut events = Vec::new();
+        for epoch in 0..600_u32 {
+            let seconds = 0.1 * f64::from(epoch);
+            let turn = 0.3 * seconds;
+            let tag = [3.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), height(seconds)];
+            let time_us = 100_000 * i64::from(epoch);
+            for (anchor, place) in places.iter().enumerate() {
+                let noise = 0.03 * (1.7 * f64::from(epoch) + 2.9 * anchor as f64).sin();
+                let distance = (Vector3::from(tag) - Vector3::from(*place)).norm();
+                let metres = distance + BIASES[anchor] + noise;
+                events.push(Event::Range(Range { time_us, anchor, metres }));
+            }
+            events.push(Event::EpochEnd { time_us });
+        }
+        super::height(&anchors, &[&events])
+    }
+
+    #[test]
+    fn a_tag_that_is_raised_is_told_from_one_that_keeps_its_height() {
+        for metres in [0.3, 1.0, 1.6] {
+            assert_eq!(told(&PLACES, |_| metres), None, "{metres} m");
+        }
+        let raised = told(&PLACES, |seconds| if seconds < 20.0 { 0.5 } else { 1.7 });
+        assert_eq!(raised.unwrap().reason, Some(Reason::Height));
+    }
+
+    #[test]
+    fn anchors_under_a_ceiling_tell_no_height() {
+        let ceiling = PLACES.map(|[x, y, _]| [x, y, 2.5]);
+        assert_eq!(told(&ceiling, |seconds| 0.5 + 0.02 * seconds), None);
+    }
+}
