@@ -78,16 +78,18 @@ fn parts_of_walks_are_read_and_swapped_axes_in_them_are_named() {
             if let Err(error) = inertial::read(&right, &Options::default()) {
                 refused.push(format!("{name} from {tenth} tenths on: {error}"));
             }
-            let swapped = written(&part, HEADER, |[t, ax, ay, az, gx, gy, gz]| {
-                [t, ax, ay, az, gy, gx, -gz]
-            });
+            let swapped =
+                written(&part, HEADER, |[t, ax, ay, az, gx, gy, gz]| [t, ax, ay, az, gy, gx, -gz]);
             let answer = inertial::read(&swapped, &Options::default());
             named += usize::from(
                 answer.is_err_and(|error| error.to_string().contains("fits as gy, gx, -gz")),
             );
         }
     }
-    println!("{parts} parts, {} refused: {refused:#?}; swapped axes named in {named}", refused.len());
+    println!(
+        "{parts} parts, {} refused: {refused:#?}; swapped axes named in {named}",
+        refused.len()
+    );
     assert!(refused.is_empty());
     assert!(named * 10 >= parts * 7, "{named} of {parts}");
 }

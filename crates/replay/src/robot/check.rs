@@ -5,6 +5,7 @@ mod in_space;
 mod jumps;
 mod moments;
 mod stuck;
+mod wheels;
 
 use kestirim_health::Reason;
 
@@ -31,12 +32,14 @@ pub enum KnownHeight {
     Varying,
 }
 
-/// What the parts of a recording show, of a tag whose height and room are known or not.
+/// What the parts of a recording show, of a tag whose height and room are known or not, among anchors that measure too long by
+/// `biases` (m) if they are calibrated.
 pub fn check<'a>(
     anchors: &Anchors,
     parts: impl IntoIterator<Item = &'a [Event]>,
     height: KnownHeight,
     room_is_known: bool,
+    biases: Option<&[f64]>,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     let parts: Vec<&[Event]> = parts.into_iter().collect();
@@ -50,6 +53,7 @@ pub fn check<'a>(
     let raised = matches!(height, KnownHeight::Said(_) | KnownHeight::Found(_))
         .then(|| in_space::height(anchors, &parts))
         .flatten();
+    let slipped = wheels::find(anchors, &parts, height);
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, anchors.names.len(), &name));
@@ -59,9 +63,11 @@ pub fn check<'a>(
     findings.extend(parts.iter().find_map(|ranges| stuck::one(ranges, cut_at, &name)));
     findings.extend(parts.iter().find_map(|ranges| stuck::all(ranges, cut_at)));
     findings.extend(jumps::find(&parts, &name));
-    findings.extend(geometry::check(anchors, &parts, height));
+    let freed = biases.map(|biases| freed(&parts, biases));
+    findings.extend(geometry::check(anchors, freed.as_ref().unwrap_or(&parts), height));
     findings.extend(geometry::mirror(anchors, height, room_is_known));
     findings.extend(raised);
+    findings.extend(slipped);
     findings
 }
 
@@ -71,6 +77,15 @@ fn ranges(events: &[Event]) -> Vec<Range> {
         _ => None,
     };
     events.iter().filter_map(range).collect()
+}
+
+/// Ranges without what their anchors measure too long.
+fn freed(parts: &[Vec<Range>], biases: &[f64]) -> Vec<Vec<Range>> {
+    let free = |range: &Range| {
+        let bias = biases.get(range.anchor).copied().unwrap_or_default();
+        Range { metres: range.metres - bias, ..*range }
+    };
+    parts.iter().map(|ranges| ranges.iter().map(free).collect()).collect()
 }
 
 /// How often each anchor is heard, and what it says that is no range.

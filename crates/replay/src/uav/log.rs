@@ -2,8 +2,8 @@
 
 use super::Error;
 
-/// Intervals that differ by less than this share from the usual one are jitter.
-const JITTER: f64 = 0.1;
+/// Intervals that differ by less than this share from the usual one are jitter: autopilots log when they have time.
+const JITTER: f64 = 0.4;
 /// Share of intervals that must be the usual one.
 const REGULAR: f64 = 0.75;
 /// From this many usual intervals on, samples are missing.

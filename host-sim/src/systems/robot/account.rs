@@ -2,7 +2,9 @@
 
 pub mod accuracy;
 
-use kestirim_replay::robot::{Smoothed, Trace, doubts, mirrored};
+use std::collections::BTreeSet;
+
+use kestirim_replay::robot::{Dimensions, Setup, Smoothed, Trace, doubts, mirrored};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -92,7 +94,7 @@ pub(super) fn account(
         lost_s: traces.iter().map(Trace::lost_s).sum(),
         links: Link::all(recording, &setup, traces),
         import: recording.import.clone(),
-        warnings: warnings(recording, tracks, points.as_deref(), setup.room.is_some()),
+        warnings: warnings(recording, tracks, points.as_deref(), &setup),
         accuracy: Accuracy::of_recording(recording, traces),
         smoothed: tracks.smoothed().map(|smoothed| of_smoothed(recording, smoothed)),
         height: found.as_ref().map(|found| HeightReport {
@@ -183,11 +185,25 @@ fn of_smoothed(recording: &Recording, smoothed: &Smoothed) -> SmoothedReport {
     }
 }
 
+/// Why there is no position.
+fn nowhere(traces: &[Trace], dimensions: Dimensions) -> String {
+    let ranges = traces.iter().flat_map(|trace| &trace.ranges);
+    let heard: BTreeSet<usize> = ranges.map(|(range, _)| range.anchor).collect();
+    let needed = if dimensions == Dimensions::Two { 3 } else { 4 };
+    if heard.len() < needed {
+        let heard = heard.len();
+        return format!(
+            "no position was found: it takes ranges to {needed} anchors, and {heard} are heard"
+        );
+    }
+    "no position was found: the ranges fit no place; look at their unit, the anchors' places and names, and --height".to_owned()
+}
+
 fn warnings(
     recording: &Recording,
     tracks: &Tracks,
     points: Option<&[PointReport]>,
-    room_is_known: bool,
+    setup: &Setup,
 ) -> Vec<String> {
     let traces = &tracks.traces;
     let mut warnings = recording.warnings.clone();
@@ -200,12 +216,12 @@ fn warnings(
             warnings.push(format!("points without ranges enough for a position: {missing}"));
         }
         None if traces.iter().all(|trace| trace.known().next().is_none()) => {
-            warnings.push("no position was found".to_owned());
+            warnings.push(nowhere(traces, setup.dimensions));
         }
         None => {}
     }
     if let Some(share) = mirrored(traces, recording.is_static()) {
-        let hint = if room_is_known { "" } else { ": --room may tell which" };
+        let hint = if setup.room.is_some() { "" } else { ": --room may tell which" };
         warnings.push(format!(
             "at {:.0} % of the positions the ranges allow two places, one on either side of the only anchors heard{hint}",
             100.0 * share

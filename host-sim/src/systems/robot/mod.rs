@@ -128,7 +128,9 @@ impl System for Robot {
     fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> {
         let parts = recording.parts.iter().map(|part| part.events.as_slice());
         let height = settings::known_height(recording, settings);
-        robot::check(&recording.anchors, parts, height, settings.text("room").is_some())
+        let biases = recording.biases.as_deref().filter(|_| settings.is_on("calibrated"));
+        let room_is_known = settings.text("room").is_some();
+        robot::check(&recording.anchors, parts, height, room_is_known, biases)
     }
 
     fn track(recording: &Recording, settings: &Settings, _: Detail) -> Result<Tracks, Error> {

@@ -25,11 +25,6 @@ const UNSEEN: &[(&str, &str, &str)] = &[
     ("lias_mid_tag1", "room mirrored", "the same"),
     ("trek_m1l", "room mirrored", "the same"),
     (
-        "esp32_los2",
-        "anchors counted from another number",
-        "three anchors have but one range to spare",
-    ),
-    (
         "trek_m1l",
         "anchors counted from another number",
         "turned by a quarter, a square has the same ranges",

@@ -27,6 +27,9 @@ const SUSPICION_M: f64 = 0.15;
 const CLEARLY: f64 = 6.0;
 /// The standard deviation that all anchors' common bias may have, m.
 const COMMON_BIAS_M: f64 = 0.5;
+/// Of one anchor more than coordinates, no range is left to find what is wrong: what they contradict each other by, m, gives positions
+/// that are wrong by a multiple. Recordings of three anchors have up to 0.13 m.
+const NOTHING_TO_SPARE_M: f64 = 0.2;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
 /// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
@@ -102,14 +105,23 @@ pub(super) fn check(
     let tried = Tried { moments: &moments, anchors: &places, height };
     let agree =
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
+    let needed = if height.is_some() { 3 } else { 4 };
+    let is_contradiction_of_few = anchors.positions.len() == needed && left >= NOTHING_TO_SPARE_M;
     // A height that was found from the ranges may be wrong by as much.
-    if left < SUSPICION_M || (left < CONTRADICTION_M && !is_given) {
+    let is_of_height = left < CONTRADICTION_M && !is_given && !is_contradiction_of_few;
+    if left < SUSPICION_M || is_of_height {
         return Some(agree());
     }
     let found = format!("ranges and anchors disagree by {left:.1} m");
     let consequence = "positions may be wrong by as much";
     if let Some((reason, remedy)) = tried.explanation(left, is_given, &anchors.names) {
         return Some(Finding::fault("geometry", reason, found, consequence, remedy));
+    }
+    if is_contradiction_of_few {
+        let consequence = "with no range to spare, positions may be wrong by a multiple";
+        let remedy = "calibrate the anchors (--calibration), or add one";
+        let found = format!("ranges to {needed} anchors contradict each other by {left:.2} m");
+        return Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy));
     }
     if left < CONTRADICTION_M {
         return Some(agree());
@@ -303,11 +315,12 @@ mod tests {
     }
 
     #[test]
-    fn another_unit_is_told_and_a_delay_of_antennas_is_not() {
+    fn another_unit_is_told_and_a_delay_of_antennas_is_not_unless_there_are_three_anchors() {
         let corners = [[0.0, 0.0, 2.0], [6.0, 0.0, 2.0], [6.0, 5.0, 2.0], [0.0, 5.0, 2.0]];
         for places in [&corners[..3], &corners] {
             for delay in [-0.3, 0.0, 0.3] {
-                assert_eq!(reason(|metres| metres + delay, places), None, "{delay} m");
+                let told = (places.len() == 3 && delay != 0.0).then_some(Reason::Geometry);
+                assert_eq!(reason(|metres| metres + delay, places), told, "{delay} m");
             }
             assert_eq!(reason(|metres| metres / 0.3048, places), Some(Reason::Units));
         }
