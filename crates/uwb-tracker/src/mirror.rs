@@ -58,15 +58,7 @@ pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirro
     let mut chosen = Mirror::<D>::zeros();
     // The farthest from those that were chosen before makes it least uncertain.
     for count in 1..=D {
-        let (mut far, mut farthest) = (T::from_f64(FLAT), None);
-        for (anchor, link) in links.iter().enumerate() {
-            let place: SVector<T, D> = place(link);
-            let from = beside(chosen.as_array().get(..count)?, links, &place)?;
-            let distance = T::norm(from.as_array());
-            if distance > far {
-                (far, farthest) = (distance, Some(anchor as u16));
-            }
-        }
+        let farthest = outside::<T, D>(chosen.as_array().get(..count)?, links);
         match (chosen.as_array_mut().get_mut(count), farthest) {
             (Some(next), Some(anchor)) => *next = anchor,
             (None, None) => return Some(chosen),
@@ -74,6 +66,20 @@ pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirro
         }
     }
     None
+}
+
+/// The anchor that is farthest outside of the line, or plane, through some; none if all are in it.
+#[inline(never)] // Asked for a few times: one copy is enough.
+fn outside<T: Scalar, const D: usize>(chosen: &[u16], links: &[Link<T>]) -> Option<u16> {
+    let (mut far, mut farthest) = (T::from_f64(FLAT), None);
+    for (anchor, link) in links.iter().enumerate() {
+        let from = beside::<T, D>(chosen, links, &place(link));
+        let distance = from.map_or(T::ZERO, |from| T::norm(from.as_array()));
+        if distance > far {
+            (far, farthest) = (distance, Some(anchor as u16));
+        }
+    }
+    farthest
 }
 
 /// As far as the tag may be from where it seems to be, m.
