@@ -54,6 +54,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         tracker.bias_shape = [T::ONE, T::ZERO];
         let reach = size(anchors) * T::from_f64(OFFICE);
         tracker.config.common_bias_sigma = reach + reach;
+        // Two places are looked for among ranges alone.
+        tracker.flat = None;
         Ok(Self { tracker, last: None, reach })
     }
 

@@ -1,5 +1,5 @@
-//! The other place that the ranges of too few anchors allow: behind the line through two, or the plane through three, or that
-//! in which all are.
+//! The other place that the ranges of too few anchors allow: behind the line through two, or the plane through three; and those of
+//! all, if all are in one line or plane.
 
 use crate::Config;
 use crate::link::Link;
@@ -61,7 +61,10 @@ pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirro
         let farthest = outside::<T, D>(chosen.as_array().get(..count)?, links);
         match (chosen.as_array_mut().get_mut(count), farthest) {
             (Some(next), Some(anchor)) => *next = anchor,
-            (None, None) => return Some(chosen),
+            // A plane through anchors that are almost in a line is none to be behind.
+            (None, None) => {
+                return across(&chosen, links, &SVector::<T, D>::zeros()).map(|_| chosen);
+            }
             _ => return None,
         }
     }

@@ -63,8 +63,8 @@ impl Axes {
 #[derive(Debug, Clone)]
 pub(crate) struct Motion {
     stretches: Vec<Stretch>,
-    /// The gyroscope's bias is this, if the moments of rest are any; where a foot never stands, it is the motion that they have
-    /// in common, and none is nearer to the truth.
+    /// Biases that are tried: the gyroscope's mean in the moments of rest, and zero. A foot that never stands turns in those
+    /// moments, and their mean is motion.
     biases: [[f64; 3]; 2],
 }
 

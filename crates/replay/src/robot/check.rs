@@ -9,7 +9,7 @@ mod wheels;
 
 use kestirim_health::Reason;
 
-use super::{Anchors, Event, Range};
+use super::{Anchors, Event, Range, Setup};
 use crate::Finding;
 use crate::metrics::standard_deviation;
 
@@ -48,12 +48,20 @@ pub fn check<'a>(
     let differences: usize = differences.sum();
     if differences > 0 {
         findings.push(Finding::note("differences", format!("{differences} of distances")));
+        findings.extend(geometry::mirror(anchors, height, room_is_known));
         return findings;
     }
-    let raised = matches!(height, KnownHeight::Said(_) | KnownHeight::Found(_))
-        .then(|| in_space::height(anchors, &parts))
-        .flatten();
-    let slipped = wheels::find(anchors, &parts, height);
+    let at = |metres: f64| {
+        let plain = Setup::new(&anchors.positions, metres);
+        Setup { biases: biases.map(<[f64]>::to_vec), ..plain }
+    };
+    let tracked = match height {
+        KnownHeight::Said(metres) | KnownHeight::Found(metres) => {
+            [in_space::height(&at(metres), &parts), wheels::find(&at(metres), &parts)]
+        }
+        KnownHeight::Varying => [None, wheels::find(&at(anchors.mean_height()), &parts)],
+        KnownHeight::Unknown | KnownHeight::NotFound => [None, None],
+    };
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, anchors.names.len(), &name));
@@ -64,10 +72,10 @@ pub fn check<'a>(
     findings.extend(parts.iter().find_map(|ranges| stuck::all(ranges, cut_at)));
     findings.extend(jumps::find(&parts, &name));
     let freed = biases.map(|biases| freed(&parts, biases));
-    findings.extend(geometry::check(anchors, freed.as_ref().unwrap_or(&parts), height));
+    let ranges = freed.as_ref().unwrap_or(&parts);
+    findings.extend(geometry::check(anchors, ranges, height, biases.is_some()));
     findings.extend(geometry::mirror(anchors, height, room_is_known));
-    findings.extend(raised);
-    findings.extend(slipped);
+    findings.extend(tracked.into_iter().flatten());
     findings
 }
 
@@ -148,4 +156,37 @@ fn cut((count, metres): (usize, f64)) -> Finding {
         "what is farther away looks nearer than it is",
         "look at the largest range that the radio or the logger can give",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether three anchors, which measure 0.3 m too long, are told to contradict each other.
+    fn contradict(biases: Option<&[f64]>) -> bool {
+        let positions = vec![[0.0, 0.0, 2.0], [8.0, 0.0, 2.0], [4.0, 6.0, 2.0]];
+        let names = (0..positions.len()).map(|k| k.to_string()).collect();
+        let mut events = Vec::new();
+        for epoch in 0..200_i64 {
+            let turn = 0.05 * epoch as f64;
+            let tag = [4.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0_f64];
+            for (anchor, place) in positions.iter().enumerate() {
+                let square: f64 =
+                    tag.iter().zip(place).map(|(a, b): (_, &f64)| (a - b).powi(2)).sum();
+                let time_us = 100_000 * epoch;
+                events.push(Event::Range(Range { time_us, anchor, metres: square.sqrt() + 0.3 }));
+            }
+            events.push(Event::EpochEnd { time_us: 100_000 * epoch });
+        }
+        let anchors = Anchors { names, positions };
+        let parts = [events.as_slice()];
+        let findings = check(&anchors, parts, KnownHeight::Said(1.0), false, biases);
+        findings.iter().any(|finding| finding.reason == Some(Reason::Geometry))
+    }
+
+    #[test]
+    fn three_anchors_contradict_each_other_until_they_are_calibrated() {
+        assert!(contradict(None));
+        assert!(!contradict(Some(&[0.3; 3])));
+    }
 }

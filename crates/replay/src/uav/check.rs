@@ -46,7 +46,8 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
 
 fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
     let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    // A sensor that is stuck for half of a flight has no spikes in the other half.
+    // Without changes of nothing: of a sensor that is stuck for half of the flight the usual change would be none, and any of the
+    // other half a spike.
     let limit = SPIKE * median(&changes.iter().copied().filter(|it| *it > 0.0).collect::<Vec<_>>());
     let is_spike = |three: &&[f64]| {
         let (there, back) = (three[1] - three[0], three[2] - three[1]);

@@ -58,3 +58,27 @@ impl Log {
 
 /// True states: a time in µs, and those that the file has of α, q, V, θ.
 pub type Truth = Vec<(i64, [Option<f64>; 4])>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A log whose intervals are these parts of 20 ms, in turn.
+    fn log(parts: [f64; 3]) -> Result<Log, Error> {
+        let mut t_us = 0;
+        let samples = (0..300).map(|k| {
+            t_us += (20_000.0 * parts[k % 3]) as i64;
+            Sample { t_us, input: [0.0; 2], measured: vec![Some(0.0)] }
+        });
+        Log::new(vec![0], samples.collect())
+    }
+
+    #[test]
+    fn times_that_jitter_are_read_and_times_without_an_interval_are_not() {
+        for parts in [[1.0; 3], [0.7, 1.0, 1.3]] {
+            let log = log(parts).unwrap();
+            assert!((log.interval_s - 0.02).abs() < 1e-9 && log.gaps == 0, "{log:?}");
+        }
+        assert!(matches!(log([0.4, 1.0, 1.6]), Err(Error::Irregular { .. })));
+    }
+}

@@ -46,7 +46,7 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     /// The tag may be behind it as well.
     mirror: Option<Mirror<D>>,
     /// Behind this it always may, as all anchors are in one line, or plane.
-    flat: Option<Mirror<D>>,
+    pub(crate) flat: Option<Mirror<D>>,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
     /// How the common bias depends on the distance: a constant, and a slope, 1/m.

@@ -117,7 +117,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
                 position: self.position()?,
                 variance: estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?,
                 speed_squared: speed * speed,
-                // The course tells both sides apart.
+                // Two courses with opposite turns are followed; of anchors in one line both fit, which is not told here.
                 mirror: None,
             })
         });

@@ -4,7 +4,7 @@ pub mod accuracy;
 
 use std::collections::BTreeSet;
 
-use kestirim_replay::robot::{Dimensions, Setup, Smoothed, Trace, doubts, mirrored};
+use kestirim_replay::robot::{Dimensions, Event, Setup, Smoothed, Trace, doubts, mirrored};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -186,17 +186,27 @@ fn of_smoothed(recording: &Recording, smoothed: &Smoothed) -> SmoothedReport {
 }
 
 /// Why there is no position.
-fn nowhere(traces: &[Trace], dimensions: Dimensions) -> String {
-    let ranges = traces.iter().flat_map(|trace| &trace.ranges);
-    let heard: BTreeSet<usize> = ranges.map(|(range, _)| range.anchor).collect();
-    let needed = if dimensions == Dimensions::Two { 3 } else { 4 };
-    if heard.len() < needed {
-        let heard = heard.len();
+fn nowhere(recording: &Recording, dimensions: Dimensions) -> String {
+    let heard = |event: &Event| match event {
+        Event::Range(range) => vec![range.anchor],
+        Event::Difference(difference) => difference.anchors.to_vec(),
+        _ => Vec::new(),
+    };
+    let heard: BTreeSet<usize> =
+        recording.parts.iter().flat_map(|part| &part.events).flat_map(heard).collect();
+    let (needed, height) = match dimensions {
+        Dimensions::Two => (3, ", and --height"),
+        Dimensions::Three => (4, ""),
+    };
+    let heard = heard.len();
+    if heard < needed {
         return format!(
             "no position was found: it takes ranges to {needed} anchors, and {heard} are heard"
         );
     }
-    "no position was found: the ranges fit no place; look at their unit, the anchors' places and names, and --height".to_owned()
+    format!(
+        "no position was found: at no time do {needed} anchors agree on a place; look at the unit, the anchors' places and names{height}"
+    )
 }
 
 fn warnings(
@@ -216,12 +226,17 @@ fn warnings(
             warnings.push(format!("points without ranges enough for a position: {missing}"));
         }
         None if traces.iter().all(|trace| trace.known().next().is_none()) => {
-            warnings.push(nowhere(traces, setup.dimensions));
+            warnings.push(nowhere(recording, setup.dimensions));
         }
         None => {}
     }
     if let Some(share) = mirrored(traces, recording.is_static()) {
-        let hint = if setup.room.is_some() { "" } else { ": --room may tell which" };
+        // A room is one of the plane.
+        let hint = match (setup.dimensions, setup.room.is_some()) {
+            (Dimensions::Three, _) => ": --dim 2 with --height may tell which",
+            (Dimensions::Two, false) => ": --room may tell which",
+            (Dimensions::Two, true) => "",
+        };
         warnings.push(format!(
             "at {:.0} % of the positions the ranges allow two places, one on either side of the only anchors heard{hint}",
             100.0 * share

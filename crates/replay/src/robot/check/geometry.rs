@@ -1,5 +1,7 @@
 //! Whether ranges and anchors can belong together: what least squares leave over, as it is and with one thing changed.
 
+use std::collections::BTreeSet;
+
 use kestirim_health::Reason;
 use kestirim_uwb_ranging::{Observation, Solver};
 use nalgebra::{Matrix3, Vector3};
@@ -27,8 +29,8 @@ const SUSPICION_M: f64 = 0.15;
 const CLEARLY: f64 = 6.0;
 /// The standard deviation that all anchors' common bias may have, m.
 const COMMON_BIAS_M: f64 = 0.5;
-/// Of one anchor more than coordinates, no range is left to find what is wrong: what they contradict each other by, m, gives positions
-/// that are wrong by a multiple. Recordings of three anchors have up to 0.13 m.
+/// Three anchors in the plane, or four in space, leave one range to spare: enough to see a contradiction, too few to find its cause.
+/// Positions are then wrong by a multiple of it, so it is told from here on, m.
 const NOTHING_TO_SPARE_M: f64 = 0.2;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
@@ -84,6 +86,7 @@ pub(super) fn check(
     anchors: &Anchors,
     parts: &[Vec<Range>],
     height: KnownHeight,
+    is_calibrated: bool,
 ) -> Option<Finding> {
     let (height, is_given) = match height {
         // A tag whose height changes with time is no plane's.
@@ -106,7 +109,8 @@ pub(super) fn check(
     let agree =
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
     let needed = if height.is_some() { 3 } else { 4 };
-    let is_contradiction_of_few = anchors.positions.len() == needed && left >= NOTHING_TO_SPARE_M;
+    let heard: BTreeSet<usize> = moments.iter().flatten().map(|(anchor, _)| *anchor).collect();
+    let is_contradiction_of_few = heard.len() == needed && left >= NOTHING_TO_SPARE_M;
     // A height that was found from the ranges may be wrong by as much.
     let is_of_height = left < CONTRADICTION_M && !is_given && !is_contradiction_of_few;
     if left < SUSPICION_M || is_of_height {
@@ -119,7 +123,11 @@ pub(super) fn check(
     }
     if is_contradiction_of_few {
         let consequence = "with no range to spare, positions may be wrong by a multiple";
-        let remedy = "calibrate the anchors (--calibration), or add one";
+        let remedy = match (is_given || height.is_none(), is_calibrated) {
+            (false, _) => "say the height (--height), or add an anchor",
+            (true, false) => "calibrate the anchors (--calibration), or add one",
+            (true, true) => "look at the anchors' places and their calibration, or add one",
+        };
         let found = format!("ranges to {needed} anchors contradict each other by {left:.2} m");
         return Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy));
     }
@@ -311,7 +319,7 @@ mod tests {
         };
         let part = (0..100).flat_map(|k| (0..places.len()).map(move |anchor| (k, anchor)));
         let part = part.map(|(k, anchor)| range(k, anchor)).collect();
-        check(&anchors, &[part], KnownHeight::Said(1.0))?.reason
+        check(&anchors, &[part], KnownHeight::Said(1.0), false)?.reason
     }
 
     #[test]

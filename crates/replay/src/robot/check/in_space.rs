@@ -2,22 +2,26 @@
 
 use kestirim_health::{Health, Reason};
 
-use crate::robot::{Anchors, Dimensions, Event, Setup, track};
-use crate::{Finding, ScalarKind};
+use crate::Finding;
+use crate::robot::{Dimensions, Event, Setup, track};
 
 /// A tag is at one height if eight of ten are no farther apart, m, …
 const SPAN_M: f64 = 0.5;
 /// … or than so many standard deviations: of a normal distribution they are 2.6 apart, and what the anchors measure wrong
 /// changes with the place.
 const SPAN_SIGMAS: f64 = 5.0;
-/// Fewer positions say nothing.
+/// Fewer anchors tell no height, …
+const FEWEST_ANCHORS: usize = 4;
+/// … and fewer positions nothing.
 const FEWEST: usize = 50;
 
-/// The finding that the tag's height changes; none if it does not, or the anchors do not tell heights.
-pub(super) fn height(anchors: &Anchors, parts: &[&[Event]]) -> Option<Finding> {
-    let mean = anchors.mean_height();
-    let plane = Setup::new(&anchors.positions, mean);
-    let setup = Setup { dimensions: Dimensions::Three, scalar: ScalarKind::F64, ..plane };
+/// The finding that the tag's height changes; none if it does not, or the anchors do not tell heights. `known` is what a tracker in
+/// the plane knows.
+pub(super) fn height(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
+    if known.anchors.len() < FEWEST_ANCHORS {
+        return None;
+    }
+    let setup = Setup { dimensions: Dimensions::Three, ..known.clone() };
     let traces: Vec<_> = parts.iter().filter_map(|events| track(&setup, events).ok()).collect();
     let (mut heights, mut sigmas, mut positions) = (Vec::new(), Vec::new(), 0);
     for epoch in traces.iter().flat_map(|trace| &trace.epochs) {
@@ -62,8 +66,6 @@ mod tests {
 
     /// What is told of a tag that is carried round at these heights.
     fn told(places: &[[f64; 3]], height: impl Fn(f64) -> f64) -> Option<Finding> {
-        let names = (0..places.len()).map(|k| k.to_string()).collect();
-        let anchors = Anchors { names, positions: places.to_vec() };
         let mut events = Vec::new();
         for epoch in 0..600_u32 {
             let seconds = 0.1 * f64::from(epoch);
@@ -78,7 +80,7 @@ mod tests {
             }
             events.push(Event::EpochEnd { time_us });
         }
-        super::height(&anchors, &[&events])
+        super::height(&Setup::new(places, 1.0), &[&events])
     }
 
     #[test]

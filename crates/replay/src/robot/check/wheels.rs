@@ -2,9 +2,8 @@
 
 use kestirim_health::{Health, Reason};
 
-use super::KnownHeight;
-use crate::robot::{Anchors, Epoch, Event, Setup, Wheels, track};
-use crate::{Finding, ScalarKind};
+use crate::Finding;
+use crate::robot::{Epoch, Event, Setup, Wheels, track};
 
 /// What is compared is how far apart two places are that the robot was at so long after each other, µs: neither the start nor the
 /// heading must be known.
@@ -17,15 +16,14 @@ const LONGEST_US: i64 = 1_000_000;
 const SIGMAS: f64 = 3.0;
 /// … and by this share of the longer one: wheels have another scale, and slip.
 const SHARE: f64 = 0.5;
-/// From this share of the comparisons on it is told: sound wheels have up to a quarter (`labyrinth`), dead ones from 60 % on, …
+/// From this share of the comparisons on it is told, because sound wheels slip at times, …
 const OFTEN: f64 = 0.4;
 /// … of which there are so many.
 const FEWEST: usize = 10;
 
-/// The finding that wheels and ranges contradict each other; none if they do not, or do not tell.
-pub(super) fn find(anchors: &Anchors, parts: &[&[Event]], height: KnownHeight) -> Option<Finding> {
-    let (KnownHeight::Said(metres) | KnownHeight::Found(metres)) = height else { return None };
-    let setup = Setup { scalar: ScalarKind::F64, ..Setup::new(&anchors.positions, metres) };
+/// The finding that wheels and ranges contradict each other; none if they do not, or do not tell. `known` is what a tracker knows
+/// that has no wheels.
+pub(super) fn find(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
     let (mut compared, mut apart) = (0, 0);
     for events in parts {
         let way = way(events);
@@ -34,7 +32,7 @@ pub(super) fn find(anchors: &Anchors, parts: &[&[Event]], height: KnownHeight) -
         }
         let is_of_wheels = |event: &&Event| matches!(event, Event::Wheels(_));
         let others: Vec<Event> = events.iter().filter(|it| !is_of_wheels(it)).copied().collect();
-        let epochs = track(&setup, &others).ok()?.epochs;
+        let epochs = track(known, &others).ok()?.epochs;
         let mut next_us = i64::MIN;
         for epoch in epochs.iter().filter(|epoch| epoch.health == Health::GOOD) {
             if epoch.time_us < next_us {
@@ -43,9 +41,10 @@ pub(super) fn find(anchors: &Anchors, parts: &[&[Event]], height: KnownHeight) -
             next_us = epoch.time_us.saturating_add(EVERY_US);
             let then_us = epoch.time_us.saturating_add(APART_US);
             let after = epochs.partition_point(|it| it.time_us < then_us);
-            let Some(then) = epochs.get(after).filter(|it| it.health == Health::GOOD) else {
-                continue;
+            let is_then = |it: &&Epoch| {
+                it.health == Health::GOOD && it.time_us.saturating_sub(then_us) <= EVERY_US
             };
+            let Some(then) = epochs.get(after).filter(is_then) else { continue };
             let Some((ranges, sigma)) = distance(epoch, then) else { continue };
             let Some(wheels) = driven(&way, epoch.time_us, then.time_us) else { continue };
             let limit = (SIGMAS * sigma).max(SHARE * ranges.max(wheels));
@@ -59,7 +58,7 @@ pub(super) fn find(anchors: &Anchors, parts: &[&[Event]], height: KnownHeight) -
             "wheels",
             Reason::Innovations,
             format!(
-                "wheels and ranges contradict each other in {:.0} % of the time",
+                "wheels and ranges contradict each other in {:.0} % of the comparisons",
                 100.0 * share
             ),
             "positions between the ranges, and their deviations, are the wheels'",
@@ -81,8 +80,11 @@ fn way(events: &[Event]) -> Vec<(i64, [f64; 2])> {
     let mut before: Option<Wheels> = None;
     for event in events {
         let Event::Wheels(wheels) = event else { continue };
+        if !(wheels.speed.is_finite() && wheels.turn_rate.is_finite()) {
+            continue;
+        }
         if let Some(before) = before {
-            let seconds = (wheels.time_us - before.time_us) as f64 * 1e-6;
+            let seconds = wheels.time_us.saturating_sub(before.time_us) as f64 * 1e-6;
             let middle = heading + 0.5 * before.turn_rate * seconds;
             place[0] += before.speed * seconds * middle.cos();
             place[1] += before.speed * seconds * middle.sin();
@@ -99,7 +101,7 @@ fn driven(way: &[(i64, [f64; 2])], from_us: i64, to_us: i64) -> Option<f64> {
     let at = |time_us: i64| way.partition_point(|(at_us, _)| *at_us < time_us);
     let [first, last] = [at(from_us).checked_sub(1)?, at(to_us)];
     let between = way.get(first..=last)?;
-    let is_whole = between.windows(2).all(|pair| pair[1].0 - pair[0].0 <= LONGEST_US);
+    let is_whole = between.windows(2).all(|pair| pair[1].0.saturating_sub(pair[0].0) <= LONGEST_US);
     let ([x, y], [u, v]) = (between.first()?.1, between.last()?.1);
     is_whole.then(|| (u - x).hypot(v - y))
 }
@@ -114,8 +116,6 @@ mod tests {
 
     /// What is told of a robot that drives an oval at 0.5 m/s, with wheels that say something else.
     fn told(say: impl Fn(f64, Wheels) -> Wheels) -> Option<Finding> {
-        let names = (0..PLACES.len()).map(|k| k.to_string()).collect();
-        let anchors = Anchors { names, positions: PLACES.to_vec() };
         let mut events = Vec::new();
         let (mut place, mut heading) = ([2.0, 1.5], 0.0_f64);
         for step in 0..1200_u32 {
@@ -135,7 +135,7 @@ mod tests {
             place[0] += 0.025 * heading.cos();
             place[1] += 0.025 * heading.sin();
         }
-        find(&anchors, &[&events], KnownHeight::Said(0.3))
+        find(&Setup::new(&PLACES, 0.3), &[&events])
     }
 
     #[test]
@@ -150,10 +150,10 @@ mod tests {
         };
         assert_eq!(told(slipping), None);
         let dead = |_, it: Wheels| Wheels { speed: 0.0, turn_rate: 0.0, ..it };
-        let one = |seconds: f64, it: Wheels| {
+        let turning = |seconds: f64, it: Wheels| {
             if seconds < 20.0 { it } else { Wheels { speed: 0.5 * it.speed, turn_rate: 2.0, ..it } }
         };
-        for fault in [told(dead), told(one)] {
+        for fault in [told(dead), told(turning)] {
             assert_eq!(fault.unwrap().reason, Some(Reason::Innovations));
         }
     }
