@@ -110,7 +110,8 @@ pub(super) fn check(
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
     let needed = if height.is_some() { 3 } else { 4 };
     let heard: BTreeSet<usize> = moments.iter().flatten().map(|(anchor, _)| *anchor).collect();
-    let is_contradiction_of_few = heard.len() == needed && left >= NOTHING_TO_SPARE_M;
+    let is_contradiction_of_few =
+        !is_calibrated && heard.len() == needed && left >= NOTHING_TO_SPARE_M;
     // A height that was found from the ranges may be wrong by as much.
     let is_of_height = left < CONTRADICTION_M && !is_given && !is_contradiction_of_few;
     if left < SUSPICION_M || is_of_height {
@@ -123,10 +124,10 @@ pub(super) fn check(
     }
     if is_contradiction_of_few {
         let consequence = "with no range to spare, positions may be wrong by a multiple";
-        let remedy = match (is_given || height.is_none(), is_calibrated) {
-            (false, _) => "say the height (--height), or add an anchor",
-            (true, false) => "calibrate the anchors (--calibration), or add one",
-            (true, true) => "look at the anchors' places and their calibration, or add one",
+        let remedy = if is_given || height.is_none() {
+            "calibrate the anchors (--calibration), or add one"
+        } else {
+            "say the height (--height), or add an anchor"
         };
         let found = format!("ranges to {needed} anchors contradict each other by {left:.2} m");
         return Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy));
