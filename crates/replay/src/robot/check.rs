@@ -57,7 +57,8 @@ pub fn check<'a>(
     };
     let tracked = match height {
         KnownHeight::Said(metres) | KnownHeight::Found(metres) => {
-            [in_space::height(&at(metres), &parts), wheels::find(&at(metres), &parts)]
+            let setup = at(metres);
+            [in_space::height(&setup, &parts), wheels::find(&setup, &parts)]
         }
         KnownHeight::Varying => [None, wheels::find(&at(anchors.mean_height()), &parts)],
         KnownHeight::Unknown | KnownHeight::NotFound => [None, None],
@@ -160,6 +161,8 @@ fn cut((count, metres): (usize, f64)) -> Finding {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
 
     /// Whether three anchors, which measure 0.3 m too long, are told to contradict each other.
@@ -169,12 +172,11 @@ mod tests {
         let mut events = Vec::new();
         for epoch in 0..200_i64 {
             let turn = 0.05 * epoch as f64;
-            let tag = [4.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0_f64];
+            let tag = [4.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0];
             for (anchor, place) in positions.iter().enumerate() {
-                let square: f64 =
-                    tag.iter().zip(place).map(|(a, b): (_, &f64)| (a - b).powi(2)).sum();
                 let time_us = 100_000 * epoch;
-                events.push(Event::Range(Range { time_us, anchor, metres: square.sqrt() + 0.3 }));
+                let metres = (Vector3::from(tag) - Vector3::from(*place)).norm() + 0.3;
+                events.push(Event::Range(Range { time_us, anchor, metres }));
             }
             events.push(Event::EpochEnd { time_us: 100_000 * epoch });
         }

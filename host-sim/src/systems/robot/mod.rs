@@ -128,8 +128,8 @@ impl System for Robot {
     fn check(recording: &Recording, settings: &Settings) -> Vec<Finding> {
         let parts = recording.parts.iter().map(|part| part.events.as_slice());
         let height = settings::known_height(recording, settings);
-        let biases = recording.biases.as_deref().filter(|_| settings.is_on("calibrated"));
-        let room_is_known = settings.text("room").is_some();
+        let setup = settings::of(settings, &recording.anchors, recording.biases.as_deref());
+        let (room_is_known, biases) = (setup.room.is_some(), setup.biases.as_deref());
         robot::check(&recording.anchors, parts, height, room_is_known, biases)
     }
 
