@@ -1,5 +1,5 @@
 use crate::Error;
-use crate::symmetric::NormalEquations;
+use crate::symmetric::{Factors, NormalEquations};
 use kestirim_scalar::Scalar;
 
 /// The dilution of precision: by how much the anchors' places magnify the error of a range into that of
@@ -23,18 +23,39 @@ pub fn dilution_of_precision<T: Scalar, const D: usize>(
 pub fn weighted_dilution<T: Scalar, const D: usize>(
     ranges: impl IntoIterator<Item = ([T; D], T)>,
 ) -> Result<T, Error> {
+    let ranges = ranges.into_iter().map(|(direction, weight)| (direction, weight, T::ZERO));
+    let (factors, _) = equations(ranges)?;
+    let inverse = factors.inverse();
+    let trace = (0..D).fold(T::ZERO, |sum, axis| sum + inverse[axis][axis]);
+    Ok(trace.sqrt())
+}
+
+/// What errors of ranges make of the position that is their least-squares solution, (HᵀWH)⁻¹HᵀW e: the way it is off (m), from
+/// each range's direction towards the tag, its weight, and by what it is too long (m).
+///
+/// # Errors
+/// As [`dilution_of_precision`].
+pub fn position_error<T: Scalar, const D: usize>(
+    ranges: impl IntoIterator<Item = ([T; D], T, T)>,
+) -> Result<[T; D], Error> {
+    let (factors, right_side) = equations(ranges)?;
+    Ok(factors.solve(&right_side))
+}
+
+/// The normal equations of ranges, with their directions, weights and errors.
+fn equations<T: Scalar, const D: usize>(
+    ranges: impl IntoIterator<Item = ([T; D], T, T)>,
+) -> Result<(Factors<T, D>, [T; D]), Error> {
     const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
     let mut equations = NormalEquations::new();
     let mut count = 0;
-    for (direction, weight) in ranges {
-        equations.add(&direction, T::ZERO, weight);
+    for (direction, weight, error) in ranges {
+        equations.add(&direction, error, weight);
         count += 1;
     }
     if count < D {
         return Err(Error::TooFewRanges);
     }
     let factors = equations.factorised().ok_or(Error::DegenerateGeometry)?;
-    let inverse = factors.inverse();
-    let trace = (0..D).fold(T::ZERO, |sum, axis| sum + inverse[axis][axis]);
-    Ok(trace.sqrt())
+    Ok((factors, equations.b))
 }

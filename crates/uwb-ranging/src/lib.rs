@@ -27,7 +27,7 @@ pub use antenna::AntennaDelay;
 pub use bias::LevelBias;
 pub use calibration::Calibration;
 pub use clock::{Channel, ClockOffset, DataRate};
-pub use dilution::{dilution_of_precision, weighted_dilution};
+pub use dilution::{dilution_of_precision, position_error, weighted_dilution};
 pub use downlink::{Broadcast, Difference, Downlink, Heard};
 pub use error::Error;
 pub use height::{Height, HeightSearch};

@@ -1,6 +1,7 @@
 //! A tag that only listens.
 
 use crate::config::{OFFICE, size};
+use crate::health::Common;
 use crate::measurement::Range;
 use crate::tracker::{LATE_US, Place};
 use crate::{
@@ -113,7 +114,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
 
     /// Health of the tracker at `time_us`. The dilution is that of differences.
     pub fn health(&self, time_us: u64) -> Health<T> {
-        let mut health = self.tracker.health(time_us);
+        // What is common to all is the clock's.
+        let mut health = self.tracker.health_beside(Common::NONE, time_us);
         let Some(dilution) = health.dilution else { return health };
         let own = self.dilution(time_us);
         // The clock spreads constant errors as it does all others.

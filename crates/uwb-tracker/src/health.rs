@@ -3,7 +3,9 @@ use crate::link::Link;
 use crate::pace::Pace;
 use kestirim_health::Reason;
 use kestirim_scalar::Scalar;
-use kestirim_uwb_ranging::{dilution_of_precision, expected_range, weighted_dilution};
+use kestirim_uwb_ranging::{
+    ExpectedRange, dilution_of_precision, expected_range, position_error, weighted_dilution,
+};
 use nalgebra::SVector;
 
 /// State of a tracker's position.
@@ -47,8 +49,9 @@ pub struct Health<T> {
     /// Standard deviation of the position, root of its variances' sum, m: the filter's own, that of the anchors'
     /// constant errors, and that of being at the other place as likely as here; none without a position.
     pub position_sigma: Option<T>,
-    /// The latter alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands, makes of the
-    /// position through the anchors heard; where these do not determine it, through all that ever were.
+    /// That of constant errors alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands,
+    /// makes of the position through the anchors heard, and so does the common bias where these are too few to tell it; where
+    /// they do not determine a position, through all that ever were.
     pub bias_sigma: T,
     /// Whether lately more than a third of the ranges were left out, but for those of blocked anchors.
     pub distrusted: bool,
@@ -162,6 +165,22 @@ pub(crate) struct Place<T, const D: usize> {
     pub(crate) speed_squared: T,
     /// How far from it the other place is that the ranges allow, if there is one, m.
     pub(crate) mirror: Option<T>,
+    /// What all ranges may be too long by beyond what the covariance knows of.
+    pub(crate) common: Common<T>,
+}
+
+/// A common bias that is considered, and not learnt.
+#[derive(Clone, Copy)]
+pub(crate) struct Common<T> {
+    /// Its standard deviation, m.
+    pub(crate) sigma: T,
+    /// How it depends on the distance: a constant, and a slope, 1/m.
+    pub(crate) shape: [T; 2],
+}
+
+impl<T: Scalar> Common<T> {
+    /// None is left.
+    pub(crate) const NONE: Self = Self { sigma: T::ZERO, shape: [T::ZERO; 2] };
 }
 
 /// Health of a tracker that has this place.
@@ -175,14 +194,17 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     let fresh = heard_lately(links, pace, time_us).map(|(_, link)| link);
     let heard = fresh.clone().count() as u8;
     let dilution = place.as_ref().and_then(|place| {
-        let direction = |link: &Link<T>| direction(place, config, link);
+        let direction = |link: &Link<T>| expected(place, config, link).direction;
         dilution_of_precision(fresh.clone().map(direction)).ok()
     });
     let bias_sigma = place.as_ref().map_or(T::ZERO, |place| {
         // Where they are too few, the position keeps what all have made of it.
         let all = || bias_sigma(place, config, links.iter().filter(|link| link.is_heard()));
-        let found = bias_sigma(place, config, fresh).or_else(all);
-        found.or(dilution.map(|dilution| dilution * config.bias_sigma)).unwrap_or(T::ZERO)
+        let found = bias_sigma(place, config, fresh.clone()).or_else(all);
+        let own = found.or(dilution.map(|dilution| dilution * config.bias_sigma));
+        let all = || common_sigma(place, config, links.iter().filter(|link| link.is_heard()));
+        let common = common_sigma(place, config, fresh).or_else(all);
+        own.unwrap_or(T::ZERO).hypot(common.unwrap_or(T::ZERO))
     });
     Health {
         state: match (&place, counters.starts) {
@@ -208,13 +230,13 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     }
 }
 
-/// From a place towards an anchor.
-fn direction<T: Scalar, const D: usize>(
+/// The range to an anchor.
+fn expected<T: Scalar, const D: usize>(
     place: &Place<T, D>,
     config: &Config<T>,
     link: &Link<T>,
-) -> [T; D] {
-    expected_range(&place.position, config.height, &link.anchor.position).direction
+) -> ExpectedRange<T, D> {
+    expected_range(&place.position, config.height, &link.anchor.position)
 }
 
 /// What the constant errors of these anchors' ranges make of the position, m; none if they do not determine it.
@@ -244,9 +266,40 @@ fn bias_sigma<'a, T: Scalar, const D: usize>(
     let best = links.clone().map(variance).fold(T::MAX, T::min);
     let weighted = links.map(|link| {
         let weight = (best / variance(link)).max(T::from_f64(LEAST_WEIGHT));
-        (direction(place, config, link), weight)
+        (expected(place, config, link).direction, weight)
     });
     Some(weighted_dilution(weighted).ok()? * best.sqrt())
+}
+
+/// What the common bias that is considered makes of the position through the ranges of these anchors, which the filter weighs by
+/// what it has learnt of their noise, m; none if they do not determine it.
+///
+/// What of the bias no position explains would be in their residuals, which are no larger than that noise: the more there would
+/// be, the smaller it must be.
+fn common_sigma<'a, T: Scalar, const D: usize>(
+    place: &Place<T, D>,
+    config: &Config<T>,
+    links: impl Iterator<Item = &'a Link<T>> + Clone,
+) -> Option<T> {
+    let Common { sigma, shape: [constant, slope] } = place.common;
+    if sigma == T::ZERO || config.bias_sigma == T::ZERO {
+        return Some(T::ZERO);
+    }
+    let variance = |link: &Link<T>| link.noise.variance();
+    let best = links.clone().map(variance).fold(T::MAX, T::min);
+    let ranges = links.map(|link| {
+        let range = expected(place, config, link);
+        let weight = (best / variance(link)).max(T::from_f64(LEAST_WEIGHT));
+        (range.direction, weight, constant + slope * range.distance)
+    });
+    let moved = position_error(ranges.clone()).ok()?;
+    let unexplained = ranges.fold(T::ZERO, |sum, (direction, weight, error)| {
+        let pairs = direction.iter().zip(&moved);
+        let residual = pairs.fold(error, |left, (&along, &way)| left - along * way);
+        sum + weight * residual * residual
+    });
+    let [own, seen] = [sigma * sigma, unexplained * sigma * sigma];
+    Some(T::norm(&moved) * (own * best / (best + seen)).sqrt())
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     Error, Fix, Huber, Observation, Room, Search, Solver, Trilateration, dilution_of_precision,
-    expected_range, trilaterate, weighted_dilution,
+    expected_range, position_error, trilaterate, weighted_dilution,
 };
 use nalgebra::{SVector, Vector2, Vector3};
 use proptest::prelude::*;
@@ -227,6 +227,26 @@ fn impossible_questions_have_their_errors() {
     assert!((weighted([0.25; 4]).unwrap() - 2.0).abs() < 1e-6);
     assert!((weighted([1.0, 1.0, 0.0, 0.0]).unwrap() - 2.0_f32.sqrt()).abs() < 1e-6);
     assert_eq!(weighted([1.0, 0.0, 1.0, 0.0]), Err(Error::DegenerateGeometry));
+}
+
+#[test]
+fn what_all_ranges_have_in_common_pulls_a_position_that_anchors_are_not_around() {
+    let error = |directions: [[f64; 2]; 3], weights: [f64; 3], errors: [f64; 3]| {
+        position_error((0..3).map(|index| (directions[index], weights[index], errors[index])))
+    };
+    let half = 0.75_f64.sqrt();
+    let around = [[1.0, 0.0], [-0.5, half], [-0.5, -half]];
+    let ahead = [[1.0, 0.0], [0.5, half], [0.5, -half]];
+    let is = |found: Result<[f64; 2], Error>, expected: [f64; 2]| {
+        let found = found.expect("three directions");
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+    };
+    is(error(around, [1.0; 3], [0.3; 3]), [0.0; 2]);
+    is(error(ahead, [2.0; 3], [0.3; 3]), [0.4, 0.0]);
+    // Two without the third, which has no weight, are where both of their ranges fit.
+    is(error(around, [0.0, 1.0, 1.0], [9.0, 0.3, 0.3]), [-0.6, 0.0]);
+    assert_eq!(error([[1.0, 0.0]; 3], [1.0; 3], [0.3; 3]), Err(Error::DegenerateGeometry));
+    assert_eq!(position_error([([1.0, 0.0], 1.0, 0.3)]), Err(Error::TooFewRanges));
 }
 
 #[test]

@@ -124,8 +124,18 @@ const OLD_US: u64 = NOW_US - 1_000_001;
 
 /// Health of a tag in the middle of the anchors at this speed (m/s), with a deviation of 10 cm.
 fn in_the_middle(config: &Config<f64>, links: &[Link<f64>], speed: f64) -> Health<f64> {
+    with_common(Common::NONE, config, links, speed)
+}
+
+fn with_common(
+    common: Common<f64>,
+    config: &Config<f64>,
+    links: &[Link<f64>],
+    speed: f64,
+) -> Health<f64> {
     let speed_squared = speed * speed;
-    let place = Place { position: vector![0.0, 0.0], variance: 0.01, speed_squared, mirror: None };
+    let place =
+        Place { position: vector![0.0, 0.0], variance: 0.01, speed_squared, mirror: None, common };
     let mut counters = Counters::new();
     counters.begun();
     health((&counters, config), (links, &Pace::new(4)), Some(place), NOW_US, false)
@@ -201,6 +211,26 @@ fn where_those_heard_are_too_few_a_position_keeps_what_all_made_of_it() {
     let mut blocked = links(&config, [Some(NOW_US); 4]);
     blocked[2].is_blocked = true;
     assert_eq!(count_heard(&blocked, &Pace::new(4), NOW_US), 3);
+}
+
+#[test]
+fn a_common_bias_that_is_not_told_moves_a_tag_that_anchors_are_not_around() {
+    let config = Config { range_sigma: 0.05, ..Config::uncalibrated(1.0) };
+    let common = Common { sigma: 0.3, shape: [1.0, 0.0] };
+    let found = |places, common| {
+        let links = links_at(places, &config, [Some(NOW_US); 3]);
+        with_common(common, &config, &links, 10.0).bias_sigma
+    };
+    // Around it they leave nothing, whichever way it might go.
+    let around = [[5.0, 0.0, 1.0], [-2.5, 4.330_127, 1.0], [-2.5, -4.330_127, 1.0]];
+    assert!(is_near(found(around, common), found(around, Common::NONE)));
+    // 60° to the left of it, ahead and 60° to the right, they pull it: by (0.3 m) 2 / (1 + 2 cos² 60°) = 0.4 m.
+    let ahead = [[5.0, 0.0, 1.0], [2.5, 4.330_127, 1.0], [2.5, -4.330_127, 1.0]];
+    assert!(is_near(found(ahead, common), found(ahead, Common::NONE).hypot(0.4)));
+    // In proportion to the distance it is twice as much of an anchor twice as far, which pulls it: by (0.3 m) / 1.5 = 0.2 m.
+    let slope = Common { sigma: 0.3, shape: [0.0, 0.2] };
+    let far = [[10.0, 0.0, 1.0], around[1], around[2]];
+    assert!(is_near(found(far, slope), found(far, Common::NONE).hypot(0.2)));
 }
 
 #[test]

@@ -5,11 +5,11 @@ use nalgebra::SVector;
 
 /// A range to an anchor: the slant distance and what all ranges are too long by.
 ///
-/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b,
-/// which is zero where it is not observed. In an office c is 1 and s is 0; among anchors far apart ranges' excess grows
+/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b. In an office c is 1 and s is 0; among anchors far apart ranges' excess grows
 /// with the distance, and b is that of a range as long as from the anchors' centre to them.
 ///
-/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former.
+/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former. Where too few
+/// anchors are heard, b is what it was before, as a bias that is considered (Schmidt 1966): ∂h/∂b is taken as zero.
 ///
 /// Source: the paper's eq. 10; the common bias as the clock bias of a GNSS receiver's pseudorange (Kaplan and
 /// Hegarty 2017, 2.5.2).
@@ -53,8 +53,8 @@ impl<T: Scalar, const D: usize, const N: usize> Observation<T, N> for Range<'_, 
             return Ok((self.measured - distance, RangeRow(row)));
         }
         let [constant, slope] = self.bias_shape;
-        let excess = if self.observes_bias { constant + slope * distance } else { T::ZERO };
-        row[D] = (2 * D, excess);
+        let excess = constant + slope * distance;
+        row[D] = (2 * D, if self.observes_bias { excess } else { T::ZERO });
         Ok((self.measured - distance - excess * mean[2 * D], RangeRow(row)))
     }
 }

@@ -2,12 +2,24 @@
 
 use super::Tracker;
 use crate::Health;
-use crate::health::{self, Place};
+use crate::health::{self, Common, Place};
 use kestirim_scalar::{Components, Scalar};
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Health of the tracker at `time_us`.
     pub fn health(&self, time_us: u64) -> Health<T> {
+        let sigma = self.considered_bias().unwrap_or(T::ZERO);
+        self.health_beside(Common { sigma, shape: self.bias_shape }, time_us)
+    }
+
+    /// Standard deviation of the common bias where it is one of the states, but not learnt, as too few anchors are heard, m.
+    fn considered_bias(&self) -> Option<T> {
+        let estimate = self.estimate().filter(|_| N > 2 * D && !self.means()[0])?;
+        Some(estimate.covariance.get(2 * D, 2 * D)?.sqrt())
+    }
+
+    /// Health at `time_us` where this common bias is considered.
+    pub(crate) fn health_beside(&self, common: Common<T>, time_us: u64) -> Health<T> {
         let place = self.estimate().and_then(|estimate| {
             let variances = estimate.covariance.variances();
             let coordinates = variances.iter().take(D);
@@ -18,6 +30,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
                 variance: coordinates.fold(T::ZERO, |sum, &variance| sum + variance),
                 speed_squared: speed * speed,
                 mirror: self.across_in_room().map(|across| T::norm(across.as_array())),
+                common,
             })
         });
         let still = self.is_still(time_us);

@@ -7,7 +7,7 @@ pub(crate) mod state;
 use self::course::{Course, decided};
 use self::state::{COSINE, COUNT, SINE};
 use crate::config::{common_sigmas, size};
-use crate::health::{self, Counters, Place, count_heard};
+use crate::health::{self, Common, Counters, Place, count_heard};
 use crate::link::Link;
 use crate::measurement::ProportionalRange;
 use crate::pace::Pace;
@@ -119,6 +119,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
                 speed_squared: speed * speed,
                 // Two courses with opposite turns are followed; of anchors in one line both fit, which is not told here.
                 mirror: None,
+                common: Common::NONE,
             })
         });
         let still = wheels.is_some_and(stands);

@@ -4,8 +4,8 @@ use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
     AntennaDelay, Broadcast, Calibration, Channel, ClockOffset, DataRate, DoubleSided, Downlink,
     Heard, HeightSearch, Huber, LevelBias, Observation, Quartiles, Room, Search, SingleSided,
-    Solver, Ticks, Timestamp, Trilateration, dilution_of_precision, expected_range, survey,
-    trilaterate, weighted_dilution,
+    Solver, Ticks, Timestamp, Trilateration, dilution_of_precision, expected_range, position_error,
+    survey, trilaterate, weighted_dilution,
 };
 
 use super::values::{
@@ -86,6 +86,8 @@ fn rooms<T: Scalar, const D: usize>() {
     keep(dilution_of_precision(slice(&directions).iter().copied()));
     let weighted = any([(numbers::<T, D>(), number::<T>()); 4]);
     keep(weighted_dilution(slice(&weighted).iter().copied()));
+    let wrong = any([(numbers::<T, D>(), number::<T>(), number::<T>()); 4]);
+    keep(position_error(slice(&wrong).iter().copied()));
 }
 
 fn solvers<T: Scalar, const D: usize>() {

@@ -43,7 +43,7 @@ const BIAS_SHARE: f64 = 1.2;
 /// A step of any position that is shorter ends the improving, m.
 const SMALL_STEP: f64 = 1e-3;
 /// With the noise as it was found, positions are improved so often, until none moves by more than this, m.
-const LAST_STEPS: usize = 20;
+const LAST_STEPS: usize = 100;
 const SETTLED: f64 = 0.01;
 /// A step that makes the cost larger is halved, down to this share, below which there is none.
 const LEAST_SHARE: f64 = 0.1;
