@@ -5,10 +5,12 @@ use nalgebra::Vector3;
 /// A receiver at rest that is found farther from where it was known, in standard deviations of that, has moved, or those are
 /// wrong: on clean days it is never farther than 0.9.
 const FARTHEST: f64 = 4.0;
-/// Any receiver that is farther from where it was predicted has leapt.
+/// Any receiver that is farther from where it was predicted has leapt …
 const FARTHEST_LEAP: f64 = 10.0;
-/// No receiver gets this far between two epochs unless its process noise says so, m.
+/// … but not if it is only so far, m, from where it would be if it stood, or went on as before, …
 const LEAP: f64 = 100.0;
+/// … and may have turned or braked meanwhile, m/s²: what an airliner does.
+const ACCELERATION: f64 = 5.0;
 /// What remains of an epoch in the sums after the next one.
 const KEPT: f64 = 0.9;
 /// For how many epochs a leap is told of.
@@ -23,6 +25,10 @@ const BETTER: f64 = 0.8;
 pub(crate) struct Rest {
     /// Of a receiver at rest: where, ECEF, m, and the standard deviation.
     place: Option<(Vector3<f64>, f64)>,
+    /// Of one that moves: its velocity between the last two epochs, m/s.
+    velocity: Option<Vector3<f64>>,
+    /// Time since the last epoch, s.
+    elapsed: f64,
     /// For how many epochs it is still told that a receiver leapt.
     leaping: u8,
     /// Ambiguities that began anew in the last epochs because their phases contradicted the place, each epoch counted
@@ -31,14 +37,29 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    /// A receiver came from where it was predicted, with a standard deviation, to where it was found.
+    /// The next epoch is so much later, s.
+    pub(crate) fn advance(&mut self, elapsed: f64) {
+        self.elapsed = elapsed;
+    }
+
+    /// A receiver came from where it was predicted, with a standard deviation, to where it was found. One that `moves` is
+    /// predicted where it was, and its first step may be any.
     pub(crate) fn follow(
         &mut self,
         predicted: &Vector3<f64>,
         deviation: f64,
         found: &Vector3<f64>,
+        moves: bool,
     ) {
-        let leapt = (found - predicted).norm() > LEAP.max(FARTHEST_LEAP * deviation);
+        let (step, elapsed) = (found - predicted, self.elapsed);
+        let mut farthest = LEAP.max(FARTHEST_LEAP * deviation);
+        let mut beyond = step.norm();
+        if moves && elapsed > 0.0 {
+            farthest += 0.5 * ACCELERATION * elapsed * elapsed;
+            beyond = self.velocity.map_or(0.0, |it| beyond.min((step - it * elapsed).norm()));
+            self.velocity = Some(step / elapsed);
+        }
+        let leapt = beyond > farthest;
         let told = if leapt { TOLD } else { 0 };
         self.leaping = self.leaping.saturating_sub(1).max(told);
     }
@@ -102,15 +123,34 @@ mod tests {
     fn a_leap_is_told_for_a_while() {
         let mut rest = Rest::default();
         let at = |x: f64| Vector3::new(x, 0.0, 0.0);
-        rest.follow(&at(0.0), 1.0, &at(99.0));
-        rest.follow(&at(0.0), 50.0, &at(499.0));
+        rest.follow(&at(0.0), 1.0, &at(99.0), false);
+        rest.follow(&at(0.0), 50.0, &at(499.0), false);
         assert!(!rest.has_moved(&at(0.0)));
-        rest.follow(&at(0.0), 50.0, &at(501.0));
+        rest.follow(&at(0.0), 50.0, &at(501.0), false);
         for _ in 0..29 {
-            rest.follow(&at(501.0), 50.0, &at(501.0));
+            rest.follow(&at(501.0), 50.0, &at(501.0), false);
             assert!(rest.has_moved(&at(501.0)));
         }
-        rest.follow(&at(501.0), 50.0, &at(501.0));
+        rest.follow(&at(501.0), 50.0, &at(501.0), false);
         assert!(!rest.has_moved(&at(501.0)));
+    }
+
+    #[test]
+    fn an_aircraft_that_turns_or_lands_does_not_leap() {
+        let mut rest = Rest::default();
+        let mut at = Vector3::zeros();
+        let mut step = |rest: &mut Rest, x: f64, y: f64| {
+            let found = at + Vector3::new(x, y, 0.0);
+            rest.advance(30.0);
+            rest.follow(&at, 95.0, &found, true);
+            at = found;
+            rest.has_moved(&found)
+        };
+        // 250 m/s, a turn by a quarter, and a standstill; then 20 km aside at once.
+        for (x, y) in [(7500.0, 0.0), (7500.0, 0.0), (6000.0, 2500.0), (3000.0, 3000.0), (0.0, 0.0)]
+        {
+            assert!(!step(&mut rest, x, y), "{x} {y}");
+        }
+        assert!(step(&mut rest, 0.0, 20_000.0));
     }
 }

@@ -157,6 +157,7 @@ impl<const N: usize> Running<N> {
         }
         self.time = time;
         self.interval = Some(self.interval.map_or(elapsed, |interval| interval.min(elapsed)));
+        self.rest.advance(elapsed);
         if let Motion::Kinematic { process_noise } = config.motion {
             for coordinate in 0..3 {
                 self.estimate.add_variance_at(coordinate, process_noise * elapsed)?;
@@ -255,7 +256,8 @@ impl<const N: usize> Running<N> {
                 if !GROUND.contains(&found.norm()) {
                     return Err(Error::Contradictory);
                 }
-                self.rest.follow(&expected, deviation, &found);
+                let moves = matches!(config.motion, Motion::Kinematic { .. });
+                self.rest.follow(&expected, deviation, &found, moves);
                 return Ok(());
             }
             *site = Site::new(receiver, &found, self.time);

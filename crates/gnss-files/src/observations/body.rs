@@ -184,6 +184,9 @@ impl Body {
         let mut changed = self.header.clone();
         for _ in 0..count {
             let line = lines.expect("a line of an event")?;
+            if let Some(problem) = self.header.another_antenna(&line) {
+                self.warnings.push(line.warning(problem));
+            }
             changed.observables(&line)?;
         }
         self.header = changed.complete();

@@ -119,6 +119,29 @@ impl Header {
         })
     }
 
+    /// What is told of another antenna from this line on, if it is.
+    pub(super) fn another_antenna(&self, line: &Line<'_>) -> Option<String> {
+        match line.label() {
+            b"ANTENNA: DELTA H/E/N" => {
+                let [now, before] =
+                    [three(line).ok(), self.antenna_delta_hen].map(Option::unwrap_or_default);
+                (now != before).then(|| {
+                    let [[height, ..], [was, ..]] = [now, before];
+                    format!(
+                        "from here on the antenna is {height} m above its marker and not {was} m, or beside it: not taken, cut the file here"
+                    )
+                })
+            }
+            b"ANT # / TYPE" => {
+                let antenna = line.text(20, 40);
+                (antenna != self.antenna).then(|| {
+                    format!("from here on the antenna is {antenna} and not {}: not taken, cut the file here", self.antenna)
+                })
+            }
+            _ => None,
+        }
+    }
+
     /// Takes up to eight satellites of GLONASS with their channels; skips one whose number or channel cannot be read.
     fn channels(&mut self, line: &Line<'_>) {
         for field in (0..8).map(|place| 4 + 7 * place) {

@@ -101,6 +101,26 @@ fn an_event_may_change_the_observables() -> Result<(), Error> {
 }
 
 #[test]
+fn another_antenna_in_an_event_is_told() -> Result<(), Error> {
+    let begin = observations_3_header() + &lines(&["> 2020 01 01 00 00  0.0000000  4  1"]);
+    let end = lines(&["> 2020 01 01 00 00  0.0000000  0  1", "G05  81900000.500    20000000.625"]);
+    let whole = observations_3();
+    let line = |label| whole.lines().find(|line: &&str| line.contains(label)).expect("the line");
+    let told = |changed: &str| {
+        let observations = Observations::parse(&text(begin.clone() + changed + "\n" + &end))?;
+        Ok::<_, Error>(sentences(&observations.warnings))
+    };
+    let height = line("DELTA H/E/N");
+    assert!(told(height)?.is_empty(), "the same again");
+    let [warning] = &told(&height.replacen("1.5000", "2.5000", 1))?[..] else { panic!("one") };
+    assert!(warning.contains("antenna is 2.5 m above its marker and not 1.5 m"), "{warning}");
+    let antenna = header("1234                OTHER           NONE", "ANT # / TYPE");
+    let [warning] = &told(antenna.trim_end_matches('\n'))?[..] else { panic!("one") };
+    assert!(warning.contains("antenna is OTHER           NONE"), "{warning}");
+    Ok(())
+}
+
+#[test]
 fn a_file_cut_off_loses_its_last_epoch() -> Result<(), Error> {
     let whole = observations_3();
     let cut = &whole[..whole.len() - 3];

@@ -88,6 +88,11 @@ impl Outages {
         }
     }
 
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.0.iter().map(|(_, count)| count).sum()
+    }
+
     /// The first of all.
     pub fn first(&self) -> Option<&Outage> {
         self.0.first().map(|(outage, _)| outage)
@@ -119,6 +124,7 @@ mod tests {
             unused: Unused { observed: 1, ..Unused::default() },
             ..outage(86_000.5)
         });
+        assert_eq!(outages.count(), 3);
         let warnings: Vec<_> = outages.warnings().collect();
         assert_eq!(
             warnings,

@@ -14,7 +14,10 @@ use super::Gnss;
 use super::settings::{Choice, Mode, Setup};
 use super::track::Track;
 use crate::Error;
-use crate::system::{Account, System};
+use crate::system::{Account, Reason, System};
+
+/// Share of the epochs without a solution from which the whole is doubted.
+const MOST_WITHOUT: f64 = 0.1;
 
 /// Says why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
@@ -23,6 +26,10 @@ fn doubt(account: &mut Account, track: &Track) {
     for (_, contradiction) in contradicted {
         let doubts = Health::Contradicted(contradiction).in_short();
         doubts.reasons().for_each(|reason| account.doubt(reason));
+    }
+    let (without, with) = (track.main().outages.count(), track.main().fixes.len());
+    if without as f64 > MOST_WITHOUT * (without + with) as f64 {
+        account.doubt(Reason::Dropout);
     }
 }
 

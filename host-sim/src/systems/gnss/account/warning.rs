@@ -45,7 +45,8 @@ fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
 
 /// A sentence for each kind of epochs without a solution, and one about those that contradict themselves.
 pub(super) fn outages(followed: &Followed) -> Vec<String> {
-    let told = contradictions(followed).into_iter().chain(clock_jumps(followed));
+    let phases = phases_of_no_use(followed);
+    let told = contradictions(followed).into_iter().chain(phases).chain(clock_jumps(followed));
     followed.outages.warnings().chain(told).collect()
 }
 
@@ -65,6 +66,20 @@ fn contradictions(followed: &Followed) -> Option<String> {
         "in {count} of {of} epochs from {first} s on {why} ({share:.0} % rejected): positions and σ there {therefore} wrong; \
          check times, products, codes and antennas"
     ))
+}
+
+/// A sentence about phases that begin anew all the time.
+fn phases_of_no_use(followed: &Followed) -> Option<String> {
+    /// In a street or under trees a phase in some tens begins anew.
+    const MOST: f64 = 0.2;
+    let share = 2.0 * followed.slips.sum() as f64 / followed.observations.max(1) as f64;
+    (share > MOST).then(|| {
+        format!(
+            "{:.0} % of the phases begin anew, so that positions are hardly better than of codes alone: check the phases' units and \
+             order, and the flags of lost lock",
+            100.0 * share
+        )
+    })
 }
 
 /// A sentence about epochs in which both directions of a smoothed track disagree.
