@@ -1,5 +1,5 @@
 use crate::clock::Tick;
-use crate::detector::{RecentMinimum, Shoe, Verdict};
+use crate::detector::{RecentMinimum, Shoe, SwingLevel, Verdict};
 use crate::engine::Engine;
 use crate::navigator::Navigator;
 use crate::{Config, Error, Estimate, ImuSample, Stride, Warnings};
@@ -17,6 +17,8 @@ pub struct OfflineTracker<'a, T: Scalar, N> {
     samples: &'a [ImuSample<T>],
     statistic: &'a [T],
     minimum: RecentMinimum<T>,
+    /// The foot always stands below this, (rad/s)².
+    floor: T,
     next: usize,
     ahead: usize,
 }
@@ -24,8 +26,10 @@ pub struct OfflineTracker<'a, T: Scalar, N> {
 impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
     /// The foot stands below so many times the smallest SHOE statistic around …
     const FACTOR: f64 = 1.5;
-    /// … and always below this, (rad/s)².
+    /// … and always below this, (rad/s)², of who walks slowly a share.
     const FLOOR: f64 = 0.15;
+    /// The level of the swings is that of so many strides, as good as all of a walk.
+    const STRIDES: u16 = 1_000;
     /// Half of the span over which the smallest statistic is sought (µs).
     const LOOK_US: u64 = 600_000;
     /// The same to both sides, in bins.
@@ -51,8 +55,13 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
         }
         engine.rewind();
         centred_statistic(&engine, samples, statistic);
+        let mut swing = SwingLevel::of_last(Self::STRIDES);
+        for (sample, &statistic) in samples.iter().zip(&*statistic) {
+            swing.push(sample.time_us as u32, statistic);
+        }
+        let floor = swing.share() * T::from_f64(Self::FLOOR);
         let minimum = RecentMinimum::new(Self::LOOK_BINS);
-        Ok(Self { engine, samples, statistic, minimum, next: 0, ahead: 0 })
+        Ok(Self { engine, samples, statistic, minimum, floor, next: 0, ahead: 0 })
     }
 
     /// Ends the walk: the stride that led to the stance the foot is in, if any.
@@ -96,7 +105,7 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
         let examined = self.engine.examine(sample).ok()?;
         let mut stride = None;
         if examined.0 != Tick::Duplicate {
-            let bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
+            let bound = (minimum * T::from_f64(Self::FACTOR)).max(self.floor);
             let verdict = Verdict { stance: statistic < bound, statistic };
             let motion = self.engine.motion(sample);
             stride = self.engine.advance(sample, examined, &motion, verdict);

@@ -8,7 +8,7 @@ use kestirim_snapshot::{Layout, Name, layout};
 layout! {
     [T: Scalar] for Ekf<T> as "pedestrian/ekf", 1, T, [];
     [T: Scalar] for Lite<T> as "pedestrian/lite", 1, T, [];
-    [T: Scalar] for Adaptive<T> as "stance/adaptive", 1, T, [];
+    [T: Scalar] for Adaptive<T> as "stance/adaptive", 2, T, [];
     [T: Scalar] for FixedShoe<T> as "stance/shoe", 1, T, [];
     [T: Scalar] for Magnitude<T> as "stance/magnitude", 1, T, [];
     [T: Scalar] for MovingVariance<T> as "stance/variance", 1, T, [];

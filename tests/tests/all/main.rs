@@ -23,6 +23,7 @@ mod gnss_systems;
 mod panic_free;
 mod pedestrian_on_target;
 mod pedestrian_recordings;
+mod pedestrian_slow;
 mod pedestrian_table;
 mod ppp_on_target;
 mod python;

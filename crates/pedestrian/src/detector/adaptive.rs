@@ -1,10 +1,10 @@
-use super::{Motion, Shoe, StanceDetector, Verdict};
+use super::{Motion, Shoe, StanceDetector, SwingLevel, Verdict};
 use kestirim_scalar::Scalar;
 
 /// The default detector: SHOE without a threshold to choose.
 ///
 /// Every stride has a stance, so the smallest T of the last 1.4 s was one, whoever walks: the foot
-/// stands where T < max(T₀, 2·min T). Where no stance comes for a while, the walker has begun to run or the
+/// stands where T < max(T₀, 2·min T), with a smaller T₀ for who walks slowly. Where no stance comes for a while, the walker has begun to run or the
 /// minimum was a standstill's, and the bound grows with the time since.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,6 +18,7 @@ use kestirim_scalar::Scalar;
 pub struct Adaptive<T> {
     shoe: Shoe<T>,
     minimum: RecentMinimum<T>,
+    swing: SwingLevel<T>,
     last_stance_us: Option<u32>,
 }
 
@@ -26,6 +27,7 @@ impl<T: Scalar> Default for Adaptive<T> {
         Self {
             shoe: Shoe::default(),
             minimum: RecentMinimum::new(Self::MEMORY_BINS),
+            swing: SwingLevel::of_last(Self::STRIDES),
             last_stance_us: None,
         }
     }
@@ -36,8 +38,10 @@ impl<T: Scalar> Adaptive<T> {
     const MEMORY_BINS: usize = 14;
     /// Threshold as a multiple of the smallest T; any value from 1.5 to 3 finds the same strides.
     const FACTOR: f64 = 2.0;
-    /// T₀, (rad/s)²: below 0.3 rad/s the foot always stands.
+    /// T₀, (rad/s)²: below 0.3 rad/s a usual walker's foot always stands.
     const FLOOR: f64 = 0.1;
+    /// Who walks slowly is seen by so many strides.
+    const STRIDES: u16 = 8;
     /// The bound begins to grow this long after a stance (µs), threefold a second …
     const PATIENCE_US: u32 = 500_000;
     /// … and time since then is counted no further than this (µs).
@@ -51,7 +55,9 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
         let minimum = self.minimum.push(motion.time_us, statistic);
         let last_us = *self.last_stance_us.get_or_insert(motion.time_us);
         let since = motion.time_us.wrapping_sub(last_us);
-        let mut bound = (minimum * T::from_f64(Self::FACTOR)).max(T::from_f64(Self::FLOOR));
+        self.swing.push(motion.time_us, statistic);
+        let floor = self.swing.share() * T::from_f64(Self::FLOOR);
+        let mut bound = (minimum * T::from_f64(Self::FACTOR)).max(floor);
         if since > Self::PATIENCE_US {
             let waited = (since - Self::PATIENCE_US).min(Self::IMPATIENCE_US);
             bound += bound * T::from_micro(3 * waited as i32);

@@ -3,12 +3,14 @@
 mod adaptive;
 mod shoe;
 mod simple;
+mod swing_level;
 mod window;
 
 pub use adaptive::Adaptive;
 pub(crate) use adaptive::RecentMinimum;
 pub use shoe::{FixedShoe, Shoe};
 pub use simple::{AngularRateEnergy, Magnitude, MovingVariance};
+pub(crate) use swing_level::SwingLevel;
 
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
