@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Drone;
-use super::recording::Recording;
 use super::recording::plane::Origin;
+use super::recording::{Recorded, Recording};
 use super::settings::expected_loss_db;
 use crate::Error;
 use crate::metrics::mean;
@@ -157,29 +157,13 @@ pub(super) fn account(
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
     match recording {
         Recording::Flight(recorded) => {
-            if let Some((t, by)) = level_step(&track.stops[..=shown.stop], shown.place) {
-                account.warn(format!(
-                    "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
-                ));
-                account.doubt(Reason::Innovations);
-            }
-            if let Some(apart) = track.moved_m {
-                account.warn(format!(
-                    "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
-                ));
-                account.doubt(Reason::Innovations);
-            }
-            let channel = super::settings::channel(settings);
-            let stops = &track.stops[..=shown.stop];
-            let misfit = channel.as_ref().and_then(|it| Misfit::find(stops, shown, it));
-            if let Some(misfit) = misfit {
-                let environment = settings.choice("environment");
-                account.warn(in_words(&misfit, &environment, recorded.flight.quantity));
+            for sentence in doubts(recorded, settings, track, shown) {
+                account.warn(sentence);
                 account.doubt(Reason::Innovations);
             }
             account.about = Some(recorded.log.clone());
             if let Some(level) = shown.level_db {
-                let what = if channel.is_none() {
+                let what = if super::settings::channel(settings).is_none() {
                     "level at one metre"
                 } else {
                     "level of the transmitter"
@@ -247,16 +231,47 @@ fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, sh
     }
 }
 
-/// Time, place and expected distance after each measurement.
-pub(super) fn table(track: &Track) -> Table {
+/// What speaks against the flight up to `shown`, or what it was taken for, a sentence each.
+fn doubts(
+    recorded: &Recorded,
+    settings: &Settings,
+    track: &Track,
+    shown: &Estimate,
+) -> impl Iterator<Item = String> {
+    let stops = &track.stops[..=shown.stop];
+    let step = level_step(stops, shown.place).map(|(t, by)| {
+        format!(
+            "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
+        )
+    });
+    let moved = track.moved_m.map(|apart| {
+        format!(
+            "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
+        )
+    });
+    let channel = super::settings::channel(settings);
+    let misfit = channel
+        .and_then(|it| Misfit::find(stops, shown, &it))
+        .map(|misfit| in_words(&misfit, &settings.choice("environment"), recorded.flight.quantity));
+    [step, moved, misfit].into_iter().flatten()
+}
+
+/// Time, place and expected distance after each measurement. What speaks against the flight speaks against each.
+pub(super) fn table(recording: &Recording, settings: &Settings, track: &Track) -> Table {
     let row = |estimate: &Estimate| {
         let [x, y] = estimate.place;
         let numbers = [track.stop(estimate).t, x, y, estimate.sd_m];
         numbers.map(|number| format!("{number:.3}")).to_vec()
     };
+    let doubted = match (recording, track.estimates.last()) {
+        (Recording::Flight(recorded), Some(last)) => {
+            doubts(recorded, settings, track, last).next().map(|_| Reason::Innovations.state())
+        }
+        _ => None,
+    };
     Table {
         rows: track.estimates.iter().map(row).collect(),
-        health: vec![HealthState::Good; track.estimates.len()],
+        health: vec![doubted.unwrap_or(HealthState::Good); track.estimates.len()],
         ..Table::new(&["t", "x", "y", "sd"])
     }
 }

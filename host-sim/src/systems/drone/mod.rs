@@ -129,8 +129,8 @@ impl System for Drone {
         Ok(())
     }
 
-    fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
-        account::table(track)
+    fn table(_: &str, recording: &Recording, settings: &Settings, track: &Track) -> Table {
+        account::table(recording, settings, track)
     }
 
     fn streams(_: &Recording, _: &Settings, track: &Track) -> Vec<Stream> {

@@ -224,8 +224,11 @@ impl Report {
     }
 }
 
-/// Time, states and, of a filter that knows them, their standard deviations in every line.
-pub(super) fn table(Track { flight, followed, .. }: &Track) -> Table {
+/// Time, states and, of a filter that knows them, their standard deviations in every line. What contradicts the model in a log
+/// does so in each.
+pub(super) fn table(recording: &Recording, Track { flight, followed, .. }: &Track) -> Table {
+    let is_doubted =
+        matches!(recording, Recording::Logged(_)) && !followed.contradictions().is_empty();
     let row = |estimate: &Estimate| {
         let state = flight.absolute(estimate);
         let time = format!("{:.6}", estimate.t_us as f64 / 1e6);
@@ -238,7 +241,11 @@ pub(super) fn table(Track { flight, followed, .. }: &Track) -> Table {
     table.header.extend(STATE_COLUMNS.map(|name| format!("s_{name}")));
     Table {
         rows: followed.estimates.iter().map(row).collect(),
-        health: followed.healths.iter().map(|health| health.state()).collect(),
+        health: followed
+            .healths
+            .iter()
+            .map(|it| it.with(Reason::Innovations, is_doubted).state())
+            .collect(),
         ..table
     }
 }

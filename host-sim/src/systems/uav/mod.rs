@@ -134,8 +134,8 @@ impl System for Uav {
         figures::draw(recording, settings, track, answer)
     }
 
-    fn table(_: &str, _: &Recording, _: &Settings, track: &Track) -> Table {
-        account::table(track)
+    fn table(_: &str, recording: &Recording, _: &Settings, track: &Track) -> Table {
+        account::table(recording, track)
     }
 
     fn streams(_: &Recording, _: &Settings, track: &Track) -> Vec<Stream> {
