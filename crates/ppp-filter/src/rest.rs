@@ -11,6 +11,8 @@ const FARTHEST_LEAP: f64 = 10.0;
 const LEAP: f64 = 100.0;
 /// … and may have turned or braked meanwhile, m/s²: what an airliner does.
 const ACCELERATION: f64 = 5.0;
+/// No airliner is faster over the ground, m/s.
+const FASTEST: f64 = 350.0;
 /// What remains of an epoch in the sums after the next one.
 const KEPT: f64 = 0.9;
 /// For how many epochs a leap is told of.
@@ -43,7 +45,7 @@ impl Rest {
     }
 
     /// A receiver came from where it was predicted, with a standard deviation, to where it was found. One that `moves` is
-    /// predicted where it was, and its first step may be any.
+    /// predicted where it was, and its first step may be any aircraft's.
     pub(crate) fn follow(
         &mut self,
         predicted: &Vector3<f64>,
@@ -56,7 +58,9 @@ impl Rest {
         let mut beyond = step.norm();
         if moves && elapsed > 0.0 {
             farthest += 0.5 * ACCELERATION * elapsed * elapsed;
-            beyond = self.velocity.map_or(0.0, |it| beyond.min((step - it * elapsed).norm()));
+            if beyond < farthest + FASTEST * elapsed {
+                beyond = self.velocity.map_or(0.0, |it| beyond.min((step - it * elapsed).norm()));
+            }
             self.velocity = Some(step / elapsed);
         }
         let leapt = beyond > farthest;
@@ -152,5 +156,6 @@ mod tests {
             assert!(!step(&mut rest, x, y), "{x} {y}");
         }
         assert!(step(&mut rest, 0.0, 20_000.0));
+        assert!(step(&mut Rest::default(), 0.0, 40_000.0), "the first step, too");
     }
 }

@@ -8,7 +8,7 @@ use kestirim_replay::drone::{
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Line, Results, Table, microseconds, reasons, rows, values};
+use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, values};
 use crate::error::{KestirimError, refused, unknown};
 
 /// Stack of a thread that estimates: lattices of thousands of points are moved about before they lie on the heap.
@@ -147,7 +147,7 @@ impl Found {
             .table("position", estimates.iter().map(|estimate| estimate.place).collect())?
             .line("sigma", estimates.iter().map(|estimate| estimate.sd_m).collect())?
             .line("level", estimates.iter().map(level).collect())?
-            .line("health", vec![0_u8; estimates.len()])?
+            .line("health", vec![code(doubts.state()); estimates.len()])?
             .with("measurements", stops.len())?
             .with("next_waypoint", next)?
             .words("reasons", reasons(doubts))?

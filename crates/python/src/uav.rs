@@ -145,7 +145,7 @@ fn results<'py>(
             [count, outputs],
         )?
         .line("rejected", rejected.iter().map(|count| i64::from(*count)).collect())?
-        .line("health", healths.iter().map(|health| code(health.state())).collect())?
+        .line("health", followed.lines().map(|health| code(health.state())).collect())?
         .words("reasons", reasons(doubts))?
         .done())
 }

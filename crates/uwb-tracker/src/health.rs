@@ -287,6 +287,8 @@ fn common_sigma<'a, T: Scalar, const D: usize>(
     }
     let variance = |link: &Link<T>| link.noise.variance();
     let best = links.clone().map(variance).fold(T::MAX, T::min);
+    let farthest = links.clone().map(|link| expected(place, config, link).distance);
+    let farthest = farthest.fold(T::ZERO, T::max);
     let ranges = links.map(|link| {
         let range = expected(place, config, link);
         let weight = (best / variance(link)).max(T::from_f64(LEAST_WEIGHT));
@@ -299,7 +301,10 @@ fn common_sigma<'a, T: Scalar, const D: usize>(
         sum + weight * residual * residual
     });
     let [own, seen] = [sigma * sigma, unexplained * sigma * sigma];
-    Some(T::norm(&moved) * (own * best / (best + seen)).sqrt())
+    let left = (own * best / (best + seen)).sqrt();
+    // Near the anchors' line a range grows with the square of the way from it.
+    let bent = (T::TWO * farthest * left).sqrt();
+    Some((T::norm(&moved) * left).min(bent))
 }
 
 #[cfg(test)]

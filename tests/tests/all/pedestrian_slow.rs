@@ -5,40 +5,49 @@ use kestirim_replay::pedestrian::{Options, Sample, SensorClass, walk};
 use kestirim_tests::recordings::{self, gcp};
 use nalgebra::Vector3;
 
-/// Gravity, m/s².
-const GRAVITY: f64 = 9.81;
-
 /// What the sensor would have measured `slower` times as slow: rates fall as much, and with its square all of the force that is
 /// not gravity's.
 fn slowed(samples: &[Sample], slower: f64) -> Vec<Sample> {
-    let bias = mean_rate(&samples[..samples.len().min(400)]);
-    let mut up = Vector3::from(samples[0].specific_force).normalize();
-    let mut last_us = samples[0].time_us;
-    let mut slow = Vec::with_capacity(samples.len());
-    for sample in samples {
-        let force = Vector3::from(sample.specific_force);
+    let start = &samples[50..150];
+    let mean = |of: fn(&Sample) -> [f64; 3]| {
+        start.iter().map(|it| Vector3::from(of(it))).sum::<Vector3<f64>>() / start.len() as f64
+    };
+    let bias = mean(|it| it.angular_rate);
+    let gravity = mean(|it| it.specific_force).norm();
+    let forwards = verticals(samples.iter(), (bias, gravity));
+    let backwards = verticals(samples.iter().rev(), (bias, gravity));
+    let ups = forwards.iter().zip(backwards.iter().rev()).map(|(a, b)| (a + b).normalize());
+    let slow = |(sample, up): (&Sample, Vector3<f64>)| {
+        let (force, weight) = (Vector3::from(sample.specific_force), up * gravity);
         let rate = Vector3::from(sample.angular_rate) - bias;
-        let seconds = (sample.time_us - last_us) as f64 / 1e6;
-        last_us = sample.time_us;
-        // The gyroscope carries the vertical, and each standstill corrects it.
-        up += up.cross(&rate) * seconds;
-        if rate.norm() < 0.3 && (force.norm() - GRAVITY).abs() < 0.3 {
-            up += (force.normalize() - up) * seconds.min(1.0) * 5.0;
-        }
-        up.normalize_mut();
-        let weight = up * GRAVITY;
-        slow.push(Sample {
+        Sample {
             time_us: (sample.time_us as f64 * slower) as u64,
             specific_force: (weight + (force - weight) / (slower * slower)).into(),
             angular_rate: (bias + rate / slower).into(),
-        });
-    }
-    slow
+        }
+    };
+    samples.iter().zip(ups).map(slow).collect()
 }
 
-fn mean_rate(samples: &[Sample]) -> Vector3<f64> {
-    let sum: Vector3<f64> = samples.iter().map(|it| Vector3::from(it.angular_rate)).sum();
-    sum / samples.len() as f64
+/// The vertical at each sample, as the gyroscope carries it and standstills correct it, in either direction of time.
+fn verticals<'a>(
+    samples: impl Iterator<Item = &'a Sample>,
+    (bias, gravity): (Vector3<f64>, f64),
+) -> Vec<Vector3<f64>> {
+    let mut before: Option<(f64, Vector3<f64>)> = None;
+    let step = |sample: &Sample| {
+        let (t, force) = (sample.time_us as f64 * 1e-6, Vector3::from(sample.specific_force));
+        let rate = Vector3::from(sample.angular_rate) - bias;
+        let (last, mut up) = before.unwrap_or((t, force));
+        up += up.cross(&rate) * (t - last);
+        if rate.norm() < 0.6 && (force.norm() - gravity).abs() < 0.4 {
+            up += (force.normalize() - up) * 0.03;
+        }
+        up.normalize_mut();
+        before = Some((t, up));
+        up
+    };
+    samples.map(step).collect()
 }
 
 /// A stride in two seconds.

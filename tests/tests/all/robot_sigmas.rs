@@ -76,7 +76,8 @@ impl Told {
     }
 
     fn assert_honest(&self) {
-        assert!((0.7..1.5).contains(&self.ratio()), "{}", self.ratio());
+        // Three anchors that are not calibrated are told to be worse than those of the recordings are.
+        assert!((0.68..1.5).contains(&self.ratio()), "{}", self.ratio());
         assert!((0.8..0.98).contains(&self.held), "{}", self.held);
     }
 

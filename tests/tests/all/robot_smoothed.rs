@@ -76,7 +76,7 @@ fn recordings_are_nearer_the_truth_and_say_how_near() {
     assert!((0.7..1.5).contains(&together.ratio()), "{}", together.ratio());
 }
 
-/// Without wheels the tracker loses the mower: each anchor is heard every two seconds.
+/// Without wheels the tracker hardly follows the mower: each anchor is heard every two seconds.
 #[test]
 fn a_mower_is_found_without_its_wheels() {
     let Some(folder) = folder_of("robot") else { return };
@@ -91,7 +91,8 @@ fn a_mower_is_found_without_its_wheels() {
         Told::of_parts(&recording, &tracks.best()),
     ];
     smoothed.print("plaza1, without its wheels");
-    assert!(tracked.rmse_m() > 2.0 && smoothed.rmse_m() <= 1.0, "{} m", smoothed.rmse_m());
+    assert!(tracked.rmse_m() <= 1.6, "{} m", tracked.rmse_m());
+    assert!(smoothed.rmse_m() <= 0.6, "{} m", smoothed.rmse_m());
 }
 
 /// Of the two outdoors the truth is the cones that were walked to, and the times are noted by hand: what counts is the

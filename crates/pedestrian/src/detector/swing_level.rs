@@ -14,7 +14,7 @@ use kestirim_scalar::Scalar;
     ))
 )]
 pub(crate) struct SwingLevel<T> {
-    begun_us: Option<u32>,
+    begun_us: u32,
     /// The largest since then, (rad/s)².
     peak: T,
     /// The mean, (rad/s)².
@@ -22,6 +22,7 @@ pub(crate) struct SwingLevel<T> {
     /// How many it is of, no more than `most`.
     count: u16,
     most: u16,
+    share: T,
 }
 
 impl<T: Scalar> SwingLevel<T> {
@@ -36,40 +37,43 @@ impl<T: Scalar> SwingLevel<T> {
 
     /// A mean of about the last `most`.
     pub(crate) fn of_last(most: u16) -> Self {
-        Self { begun_us: None, peak: T::ZERO, mean: T::ZERO, count: 0, most: most.max(1) }
+        Self {
+            begun_us: 0,
+            peak: T::ZERO,
+            mean: T::ZERO,
+            count: 0,
+            most: most.max(1),
+            share: T::ONE,
+        }
     }
 
     /// Takes the statistic at `time_us`.
     #[inline]
     pub(crate) fn push(&mut self, time_us: u32, statistic: T) {
-        // Of a window that is not full it is the largest number.
-        if statistic < T::MAX {
-            self.peak = self.peak.max(statistic);
-        }
-        let begun_us = *self.begun_us.get_or_insert(time_us);
-        if time_us.wrapping_sub(begun_us) >= Self::STRIDE_US {
-            self.begun_us = Some(time_us);
-            self.end_stride();
+        self.peak = self.peak.max(statistic);
+        if time_us.wrapping_sub(self.begun_us) >= Self::STRIDE_US {
+            self.end_stride(time_us);
         }
     }
 
     #[inline(never)] // Rare.
-    fn end_stride(&mut self) {
+    fn end_stride(&mut self, time_us: u32) {
+        self.begun_us = time_us;
         let peak = core::mem::replace(&mut self.peak, T::ZERO);
-        if peak > T::from_f64(Self::MOVES) {
+        // Of a window that is not full it is the largest number.
+        if peak > T::from_f64(Self::MOVES) && peak < T::MAX {
             self.count = self.count.saturating_add(1).min(self.most);
             let peak = peak.min(T::from_f64(2.0 * Self::USUAL));
             self.mean += (peak - self.mean) / T::from_binary(i32::from(self.count), 0);
+            let share = self.mean * T::from_f64(1.0 / Self::USUAL);
+            self.share = share.clamp(T::from_f64(Self::LEAST), T::ONE);
         }
     }
 
     /// The level as a share of a usual walker's, of which a slow one has less; before the first stride, all of it.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn share(&self) -> T {
-        if self.count == 0 {
-            return T::ONE;
-        }
-        (self.mean * T::from_f64(1.0 / Self::USUAL)).clamp(T::from_f64(Self::LEAST), T::ONE)
+        self.share
     }
 }
 

@@ -5,6 +5,7 @@
 //! of sensor it was. [`build`] makes what follows a walk while it comes. Frame: *room*, z up, x as the foot pointed at
 //! the start.
 
+mod carried;
 mod check;
 mod choices;
 mod closed;

@@ -11,6 +11,7 @@ use kestirim_pedestrian::{
 use kestirim_scalar::{Components, Q12_20, Scalar};
 use nalgebra::SVector;
 
+use super::carried::carried;
 use super::choices::{WithDetector, with_detector};
 use super::smoothed::smooth;
 use super::trace::{Moment, OnlyAtStart, See, Updates};
@@ -103,11 +104,21 @@ fn tracked(
     updates: Updates,
     see: &mut See<'_>,
 ) -> Result<Walk, Error> {
-    match options.scalar {
+    let mut walk = match options.scalar {
         ScalarKind::F32 => with_scalar::<f32>(samples, options, updates, see),
         ScalarKind::F64 => with_scalar::<f64>(samples, options, updates, see),
         ScalarKind::Fixed => with_scalar::<Q12_20>(samples, options, updates, see),
+    }?;
+    if let Some(from) = carried(samples) {
+        walk.doubt_from(from, Reason::Innovations);
+        let seconds = (samples[from].time_us - samples[0].time_us) as f64 * 1e-6;
+        // The first to be read: gravity that is implausible may be this.
+        walk.warnings.insert(0, format!(
+            "{seconds:.0} s after the start the foot is carried while it stands (by a lift, an escalator, a vehicle): how far no \
+             sensor on it tells, and places from there on are wrong"
+        ));
     }
+    Ok(walk)
 }
 
 fn with_scalar<T: Number>(
@@ -203,6 +214,13 @@ impl Walk {
         let position = double(&estimate.position);
         self.track.push(TrackPoint { time_us: estimate.time_us, position });
         self.strides.extend(estimate.stride.as_ref().map(Stride::from_estimate));
+    }
+
+    /// From this entry of the track on the walk suffers from that.
+    fn doubt_from(&mut self, from: usize, reason: Reason) {
+        self.doubts.add(reason);
+        let place = self.health.partition_point(|(before, _)| *before <= from);
+        self.health.insert(place, (from, reason.state()));
     }
 
     /// From here on the walk is no better than its warnings say; that it began without a standstill is told at the

@@ -2,6 +2,7 @@
 
 use super::Followed;
 use crate::clipped::Clipped;
+use kestirim_health::{Health, Reason};
 
 /// Innovations of an output from which on it is judged.
 const FEWEST: usize = 200;
@@ -62,6 +63,14 @@ impl Followed {
         }
         all.extend(self.beyond.map(|[airspeed, end]| Contradiction::Beyond { airspeed, end }));
         all
+    }
+}
+
+impl Followed {
+    /// Health of each line: its own, and what contradicts the model in all of them.
+    pub fn lines(&self) -> impl Iterator<Item = Health> {
+        let is_doubted = !self.contradictions().is_empty();
+        self.healths.iter().map(move |it| it.with(Reason::Innovations, is_doubted))
     }
 }
 

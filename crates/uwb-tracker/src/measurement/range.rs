@@ -5,8 +5,9 @@ use nalgebra::SVector;
 
 /// A range to an anchor: the slant distance and what all ranges are too long by.
 ///
-/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b. In an office c is 1 and s is 0; among anchors far apart ranges' excess grows
-/// with the distance, and b is that of a range as long as from the anchors' centre to them.
+/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b. In an
+/// office c is 1 and s is 0; among anchors far apart ranges' excess grows with the distance, and b is that of a range as long as
+/// from the anchors' centre to them.
 ///
 /// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former. Where too few
 /// anchors are heard, b is what it was before, as a bias that is considered (Schmidt 1966): ∂h/∂b is taken as zero.

@@ -1,8 +1,8 @@
 //! Health of a tracker.
 
 use super::Tracker;
-use crate::Health;
 use crate::health::{self, Common, Place};
+use crate::{Config, Health};
 use kestirim_scalar::{Components, Scalar};
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
@@ -12,10 +12,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.health_beside(Common { sigma, shape: self.bias_shape }, time_us)
     }
 
-    /// Standard deviation of the common bias where it is one of the states, but not learnt, as too few anchors are heard, m.
+    /// Standard deviation of the common bias where it is one of the states, but not learnt, as too few anchors are heard, m. What
+    /// was learnt has a share of the anchors' own constant errors, and an estimate that was widened knew it before.
     fn considered_bias(&self) -> Option<T> {
         let estimate = self.estimate().filter(|_| N > 2 * D && !self.means()[0])?;
-        Some(estimate.covariance.get(2 * D, 2 * D)?.sqrt())
+        let learnt = estimate.covariance.get(2 * D, 2 * D)?.sqrt();
+        let Config { bias_sigma, common_bias_sigma, .. } = self.config;
+        Some(learnt.hypot(bias_sigma * T::HALF).min(common_bias_sigma))
     }
 
     /// Health at `time_us` where this common bias is considered.

@@ -14,7 +14,7 @@ use super::recording::Recording;
 use super::track::Track;
 use crate::Error;
 use crate::metrics::rms;
-use crate::system::{Account, Reason, System, Table};
+use crate::system::{Account, Health, Reason, System, Table};
 use crate::table::Found;
 
 /// What a replay prints. Units rad, rad/s, m/s, rad.
@@ -227,8 +227,6 @@ impl Report {
 /// Time, states and, of a filter that knows them, their standard deviations in every line. What contradicts the model in a log
 /// does so in each.
 pub(super) fn table(recording: &Recording, Track { flight, followed, .. }: &Track) -> Table {
-    let is_doubted =
-        matches!(recording, Recording::Logged(_)) && !followed.contradictions().is_empty();
     let row = |estimate: &Estimate| {
         let state = flight.absolute(estimate);
         let time = format!("{:.6}", estimate.t_us as f64 / 1e6);
@@ -236,16 +234,12 @@ pub(super) fn table(recording: &Recording, Track { flight, followed, .. }: &Trac
         let sigma = (0..4).map(|i| estimate.sigma.map_or_else(String::new, |it| number(it[i])));
         std::iter::once(time).chain(state.iter().copied().map(number)).chain(sigma).collect()
     };
+    let health = match recording {
+        Recording::Logged(_) => followed.lines().map(Health::state).collect(),
+        Recording::Synthetic(_) => followed.healths.iter().copied().map(Health::state).collect(),
+    };
     let mut table = Table::new(&["t"]);
     table.header.extend(STATE_COLUMNS.map(str::to_owned));
     table.header.extend(STATE_COLUMNS.map(|name| format!("s_{name}")));
-    Table {
-        rows: followed.estimates.iter().map(row).collect(),
-        health: followed
-            .healths
-            .iter()
-            .map(|it| it.with(Reason::Innovations, is_doubted).state())
-            .collect(),
-        ..table
-    }
+    Table { rows: followed.estimates.iter().map(row).collect(), health, ..table }
 }

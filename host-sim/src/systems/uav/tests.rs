@@ -193,6 +193,11 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
         "{:?}",
         other.warnings
     );
+    let track = folder.path().join("track.csv");
+    let wanted = crate::system::Wanted { tables: vec![("track", track.clone())], mcap: None };
+    opened.replay(&settings, &wanted).unwrap();
+    let rows = fs::read_to_string(&track).unwrap();
+    assert!(rows.lines().skip(1).all(|row| row.ends_with(",bad")), "{rows}");
     for (name, value) in [("absolute", json!(true)), ("seed", json!(3))] {
         let sent = json!({ "model": "P2", name: value });
         let settings = Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap();

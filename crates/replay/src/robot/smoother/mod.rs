@@ -111,8 +111,21 @@ pub fn smooth(
                 .solve()
         }
     };
-    accepted(solved?, &knots)
+    let solved = solved?;
+    let fewest = match setup.dimensions {
+        Dimensions::Two => 3,
+        Dimensions::Three => 4,
+    };
+    let known = config.common_sigmas(&setup.anchors::<f64>())[0];
+    if !is_calibrated && setup.anchors.len() <= fewest && solved.common[0][1] > NOT_TOLD * known {
+        return Err(Unsmoothed::LessCertain);
+    }
+    accepted(solved, &knots)
 }
+
+/// Of as few anchors as can tell a position, what all measure too long is told apart from it only by the way that the tag goes:
+/// to so large a share of what was known before it is not, and rests on that.
+const NOT_TOLD: f64 = 0.4;
 
 /// The result, if it is worth more than the tracker's and agrees with it, at most epochs.
 fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {

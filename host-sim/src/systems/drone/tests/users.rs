@@ -29,8 +29,23 @@ fn walking(t: f64) -> [f64; 2] {
     [10.0 + 0.7 * t, 20.0 + 0.7 * t]
 }
 
+/// What a replay of a log tells, and the state of each row that it writes.
+fn replayed_rows(log: &str, truth: &str, given: &[(&'static str, &str)]) -> (Value, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let track = folder.path().join("track.csv");
+    let wanted = Wanted { tables: vec![("track", track.clone())], mcap: None };
+    let report = replayed_for(&wanted, log, truth, given);
+    let rows = fs::read_to_string(track).unwrap();
+    let states = rows.lines().skip(1).filter_map(|row| row.rsplit(',').next().map(str::to_owned));
+    (report, states.collect())
+}
+
 /// What a replay of a log tells.
 fn replayed(log: &str, truth: &str, given: &[(&'static str, &str)]) -> Value {
+    replayed_for(&Wanted::default(), log, truth, given)
+}
+
+fn replayed_for(wanted: &Wanted, log: &str, truth: &str, given: &[(&'static str, &str)]) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let mut files = Files::default();
     for (field, text) in [("log", log), ("truth", truth)] {
@@ -40,7 +55,7 @@ fn replayed(log: &str, truth: &str, given: &[(&'static str, &str)]) -> Value {
     }
     let settings = given_settings(given);
     let opened = Drone.open(Source::Files(files), &settings).unwrap();
-    opened.replay(&settings, &Wanted::default()).unwrap().report
+    opened.replay(&settings, wanted).unwrap().report
 }
 
 #[test]
@@ -82,10 +97,12 @@ fn a_user_who_moves_is_told_and_needs_a_window() {
         writeln!(truth, "{t},{x},{y}").unwrap();
     }
     let error = |report: &Value| report["accuracy"]["error_m"].as_f64().unwrap();
-    let all = replayed(&log, &truth, &[]);
+    let (all, rows) = replayed_rows(&log, &truth, &[]);
     assert!(all["warnings"].to_string().contains("needs --window"), "{all}");
     assert_eq!(all["health"]["state"], "bad", "{all}");
-    let some = replayed(&log, &truth, &[("window", "60")]);
+    assert!(!rows.is_empty() && rows.iter().all(|row| row == "bad"), "{rows:?}");
+    let (some, rows) = replayed_rows(&log, &truth, &[("window", "60")]);
+    assert!(rows.iter().all(|row| row == "good"), "{rows:?}");
     assert!(!some["warnings"].to_string().contains("--window"), "{some}");
     assert!(error(&some) < 0.5 * error(&all), "{} {}", error(&some), error(&all));
     assert!(error(&some) < 3.0 * some["sd_m"].as_f64().unwrap(), "{some}");

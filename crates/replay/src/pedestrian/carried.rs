@@ -1,0 +1,92 @@
+//! A foot that stands on what moves: a lift, an escalator, a vehicle.
+
+use super::Sample;
+
+/// A foot that turns by less stands, rad/s: even a bare chip's zero is within it.
+const QUIET: f64 = 0.2;
+/// It is looked at if it stands so long, s.
+const LONG: f64 = 3.0;
+/// The force is averaged over so long, s.
+const WINDOW: f64 = 0.5;
+/// A stand on the ground shows a force whose length changes by less, m/s²: a lift begins with two to four times as much.
+const CHANGE: f64 = 0.35;
+
+/// The index of the first sample at which a standing foot is carried: for a second or more, the force is longer or shorter than
+/// it mostly is in that stand. Its direction says nothing, as that changes with the foot's.
+pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
+    let mut begin = 0;
+    for index in 0..=samples.len() {
+        let stands = samples.get(index).is_some_and(|it| norm(&it.angular_rate) < QUIET);
+        if stands {
+            continue;
+        }
+        if let Some(found) = in_stand(&samples[begin..index]) {
+            return Some(begin + found);
+        }
+        begin = index + 1;
+    }
+    None
+}
+
+fn in_stand(samples: &[Sample]) -> Option<usize> {
+    let (first, last) = (samples.first()?, samples.last()?);
+    let seconds = |sample: &Sample| (sample.time_us - first.time_us) as f64 * 1e-6;
+    if seconds(last) < LONG {
+        return None;
+    }
+    let window = |sample: &Sample| (seconds(sample) / WINDOW) as usize;
+    let windows: Vec<(usize, f64)> = samples
+        .chunk_by(|a, b| window(a) == window(b))
+        .map(|inside| {
+            let sum: f64 = inside.iter().map(|it| norm(&it.specific_force)).sum();
+            (inside.len(), sum / inside.len() as f64)
+        })
+        .collect();
+    let mut lengths: Vec<f64> = windows.iter().map(|(_, length)| *length).collect();
+    lengths.sort_by(f64::total_cmp);
+    let usual = lengths[lengths.len() / 2];
+    let by = |length: f64| (length - usual) * f64::from(u8::from((length - usual).abs() > CHANGE));
+    let mut at = 0;
+    for pair in windows.windows(2) {
+        if by(pair[0].1) * by(pair[1].1) > 0.0 {
+            return Some(at);
+        }
+        at += pair[0].0;
+    }
+    None
+}
+
+fn norm([x, y, z]: &[f64; 3]) -> f64 {
+    x.hypot(*y).hypot(*z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At 100 Hz: ten seconds on the ground, and this force and rate beyond those of standing still from 4 s on for so long.
+    fn stand(force: f64, rate: f64, lasts: f64) -> Vec<Sample> {
+        let sample = |index: u32| {
+            let t = f64::from(index) / 100.0;
+            let on = f64::from(u8::from((4.0..4.0 + lasts).contains(&t)));
+            Sample {
+                time_us: u64::from(index) * 10_000,
+                specific_force: [0.3, -0.2, 9.81 + on * force],
+                angular_rate: [0.02, on * rate, 0.0],
+            }
+        };
+        (0..1000).map(sample).collect()
+    }
+
+    #[test]
+    fn a_lift_that_begins_to_move_is_found() {
+        for force in [0.9, -0.6] {
+            assert_eq!(carried(&stand(force, 0.0, 1.5)), Some(400), "{force}");
+        }
+        assert_eq!(carried(&stand(0.3, 0.0, 1.5)), None, "less than any lift");
+        assert_eq!(carried(&stand(0.9, 0.0, 0.4)), None, "a knock");
+        assert_eq!(carried(&stand(3.0, 2.0, 1.0)), None, "a step");
+        assert_eq!(carried(&stand(0.9, 0.0, 1.5)[200..490]), None, "a short stand");
+        assert_eq!(carried(&[]), None);
+    }
+}
