@@ -13,6 +13,8 @@ const LEAP: f64 = 100.0;
 const ACCELERATION: f64 = 5.0;
 /// No airliner is faster over the ground, m/s.
 const FASTEST: f64 = 350.0;
+/// It is known to go on for so long, s.
+const LONGEST: f64 = 300.0;
 /// What remains of an epoch in the sums after the next one.
 const KEPT: f64 = 0.9;
 /// For how many epochs a leap is told of.
@@ -53,7 +55,7 @@ impl Rest {
         found: &Vector3<f64>,
         moves: bool,
     ) {
-        let (step, elapsed) = (found - predicted, self.elapsed);
+        let (step, elapsed) = (found - predicted, self.elapsed.min(LONGEST));
         let mut farthest = LEAP.max(FARTHEST_LEAP * deviation);
         let mut beyond = step.norm();
         if moves && elapsed > 0.0 {
@@ -61,7 +63,7 @@ impl Rest {
             if beyond < farthest + FASTEST * elapsed {
                 beyond = self.velocity.map_or(0.0, |it| beyond.min((step - it * elapsed).norm()));
             }
-            self.velocity = Some(step / elapsed);
+            self.velocity = Some(step / self.elapsed);
         }
         let leapt = beyond > farthest;
         let told = if leapt { TOLD } else { 0 };
@@ -157,5 +159,9 @@ mod tests {
         }
         assert!(step(&mut rest, 0.0, 20_000.0));
         assert!(step(&mut Rest::default(), 0.0, 40_000.0), "the first step, too");
+        let mut rest = Rest::default();
+        rest.advance(36_000.0);
+        rest.follow(&Vector3::zeros(), 3e3, &Vector3::new(1e6, 0.0, 0.0), true);
+        assert!(rest.has_moved(&Vector3::zeros()), "nor is it known where it went in a night");
     }
 }

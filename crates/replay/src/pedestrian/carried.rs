@@ -7,12 +7,16 @@ const QUIET: f64 = 0.2;
 /// It is looked at if it stands so long, s.
 const LONG: f64 = 3.0;
 /// The force is averaged over so long, s.
-const WINDOW: f64 = 0.5;
-/// A stand on the ground shows a force whose length changes by less, m/s²: a lift begins with two to four times as much.
-const CHANGE: f64 = 0.35;
+const WINDOW: f64 = 0.25;
+/// A stand on the ground shows a force whose length changes by less, m/s²: a lift begins with two to four times as much …
+const CHANGE: f64 = 0.3;
+/// … and it lasts so many windows, if it ends with as much of the other sign within the stand, …
+const BOTH_WAYS: usize = 2;
+/// … or else so many.
+const ONE_WAY: usize = 4;
 
-/// The index of the first sample at which a standing foot is carried: for a second or more, the force is longer or shorter than
-/// it mostly is in that stand. Its direction says nothing, as that changes with the foot's.
+/// The index of the first sample at which a standing foot is carried: for a while, the force is longer or shorter than it mostly
+/// is in that stand. Its direction says nothing, as that changes with the foot's.
 pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
     let mut begin = 0;
     for index in 0..=samples.len() {
@@ -45,15 +49,27 @@ fn in_stand(samples: &[Sample]) -> Option<usize> {
     let mut lengths: Vec<f64> = windows.iter().map(|(_, length)| *length).collect();
     lengths.sort_by(f64::total_cmp);
     let usual = lengths[lengths.len() / 2];
-    let by = |length: f64| (length - usual) * f64::from(u8::from((length - usual).abs() > CHANGE));
-    let mut at = 0;
-    for pair in windows.windows(2) {
-        if by(pair[0].1) * by(pair[1].1) > 0.0 {
-            return Some(at);
+    let sign = |length: f64| {
+        let more = length - usual;
+        if more.abs() > CHANGE { more.signum() } else { 0.0 }
+    };
+    // Where each change begins, its sign, and how many windows it lasts.
+    let mut changes: Vec<(usize, f64, usize)> = Vec::new();
+    let (mut at, mut last) = (0, 0.0);
+    for (count, length) in &windows {
+        let now = sign(*length);
+        match changes.last_mut().filter(|_| now == last) {
+            Some(change) => change.2 += 1,
+            None => changes.push((at, now, 1)),
         }
-        at += pair[0].0;
+        (at, last) = (at + count, now);
     }
-    None
+    let lasts = |wanted: f64, most: usize| {
+        move |(_, sign, windows): &&(usize, f64, usize)| *sign == wanted && *windows >= most
+    };
+    let first = |sign, most| changes.iter().find(lasts(sign, most)).map(|(at, ..)| *at);
+    let both = first(1.0, BOTH_WAYS).zip(first(-1.0, BOTH_WAYS)).map(|(up, down)| up.min(down));
+    both.or_else(|| first(1.0, ONE_WAY)).or_else(|| first(-1.0, ONE_WAY))
 }
 
 fn norm([x, y, z]: &[f64; 3]) -> f64 {
@@ -83,10 +99,17 @@ mod tests {
         for force in [0.9, -0.6] {
             assert_eq!(carried(&stand(force, 0.0, 1.5)), Some(400), "{force}");
         }
-        assert_eq!(carried(&stand(0.3, 0.0, 1.5)), None, "less than any lift");
+        assert_eq!(carried(&stand(0.25, 0.0, 1.5)), None, "less than any lift");
         assert_eq!(carried(&stand(0.9, 0.0, 0.4)), None, "a knock");
         assert_eq!(carried(&stand(3.0, 2.0, 1.0)), None, "a step");
         assert_eq!(carried(&stand(0.9, 0.0, 1.5)[200..490]), None, "a short stand");
         assert_eq!(carried(&[]), None);
+        // Half a second, and as long the other way at the end.
+        let mut ride = stand(0.9, 0.0, 0.5);
+        assert_eq!(carried(&ride), None);
+        for sample in &mut ride[700..750] {
+            sample.specific_force[2] -= 0.9;
+        }
+        assert_eq!(carried(&ride), Some(400));
     }
 }
