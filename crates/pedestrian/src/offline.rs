@@ -28,8 +28,6 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
     const FACTOR: f64 = 1.5;
     /// … and always below this, (rad/s)², of who walks slowly a share.
     const FLOOR: f64 = 0.15;
-    /// The level of the swings is that of so many strides, as good as all of a walk.
-    const STRIDES: u16 = 1_000;
     /// Half of the span over which the smallest statistic is sought (µs).
     const LOOK_US: u64 = 600_000;
     /// The same to both sides, in bins.
@@ -55,7 +53,8 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
         }
         engine.rewind();
         centred_statistic(&engine, samples, statistic);
-        let mut swing = SwingLevel::of_last(Self::STRIDES);
+        // The whole walk's, or of a long one the last twenty minutes'.
+        let mut swing = SwingLevel::<T, 1_000>::new();
         for (sample, &statistic) in samples.iter().zip(&*statistic) {
             swing.push(sample.time_us as u32, statistic);
         }

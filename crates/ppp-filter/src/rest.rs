@@ -13,7 +13,7 @@ const LEAP: f64 = 100.0;
 const ACCELERATION: f64 = 5.0;
 /// No airliner is faster over the ground, m/s.
 const FASTEST: f64 = 350.0;
-/// It is known to go on for so long, s.
+/// A gap counts as no longer than this, s: whoever is farther after it is told of, whether it went there or not.
 const LONGEST: f64 = 300.0;
 /// What remains of an epoch in the sums after the next one.
 const KEPT: f64 = 0.9;
@@ -162,6 +162,6 @@ mod tests {
         let mut rest = Rest::default();
         rest.advance(36_000.0);
         rest.follow(&Vector3::zeros(), 3e3, &Vector3::new(1e6, 0.0, 0.0), true);
-        assert!(rest.has_moved(&Vector3::zeros()), "nor is it known where it went in a night");
+        assert!(rest.has_moved(&Vector3::zeros()), "a thousand kilometres in a night");
     }
 }

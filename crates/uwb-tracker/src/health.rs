@@ -179,7 +179,7 @@ pub(crate) struct Common<T> {
 }
 
 impl<T: Scalar> Common<T> {
-    /// None is left.
+    /// None is considered: there is none, or it is a state that every range tells.
     pub(crate) const NONE: Self = Self { sigma: T::ZERO, shape: [T::ZERO; 2] };
 }
 
@@ -300,8 +300,7 @@ fn common_sigma<'a, T: Scalar, const D: usize>(
         let residual = pairs.fold(error, |left, (&along, &way)| left - along * way);
         sum + weight * residual * residual
     });
-    let [own, seen] = [sigma * sigma, unexplained * sigma * sigma];
-    let left = (own * best / (best + seen)).sqrt();
+    let left = sigma * (best / (best + unexplained * sigma * sigma)).sqrt();
     // Near the anchors' line a range grows with the square of the way from it.
     let bent = (T::TWO * farthest * left).sqrt();
     Some((T::norm(&moved) * left).min(bent))

@@ -75,9 +75,8 @@ impl Told {
         Self { squares: [of(|it| it.squares[0]), of(|it| it.squares[1])], held: of(|it| it.held) }
     }
 
-    fn assert_honest(&self) {
-        // Three anchors that are not calibrated are told to be worse than those of the recordings are.
-        assert!((0.68..1.5).contains(&self.ratio()), "{}", self.ratio());
+    fn assert_honest(&self, least: f64) {
+        assert!((least..1.5).contains(&self.ratio()), "{}", self.ratio());
         assert!((0.8..0.98).contains(&self.held), "{}", self.held);
     }
 
@@ -169,8 +168,9 @@ fn standard_deviations_are_honest() {
     let all: Vec<Told> = moving.into_iter().chain(standing).collect();
     let class = Told::together(&all);
     class.print("all, together");
-    for told in [together, stood, class] {
-        told.assert_honest();
+    // Of three anchors that are not calibrated nothing tells what all measure too long, which happens to be little.
+    for (told, least) in [(together, 0.68), (stood, 0.7), (class, 0.7)] {
+        told.assert_honest(least);
     }
     // Below 0.3 is `esp32_los2`, where the tag stands at two places: three anchors, whose ranges happen to be true.
     let names = MOVING.iter().chain(&STANDING);
@@ -196,8 +196,8 @@ fn standard_deviations_of_calibrated_anchors_are_honest() {
     });
     let stood = Told::together(&standing);
     stood.print("standing, together");
-    together.assert_honest();
-    stood.assert_honest();
+    together.assert_honest(0.7);
+    stood.assert_honest(0.7);
     let mut each = moving.iter().chain(&standing);
     assert!(each.all(|told| (0.3..2.5).contains(&told.ratio())));
 }

@@ -32,8 +32,8 @@ const GOALS: [(&str, f64); 13] = [
 /// What the smoother leaves to the tracker: three anchors of which mostly one is heard, or none without a wall before it; and
 /// a tag that stands among four, with a person before one or two of them, of whom nothing tells the anchors' own errors.
 const LEFT: [(&str, Unsmoothed); 6] = [
-    ("esp32_nlos1", Unsmoothed::LessCertain),
-    ("esp32_wall2", Unsmoothed::LessCertain),
+    ("esp32_nlos1", Unsmoothed::CommonBias),
+    ("esp32_wall2", Unsmoothed::CommonBias),
     ("trek_4vba02", Unsmoothed::LessCertain),
     ("trek_4vba1", Unsmoothed::LessCertain),
     ("trek_4vba2s", Unsmoothed::LessCertain),

@@ -18,6 +18,8 @@ use crate::unserved::Unserved;
 #[derive(Debug, Default)]
 pub(super) struct Body {
     header: Header,
+    /// The same with the antennas of later events, which are told and not taken.
+    latest: Header,
     epochs: Vec<RawEpoch>,
     /// Records of all epochs, one after the other: satellite, and the end of its part of `raw`.
     records: Vec<(u8, usize)>,
@@ -39,7 +41,7 @@ struct RawEpoch {
 
 impl Body {
     pub(super) fn new(header: Header) -> Self {
-        Self { header, ..Self::default() }
+        Self { latest: header.clone(), header, ..Self::default() }
     }
 
     /// Reads all epochs.
@@ -184,7 +186,7 @@ impl Body {
         let mut changed = self.header.clone();
         for _ in 0..count {
             let line = lines.expect("a line of an event")?;
-            if let Some(problem) = self.header.another_antenna(&line) {
+            if let Some(problem) = self.latest.another_antenna(&line) {
                 self.warnings.push(line.warning(problem));
             }
             changed.observables(&line)?;

@@ -119,23 +119,30 @@ impl Header {
         })
     }
 
-    /// What is told of another antenna from this line on, if it is.
-    pub(super) fn another_antenna(&self, line: &Line<'_>) -> Option<String> {
+    /// Takes another antenna, or another place of it above the marker, from a line of an event, and what is to be told of it.
+    pub(super) fn another_antenna(&mut self, line: &Line<'_>) -> Option<String> {
         match line.label() {
             b"ANTENNA: DELTA H/E/N" => {
-                let [now, before] =
-                    [three(line).ok(), self.antenna_delta_hen].map(Option::unwrap_or_default);
+                let now = three(line).ok()?;
+                let before = self.antenna_delta_hen.replace(now)?;
+                let words = |[height, east, north]: [f64; 3]| {
+                    format!("{height} m above its marker, {east} m east and {north} m north of it")
+                };
                 (now != before).then(|| {
-                    let [[height, ..], [was, ..]] = [now, before];
                     format!(
-                        "from here on the antenna is {height} m above its marker and not {was} m, or beside it: not taken, cut the file here"
+                        "from here on the antenna is {}, before {}: not taken, cut the file here",
+                        words(now),
+                        words(before)
                     )
                 })
             }
             b"ANT # / TYPE" => {
                 let antenna = line.text(20, 40);
-                (antenna != self.antenna).then(|| {
-                    format!("from here on the antenna is {antenna} and not {}: not taken, cut the file here", self.antenna)
+                let before = core::mem::replace(&mut self.antenna, antenna.clone());
+                let is_another =
+                    ![&antenna, &before].contains(&&String::new()) && antenna != before;
+                is_another.then(|| {
+                    format!("from here on the antenna is another, {antenna}, before {before}: not taken, cut the file here")
                 })
             }
             _ => None,

@@ -112,11 +112,13 @@ fn another_antenna_in_an_event_is_told() -> Result<(), Error> {
     };
     let height = line("DELTA H/E/N");
     assert!(told(height)?.is_empty(), "the same again");
+    assert!(told(&height.replacen("1.5000", "1.5x00", 1))?.is_empty(), "no number");
     let [warning] = &told(&height.replacen("1.5000", "2.5000", 1))?[..] else { panic!("one") };
-    assert!(warning.contains("antenna is 2.5 m above its marker and not 1.5 m"), "{warning}");
+    assert!(warning.contains("antenna is 2.5 m above its marker, 0.2 m east"), "{warning}");
+    assert!(warning.contains("before 1.5 m above its marker, 0.2 m east"), "{warning}");
     let antenna = header("1234                OTHER           NONE", "ANT # / TYPE");
     let [warning] = &told(antenna.trim_end_matches('\n'))?[..] else { panic!("one") };
-    assert!(warning.contains("antenna is OTHER           NONE"), "{warning}");
+    assert!(warning.contains("antenna is another, OTHER           NONE"), "{warning}");
     Ok(())
 }
 

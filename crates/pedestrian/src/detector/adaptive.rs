@@ -18,7 +18,7 @@ use kestirim_scalar::Scalar;
 pub struct Adaptive<T> {
     shoe: Shoe<T>,
     minimum: RecentMinimum<T>,
-    swing: SwingLevel<T>,
+    swing: SwingLevel<T, 8>,
     last_stance_us: Option<u32>,
 }
 
@@ -27,7 +27,7 @@ impl<T: Scalar> Default for Adaptive<T> {
         Self {
             shoe: Shoe::default(),
             minimum: RecentMinimum::new(Self::MEMORY_BINS),
-            swing: SwingLevel::of_last(Self::STRIDES),
+            swing: SwingLevel::new(),
             last_stance_us: None,
         }
     }
@@ -40,8 +40,6 @@ impl<T: Scalar> Adaptive<T> {
     const FACTOR: f64 = 2.0;
     /// T₀, (rad/s)²: below 0.3 rad/s a usual walker's foot always stands.
     const FLOOR: f64 = 0.1;
-    /// Who walks slowly is seen by so many strides.
-    const STRIDES: u16 = 8;
     /// The bound begins to grow this long after a stance (µs), threefold a second …
     const PATIENCE_US: u32 = 500_000;
     /// … and time since then is counted no further than this (µs).

@@ -10,8 +10,12 @@ const LONG: f64 = 3.0;
 const WINDOW: f64 = 0.25;
 /// A stand on the ground shows a force whose length changes by less, m/s²: a lift begins with two to four times as much …
 const CHANGE: f64 = 0.3;
-/// … and it lasts so many windows, if it ends with as much of the other sign within the stand, …
+/// … and no lift with more, m/s²: what does has no sensor, …
+const MOST: f64 = 4.0;
+/// … and it lasts so many windows, if so many of the other sign come in the same stand, …
 const BOTH_WAYS: usize = 2;
+/// … no later than this, s, …
+const RIDE: f64 = 60.0;
 /// … or else so many.
 const ONE_WAY: usize = 4;
 
@@ -51,7 +55,7 @@ fn in_stand(samples: &[Sample]) -> Option<usize> {
     let usual = lengths[lengths.len() / 2];
     let sign = |length: f64| {
         let more = length - usual;
-        if more.abs() > CHANGE { more.signum() } else { 0.0 }
+        if (CHANGE..MOST).contains(&more.abs()) { more.signum() } else { 0.0 }
     };
     // Where each change begins, its sign, and how many windows it lasts.
     let mut changes: Vec<(usize, f64, usize)> = Vec::new();
@@ -68,7 +72,11 @@ fn in_stand(samples: &[Sample]) -> Option<usize> {
         move |(_, sign, windows): &&(usize, f64, usize)| *sign == wanted && *windows >= most
     };
     let first = |sign, most| changes.iter().find(lasts(sign, most)).map(|(at, ..)| *at);
-    let both = first(1.0, BOTH_WAYS).zip(first(-1.0, BOTH_WAYS)).map(|(up, down)| up.min(down));
+    let both = first(1.0, BOTH_WAYS).zip(first(-1.0, BOTH_WAYS));
+    let both = both.map(|(up, down)| (up.min(down), up.max(down))).filter(|&(begin, end)| {
+        samples[end].time_us - samples[begin].time_us < (RIDE * 1e6) as u64
+    });
+    let both = both.map(|(begin, _)| begin);
     both.or_else(|| first(1.0, ONE_WAY)).or_else(|| first(-1.0, ONE_WAY))
 }
 
@@ -78,7 +86,9 @@ fn norm([x, y, z]: &[f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Options, walk};
     use super::*;
+    use kestirim_health::{Reason, State};
 
     /// At 100 Hz: ten seconds on the ground, and this force and rate beyond those of standing still from 4 s on for so long.
     fn stand(force: f64, rate: f64, lasts: f64) -> Vec<Sample> {
@@ -104,6 +114,9 @@ mod tests {
         assert_eq!(carried(&stand(3.0, 2.0, 1.0)), None, "a step");
         assert_eq!(carried(&stand(0.9, 0.0, 1.5)[200..490]), None, "a short stand");
         assert_eq!(carried(&[]), None);
+        let mut stalled = stand(0.0, 0.0, 0.0);
+        stalled[300..500].iter_mut().for_each(|it| it.specific_force = [0.0; 3]);
+        assert_eq!(carried(&stalled), None, "a sensor that says nothing");
         // Half a second, and as long the other way at the end.
         let mut ride = stand(0.9, 0.0, 0.5);
         assert_eq!(carried(&ride), None);
@@ -111,5 +124,15 @@ mod tests {
             sample.specific_force[2] -= 0.9;
         }
         assert_eq!(carried(&ride), Some(400));
+    }
+
+    #[test]
+    fn a_walk_is_doubted_from_there_on() {
+        let walk = walk(&stand(0.9, 0.0, 1.5), &Options::default()).expect("a walk");
+        assert!(walk.warnings[0].contains("4 s after the start the foot is carried"), "{walk:?}");
+        assert!(walk.doubts.has(Reason::Innovations));
+        let bad: Vec<bool> = walk.healths().map(|it| it == State::Bad).collect();
+        assert_eq!(bad.iter().position(|it| *it), Some(400));
+        assert!(bad[400..].iter().all(|it| *it));
     }
 }

@@ -114,8 +114,8 @@ fn tracked(
         let seconds = (samples[from].time_us - samples[0].time_us) as f64 * 1e-6;
         // The first to be read: gravity that is implausible may be this.
         walk.warnings.insert(0, format!(
-            "{seconds:.0} s after the start the foot is carried while it stands (by a lift, an escalator, a vehicle): how far no \
-             sensor on it tells, and places from there on are wrong"
+            "{seconds:.0} s after the start the foot is carried while it stands (by a lift, an escalator, a vehicle): how far \
+             no sensor on the foot tells, and places from there on are wrong"
         ));
     }
     Ok(walk)

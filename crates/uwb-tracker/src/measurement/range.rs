@@ -10,7 +10,8 @@ use nalgebra::SVector;
 /// from the anchors' centre to them.
 ///
 /// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former. Where too few
-/// anchors are heard, b is what it was before, as a bias that is considered (Schmidt 1966): ∂h/∂b is taken as zero.
+/// anchors are heard to tell b from a distance, ∂h/∂b is taken as zero: b is what it was before, but for what its covariance with
+/// the position makes of a correction.
 ///
 /// Source: the paper's eq. 10; the common bias as the clock bias of a GNSS receiver's pseudorange (Kaplan and
 /// Hegarty 2017, 2.5.2).

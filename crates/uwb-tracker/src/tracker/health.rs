@@ -12,8 +12,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.health_beside(Common { sigma, shape: self.bias_shape }, time_us)
     }
 
-    /// Standard deviation of the common bias where it is one of the states, but not learnt, as too few anchors are heard, m. What
-    /// was learnt has a share of the anchors' own constant errors, and an estimate that was widened knew it before.
+    /// Standard deviation of the common bias where it is one of the states, but not learnt, as too few anchors are heard, m.
+    ///
+    /// What was learnt, of four anchors or more, has the mean of their own constant errors in it: half of one's or less. It is no
+    /// less certain than beforehand, even if the whole estimate was widened since.
     fn considered_bias(&self) -> Option<T> {
         let estimate = self.estimate().filter(|_| N > 2 * D && !self.means()[0])?;
         let learnt = estimate.covariance.get(2 * D, 2 * D)?.sqrt();

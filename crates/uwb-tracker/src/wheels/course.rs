@@ -2,6 +2,7 @@
 
 use super::drive::Drive;
 use super::state::{BIAS, COSINE, COUNT, DRIFT, EXCESS, GAIN, SINE, X, Y};
+use crate::mirror::ROOM_MARGIN;
 use crate::wheel_noise::{
     DRIFT_SIGMA, GAIN_SIGMA, SLIP, TURN_TO_HEADING, UNKNOWN_SPEED, UNKNOWN_TIME, UNKNOWN_TURN,
     WAY_TO_HEADING,
@@ -9,6 +10,7 @@ use crate::wheel_noise::{
 use crate::{Error, OdometrySample};
 use kestirim_kalman::{Covariance, Gaussian, Innovation};
 use kestirim_scalar::{Columns, Components, Scalar};
+use kestirim_uwb_ranging::Room;
 use nalgebra::{SMatrix, SVector};
 
 /// An estimate, the turns that the wheels have counted, and what the ranges say of it.
@@ -132,6 +134,22 @@ pub(super) fn decided<T: Scalar>(courses: [Option<Course<T>>; 2]) -> [Option<Cou
     first.cost -= least;
     second.cost -= least;
     [Some(first), Some(second)]
+}
+
+/// The same without those that have left the room, by half a metre and three deviations more.
+#[inline(never)] // Where a room is known.
+pub(super) fn within<T: Scalar>(
+    courses: [Option<Course<T>>; 2],
+    room: &Room<T>,
+) -> [Option<Course<T>>; 2] {
+    let is_within = |course: &Course<T>| {
+        let (mean, variances) = (&course.estimate.mean, course.estimate.covariance.variances());
+        let (mean, variances) = (mean.as_array(), variances.as_array());
+        let sigma = (variances[X] + variances[Y]).sqrt();
+        let margin = T::from_f64(ROOM_MARGIN) + T::from_f64(3.0) * sigma;
+        room.contains(&SVector::<T, 2>::from([mean[X], mean[Y]]), margin)
+    };
+    courses.map(|course| course.filter(is_within))
 }
 
 #[cfg(test)]

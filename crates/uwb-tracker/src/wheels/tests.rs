@@ -192,3 +192,28 @@ fn a_height_is_a_number() {
     assert_eq!(tracker.set_height(0.4), Ok(()));
     assert_eq!(tracker.config.height, 0.4);
 }
+
+#[test]
+fn what_leaves_the_room_is_given_up() {
+    let mut begun = tracker::<4>(1.0);
+    begun.config.room = Some(kestirim_uwb_ranging::Room::plane(-5.0, -4.0, 5.0, 4.0));
+    hear_all(&mut begun, 0, [1.0, 0.5]);
+    let course = begun.courses[0].expect("a course");
+    let at = |y: f64| {
+        let mut course = course;
+        course.estimate.mean[1] = y;
+        Some(course)
+    };
+    let sigma = (course.estimate.covariance.get(0, 0).unwrap()
+        + course.estimate.covariance.get(1, 1).unwrap())
+    .sqrt();
+    let (inside, outside) = (4.4 + 3.0 * sigma, 4.6 + 3.0 * sigma);
+    let room = begun.config.room.expect("a room");
+    let left = |courses| within(courses, &room).map(|course| course.is_some());
+    assert_eq!(left([at(inside), at(outside)]), [true, false]);
+    assert_eq!(left([None, at(-outside)]), [false, false]);
+    // As a range of where it is not finds it.
+    begun.courses = [None, at(-outside)];
+    hear(&mut begun, 1, 0, [1.0, -outside]).expect("a range");
+    assert!(begun.position().is_none());
+}

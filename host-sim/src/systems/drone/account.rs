@@ -256,7 +256,7 @@ fn doubts(
     [step, moved, misfit].into_iter().flatten()
 }
 
-/// Time, place and expected distance after each measurement. What speaks against the flight speaks against each.
+/// Time, place and expected distance after each measurement. What speaks against the whole flight speaks against each.
 pub(super) fn table(recording: &Recording, settings: &Settings, track: &Track) -> Table {
     let row = |estimate: &Estimate| {
         let [x, y] = estimate.place;

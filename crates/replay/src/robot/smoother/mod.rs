@@ -62,6 +62,9 @@ pub enum Unsmoothed {
     /// What came out is less certain than the tracker's positions, or the tracker tells no standard deviation.
     #[error("it would be less certain than the tracker is")]
     LessCertain,
+    /// The anchors are as few as can tell a position, and the way does not tell what all of them measure too long.
+    #[error("so few anchors do not tell what all of them measure too long")]
+    CommonBias,
     /// What came out contradicts the tracker.
     #[error("it would contradict the tracker by more than twice its standard deviation")]
     Contradicts,
@@ -117,15 +120,17 @@ pub fn smooth(
         Dimensions::Three => 4,
     };
     let known = config.common_sigmas(&setup.anchors::<f64>())[0];
-    if !is_calibrated && setup.anchors.len() <= fewest && solved.common[0][1] > NOT_TOLD * known {
-        return Err(Unsmoothed::LessCertain);
+    let is_told = solved.common[0][1] <= TOLD * known;
+    if !is_calibrated && setup.anchors.len() <= fewest && !is_told {
+        return Err(Unsmoothed::CommonBias);
     }
     accepted(solved, &knots)
 }
 
-/// Of as few anchors as can tell a position, what all measure too long is told apart from it only by the way that the tag goes:
-/// to so large a share of what was known before it is not, and rests on that.
-const NOT_TOLD: f64 = 0.4;
+/// Of as few anchors as can tell a position, the way that the tag goes has told what all measure too long if it is known to this
+/// share of what was known before: of two recordings of three anchors one has a quarter of it and is better for it, one a half and
+/// is worse.
+const TOLD: f64 = 0.4;
 
 /// The result, if it is worth more than the tracker's and agrees with it, at most epochs.
 fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {

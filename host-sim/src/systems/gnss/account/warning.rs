@@ -43,7 +43,7 @@ fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
     ))
 }
 
-/// A sentence for each kind of epochs without a solution, and one about those that contradict themselves.
+/// A sentence for each kind of epochs without a solution, and about contradictions, phases of no use and jumps of the clock.
 pub(super) fn outages(followed: &Followed) -> Vec<String> {
     let phases = phases_of_no_use(followed);
     let told = contradictions(followed).into_iter().chain(phases).chain(clock_jumps(followed));
@@ -70,7 +70,7 @@ fn contradictions(followed: &Followed) -> Option<String> {
 
 /// A sentence about phases that begin anew all the time.
 fn phases_of_no_use(followed: &Followed) -> Option<String> {
-    /// In a street or under trees a phase in some tens begins anew.
+    /// In a street or under trees it is about one in thirty.
     const MOST: f64 = 0.2;
     let share = 2.0 * followed.slips.sum() as f64 / followed.observations.max(1) as f64;
     (share > MOST).then(|| {
