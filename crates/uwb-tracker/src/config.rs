@@ -21,7 +21,7 @@ pub struct Config<T> {
     pub huber: Option<Huber<T>>,
     /// The NIS above which a range is left out, if any is.
     pub gate: Option<T>,
-    /// Power spectral density of the acceleration, m²/s³.
+    /// Power spectral density of the acceleration, m²/s³, of a tag that goes at 1.2 m/s or less.
     pub acceleration_density: T,
     /// Time constant with which a velocity decays, s; none: it does not.
     pub decay_time: Option<T>,

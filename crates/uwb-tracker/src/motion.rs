@@ -2,10 +2,35 @@
 
 use crate::Config;
 use kestirim_kalman::{ConstantVelocity, Error, Gaussian};
-use kestirim_scalar::Scalar;
+use kestirim_scalar::{Components, Scalar};
 
 /// Random walk of the common bias, m²/s.
 const BIAS_DENSITY: f64 = 1e-5;
+
+/// Beyond this speed, m/s, the density of the acceleration grows with its third power: who turns on the same radius r is accelerated
+/// by v²/r for about r/v.
+const USUAL_SPEED: f64 = 1.2;
+/// No further than at so many times that speed: fixed point has an end.
+const MOST_SPEED: f64 = 8.0;
+
+/// The density of a tag's acceleration, m²/s³, at its velocity.
+#[inline]
+fn density<T: Scalar, const D: usize, const N: usize>(estimate: &Gaussian<T, N>, usual: T) -> T {
+    let velocity = estimate.mean.as_array().get(D..2 * D).unwrap_or_default();
+    let squared = velocity.iter().fold(T::ZERO, |sum, &axis| sum + axis * axis);
+    if squared <= T::from_f64(USUAL_SPEED * USUAL_SPEED) {
+        return usual;
+    }
+    usual * faster(squared)
+}
+
+/// The third power of a speed's ratio to the usual one, from its square.
+#[inline(never)] // Of fast tags.
+fn faster<T: Scalar>(squared: T) -> T {
+    let ratio = squared.sqrt() * T::from_f64(1.0 / USUAL_SPEED);
+    let ratio = ratio.min(T::from_f64(MOST_SPEED));
+    ratio * ratio * ratio
+}
 
 /// Moves the estimate on by `interval` (s).
 #[inline]
@@ -16,7 +41,8 @@ pub(crate) fn advance<T: Scalar, const D: usize, const N: usize>(
     still: bool,
     push: Option<[T; D]>,
 ) -> Result<(), Error> {
-    let density = if still { T::ZERO } else { config.acceleration_density };
+    let density =
+        if still { T::ZERO } else { density::<T, D, N>(estimate, config.acceleration_density) };
     let motion = ConstantVelocity::<T, D>::new(interval, density);
     estimate.advance(&ConstantVelocity {
         decay_time: config.decay_time,
@@ -50,6 +76,19 @@ mod tests {
         let space = advanced::<3, 7>(false).covariance.variances()[6];
         for sigma in [plane.sqrt(), space.sqrt()] {
             assert!((sigma - 0.01).abs() < 1e-6, "{sigma} m");
+        }
+    }
+
+    #[test]
+    fn a_fast_tag_turns_on_the_same_radius() {
+        let density = |speed: f64| {
+            let mean = SVector::from([0.0, 0.0, 0.6 * speed, -0.8 * speed, 0.0]);
+            let estimate = Gaussian::new(mean, Covariance::zero());
+            super::density::<f64, 2, 5>(&estimate, 0.1)
+        };
+        for (speed, times) in [(0.0, 1.0), (1.19, 1.0), (2.4, 8.0), (9.5, 496.0), (99.0, 512.0)] {
+            let found = density(speed) / 0.1;
+            assert!((found / times - 1.0).abs() < 1e-3, "{speed} m/s: {found}");
         }
     }
 

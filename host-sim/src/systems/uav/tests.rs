@@ -195,9 +195,13 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
     );
     let track = folder.path().join("track.csv");
     let wanted = crate::system::Wanted { tables: vec![("track", track.clone())], mcap: None };
-    opened.replay(&settings, &wanted).unwrap();
-    let rows = fs::read_to_string(&track).unwrap();
-    assert!(rows.lines().skip(1).all(|row| row.ends_with(",bad")), "{rows}");
+    for (model, state) in [("P2", "good"), ("P3", "bad")] {
+        let sent = json!({ "model": model });
+        let settings = Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap();
+        assert_eq!(opened.replay(&settings, &wanted).unwrap().report["health"]["state"], state);
+        let rows = fs::read_to_string(&track).unwrap();
+        assert_eq!(rows.lines().skip(1).filter(|row| row.ends_with(state)).count(), 200);
+    }
     for (name, value) in [("absolute", json!(true)), ("seed", json!(3))] {
         let sent = json!({ "model": "P2", name: value });
         let settings = Settings::sent(opened.settings(), sent.as_object().unwrap()).unwrap();
