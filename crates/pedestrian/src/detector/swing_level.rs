@@ -113,9 +113,12 @@ mod tests {
         level.push(7_000_000, f64::MAX);
         walk(&mut level, 7_010_000, 2, 9.0);
         assert!((level.share() - 0.25).abs() < 1e-6, "{}", level.share());
-        level.push(9_900_000, f64::MAX);
-        walk(&mut level, 9_910_000, 1, 300.0);
-        level.push(11_400_000, 0.02);
+        level.push(9_900_000, 0.02);
+        for (time_us, statistic) in
+            [(10_000_000, f64::MAX), (10_500_000, 300.0), (11_400_000, 0.02)]
+        {
+            level.push(time_us, statistic);
+        }
         assert!((level.share() - 0.25).abs() < 1e-6, "{}", level.share());
     }
 
