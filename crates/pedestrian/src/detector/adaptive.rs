@@ -4,8 +4,8 @@ use kestirim_scalar::Scalar;
 /// The default detector: SHOE without a threshold to choose.
 ///
 /// Every stride has a stance, so the smallest T of the last 1.4 s was one, whoever walks: the foot
-/// stands where T < max(T₀, 2·min T), with a smaller T₀ for who walks slowly. Where no stance comes for a while, the walker has begun to run or the
-/// minimum was a standstill's, and the bound grows with the time since.
+/// stands where T < max(T₀, 2·min T), with a smaller T₀ for who walks slowly. Where no stance comes for a while, the walker
+/// has begun to run or the minimum was a standstill's, and the bound grows with the time since.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(

@@ -58,16 +58,15 @@ fn in_stand(samples: &[Sample]) -> Option<usize> {
         if (CHANGE..MOST).contains(&more.abs()) { more.signum() } else { 0.0 }
     };
     // Where each change begins, its sign, and how many windows it lasts.
-    let mut changes: Vec<(usize, f64, usize)> = Vec::new();
-    let (mut at, mut last) = (0, 0.0);
-    for (count, length) in &windows {
-        let now = sign(*length);
-        match changes.last_mut().filter(|_| now == last) {
-            Some(change) => change.2 += 1,
-            None => changes.push((at, now, 1)),
-        }
-        (at, last) = (at + count, now);
-    }
+    let mut at = 0;
+    let changes: Vec<(usize, f64, usize)> = windows
+        .chunk_by(|(_, a), (_, b)| sign(*a) == sign(*b))
+        .map(|run| {
+            let begin = at;
+            at += run.iter().map(|(count, _)| count).sum::<usize>();
+            (begin, sign(run[0].1), run.len())
+        })
+        .collect();
     let lasts = |wanted: f64, most: usize| {
         move |(_, sign, windows): &&(usize, f64, usize)| *sign == wanted && *windows >= most
     };

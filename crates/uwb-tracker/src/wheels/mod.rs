@@ -26,7 +26,8 @@ use nalgebra::SVector;
 ///
 /// The wheels move the estimate, the ranges correct it. Scale and drift of the wheels' turns are estimated, and so is
 /// the heading, of which nothing need be known; whether they turn left or right is found out by following both until the
-/// ranges have decided, or one of them has left the [`Config::room`]. Ranges may be too long by a common bias, and in proportion to the distance.
+/// ranges have decided, or one of them has left the [`Config::room`]. Ranges may be too long by a common bias, and in
+/// proportion to the distance.
 ///
 /// The eight states are the position (m), k cos θ and k sin θ of the wheels' scale k and the heading θ in which their
 /// count began, the turns' drift (rad in 100 s) and gain, the bias of all ranges (m) and their excess in 10 m (m).
