@@ -91,6 +91,12 @@ impl<T: Scalar> Ahrs<T> {
         self.orientation = self.orientation.turned_in_earth(correction);
     }
 
+    /// Turns the reference with the body, by a rotation vector in body axes (rad): a sample of which more is known than a rate that is held.
+    /// No bias is taken off.
+    pub fn turn_in_body(&mut self, turn: &SVector<T, 3>) {
+        self.orientation = self.orientation.turned_in_body(turn);
+    }
+
     /// Takes one sample: angular rate (rad/s) and specific force (m/s²), both in body axes, held for
     /// `interval` seconds. Without a force, or with one that is no measure of gravity, the gyroscope is
     /// integrated alone.

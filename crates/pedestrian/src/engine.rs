@@ -3,7 +3,7 @@ use crate::clipping::{Clipping, Turned};
 use crate::clock::{Clock, Tick};
 use crate::detector::{Motion, Verdict};
 use crate::health::Health;
-use crate::navigator::{Navigator, Step, ZeroVelocity, velocity_of_rolling};
+use crate::navigator::{Navigator, Step, ZeroVelocity, coning, velocity_of_rolling};
 use crate::sample::Size;
 use crate::stride::Strides;
 use crate::{Alignment, Config, Error, Estimate, ImuSample, SensorClass, Stride, Warnings};
@@ -22,6 +22,8 @@ pub(crate) struct Engine<T: Scalar, N> {
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
+    /// By how much the body turned in the step before (rad); after a gap zero.
+    turn: SVector<T, 3>,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
     pub(crate) clipping: Clipping<T>,
@@ -41,6 +43,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             strides: Strides::new(),
             health: Health::new(),
             was_stance: false,
+            turn: SVector::zeros(),
             is_tilted: false,
         }
     }
@@ -117,13 +120,19 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 if gap {
                     self.health.gap();
                     self.clipping.forget();
+                    self.turn = SVector::zeros();
                 }
-                let step = Step {
+                let last = core::mem::replace(&mut self.turn, motion.angular_rate * interval);
+                let mut step = Step {
                     interval,
                     force_g: motion.force_g,
                     angular_rate: motion.angular_rate,
-                    turn: motion.angular_rate * interval,
+                    turn: self.turn,
                 };
+                // A foot that stands hardly turns.
+                if !verdict.stance {
+                    step.turn += coning(&last, &self.turn);
+                }
                 let before = navigator.velocity();
                 navigator.propagate(&step, verdict.stance);
                 if self.clipping.concerns(&sample.angular_rate, size.large_rate) {

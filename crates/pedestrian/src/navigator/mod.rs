@@ -6,7 +6,7 @@ mod strapdown;
 
 pub use ekf::Ekf;
 pub use lite::Lite;
-pub(crate) use strapdown::velocity_of_rolling;
+pub(crate) use strapdown::{coning, velocity_of_rolling};
 
 use crate::{MissedTurn, SensorClass};
 use kestirim_attitude::Orientation;
@@ -22,7 +22,7 @@ pub struct Step<T: Scalar> {
     pub force_g: SVector<T, 3>,
     /// Angular rate without its bias (rad/s, body), held over the step.
     pub angular_rate: SVector<T, 3>,
-    /// Their product (rad): how the body turns in the step.
+    /// How the body turns in the step (rad): their product, and in swing what coning adds.
     pub turn: SVector<T, 3>,
 }
 

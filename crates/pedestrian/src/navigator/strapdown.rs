@@ -56,6 +56,15 @@ pub(crate) fn velocity_of_rolling<T: Scalar>(
     SVector::from([y * height, -x * height, T::ZERO])
 }
 
+/// What a step's turn is more than rate and interval say, where the axis moves meanwhile (rad): a twelfth of the turn `before` × this
+/// one, if rates are means over their intervals and change evenly (coning; Savage 1998).
+///
+/// Without it a foot that is sampled at 25 Hz loses some degrees of heading in a hundred metres.
+#[inline]
+pub(crate) fn coning<T: Scalar>(before: &SVector<T, 3>, turn: &SVector<T, 3>) -> SVector<T, 3> {
+    cross(before, turn) * T::from_f64(1.0 / 12.0)
+}
+
 #[inline]
 pub(super) fn cross<T: Scalar>(a: &SVector<T, 3>, b: &SVector<T, 3>) -> SVector<T, 3> {
     let (a, b) = (*a.as_array(), *b.as_array());
@@ -112,6 +121,34 @@ mod tests {
         let expected = turned.to_earth(&rate).cross(&Vector3::new(0.0, 0.0, 0.07));
         assert!((velocity - expected).norm() < 1e-12, "{velocity} {expected}");
         assert!(velocity.norm() > 0.01);
+    }
+
+    #[test]
+    fn a_cone_is_followed_in_steps_of_its_mean_rates() {
+        // The axis of a turn by 5 rad/s goes round in half a second.
+        let (rate, around) = (5.0, 4.0 * core::f64::consts::PI);
+        let mean = |from: f64, to: f64| {
+            let whole = Vector3::new(
+                (around * to).sin() - (around * from).sin(),
+                (around * from).cos() - (around * to).cos(),
+                0.0,
+            );
+            whole * (rate / around / (to - from))
+        };
+        let after = |steps: u32, is_corrected: bool| {
+            let dt = 1.0 / f64::from(steps);
+            let (mut orientation, mut before) = (Orientation::identity(), Vector3::zeros());
+            for step in 0..steps {
+                let turn = mean(f64::from(step) * dt, f64::from(step + 1) * dt) * dt;
+                let more = if is_corrected { coning(&before, &turn) } else { Vector3::zeros() };
+                orientation = orientation.turned_in_body(&(turn + more));
+                before = turn;
+            }
+            orientation.heading()
+        };
+        let truth = after(100_000, false);
+        let [without, with] = [false, true].map(|is| (after(25, is) - truth).abs());
+        assert!(without > 0.03 && with < 0.1 * without, "{without} {with}");
     }
 
     #[test]

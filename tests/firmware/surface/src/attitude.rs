@@ -28,6 +28,7 @@ fn references<T: Scalar>() {
         let force = maybe(matrix());
         try_on(&mut ahrs, |ahrs| Ahrs::update(ahrs, &matrix(), force.as_ref(), number()));
         Ahrs::turn_in_earth(any(&mut ahrs), &matrix());
+        Ahrs::turn_in_body(any(&mut ahrs), &matrix());
     }
     keep(Ahrs::orientation(&ahrs));
     keep(Ahrs::gyro_bias(&ahrs));
