@@ -10,7 +10,8 @@ use std::thread::{self, JoinHandle};
 use anyhow::{Context, Result, anyhow, bail};
 
 use crate::elf::Elf;
-use crate::images::{Images, Packages, Profile, build_apart};
+use crate::form::is_short;
+use crate::images::{Images, Packages, Profile, build_apart, left_out};
 use crate::qemu::{ERRORS, OUTPUT, STREAM, emulate};
 use crate::target::{CORTEX_M0, CORTEX_M4F, RV32IMC, Target};
 use crate::toolchain::Apart;
@@ -21,7 +22,7 @@ const LOG: &str = "log.bin";
 const TELEMETRY: &str = "telemetry.bin";
 const LINE: &str = "line.sock";
 
-/// The applications of each target, and which of them are built in one go: those of one board.
+/// The applications of each target, and which of them are built in one go: those of one board. The first are the short form.
 const APPLICATIONS: [(&Target, Packages); 4] = [
     (&CORTEX_M0, &["pedestrian-firmware", "uav-firmware"]),
     (&CORTEX_M4F, &["drone-firmware", "pedestrian-firmware", "uav-firmware"]),
@@ -53,7 +54,8 @@ pub struct Run {
 }
 
 impl App {
-    /// Builds an application, with the others of its board; `None` on a machine without the tools, which is said.
+    /// Builds an application, with the others of its board; `None` on a machine without the tools, and for what the short form leaves
+    /// out, which is said.
     ///
     /// # Errors
     /// It is no application of this target, it does not build, or a tool is missing and
@@ -63,6 +65,9 @@ impl App {
             .into_iter()
             .find(|(of, packages)| of.triple == target.triple && packages.contains(&package))
             .with_context(|| format!("{package} is not for {}", target.triple))?;
+        if is_short() && packages != APPLICATIONS[0].1 {
+            return left_out(package);
+        }
         let images = Images::of_packages(packages, target, Profile::Speed)?;
         Ok(images.map(|images| Self { target, board: target.board, image: images.file(package) }))
     }
