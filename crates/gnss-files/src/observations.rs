@@ -3,6 +3,7 @@
 mod body;
 mod header;
 mod names;
+mod order;
 mod record;
 mod signals;
 

@@ -175,7 +175,7 @@ impl<const N: usize> Epoch<N> {
                 }
                 (true, None) => (0.0, square(ratio) * NOT_TOLD / sine.max(LOWEST)),
             };
-            let noise = config.code.variance(sine) + code_bias(it.carriers);
+            let noise = config.code.variance_alone(sine.max(LOWEST)) + code_bias(it.carriers);
             let noise = noise * if is_alone { ALONE * ALONE } else { 1.0 };
             let wet = config.wet_delay * expected.wet_mapping;
             let known = self.clock + expected.wet_mapping * WET_DELAY + delay;

@@ -70,6 +70,10 @@ pub(crate) fn gnss<'py>(
                 follow(&recording, epochs, &receiver, config, pass, &mut || ())
             };
             let mut followed = run(Order::Forwards);
+            // Before they are smoothed: what the observations tell, they tell of one direction.
+            let doubts = recording.doubts().and(followed.doubts());
+            let warnings = recording.warnings(Corrections::ALL).chain(followed.warnings());
+            let warnings = warnings.collect();
             if smooth {
                 followed = followed.smoothed(&run(Order::Backwards));
             }
@@ -77,8 +81,7 @@ pub(crate) fn gnss<'py>(
                 let sentence = format!("none of {} epochs has a solution", epochs.len());
                 return Err(KestirimError::new_err(sentence));
             }
-            let warnings = recording.warnings(Corrections::ALL).collect();
-            Ok(Found { followed, warnings, doubts: recording.doubts() })
+            Ok(Found { followed, warnings, doubts })
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(run);
         let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
@@ -114,7 +117,7 @@ fn ambiguities(name: &str) -> PyResult<Ambiguities> {
 struct Found {
     followed: Followed,
     warnings: Vec<String>,
-    /// What the files show, which concerns every epoch.
+    /// What concerns every epoch.
     doubts: Health,
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::header::Header;
 use super::names::{Named, names, satellite};
+use super::order::in_order;
 use super::record::{Epoch, Observations, Observed};
 use super::signals::{Raw, Seen, Signals};
 use crate::biases::Biases;
@@ -25,7 +26,6 @@ pub(super) struct Body {
     records: Vec<(u8, usize)>,
     raw: Vec<Raw>,
     moved: bool,
-    backwards: usize,
     doubled: usize,
     unserved: Unserved,
     warnings: Vec<Warning>,
@@ -53,7 +53,7 @@ impl Body {
             }
             let (records, raw) = (self.records.len(), self.raw.len());
             let epochs = self.epochs.len();
-            let (backwards, doubled) = (self.backwards, self.doubled);
+            let doubled = self.doubled;
             let result = self.epoch(&line, lines);
             let complete = result.is_ok() && (text.ends_with_line_break() || !lines.is_at_end());
             if complete {
@@ -65,7 +65,7 @@ impl Body {
                     return Err(error);
                 }
             }
-            (self.backwards, self.doubled) = (backwards, doubled);
+            self.doubled = doubled;
             self.epochs.truncate(epochs);
             self.records.truncate(records);
             self.raw.truncate(raw);
@@ -86,10 +86,6 @@ impl Body {
         self.unserved = stream.observed;
         self.header.channels = stream.channels;
         for (time, satellites) in stream.epochs {
-            if self.epochs.last().is_some_and(|last| time <= last.time) {
-                self.backwards += 1;
-                continue;
-            }
             let first = self.records.len();
             for (satellite, raw) in satellites {
                 if self.records[first..].iter().any(|&(other, _)| other == satellite) {
@@ -111,6 +107,9 @@ impl Body {
 
     /// Reads an epoch or event that begins with a line.
     fn epoch<'a>(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), Error> {
+        if line.label() == b"RINEX VERSION / TYPE" {
+            return Err(line.error("expected an epoch, found the header of a second file: separate files that were joined"));
+        }
         let old = self.header.version < 3;
         if !old && line.column(0) != b'>' {
             return Err(line.expected("an epoch, which begins with >"));
@@ -127,9 +126,6 @@ impl Body {
         let names = if old { names(line, lines, count)? } else { Vec::new() };
         // Slips that a receiver mended are told as if observed.
         let time = if flag == b'6' { None } else { Some(self.time(line)?) };
-        let last = self.epochs.last().map(|epoch| epoch.time);
-        let wanted = time.filter(|time| last.is_none_or(|last| last < *time));
-        self.backwards += usize::from(time != wanted);
         let (first, raw) = (self.records.len(), self.raw.len());
         for i in 0..count {
             let line = lines.expect("a satellite's observations")?;
@@ -152,7 +148,7 @@ impl Body {
                 self.records.push((prn, self.raw.len()));
             }
         }
-        if let Some(time) = wanted {
+        if let Some(time) = time {
             let end = self.records.len();
             self.epochs.push(RawEpoch { time, power_failure: flag == b'1', end });
         } else {
@@ -241,9 +237,11 @@ impl Body {
             self.warnings.push(text.warning(problem));
         }
         let mut corrected = BTreeSet::new();
+        let times: Vec<_> = self.epochs.iter().map(|epoch| epoch.time).collect();
+        let kept = in_order(&times);
         let mut epochs = Vec::with_capacity(self.epochs.len());
         let (mut record, mut start) = (0, 0);
-        for epoch in &self.epochs {
+        for (epoch, is_kept) in self.epochs.iter().zip(kept) {
             let mut satellites = Vec::with_capacity(epoch.end - record);
             for &(prn, end) in &self.records[record..epoch.end] {
                 let raw = &self.raw[start..end];
@@ -259,14 +257,17 @@ impl Body {
             }
             record = epoch.end;
             let RawEpoch { time, power_failure, .. } = *epoch;
-            epochs.push(Epoch { time, power_failure, satellites });
+            if is_kept {
+                epochs.push(Epoch { time, power_failure, satellites });
+            }
         }
         let mut warn = |count: usize, problem: &str| {
             if count > 0 {
                 self.warnings.push(text.warning(format!("{count} {problem}")));
             }
         };
-        warn(self.backwards, "epochs are not later than the one before and are left out");
+        let out_of_order = times.len() - epochs.len();
+        warn(out_of_order, "epochs stand out of the order of time and are left out");
         warn(self.doubled, "satellites are told of twice in an epoch; the first is taken");
         let others = signals.iter().filter(|(number, _)| !corrected.contains(number));
         self.warnings.extend(Signals::warnings(others).into_iter().map(|it| text.warning(it)));

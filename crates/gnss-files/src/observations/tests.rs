@@ -171,9 +171,17 @@ fn epochs_told_twice_are_taken_once() -> Result<(), Error> {
     let body = &whole[observations_3_header().len()..];
     let observations = Observations::parse(&text(whole.clone() + body))?;
     assert_eq!(observations.epochs.len(), 3);
-    let warning = "file: 3 epochs are not later than the one before and are left out";
+    let warning = "file: 3 epochs stand out of the order of time and are left out";
     assert_eq!(sentences(&observations.warnings), [warning]);
     Ok(())
+}
+
+#[test]
+fn files_that_were_joined_are_named() {
+    let joined = observations_3() + &observations_3();
+    let told =
+        "expected an epoch, found the header of a second file: separate files that were joined";
+    assert!(complaint(&joined).ends_with(told), "{}", complaint(&joined));
 }
 
 #[test]

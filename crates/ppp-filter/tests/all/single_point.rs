@@ -153,7 +153,7 @@ fn codes_that_do_not_fit_are_told() {
         }
         solve(&codes).expect("a position")
     };
-    let noisy = spoilt(2.5, |_| true);
+    let noisy = spoilt(4.0, |_| true);
     assert!(noisy.covariance.trace() > 2.0 * clean.covariance.trace());
     assert_eq!(noisy.health, Health::Converging);
     let wrong = spoilt(60.0, |index| index % 2 == 0);

@@ -10,6 +10,7 @@ mod calendar;
 mod check;
 mod choices;
 mod coverage;
+mod doubts;
 mod fixing;
 mod followed;
 mod model;

@@ -18,8 +18,8 @@ use super::told::{Served, Told};
 
 /// Fewer satellites give no position, …
 pub const FEWEST_SATELLITES: usize = 4;
-/// … and such a share of epochs with fewer makes a poor day.
-const POOR: f64 = 0.1;
+/// … and such a share of epochs with fewer, or without a solution, makes a poor day.
+pub(super) const POOR: f64 = 0.1;
 /// Where the files are.
 #[derive(Debug, Clone, Copy)]
 pub struct Paths<'a> {

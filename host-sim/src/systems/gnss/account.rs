@@ -14,10 +14,7 @@ use super::Gnss;
 use super::settings::{Choice, Mode, Setup};
 use super::track::Track;
 use crate::Error;
-use crate::system::{Account, Reason, System};
-
-/// Share of the epochs without a solution from which the whole is doubted.
-const MOST_WITHOUT: f64 = 0.1;
+use crate::system::{Account, System};
 
 /// Says why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
@@ -27,10 +24,7 @@ fn doubt(account: &mut Account, track: &Track) {
         let doubts = Health::Contradicted(contradiction).in_short();
         doubts.reasons().for_each(|reason| account.doubt(reason));
     }
-    let (without, with) = (track.main().outages.count(), track.main().fixes.len());
-    if without as f64 > MOST_WITHOUT * (without + with) as f64 {
-        account.doubt(Reason::Dropout);
-    }
+    track.main().doubts().reasons().for_each(|reason| account.doubt(reason));
 }
 
 /// What came of one filter, or of all.
@@ -44,7 +38,7 @@ pub(super) fn account(
     warnings.extend(track.smoothed.iter().find_map(|it| warning::apart(it, setup.motion)));
     let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
         let smoothed = track.smoothed.as_ref().filter(|_| *filter == setup.main());
-        let warnings = [first, &warning::outages(followed)].concat();
+        let warnings = [first, &followed.warnings()].concat();
         Report::new(recording, setup, *filter, followed, smoothed, warnings)
     };
     if setup.filter == Choice::All {
@@ -53,7 +47,7 @@ pub(super) fn account(
             mode: Mode::of(setup.motion),
             epochs: track.main().epochs,
             filters: track.filters.iter().filter_map(|filter| of(filter, &[])).collect(),
-            warnings: [warnings, warning::outages_of_all(&track.filters)].concat(),
+            warnings: [warnings, warning::of_all(&track.filters)].concat(),
         };
         let mut account = Account::new(&comparison, comparison.warnings.clone())?;
         account.text = Some(comparison.to_string());

@@ -1,6 +1,6 @@
 //! What a user should know of files, and of how they fit each other.
 
-use kestirim_ppp_filter::{Contradiction, Motion};
+use kestirim_ppp_filter::Motion;
 use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, Tally, names};
 
 use crate::metrics::median;
@@ -43,45 +43,6 @@ fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
     ))
 }
 
-/// A sentence for each kind of epochs without a solution, and about contradictions, phases of no use and jumps of the clock.
-pub(super) fn outages(followed: &Followed) -> Vec<String> {
-    let phases = phases_of_no_use(followed);
-    let told = contradictions(followed).into_iter().chain(phases).chain(clock_jumps(followed));
-    followed.outages.warnings().chain(told).collect()
-}
-
-/// A sentence about epochs of which the observations contradict the solution.
-fn contradictions(followed: &Followed) -> Option<String> {
-    let (first, contradiction) = followed.contradictions().next()?;
-    let (count, of) = (followed.contradictions().count(), followed.fixes.len());
-    let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
-    let (why, therefore) = match contradiction {
-        Contradiction::Motion => ("the receiver is not where it was found before", "are"),
-        Contradiction::Residuals => ("the observations contradict the solution", "are"),
-        Contradiction::Rejections => {
-            ("more than a tenth of the observations is rejected", "may be")
-        }
-    };
-    Some(format!(
-        "in {count} of {of} epochs from {first} s on {why} ({share:.0} % rejected): positions and σ there {therefore} wrong; \
-         check times, products, codes and antennas"
-    ))
-}
-
-/// A sentence about phases that begin anew all the time.
-fn phases_of_no_use(followed: &Followed) -> Option<String> {
-    /// In a street or under trees it is about one in thirty.
-    const MOST: f64 = 0.2;
-    let share = 2.0 * followed.slips.sum() as f64 / followed.observations.max(1) as f64;
-    (share > MOST).then(|| {
-        format!(
-            "{:.0} % of the phases begin anew, so that positions are hardly better than of codes alone: check the phases' units and \
-             order, and the flags of lost lock",
-            100.0 * share
-        )
-    })
-}
-
 /// A sentence about epochs in which both directions of a smoothed track disagree.
 pub(super) fn apart(smoothed: &Followed, motion: Motion) -> Option<String> {
     let (first, count, of) = (smoothed.apart.first()?, smoothed.apart.len(), smoothed.fixes.len());
@@ -94,26 +55,14 @@ pub(super) fn apart(smoothed: &Followed, motion: Motion) -> Option<String> {
     ))
 }
 
-/// A sentence about jumps of the receiver's clock that were repaired.
-fn clock_jumps(followed: &Followed) -> Option<String> {
-    let (first, milliseconds) = followed.clock_jumps.first()?;
-    let more = match followed.clock_jumps.len() - 1 {
-        0 => String::new(),
-        count => format!(", and {count} times more"),
-    };
-    Some(format!(
-        "at {first} s all phases jump by {milliseconds} ms against their codes{more}: repaired"
-    ))
-}
-
-/// The same of all filters, with the names of the filters unless that is true of all.
-pub(super) fn outages_of_all(followed: &[(FilterKind, Followed)]) -> Vec<String> {
+/// What all filters tell of themselves, with the names of the filters unless that is true of all.
+pub(super) fn of_all(followed: &[(FilterKind, Followed)]) -> Vec<String> {
     let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
     for (filter, followed) in followed {
-        for outage in outages(followed) {
-            match sentences.iter_mut().find(|(sentence, _)| *sentence == outage) {
+        for warning in followed.warnings() {
+            match sentences.iter_mut().find(|(sentence, _)| *sentence == warning) {
                 Some((_, names)) => names.push(filter.name()),
-                None => sentences.push((outage, vec![filter.name()])),
+                None => sentences.push((warning, vec![filter.name()])),
             }
         }
     }

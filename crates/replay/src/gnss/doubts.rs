@@ -1,0 +1,101 @@
+//! What a user should know of what a filter made of a recording.
+
+use kestirim_health::{Health, Reason};
+use kestirim_ppp_filter::Contradiction;
+
+use super::followed::Followed;
+use super::recording::POOR;
+
+impl Followed {
+    /// What speaks against all of it, whatever its epochs say of themselves: many without a solution.
+    pub fn doubts(&self) -> Health {
+        let (without, with) = (self.outages.count(), self.fixes.len());
+        let are_many = without as f64 > POOR * (without + with) as f64;
+        Health::GOOD.with(Reason::Dropout, are_many)
+    }
+
+    /// A sentence for each kind of epochs without a solution, and about contradictions, phases of no use and jumps of the clock.
+    pub fn warnings(&self) -> Vec<String> {
+        let phases = phases_of_no_use(self);
+        let told = contradicted(self).into_iter().chain(phases).chain(clock_jumps(self));
+        self.outages.warnings().chain(told).collect()
+    }
+}
+
+/// A sentence about epochs of which the observations contradict the solution.
+fn contradicted(followed: &Followed) -> Option<String> {
+    let (first, contradiction) = followed.contradictions().next()?;
+    let (count, of) = (followed.contradictions().count(), followed.fixes.len());
+    let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
+    let (why, therefore) = match contradiction {
+        Contradiction::Motion => ("the receiver is not where it was found before", "are"),
+        Contradiction::Residuals => ("the observations contradict the solution", "are"),
+        Contradiction::Rejections => {
+            ("more than a tenth of the observations is rejected", "may be")
+        }
+    };
+    Some(format!(
+        "in {count} of {of} epochs from {first} s on {why} ({share:.0} % rejected): positions and σ there {therefore} wrong; \
+         check times, products, codes and antennas"
+    ))
+}
+
+/// A sentence about phases that begin anew all the time.
+fn phases_of_no_use(followed: &Followed) -> Option<String> {
+    /// In a street or under trees it is about one in thirty.
+    const MOST: f64 = 0.2;
+    let share = 2.0 * followed.slips.sum() as f64 / followed.observations.max(1) as f64;
+    (share > MOST).then(|| {
+        format!(
+            "{:.0} % of the phases begin anew, so that positions are hardly better than of codes alone: check the phases' units and \
+             order, and the flags of lost lock",
+            100.0 * share
+        )
+    })
+}
+
+/// A sentence about jumps of the receiver's clock that were repaired.
+fn clock_jumps(followed: &Followed) -> Option<String> {
+    let (first, milliseconds) = followed.clock_jumps.first()?;
+    let more = match followed.clock_jumps.len() - 1 {
+        0 => String::new(),
+        count => format!(", and {count} times more"),
+    };
+    Some(format!(
+        "at {first} s all phases jump by {milliseconds} ms against their codes{more}: repaired"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gnss::{Fix, Outage, Slips, Unused};
+    use kestirim_ppp_filter::Error;
+    use nalgebra::Vector3;
+
+    fn of(with: usize, without: usize) -> Followed {
+        let fix = Fix { t: 0.0, position: Vector3::zeros() };
+        let mut followed = Followed { fixes: vec![fix; with], ..Followed::default() };
+        let outage = Outage { error: Error::TooFewSatellites, t: 0.0, unused: Unused::default() };
+        (0..without).for_each(|_| followed.outages.add(outage));
+        followed
+    }
+
+    #[test]
+    fn more_than_a_tenth_without_a_solution_is_doubted() {
+        assert_eq!(of(90, 10).doubts(), Health::GOOD);
+        assert_eq!(of(89, 11).doubts(), Reason::Dropout.into());
+    }
+
+    #[test]
+    fn phases_that_begin_anew_all_the_time_are_told() {
+        let with_slips = |loss_of_lock| Followed {
+            observations: 200,
+            slips: Slips { loss_of_lock, ..Slips::default() },
+            ..of(10, 0)
+        };
+        assert_eq!(with_slips(20).warnings(), [""; 0]);
+        let warnings = with_slips(21).warnings();
+        assert!(warnings[0].starts_with("21 % of the phases begin anew"), "{warnings:?}");
+    }
+}
