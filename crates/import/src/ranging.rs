@@ -146,24 +146,10 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
             "--units t=",
         ));
     }
-    let places: Vec<_> = {
-        let mut labels: Vec<_> = found.labels.iter().collect();
-        labels.sort_by_key(|(_, index)| **index);
-        labels.into_iter().map(|(label, _)| place(label, anchors)).collect()
-    };
-    if found.times().next().is_some() && places.iter().all(Option::is_none) {
-        let names: Vec<_> = found.labels.keys().map(|label| quoted(label)).collect();
-        let known: Vec<_> = anchors.iter().map(|name| quoted(name)).collect();
-        let problem =
-            format!("expected ranges to anchors {}, found {}", known.join(", "), names.join(", "));
-        return Err(Error::log(problem));
-    }
-    if let Some([listed, heard]) = counted_apart(&found.labels, anchors) {
-        let problem = format!(
-            "expected anchors counted from {listed}, as the list has them, found them counted from {heard}: name them in the list as the log does, and none that is not heard"
-        );
-        return Err(Error::log(problem));
-    }
+    let mut labels: Vec<_> = found.labels.iter().collect();
+    labels.sort_by_key(|(_, index)| **index);
+    let labels: Vec<_> = labels.into_iter().map(|(label, _)| label.as_str()).collect();
+    let places = places(&labels, anchors)?;
     let all = found.times().count();
     let anchor = |label: usize| places.get(label).copied().flatten();
     let range = |&(time_us, label, metres)| Some(Range { time_us, anchor: anchor(label)?, metres });
@@ -194,7 +180,32 @@ fn of_text(
     }
 }
 
-/// Which anchor a label means: the one of that name, or the one whose name ends with the same number, if only one does.
+/// So many names of a log are told.
+const NAMED: usize = 8;
+
+/// Which anchors of a list the different labels of a log mean: each the one of its name, or the one whose name ends with the same number,
+/// if only one does; none of what is not listed.
+///
+/// # Errors
+/// No label means any, or list and log count from different numbers on.
+pub fn places(labels: &[&str], anchors: &[String]) -> Result<Vec<Option<usize>>, Error> {
+    let places: Vec<_> = labels.iter().map(|label| place(label, anchors)).collect();
+    if !labels.is_empty() && places.iter().all(Option::is_none) {
+        let names =
+            |all: &mut dyn Iterator<Item = &str>| all.map(quoted).collect::<Vec<_>>().join(", ");
+        let known = names(&mut anchors.iter().map(String::as_str));
+        let heard = names(&mut labels.iter().copied().take(NAMED));
+        return Err(Error::log(format!("expected ranges to anchors {known}, found {heard}")));
+    }
+    if let Some([listed, heard]) = counted_apart(labels, anchors) {
+        let problem = format!(
+            "expected anchors counted from {listed}, as the list has them, found them counted from {heard}: name them in the list as the log does, and none that is not heard"
+        );
+        return Err(Error::log(problem));
+    }
+    Ok(places)
+}
+
 fn place(label: &str, anchors: &[String]) -> Option<usize> {
     let same = |name: &String| name.eq_ignore_ascii_case(label);
     if let Some(place) = anchors.iter().position(same) {
@@ -207,7 +218,7 @@ fn place(label: &str, anchors: &[String]) -> Option<usize> {
 
 /// Where the list and the log begin to count, if both number as many anchors one after the other, and not from the same number
 /// on: most names are found in the list then, each for another anchor.
-fn counted_apart(labels: &BTreeMap<String, usize>, anchors: &[String]) -> Option<[u32; 2]> {
+fn counted_apart(labels: &[&str], anchors: &[String]) -> Option<[u32; 2]> {
     if labels.len() != anchors.len() || anchors.len() < 3 {
         return None;
     }
@@ -218,7 +229,7 @@ fn counted_apart(labels: &BTreeMap<String, usize>, anchors: &[String]) -> Option
         follow.then_some(begin)
     };
     let listed = begin(anchors.iter().map(|name| number(name)).collect::<Option<_>>()?)?;
-    let heard = begin(labels.keys().map(|name| number(name)).collect::<Option<_>>()?)?;
+    let heard = begin(labels.iter().map(|name| number(name)).collect::<Option<_>>()?)?;
     (listed != heard).then_some([listed, heard])
 }
 

@@ -184,6 +184,23 @@ fn planted_biases_are_found_and_their_file_helps() {
     let short = room.desk.file("short.csv", "anchor,bias\nA0,0.3\nA9,1\n");
     let warned = room.report(&["--height", "1", "--calibration", &short]);
     assert!(warned["warnings"][0].as_str().unwrap().contains("A1"));
+    let centimetres =
+        |epoch: usize, t: f64, anchor: usize, range: f64| wild(epoch, t, anchor, 100.0 * range);
+    let room = Room::new(planted, centimetres);
+    let (anchors, log, truth) = (&*room.anchors, &*room.log, &*room.truth);
+    let sentence = refusal(&[
+        "calibrate",
+        "robot",
+        "--anchors",
+        anchors,
+        "--log",
+        log,
+        "--truth",
+        truth,
+        "--out",
+        &out,
+    ]);
+    assert!(sentence.contains("in another unit"), "{sentence}");
 }
 
 #[test]
@@ -210,9 +227,12 @@ fn bad_ranges_are_counted_and_do_no_harm() {
     for scalar in ["f32", "f64", "fixed"] {
         let report = room.report(&["--height", "1", "--scalar", scalar]);
         assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.12, "{report}");
-        // NaN, infinity, −143 m, 1000 m, the same again, and what is five seconds old.
-        assert_eq!(report["rejected"].as_u64(), Some(6 * 40), "{report}");
-        assert!(report["warnings"][0].as_str().unwrap().starts_with("40 ranges"));
+        // Infinity, 1000 m, the same again, and what is five seconds old; NaN and −143 m are none.
+        assert_eq!(report["rejected"].as_u64(), Some(4 * 40), "{report}");
+        for (warning, end) in [(0, "not listed: left out"), (1, "no distance: left out")] {
+            let told = report["warnings"][warning].as_str().unwrap();
+            assert!(told.starts_with("40 ranges") && told.ends_with(end), "{told}");
+        }
     }
 }
 
@@ -345,6 +365,8 @@ fn broken_files_are_refused_with_file_and_line() {
         ("e.csv", "t,anchor,range\n0,A0,one\n", "line 2: expected a range or nothing"),
         ("f.csv", "t,anchor,range\n0,A0\n", "line 2: expected 3 fields"),
         ("g.csv", "t,anchor,range\n1e99,A0,1\n", "beyond any clock"),
+        ("m.csv", "t,anchor,range\n0,B7,1\n", "expected ranges to anchors"),
+        ("n.csv", "t,anchor,range\n0,1,1\n0,2,1\n0,3,1\n0,4,1\n", "anchors counted from 0"),
     ] {
         let log = desk.file(name, contents);
         let files = ["replay", "robot", "--strict", "--anchors", &room.anchors, "--log", &log];

@@ -5,6 +5,7 @@ mod in_space;
 mod jumps;
 mod moments;
 mod stuck;
+mod together;
 mod wheels;
 
 use kestirim_health::Reason;
@@ -63,6 +64,7 @@ pub fn check<'a>(
         KnownHeight::Varying => [None, wheels::find(&at(anchors.mean_height()), &parts)],
         KnownHeight::Unknown | KnownHeight::NotFound => [None, None],
     };
+    findings.extend(together::find(&parts));
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, anchors.names.len(), &name));

@@ -13,6 +13,7 @@ use super::recording::anchors;
 use super::recording::calibration::{self, AnchorCalibration, Residuals};
 use super::recording::{points, ranges};
 use crate::system::{Calibration, System};
+use crate::text::printable;
 use crate::{Error, output};
 
 /// The command.
@@ -65,6 +66,13 @@ impl Options {
     fn write(&self) -> Result<Vec<AnchorCalibration>, Error> {
         let anchors = anchors::read(&self.anchors)?;
         let residuals = self.residuals(&anchors)?;
+        if let Some(name) = residuals.doubtful(&anchors) {
+            let problem = format!(
+                "expected ranges of up to 200 m, found most of those to {} beyond: are they in another unit?",
+                printable(name)
+            );
+            return Err(Error::File { path: self.log.clone(), problem });
+        }
         let calibrations = residuals.calibrations(&anchors);
         if calibrations.is_empty() {
             return Err(Error::File {

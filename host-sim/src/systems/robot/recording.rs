@@ -181,7 +181,7 @@ impl Recording {
         if files.one("imu").is_some() && sensors.inertial.is_empty() {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
-        self.warn_of_unlisted(log.unlisted);
+        self.warn_of_left_out(log.unlisted, log.without);
         let ahead = sensors.drop_far_ahead();
         if ahead > 0 {
             self.warn(format!(
@@ -204,7 +204,8 @@ impl Recording {
         let (mut logs, found) = ranges::read_static(log, &self.anchors, options)?;
         self.tell("ranges", &found);
         let heights = height.map(points::read_heights).transpose()?;
-        self.warn_of_unlisted(logs.values().map(|log| log.unlisted).sum());
+        let sum = |of: fn(&RangeLog) -> usize| -> usize { logs.values().map(of).sum() };
+        self.warn_of_left_out(sum(|log| log.unlisted), sum(|log| log.without));
         for point in points {
             let RangeLog { rows, .. } = logs.remove(&point.name).unwrap_or_default();
             let height_m = heights.as_ref().map(|heights| {
@@ -269,9 +270,12 @@ impl Recording {
         !matches!(self.parts.as_slice(), [part] if part.name.is_empty())
     }
 
-    fn warn_of_unlisted(&mut self, unlisted: usize) {
+    fn warn_of_left_out(&mut self, unlisted: usize, without: usize) {
         if unlisted > 0 {
             self.warn(format!("{unlisted} ranges are from anchors that are not listed: left out"));
+        }
+        if without > 0 {
+            self.warn(format!("{without} ranges are zero or less, which is no distance: left out"));
         }
     }
 

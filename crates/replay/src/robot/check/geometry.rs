@@ -19,6 +19,9 @@ const CONTRADICTION_M: f64 = 0.6;
 /// … and one that nothing explains, where walls and people alone may do as much, from here on, m and of the usual range.
 const UNEXPLAINED_M: f64 = 1.5;
 const UNEXPLAINED_SHARE: f64 = 0.02;
+/// Of so many anchors one that stands elsewhere is averaged down, and the others show the clearer that it is the one: from here on, m.
+const MANY: usize = 6;
+const OF_MANY_M: f64 = 0.3;
 /// A change explains it if it leaves so much less, …
 const EXPLAINS: f64 = 3.0;
 /// … and no more than this, m.
@@ -177,7 +180,8 @@ impl Tried<'_> {
         names: &[String],
     ) -> Option<(Reason, String)> {
         let is_contradiction = left >= CONTRADICTION_M;
-        let explains = if is_contradiction { EXPLAINS } else { CLEARLY };
+        let is_of_many = self.anchors.len() >= MANY && left >= OF_MANY_M;
+        let explains = if is_contradiction || is_of_many { EXPLAINS } else { CLEARLY };
         let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
         let agree = |with: f64| format!("they would agree within {with:.2} m");
         // Of four anchors three are left without one, and one range to spare; of three anchors there is but one.

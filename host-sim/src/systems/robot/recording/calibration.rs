@@ -37,12 +37,15 @@ pub struct AnchorCalibration {
 #[derive(Debug, Clone)]
 pub struct Residuals {
     of_anchors: Vec<Vec<f64>>,
+    /// How many ranges of each were left out, as no radio measures them.
+    left_out: Vec<usize>,
 }
 
 impl Residuals {
     /// Nothing yet.
     pub fn new(anchors: &Anchors) -> Self {
-        Self { of_anchors: vec![Vec::new(); anchors.names.len()] }
+        let count = anchors.names.len();
+        Self { of_anchors: vec![Vec::new(); count], left_out: vec![0; count] }
     }
 
     /// Takes in a range measured at a known place.
@@ -55,7 +58,16 @@ impl Residuals {
         if PLAUSIBLE.contains(&range) {
             let squares: f64 = place.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum();
             residuals.push(range - squares.sqrt());
+        } else {
+            self.left_out[anchor] += 1;
         }
+    }
+
+    /// The first anchor of which more ranges were left out than taken: they are in another unit.
+    pub fn doubtful<'a>(&self, anchors: &'a Anchors) -> Option<&'a str> {
+        let each = self.of_anchors.iter().zip(&self.left_out).zip(&anchors.names);
+        let mut doubtful = each.filter(|((of, left_out), _)| **left_out > of.len());
+        doubtful.next().map(|(_, name)| name.as_str())
     }
 
     /// The calibration of every anchor that was heard.

@@ -17,6 +17,26 @@ const USUAL_STEP_S: [f64; 2] = [2e-3, 2.0];
 /// Beyond any count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
+/// The different names of anchors in a log, and of each range which one it has.
+#[derive(Debug, Default)]
+struct Names(Vec<String>);
+
+impl Names {
+    fn index(&mut self, name: &str) -> usize {
+        let known = self.0.iter().position(|known| known == name);
+        known.unwrap_or_else(|| {
+            self.0.push(name.to_owned());
+            self.0.len() - 1
+        })
+    }
+
+    /// Which anchors of the list they mean.
+    fn places(&self, path: &Path, anchors: &Anchors) -> Result<Vec<Option<usize>>, Error> {
+        let names: Vec<_> = self.0.iter().map(String::as_str).collect();
+        ranging::places(&names, &anchors.names).map_err(|error| table::refused(path, &error))
+    }
+}
+
 /// The ranges of a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RangeLog {
@@ -26,6 +46,29 @@ pub struct RangeLog {
     pub differences: Vec<Difference>,
     /// How many lines name an anchor that is not in the list; they are left out.
     pub unlisted: usize,
+    /// How many say that there is no range by a number that is none: zero or less.
+    pub without: usize,
+}
+
+impl RangeLog {
+    /// Takes a line, with the place of its anchor's name among those of the log.
+    fn add(&mut self, time_us: i64, name: usize, range: Option<f64>) {
+        let is_none = range.is_some_and(|range| range <= 0.0);
+        self.without += usize::from(is_none);
+        let range = range.filter(|range| !is_none && !range.is_nan());
+        self.rows.push(RangeRow { time_us, anchor: name, range });
+    }
+
+    /// Puts the anchors' places in the list in the place of their names in the log.
+    fn resolve(&mut self, places: &[Option<usize>]) {
+        let count = self.rows.len();
+        self.rows.retain_mut(|row| {
+            let place = places.get(row.anchor).copied().flatten();
+            row.anchor = place.unwrap_or_default();
+            place.is_some()
+        });
+        self.unlisted = count - self.rows.len();
+    }
 }
 
 /// Reads the log of a moving tag: as its radio printed it, stamps, differences, a column an anchor, or a table with columns `t,anchor,range` (s,
@@ -38,7 +81,7 @@ pub fn read_moving(
     anchors: &Anchors,
     options: &Options,
 ) -> Result<(RangeLog, Found), Error> {
-    let mut log = RangeLog::default();
+    let (mut log, mut names) = (RangeLog::default(), Names::default());
     let bytes = text::bytes(path)?;
     if let Some(found) = of_radio(path, &bytes, anchors, options)? {
         return Ok(found);
@@ -50,14 +93,11 @@ pub fn read_moving(
         |header| header.require(["t", "anchor", "range"]),
         |&[t, anchor, range], row| {
             let time_us = row.time_us(t)?;
-            let range = optional_range(row, range)?;
-            match anchors.find(&row.text(anchor)) {
-                Some(anchor) => log.rows.push(RangeRow { time_us, anchor, range }),
-                None => log.unlisted += 1,
-            }
+            log.add(time_us, names.index(&row.text(anchor)), optional_range(row, range)?);
             Ok(())
         },
     )?;
+    log.resolve(&names.places(path, anchors)?);
     Ok((log, found))
 }
 
@@ -89,7 +129,7 @@ fn of_radio(
         };
         let differences = read.differences.iter().map(difference).collect();
         let found = Found { import: vec![read.conclusion], warnings: read.damage.sentences() };
-        (RangeLog { rows, differences, unlisted: read.unlisted }, found)
+        (RangeLog { rows, differences, unlisted: read.unlisted, without: 0 }, found)
     }))
 }
 
@@ -103,7 +143,7 @@ pub fn read_static(
     anchors: &Anchors,
     options: &Options,
 ) -> Result<(BTreeMap<String, RangeLog>, Found), Error> {
-    let mut logs = BTreeMap::<String, RangeLog>::new();
+    let (mut logs, mut names) = (BTreeMap::<String, RangeLog>::new(), Names::default());
     let found = table::read_log(
         path,
         &Log { what: "ranges", usual_step_s: None, options },
@@ -116,20 +156,18 @@ pub fn read_static(
             }
             let range = optional_range(row, range)?;
             let log = logs.entry(row.text(point).into_owned()).or_default();
-            match anchors.find(&row.text(anchor)) {
-                Some(anchor) => {
-                    let time_us = epoch as i64 * EPOCH_US;
-                    log.rows.push(RangeRow { time_us, anchor, range });
-                }
-                None => log.unlisted += 1,
-            }
+            log.add(epoch as i64 * EPOCH_US, names.index(&row.text(anchor)), range);
             Ok(())
         },
     )?;
+    let places = names.places(path, anchors)?;
+    for log in logs.values_mut() {
+        log.resolve(&places);
+    }
     Ok((logs, found))
 }
 
-/// A range, or none from an empty field. Radios log the wildest values, NaN and infinities among them: what
+/// A range, or none from an empty field. Radios log the wildest values, infinities among them: what
 /// is a number at all is read, and refused by the tracker.
 fn optional_range(row: &Row<'_>, column: Column) -> Result<Option<f64>, Error> {
     if row.is_empty(column) {
