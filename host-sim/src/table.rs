@@ -263,6 +263,12 @@ impl Header<'_> {
         Ok(Some(columns))
     }
 
+    /// The column that is this one, but for a unit in brackets behind its name.
+    pub fn with_unit(&self, name: &str) -> Option<&str> {
+        let bare = |column: &str| column.split(['[', '(']).next().map(str::trim) == Some(name);
+        self.heading.names().iter().map(String::as_str).find(|column| bare(column))
+    }
+
     /// A sentence that names the columns of which nobody asked, if there are any.
     fn left_out(&self) -> Option<String> {
         let found = self.found.borrow();

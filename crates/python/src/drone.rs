@@ -2,8 +2,8 @@
 
 use kestirim_health::{Health, Reason};
 use kestirim_replay::drone::{
-    Area, EnvironmentKind, Estimate, MOST_DRAWN, Misfit, Next, Quantity, Search, Stop, level_step,
-    thinned, wavelength_m,
+    Area, Doubt, EnvironmentKind, Estimate, MOST_DRAWN, Next, Quantity, Search, Stop, thinned,
+    wavelength_m,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -58,11 +58,11 @@ pub(crate) fn drone<'py>(
             let search = search.map_err(refused)?.at_wavelength(wavelength_m).within(window);
             let estimates = search.find(environment, quantity);
             let channel = environment.and_then(|it| it.channel_at(wavelength_m).ok());
-            let is_off = estimates.last().zip(channel).is_some_and(|(last, channel)| {
-                Misfit::find(&stops[..=last.stop], last, &channel).is_some()
+            let moved_m = search.moved(environment, quantity);
+            let is_doubted = estimates.last().is_some_and(|last| {
+                Doubt::all(&stops, last, channel.as_ref(), moved_m).next().is_some()
             });
-            let is_off = is_off || search.moved(environment, quantity).is_some();
-            Ok(Found { stops, estimates, is_off })
+            Ok(Found { stops, estimates, is_doubted })
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(search);
         let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
@@ -128,18 +128,17 @@ struct Found {
     /// The measurements that were used.
     stops: Vec<Stop>,
     estimates: Vec<Estimate>,
-    /// Whether the environment does not explain the measurements, or the user moves.
-    is_off: bool,
+    /// Whether anything speaks against the flight.
+    is_doubted: bool,
 }
 
 impl Found {
     fn results(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let Self { stops, estimates, is_off } = self;
+        let Self { stops, estimates, is_doubted } = self;
         let Some(last) = estimates.last() else {
             return Err(refused("no place explains the measurements"));
         };
-        let is_stepping = level_step(&stops, last.place).is_some();
-        let doubts = Health::GOOD.with(Reason::Innovations, is_stepping || is_off);
+        let doubts = Health::GOOD.with(Reason::Innovations, is_doubted);
         let next = last.next.map(|Next { place: [x, y], height, sd_m }| (x, y, height, sd_m));
         let level = |estimate: &Estimate| estimate.level_db.unwrap_or(f64::NAN);
         Ok(Results::new(py)

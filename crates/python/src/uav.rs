@@ -125,27 +125,27 @@ fn results<'py>(
     flight: &Deviations,
     followed: &Followed,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Followed { estimates, innovations, rejected, healths, .. } = followed;
+    let Followed { estimates, innovations, rejected, .. } = followed;
+    let lines: Vec<Health> = followed.lines().collect();
     let seconds = estimates.iter().map(|estimate| estimate.t_us as f64 / 1e6);
     let states = estimates.iter().map(|estimate| flight.absolute(estimate).into());
     let sigmas = estimates.iter().map(|it| it.sigma.map_or([f64::NAN; 4], <[f64; 4]>::from));
     let (count, outputs) = (estimates.len(), innovations.len());
-    let lines = (0..count).flat_map(|line| innovations.iter().map(move |output| output[line]));
+    let all = (0..count).flat_map(|line| innovations.iter().map(move |output| output[line]));
     let told = [Reason::Innovations, Reason::Rejected, Reason::Time];
-    let seen = |reason: &Reason| healths.iter().any(|health| health.has(*reason));
+    let seen = |reason: &Reason| lines.iter().any(|health| health.has(*reason));
     let doubts: Health = told.into_iter().filter(seen).collect();
-    let doubts = doubts.with(Reason::Innovations, !followed.contradictions().is_empty());
     Ok(Results::new(py)
         .line("t", seconds.collect())?
         .table("state", states.collect::<Vec<[f64; 4]>>())?
         .table("sigma", sigmas.collect())?
         .shaped(
             "innovations",
-            lines.map(|innovation| innovation.unwrap_or(f64::NAN)).collect(),
+            all.map(|innovation| innovation.unwrap_or(f64::NAN)).collect(),
             [count, outputs],
         )?
         .line("rejected", rejected.iter().map(|count| i64::from(*count)).collect())?
-        .line("health", followed.lines().map(|health| code(health.state())).collect())?
+        .line("health", lines.iter().map(|health| code(health.state())).collect())?
         .words("reasons", reasons(doubts))?
         .done())
 }

@@ -6,6 +6,7 @@
 mod check;
 mod cloud;
 mod density;
+mod doubt;
 mod error;
 mod estimate;
 mod flight;
@@ -18,6 +19,7 @@ mod trace;
 pub use self::check::check;
 pub use self::cloud::Cloud;
 pub use self::density::Region;
+pub use self::doubt::Doubt;
 pub use self::error::Error;
 pub use self::estimate::{Estimate, Next};
 pub use self::flight::{

@@ -41,11 +41,12 @@ pub enum Contradiction {
         /// Root mean square, in the model's standard deviations.
         size: f64,
     },
-    /// The estimated airspeed is beyond those of a grid of models, by more than half of how far its last two are apart.
+    /// The estimated airspeed is beyond those of a grid of models, by more than half of how far its last two are apart; or for a quarter
+    /// of the flight more than 12 % from that of a single model.
     Beyond {
         /// The furthest, m/s.
         airspeed: f64,
-        /// The end of the grid, m/s.
+        /// The end of the grid, or where the single model was made, m/s.
         end: f64,
     },
 }

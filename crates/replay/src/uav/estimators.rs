@@ -45,8 +45,8 @@ pub struct Followed {
     pub beside: Vec<Beside>,
     /// Standard deviations (m/s) of the gusts along and across that the innovations support most.
     pub gust: Option<[f64; 2]>,
-    /// The estimated airspeed that is furthest beyond those of a grid of models, and the end of the grid (m/s), if that is more
-    /// than half of how far its last two are apart.
+    /// The estimated airspeed (m/s) that is furthest beyond those of a grid of models, and the end of the grid; or furthest from that of
+    /// a single model, and that one: if it is as far as [`Contradiction::Beyond`](super::Contradiction::Beyond) says.
     pub beyond: Option<[f64; 2]>,
 }
 

@@ -139,46 +139,71 @@ impl Flight<'_> {
             Beside { name, value, sigma, said }
         });
         followed.beside = told.collect();
-        followed.beyond = outside.furthest;
+        followed.beyond = outside.told();
         followed.gust = extended.gust.map(|(sigmas, _)| sigmas.map(|sigma| gust * sigma));
         Ok((support, followed))
     }
 }
 
-/// Airspeeds beyond those of a grid.
+/// Airspeeds beyond those of a grid, or far from that of a single model.
 struct Outside {
     /// Airspeed that estimates deviate from, m/s.
     origin: f64,
-    /// Each end, and how far it is to the model beside it: downwards negative.
+    /// Each end, and how far beyond it the model does not hold: downwards negative.
     ends: Vec<[f64; 2]>,
+    /// The share of all estimates that must be beyond.
+    share: f64,
+    /// How many are, and of how many.
+    count: [usize; 2],
     /// The furthest estimate, and the end that it is beyond.
     furthest: Option<[f64; 2]>,
 }
 
 impl Outside {
+    /// Of its airspeed, how far a single model holds: there the lift of one that is linear is off by 3 (ΔV/V)², 4 %.
+    const ALONE: f64 = 0.12;
+    /// A single model may leave that in a dive or a climb, but not for such a share of the flight.
+    const SHARE: f64 = 0.25;
+
     fn of(model: &Model) -> Self {
         let airspeed = |model: &Model| model.trim.map_or(0.0, |(state, _)| state[AIRSPEED]);
         let grid = model.extended.iter().flat_map(|extended| &extended.grid);
         let airspeeds: Vec<f64> = grid.map(airspeed).collect();
-        let ends = match (airspeeds.first_chunk(), airspeeds.last_chunk()) {
+        let origin = airspeed(model);
+        let (ends, share) = match (airspeeds.first_chunk(), airspeeds.last_chunk()) {
             (Some([first, second]), Some([last_but_one, last])) => {
-                vec![[*first, first - second], [*last, last - last_but_one]]
+                let apart = [first - second, last - last_but_one];
+                (vec![[*first, 0.5 * apart[0]], [*last, 0.5 * apart[1]]], 0.0)
             }
-            _ => Vec::new(),
+            _ if origin > 0.0 => {
+                let far = Self::ALONE * origin;
+                (vec![[origin, -far], [origin, far]], Self::SHARE)
+            }
+            _ => (Vec::new(), 0.0),
         };
-        Self { origin: airspeed(model), ends, furthest: None }
+        Self { origin, ends, share, count: [0; 2], furthest: None }
     }
 
     /// Looks at an estimate, unless it is hardly one.
     fn meet(&mut self, deviation: f64, sigma: f64) {
         let airspeed = self.origin + deviation;
-        for [end, apart] in &self.ends {
-            let by = (airspeed - end) * apart.signum();
-            let most = self.furthest.map_or(0.0, |[airspeed, end]| (airspeed - end).abs());
-            if by > 0.5 * apart.abs() && sigma < 0.5 * apart.abs() && by > most {
-                self.furthest = Some([airspeed, *end]);
+        self.count[1] += 1;
+        for [end, far] in &self.ends {
+            let by = (airspeed - end) * far.signum();
+            if by > far.abs() && sigma < far.abs() {
+                self.count[0] += 1;
+                let most = self.furthest.map_or(0.0, |[airspeed, end]| (airspeed - end).abs());
+                if by > most {
+                    self.furthest = Some([airspeed, *end]);
+                }
             }
         }
+    }
+
+    /// The furthest of them, if so many are there that the model is doubted.
+    fn told(&self) -> Option<[f64; 2]> {
+        let [beyond, all] = self.count.map(|count| count as f64);
+        self.furthest.filter(|_| beyond > self.share * all)
     }
 }
 

@@ -150,6 +150,9 @@ fn a_flight_beyond_the_grid_is_told() {
     assert!(end == 18.0 && (21.8..22.6).contains(&airspeed), "{airspeed}");
     let (airspeed, end) = beyond(json!([18, 20, 22])).unwrap();
     assert!(end == 18.0 && (13.4..14.2).contains(&airspeed), "{airspeed}");
+    // Of a single model for half of the flight.
+    let (airspeed, end) = beyond(json!(18)).unwrap();
+    assert!(end == 18.0 && (airspeed - end).abs() > 3.0, "{airspeed}");
 }
 
 #[test]

@@ -3,14 +3,14 @@
 mod accuracy;
 
 use kestirim_replay::drone::{
-    EnvironmentKind, Estimate, Misfit, Next, Other, Quantity, Track, level_step,
+    Doubt, EnvironmentKind, Estimate, Misfit, Next, Other, Quantity, Track,
 };
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
 use super::Drone;
+use super::recording::Recording;
 use super::recording::plane::Origin;
-use super::recording::{Recorded, Recording};
 use super::settings::expected_loss_db;
 use crate::Error;
 use crate::metrics::mean;
@@ -157,8 +157,8 @@ pub(super) fn account(
     account.fact("standard deviation", format!("{:.1} m", shown.sd_m));
     match recording {
         Recording::Flight(recorded) => {
-            for sentence in doubts(recorded, settings, track, shown) {
-                account.warn(sentence);
+            for doubt in doubts(settings, track, shown) {
+                account.warn(sentence(&doubt, settings, recorded.flight.quantity));
                 account.doubt(Reason::Innovations);
             }
             account.about = Some(recorded.log.clone());
@@ -231,29 +231,23 @@ fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, sh
     }
 }
 
-/// What speaks against the flight up to `shown`, or what it was taken for, a sentence each.
-fn doubts(
-    recorded: &Recorded,
-    settings: &Settings,
-    track: &Track,
-    shown: &Estimate,
-) -> impl Iterator<Item = String> {
-    let stops = &track.stops[..=shown.stop];
-    let step = level_step(stops, shown.place).map(|(t, by)| {
-        format!(
-            "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
-        )
-    });
-    let moved = track.moved_m.map(|apart| {
-        format!(
-            "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
-        )
-    });
+/// What speaks against the flight up to `shown`.
+fn doubts(settings: &Settings, track: &Track, shown: &Estimate) -> Vec<Doubt> {
     let channel = super::settings::channel(settings);
-    let misfit = channel
-        .and_then(|it| Misfit::find(stops, shown, &it))
-        .map(|misfit| in_words(&misfit, &settings.choice("environment"), recorded.flight.quantity));
-    [step, moved, misfit].into_iter().flatten()
+    Doubt::all(&track.stops, shown, channel.as_ref(), track.moved_m).collect()
+}
+
+/// A sentence about it.
+fn sentence(doubt: &Doubt, settings: &Settings, quantity: Quantity) -> String {
+    match doubt {
+        Doubt::Step { t, by } => format!(
+            "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
+        ),
+        Doubt::Moved(apart) => format!(
+            "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
+        ),
+        Doubt::Misfit(misfit) => in_words(misfit, &settings.choice("environment"), quantity),
+    }
 }
 
 /// Time, place and expected distance after each measurement. What speaks against the whole flight speaks against each.
@@ -264,14 +258,13 @@ pub(super) fn table(recording: &Recording, settings: &Settings, track: &Track) -
         numbers.map(|number| format!("{number:.3}")).to_vec()
     };
     let doubted = match (recording, track.estimates.last()) {
-        (Recording::Flight(recorded), Some(last)) => {
-            doubts(recorded, settings, track, last).next().map(|_| Reason::Innovations.state())
-        }
-        _ => None,
+        (Recording::Flight(_), Some(last)) => !doubts(settings, track, last).is_empty(),
+        _ => false,
     };
+    let health = if doubted { Reason::Innovations.state() } else { HealthState::Good };
     Table {
         rows: track.estimates.iter().map(row).collect(),
-        health: vec![doubted.unwrap_or(HealthState::Good); track.estimates.len()],
+        health: vec![health; track.estimates.len()],
         ..Table::new(&["t", "x", "y", "sd"])
     }
 }

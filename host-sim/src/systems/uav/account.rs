@@ -159,8 +159,8 @@ fn contradicted(track: &Track, contradiction: &Contradiction) -> String {
              measures something else, or another aircraft"
         ),
         Contradiction::Beyond { airspeed, end } => format!(
-            "the airspeed reaches {airspeed:.1} m/s, far beyond the grid of models, which ends at {end:.1} m/s: what is estimated \
-             there is as the model at the end has it"
+            "the airspeed reaches {airspeed:.1} m/s, too far from {end:.1} m/s, where the model was made or its grid ends: what is \
+             estimated there is as the model has it at that airspeed"
         ),
     }
 }

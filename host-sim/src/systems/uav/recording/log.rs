@@ -8,7 +8,7 @@ use kestirim_replay::uav::{Log, STATE_COLUMNS, Sample, Truth};
 
 use crate::Error;
 use crate::table::{self, Column, Found, Header};
-use crate::text;
+use crate::text::{self, printable};
 
 /// An aircraft's sensors are read so often, s.
 const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
@@ -121,6 +121,11 @@ fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, C
     for (output, name) in names.iter().enumerate() {
         if let Some(column) = header.find(name)? {
             columns.push((output, column));
+        } else if let Some(other) = header.with_unit(name) {
+            let found = printable(other);
+            return Err(header.error(format!(
+                "expected {name} in the unit of the model (m, s, rad) under this name alone, found {found}"
+            )));
         }
     }
     Ok(columns)

@@ -1,0 +1,37 @@
+//! What speaks against a flight.
+
+use kestirim_air_to_ground::Channel;
+
+use super::{Estimate, Misfit, Stop, level_step};
+
+/// What speaks against a flight, or what it was taken for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Doubt {
+    /// The levels step at a time, s, by so many dB.
+    Step {
+        /// When, s.
+        t: f64,
+        /// By how much, dB.
+        by: f64,
+    },
+    /// The user moves, and was taken for one who stays: the first and the last third of the flight place the user so far apart, m.
+    Moved(f64),
+    /// The environment does not explain the measurements.
+    Misfit(Misfit),
+}
+
+impl Doubt {
+    /// All that speak against the measurements up to an estimate; `channel` is the environment's, if one is known, and `moved_m`
+    /// what [`Search::moved`](super::Search::moved) says.
+    pub fn all(
+        stops: &[Stop],
+        estimate: &Estimate,
+        channel: Option<&Channel<f64>>,
+        moved_m: Option<f64>,
+    ) -> impl Iterator<Item = Self> {
+        let stops = &stops[..=estimate.stop];
+        let step = level_step(stops, estimate.place).map(|(t, by)| Self::Step { t, by });
+        let misfit = channel.and_then(|it| Misfit::find(stops, estimate, it));
+        [step, moved_m.map(Self::Moved), misfit.map(Self::Misfit)].into_iter().flatten()
+    }
+}
