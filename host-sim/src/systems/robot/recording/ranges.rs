@@ -53,13 +53,12 @@ pub struct RangeLog {
 impl RangeLog {
     /// Takes a line, with the place of its anchor's name among those of the log.
     fn add(&mut self, time_us: i64, name: usize, range: Option<f64>) {
-        let is_none = range.is_some_and(|range| range <= 0.0);
-        self.without += usize::from(is_none);
-        let range = range.filter(|range| !is_none && !range.is_nan());
+        let range = range.filter(|range| !range.is_nan());
         self.rows.push(RangeRow { time_us, anchor: name, range });
     }
 
-    /// Puts the anchors' places in the list in the place of their names in the log.
+    /// Puts the anchors' places in the list in the place of their names in the log, and takes out what is no distance, unless most
+    /// are none: then they are wrong, and say so themselves.
     fn resolve(&mut self, places: &[Option<usize>]) {
         let count = self.rows.len();
         self.rows.retain_mut(|row| {
@@ -68,6 +67,14 @@ impl RangeLog {
             place.is_some()
         });
         self.unlisted = count - self.rows.len();
+        let is_none = |row: &RangeRow| row.range.is_some_and(|range| range <= 0.0);
+        let without = self.rows.iter().filter(|row| is_none(row)).count();
+        if 2 * without <= self.rows.len() {
+            self.without = without;
+            for row in self.rows.iter_mut().filter(|row| is_none(row)) {
+                row.range = None;
+            }
+        }
     }
 }
 
