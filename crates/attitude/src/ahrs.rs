@@ -91,8 +91,8 @@ impl<T: Scalar> Ahrs<T> {
         self.orientation = self.orientation.turned_in_earth(correction);
     }
 
-    /// Turns the reference with the body, by a rotation vector in body axes (rad): a sample of which more is known than a rate that is held.
-    /// No bias is taken off.
+    /// Turns the reference by how the body turned, a rotation vector in body axes (rad), where that is known better than as rate ×
+    /// interval. The gyroscope's bias is not taken off.
     pub fn turn_in_body(&mut self, turn: &SVector<T, 3>) {
         self.orientation = self.orientation.turned_in_body(turn);
     }

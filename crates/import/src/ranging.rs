@@ -21,7 +21,7 @@ mod wide;
 use std::collections::BTreeMap;
 
 use crate::damage::Damage;
-use crate::error::{Error, quoted};
+use crate::error::{Error, listed, quoted};
 use crate::options::Options;
 use crate::text::Text;
 
@@ -180,21 +180,25 @@ fn of_text(
     }
 }
 
-/// So many names of a log are told.
-const NAMED: usize = 8;
-
-/// Which anchors of a list the different labels of a log mean: each the one of its name, or the one whose name ends with the same number,
-/// if only one does; none of what is not listed.
+/// Which anchors of a list the different labels of a log mean: each the one of its name; if none is a name of the list, the one whose name
+/// ends with the same number, if only one does.
 ///
 /// # Errors
 /// No label means any, or list and log count from different numbers on.
 pub fn places(labels: &[&str], anchors: &[String]) -> Result<Vec<Option<usize>>, Error> {
-    let places: Vec<_> = labels.iter().map(|label| place(label, anchors)).collect();
+    let named: Vec<_> = labels.iter().map(|label| by_name(label, anchors)).collect();
+    // A log that has names of the list means by them what the list does, and nothing by a number alone.
+    let places = if named.iter().any(Option::is_some) {
+        named
+    } else {
+        labels.iter().map(|label| by_number(label, anchors)).collect()
+    };
     if !labels.is_empty() && places.iter().all(Option::is_none) {
-        let names =
-            |all: &mut dyn Iterator<Item = &str>| all.map(quoted).collect::<Vec<_>>().join(", ");
-        let known = names(&mut anchors.iter().map(String::as_str));
-        let heard = names(&mut labels.iter().copied().take(NAMED));
+        let [known, heard]: [Vec<_>; 2] = [
+            anchors.iter().map(|name| quoted(name)).collect(),
+            labels.iter().map(|label| quoted(label)).collect(),
+        ];
+        let [known, heard] = [known, heard].map(|all| listed(all.iter().map(String::as_str)));
         return Err(Error::log(format!("expected ranges to anchors {known}, found {heard}")));
     }
     if let Some([listed, heard]) = counted_apart(labels, anchors) {
@@ -206,11 +210,17 @@ pub fn places(labels: &[&str], anchors: &[String]) -> Result<Vec<Option<usize>>,
     Ok(places)
 }
 
+/// The same of a label alone.
 fn place(label: &str, anchors: &[String]) -> Option<usize> {
-    let same = |name: &String| name.eq_ignore_ascii_case(label);
-    if let Some(place) = anchors.iter().position(same) {
-        return Some(place);
-    }
+    by_name(label, anchors).or_else(|| by_number(label, anchors))
+}
+
+fn by_name(label: &str, anchors: &[String]) -> Option<usize> {
+    let exact = anchors.iter().position(|name| name == label);
+    exact.or_else(|| anchors.iter().position(|name| name.eq_ignore_ascii_case(label)))
+}
+
+fn by_number(label: &str, anchors: &[String]) -> Option<usize> {
     let number = number(label)?;
     let mut numbered = (0..anchors.len()).filter(|&i| self::number(&anchors[i]) == Some(number));
     numbered.next().filter(|_| numbered.next().is_none())
@@ -242,6 +252,17 @@ fn number(name: &str) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_alone_means_an_anchor_only_where_no_name_does() {
+        let anchors = ["A0", "A1", "A2"].map(str::to_owned);
+        let found = |labels: &[&str]| places(labels, &anchors).ok();
+        assert_eq!(found(&["A1", "B1", "a0"]), Some(vec![Some(1), None, Some(0)]));
+        assert_eq!(found(&["1", "2"]), Some(vec![Some(1), Some(2)]));
+        assert_eq!(found(&["1", "2", "3"]), None, "counted from another number");
+        assert_eq!(found(&["B7"]), None);
+        assert_eq!(found(&[]), Some(Vec::new()));
+    }
 
     fn ranges(text: &str, anchors: &[&str], options: &Options) -> Result<Ranging, String> {
         let anchors: Vec<_> = anchors.iter().map(|&name| name.to_owned()).collect();
@@ -287,7 +308,7 @@ mod tests {
                          [0.600] AT+RANGE=tid:1,mask:03,seq:129,range:(140,120,0,0,0,0,0,0),rssi:(0.00,0.00)\n";
         assert_read(makerfabs, &["A0", "A1"], &plain);
         let error = ranges(les, &["7", "8"], &counted).unwrap_err();
-        assert_eq!(error, "expected ranges to anchors \"7\", \"8\", found \"0CA8\", \"1151\"");
+        assert_eq!(error, "expected ranges to anchors \"7\", \"8\", found \"1151\", \"0CA8\"");
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub(crate) struct Engine<T: Scalar, N> {
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
-    /// By how much the body turned in the step before (rad); after a gap zero.
+    /// By how much the body turned in the step before (rad); zero after a gap, of which nobody knows.
     turn: SVector<T, 3>,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
@@ -120,18 +120,19 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 if gap {
                     self.health.gap();
                     self.clipping.forget();
-                    self.turn = SVector::zeros();
                 }
-                let last = core::mem::replace(&mut self.turn, motion.angular_rate * interval);
+                let turn = motion.angular_rate * interval;
+                let next = if gap { SVector::zeros() } else { turn };
+                let last = core::mem::replace(&mut self.turn, next);
                 let mut step = Step {
                     interval,
                     force_g: motion.force_g,
                     angular_rate: motion.angular_rate,
-                    turn: self.turn,
+                    turn,
                 };
                 // A foot that stands hardly turns.
                 if !verdict.stance {
-                    step.turn += coning(&last, &self.turn);
+                    step.turn += coning(&last, &turn);
                 }
                 let before = navigator.velocity();
                 navigator.propagate(&step, verdict.stance);

@@ -38,7 +38,7 @@ impl Deviation {
 
     /// σ² where an epoch stands alone, so that nothing averages what low satellites tell, m²: (a² + b²·cot²E)/2, which is as the codes
     /// of five geodetic receivers are, 0.3 to 0.8 m/sin E.
-    pub(crate) fn variance_alone(&self, sine: f64) -> f64 {
+    pub(crate) fn variance_of_one_epoch(&self, sine: f64) -> f64 {
         let cotangent_squared = 1.0 / (sine * sine) - 1.0;
         0.5 * (self.zenith * self.zenith + self.slant * self.slant * cotangent_squared)
     }

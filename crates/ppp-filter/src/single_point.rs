@@ -27,7 +27,7 @@ const ALONE: f64 = 1.0 / 3.0;
 const LEFT: f64 = 0.5;
 /// Standard deviation of the ionosphere where nothing of it is broadcast: L1 at the zenith, m.
 const NOT_TOLD: f64 = 5.0;
-/// The lowest sine of an elevation by which that is mapped.
+/// The lowest sine of an elevation by which delays and weights are mapped.
 const LOWEST: f64 = 0.1;
 /// Least squares are done again from where they led.
 const ROUNDS: usize = 2;
@@ -81,7 +81,8 @@ impl<'a> CodeObservation<'a> {
 }
 
 /// The position of an epoch from its codes alone: free of the ionosphere where there are two, else with `ionosphere`. Outliers
-/// lose weight as in the filter of the same settings; the covariance grows with the residuals of the others. No phase is
+/// lose weight as in the filter of the same settings; a code's variance is (a² + b²·cot²E)/2 of `config.code`, as nothing averages what low
+/// satellites tell; the covariance grows with the residuals of the others. No phase is
 /// used, and nothing of any other epoch.
 ///
 /// # Errors
@@ -175,7 +176,8 @@ impl<const N: usize> Epoch<N> {
                 }
                 (true, None) => (0.0, square(ratio) * NOT_TOLD / sine.max(LOWEST)),
             };
-            let noise = config.code.variance_alone(sine.max(LOWEST)) + code_bias(it.carriers);
+            let noise =
+                config.code.variance_of_one_epoch(sine.max(LOWEST)) + code_bias(it.carriers);
             let noise = noise * if is_alone { ALONE * ALONE } else { 1.0 };
             let wet = config.wet_delay * expected.wet_mapping;
             let known = self.clock + expected.wet_mapping * WET_DELAY + delay;

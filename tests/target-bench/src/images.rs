@@ -18,8 +18,8 @@ use crate::toolchain::{Apart, Toolchain, is_installed};
 /// Set to 1, a missing tool is a failure instead of a reason to skip: CI cannot skip unseen.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
 
-/// The target and profile of the short form, at the level of the applications: where estimators are measured. What they are on a
-/// target without a floating-point unit applications show, which are built for one.
+/// The target and profile of the short form, those with which estimators are measured. A target without a floating-point unit is covered by
+/// the applications for the M0.
 const SHORT_FORM: (&Target, Profile) = (&CORTEX_M4F, Profile::Speed);
 
 /// The packages of images with our workloads and with the peers', built in one go.

@@ -101,7 +101,8 @@ fn report(given: &[(&str, PathBuf)], right_angles: bool) -> serde_json::Value {
     opened.replay(&settings, &Wanted::default()).expect("a walk").report
 }
 
-/// Walks along a line and back, along rectangles, and around columns, whose headings hardly drift: then right angles must do no harm.
+/// Walks along a line and back, along rectangles, and around columns, whose headings hardly drift at 50 Hz: there right angles cost a tenth of a
+/// metre at most, of exp36 (there and back). Loops whose headings drift gain.
 #[test]
 fn right_angles_correct_the_heading_where_there_are_some() {
     let Some(folder) = recordings::folder() else { return };

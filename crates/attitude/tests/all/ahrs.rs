@@ -62,3 +62,15 @@ fn a_refused_sample_changes_nothing() {
     );
     assert_eq!(ahrs, before);
 }
+
+#[test]
+fn a_turn_is_rate_times_interval() {
+    let (rate, interval) = (Vector3::new(0.3, -2.0, 1.1), 0.01);
+    let begun = Ahrs::<f64>::new(Orientation::identity(), Vector3::zeros(), Gains::default());
+    let (mut by_rate, mut by_turn) = (begun, begun);
+    for _ in 0..10 {
+        by_rate.update(&rate, None, interval).expect("a sample");
+        by_turn.turn_in_body(&(rate * interval));
+    }
+    assert_eq!(by_rate.orientation(), by_turn.orientation());
+}

@@ -223,11 +223,18 @@ impl Body {
 
     /// Chooses the signals and takes them out, less the biases of their codes.
     pub(super) fn finish(mut self, text: &Text, biases: &Biases) -> Observations {
+        let times: Vec<_> = self.epochs.iter().map(|epoch| epoch.time).collect();
+        let kept = in_order(&times);
         let mut seen = Seen::default();
-        let mut start = 0;
-        for &(prn, end) in &self.records {
-            seen.count(prn, &self.raw[start..end]);
-            start = end;
+        let (mut record, mut start) = (0, 0);
+        for (epoch, is_kept) in self.epochs.iter().zip(&kept) {
+            for &(prn, end) in &self.records[record..epoch.end] {
+                if *is_kept {
+                    seen.count(prn, &self.raw[start..end]);
+                }
+                start = end;
+            }
+            record = epoch.end;
         }
         let channels = &self.header.channels;
         let signals = seen.choose(channels);
@@ -237,8 +244,6 @@ impl Body {
             self.warnings.push(text.warning(problem));
         }
         let mut corrected = BTreeSet::new();
-        let times: Vec<_> = self.epochs.iter().map(|epoch| epoch.time).collect();
-        let kept = in_order(&times);
         let mut epochs = Vec::with_capacity(self.epochs.len());
         let (mut record, mut start) = (0, 0);
         for (epoch, is_kept) in self.epochs.iter().zip(kept) {
@@ -246,7 +251,7 @@ impl Body {
             for &(prn, end) in &self.records[record..epoch.end] {
                 let raw = &self.raw[start..end];
                 start = end;
-                let Some(chosen) = signals.get(&prn).copied() else { continue };
+                let Some(chosen) = signals.get(&prn).copied().filter(|_| is_kept) else { continue };
                 let mut observed = Observed::of(prn, &chosen, raw);
                 if let Some(biases) = biases.of_codes(prn, chosen.carriers, chosen.code, epoch.time)
                 {

@@ -56,10 +56,8 @@ pub(crate) fn velocity_of_rolling<T: Scalar>(
     SVector::from([y * height, -x * height, T::ZERO])
 }
 
-/// What a step's turn is more than rate and interval say, where the axis moves meanwhile (rad): a twelfth of the turn `before` × this
-/// one, if rates are means over their intervals and change evenly (coning; Savage 1998).
-///
-/// Without it a foot that is sampled at 25 Hz loses some degrees of heading in a hundred metres.
+/// What is added to rate × interval, a rotation vector (rad), because the axis of the turn moves within the step: a twelfth of the turn
+/// `before` × this one, if both steps are equally long and their rates are means that change evenly (coning; Savage 1998).
 #[inline]
 pub(crate) fn coning<T: Scalar>(before: &SVector<T, 3>, turn: &SVector<T, 3>) -> SVector<T, 3> {
     cross(before, turn) * T::from_f64(1.0 / 12.0)

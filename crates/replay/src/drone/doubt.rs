@@ -7,7 +7,7 @@ use super::{Estimate, Misfit, Stop, level_step};
 /// What speaks against a flight, or what it was taken for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Doubt {
-    /// The levels step at a time, s, by so many dB.
+    /// The levels step: another gain, antenna or transmitter.
     Step {
         /// When, s.
         t: f64,
@@ -29,7 +29,7 @@ impl Doubt {
         channel: Option<&Channel<f64>>,
         moved_m: Option<f64>,
     ) -> impl Iterator<Item = Self> {
-        let stops = &stops[..=estimate.stop];
+        let stops = stops.get(..=estimate.stop).unwrap_or(stops);
         let step = level_step(stops, estimate.place).map(|(t, by)| Self::Step { t, by });
         let misfit = channel.and_then(|it| Misfit::find(stops, estimate, it));
         [step, moved_m.map(Self::Moved), misfit.map(Self::Misfit)].into_iter().flatten()

@@ -13,7 +13,6 @@ use super::recording::anchors;
 use super::recording::calibration::{self, AnchorCalibration, Residuals};
 use super::recording::{points, ranges};
 use crate::system::{Calibration, System};
-use crate::text::printable;
 use crate::{Error, output};
 
 /// The command.
@@ -66,11 +65,8 @@ impl Options {
     fn write(&self) -> Result<Vec<AnchorCalibration>, Error> {
         let anchors = anchors::read(&self.anchors)?;
         let residuals = self.residuals(&anchors)?;
-        if let Some(name) = residuals.doubtful(&anchors) {
-            let problem = format!(
-                "expected ranges of up to 200 m, found most of those to {} beyond: are they in another unit?",
-                printable(name)
-            );
+        if residuals.is_doubtful() {
+            let problem = "expected ranges from -1 to 200 m, found most of them outside: are they in another unit?".to_owned();
             return Err(Error::File { path: self.log.clone(), problem });
         }
         let calibrations = residuals.calibrations(&anchors);

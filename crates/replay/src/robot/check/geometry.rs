@@ -102,17 +102,17 @@ pub(super) fn check(
         anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
     let mut moments = moments::at_once(parts);
     let left = |moments: &[Moment]| {
-        Tried { moments, anchors: &places, height }.left(Moment::clone, &places, height)
+        Tried { moments, anchors: &places, height, heard: 0 }.left(Moment::clone, &places, height)
     };
     let left = left(&moments).or_else(|| {
         moments = moments::interpolated(parts);
         left(&moments)
     })?;
-    let tried = Tried { moments: &moments, anchors: &places, height };
     let agree =
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
     let needed = if height.is_some() { 3 } else { 4 };
     let heard: BTreeSet<usize> = moments.iter().flatten().map(|(anchor, _)| *anchor).collect();
+    let tried = Tried { moments: &moments, anchors: &places, height, heard: heard.len() };
     let is_contradiction_of_few =
         !is_calibrated && heard.len() == needed && left >= NOTHING_TO_SPARE_M;
     // A height that was found from the ranges may be wrong by as much.
@@ -151,6 +151,8 @@ struct Tried<'a> {
     moments: &'a [Moment],
     anchors: &'a [Vector3<f64>],
     height: Option<f64>,
+    /// How many anchors are heard.
+    heard: usize,
 }
 
 impl Tried<'_> {
@@ -180,7 +182,7 @@ impl Tried<'_> {
         names: &[String],
     ) -> Option<(Reason, String)> {
         let is_contradiction = left >= CONTRADICTION_M;
-        let is_of_many = self.anchors.len() >= MANY && left >= OF_MANY_M;
+        let is_of_many = self.heard >= MANY && left >= OF_MANY_M;
         let explains = if is_contradiction || is_of_many { EXPLAINS } else { CLEARLY };
         let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
         let agree = |with: f64| format!("they would agree within {with:.2} m");
@@ -325,6 +327,32 @@ mod tests {
         let part = (0..100).flat_map(|k| (0..places.len()).map(move |anchor| (k, anchor)));
         let part = part.map(|(k, anchor)| range(k, anchor)).collect();
         check(&anchors, &[part], KnownHeight::Said(1.0), false)?.reason
+    }
+
+    #[test]
+    fn one_of_many_anchors_that_stands_elsewhere_is_told() {
+        let around = |k: usize| {
+            let turn = k as f64 * std::f64::consts::TAU / 8.0;
+            [3.0 + 4.0 * turn.cos(), 2.5 + 4.0 * turn.sin(), 2.0]
+        };
+        let places: Vec<_> = (0..8).map(around).collect();
+        assert_eq!(reason(|metres| metres, &places), None);
+        let names = (0..8).map(|k| k.to_string()).collect();
+        let mut moved = places.clone();
+        moved[0][0] += 1.2;
+        let anchors = Anchors { names, positions: moved };
+        let part: Vec<_> = (0..100)
+            .flat_map(|k| (0..8).map(move |anchor| (k, anchor)))
+            .map(|(k, anchor)| {
+                let turn = 0.1 * k as f64;
+                let tag = Vector3::new(3.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0);
+                let noise = 0.02 * (1.7 * k as f64 + 2.9 * anchor as f64).sin();
+                let metres = (tag - Vector3::from(places[anchor])).norm() + noise;
+                Range { time_us: 100_000 * k as i64, anchor, metres }
+            })
+            .collect();
+        let told = check(&anchors, &[part], KnownHeight::Said(1.0), false).expect("a finding");
+        assert_eq!(told.reason, Some(Reason::Anchor), "{told:?}");
     }
 
     #[test]

@@ -63,11 +63,10 @@ impl Residuals {
         }
     }
 
-    /// The first anchor of which more ranges were left out than taken: they are in another unit.
-    pub fn doubtful<'a>(&self, anchors: &'a Anchors) -> Option<&'a str> {
-        let each = self.of_anchors.iter().zip(&self.left_out).zip(&anchors.names);
-        let mut doubtful = each.filter(|((of, left_out), _)| **left_out > of.len());
-        doubtful.next().map(|(_, name)| name.as_str())
+    /// Whether more ranges were left out than taken: they are in another unit.
+    pub fn is_doubtful(&self) -> bool {
+        let taken: usize = self.of_anchors.iter().map(Vec::len).sum();
+        self.left_out.iter().sum::<usize>() > taken
     }
 
     /// The calibration of every anchor that was heard.

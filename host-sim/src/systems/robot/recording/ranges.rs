@@ -17,22 +17,24 @@ const USUAL_STEP_S: [f64; 2] = [2e-3, 2.0];
 /// Beyond any count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
-/// The different names of anchors in a log, and of each range which one it has.
+/// The different names of anchors in a log, with their order.
 #[derive(Debug, Default)]
-struct Names(Vec<String>);
+struct Names(BTreeMap<String, usize>);
 
 impl Names {
     fn index(&mut self, name: &str) -> usize {
-        let known = self.0.iter().position(|known| known == name);
-        known.unwrap_or_else(|| {
-            self.0.push(name.to_owned());
-            self.0.len() - 1
-        })
+        let next = self.0.len();
+        match self.0.get(name) {
+            Some(&known) => known,
+            None => *self.0.entry(name.to_owned()).or_insert(next),
+        }
     }
 
     /// Which anchors of the list they mean.
     fn places(&self, path: &Path, anchors: &Anchors) -> Result<Vec<Option<usize>>, Error> {
-        let names: Vec<_> = self.0.iter().map(String::as_str).collect();
+        let mut names: Vec<_> = self.0.iter().collect();
+        names.sort_by_key(|(_, index)| **index);
+        let names: Vec<_> = names.into_iter().map(|(name, _)| name.as_str()).collect();
         ranging::places(&names, &anchors.names).map_err(|error| table::refused(path, &error))
     }
 }
@@ -69,7 +71,8 @@ impl RangeLog {
         self.unlisted = count - self.rows.len();
         let is_none = |row: &RangeRow| row.range.is_some_and(|range| range <= 0.0);
         let without = self.rows.iter().filter(|row| is_none(row)).count();
-        if 2 * without <= self.rows.len() {
+        let told = self.rows.iter().filter(|row| row.range.is_some()).count();
+        if 2 * without <= told {
             self.without = without;
             for row in self.rows.iter_mut().filter(|row| is_none(row)) {
                 row.range = None;
@@ -100,7 +103,8 @@ pub fn read_moving(
         |header| header.require(["t", "anchor", "range"]),
         |&[t, anchor, range], row| {
             let time_us = row.time_us(t)?;
-            log.add(time_us, names.index(&row.text(anchor)), optional_range(row, range)?);
+            let range = optional_range(row, range)?;
+            log.add(time_us, names.index(&row.text(anchor)), range);
             Ok(())
         },
     )?;
@@ -174,8 +178,8 @@ pub fn read_static(
     Ok((logs, found))
 }
 
-/// A range, or none from an empty field. Radios log the wildest values, infinities among them: what
-/// is a number at all is read, and refused by the tracker.
+/// A range, or none from an empty field. Radios log the wildest values: what is a number at all is read; [`RangeLog`] and the tracker
+/// refuse what is no distance.
 fn optional_range(row: &Row<'_>, column: Column) -> Result<Option<f64>, Error> {
     if row.is_empty(column) {
         return Ok(None);
