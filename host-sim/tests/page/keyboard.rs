@@ -73,9 +73,9 @@ fn a_session_needs_no_mouse() {
     let facts = "document.getElementById('facts').textContent";
     tab_to(&page, "#bundled");
     press_for(&page, "ArrowDown", facts);
-    tab_to(&page, "#control-contact-height");
+    tab_to(&page, "#control-detector");
     let before = text_of(&page, "facts");
-    press_for(&page, "ArrowRight", facts);
+    press_for(&page, "ArrowDown", facts);
     page.press_with_control('z');
     page.wait_for(&format!("{SETTLED} && {facts} === {}", serde_json::json!(before)));
     // A window and a cursor.
