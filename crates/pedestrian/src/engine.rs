@@ -22,7 +22,7 @@ pub(crate) struct Engine<T: Scalar, N> {
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
-    /// By how much the body turned in the step before (rad); zero after a gap, of which nobody knows.
+    /// By how much the body turned in the step before (rad); zero after a gap, in which that is not known.
     turn: SVector<T, 3>,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
