@@ -102,7 +102,7 @@ pub(super) fn check(
         anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
     let mut moments = moments::at_once(parts);
     let left = |moments: &[Moment]| {
-        Tried { moments, anchors: &places, height, heard: 0 }.left(Moment::clone, &places, height)
+        Tried { moments, anchors: &places, height }.left(Moment::clone, &places, height)
     };
     let left = left(&moments).or_else(|| {
         moments = moments::interpolated(parts);
@@ -112,7 +112,7 @@ pub(super) fn check(
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
     let needed = if height.is_some() { 3 } else { 4 };
     let heard: BTreeSet<usize> = moments.iter().flatten().map(|(anchor, _)| *anchor).collect();
-    let tried = Tried { moments: &moments, anchors: &places, height, heard: heard.len() };
+    let tried = Tried { moments: &moments, anchors: &places, height };
     let is_contradiction_of_few =
         !is_calibrated && heard.len() == needed && left >= NOTHING_TO_SPARE_M;
     // A height that was found from the ranges may be wrong by as much.
@@ -122,7 +122,7 @@ pub(super) fn check(
     }
     let found = format!("ranges and anchors disagree by {left:.1} m");
     let consequence = "positions may be wrong by as much";
-    if let Some((reason, remedy)) = tried.explanation(left, is_given, &anchors.names) {
+    if let Some((reason, remedy)) = tried.explanation(left, heard.len(), is_given, &anchors.names) {
         return Some(Finding::fault("geometry", reason, found, consequence, remedy));
     }
     if is_contradiction_of_few {
@@ -151,8 +151,6 @@ struct Tried<'a> {
     moments: &'a [Moment],
     anchors: &'a [Vector3<f64>],
     height: Option<f64>,
-    /// How many anchors are heard.
-    heard: usize,
 }
 
 impl Tried<'_> {
@@ -174,15 +172,16 @@ impl Tried<'_> {
         (each.len() >= FEWEST).then(|| median(&each))
     }
 
-    /// The one change with which ranges and anchors agree, if there is one: the reason, and what is to be done.
+    /// The one change with which ranges and as many anchors as are heard agree, if there is one: the reason, and what is to be done.
     fn explanation(
         &self,
         left: f64,
+        heard: usize,
         height_is_given: bool,
         names: &[String],
     ) -> Option<(Reason, String)> {
         let is_contradiction = left >= CONTRADICTION_M;
-        let is_of_many = self.heard >= MANY && left >= OF_MANY_M;
+        let is_of_many = heard >= MANY && left >= OF_MANY_M;
         let explains = if is_contradiction || is_of_many { EXPLAINS } else { CLEARLY };
         let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
         let agree = |with: f64| format!("they would agree within {with:.2} m");
@@ -315,8 +314,17 @@ mod tests {
 
     /// What is told of ranges of a tag that is carried through a room with anchors in its corners, 1 m below them.
     fn reason(change: impl Fn(f64) -> f64, places: &[[f64; 3]]) -> Option<Reason> {
+        reason_among(change, places, places)
+    }
+
+    /// The same with anchors that stand elsewhere than the list says.
+    fn reason_among(
+        change: impl Fn(f64) -> f64,
+        places: &[[f64; 3]],
+        listed: &[[f64; 3]],
+    ) -> Option<Reason> {
         let names = (0..places.len()).map(|k| k.to_string()).collect();
-        let anchors = Anchors { names, positions: places.to_vec() };
+        let anchors = Anchors { names, positions: listed.to_vec() };
         let range = |k: usize, anchor: usize| {
             let turn = 0.1 * k as f64;
             let tag = Vector3::new(3.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0);
@@ -337,22 +345,9 @@ mod tests {
         };
         let places: Vec<_> = (0..8).map(around).collect();
         assert_eq!(reason(|metres| metres, &places), None);
-        let names = (0..8).map(|k| k.to_string()).collect();
-        let mut moved = places.clone();
-        moved[0][0] += 1.2;
-        let anchors = Anchors { names, positions: moved };
-        let part: Vec<_> = (0..100)
-            .flat_map(|k| (0..8).map(move |anchor| (k, anchor)))
-            .map(|(k, anchor)| {
-                let turn = 0.1 * k as f64;
-                let tag = Vector3::new(3.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0);
-                let noise = 0.02 * (1.7 * k as f64 + 2.9 * anchor as f64).sin();
-                let metres = (tag - Vector3::from(places[anchor])).norm() + noise;
-                Range { time_us: 100_000 * k as i64, anchor, metres }
-            })
-            .collect();
-        let told = check(&anchors, &[part], KnownHeight::Said(1.0), false).expect("a finding");
-        assert_eq!(told.reason, Some(Reason::Anchor), "{told:?}");
+        let mut listed = places.clone();
+        listed[0][0] += 1.2;
+        assert_eq!(reason_among(|metres| metres, &places, &listed), Some(Reason::Anchor));
     }
 
     #[test]
