@@ -222,6 +222,11 @@ impl<T: Scalar> Clipping<T> {
         self
     }
 
+    /// The rate that was remembered last (rad/s).
+    pub(crate) fn last(&self) -> SVector<T, 3> {
+        self.before[0]
+    }
+
     /// Samples are missing: what was begun is not known.
     pub(crate) fn forget(&mut self) {
         for axis in &mut self.axes {

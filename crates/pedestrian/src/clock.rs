@@ -8,8 +8,8 @@ pub(crate) enum Tick<T> {
     First,
     /// The same time again: the recorder wrote a row twice.
     Duplicate,
-    /// Seconds since the sample before, and whether samples are missing between.
-    Elapsed { interval: T, gap: bool },
+    /// The step that is integrated, and for how long samples were missing, if they were (s).
+    Elapsed { interval: T, missing: Option<T> },
 }
 
 /// Real time steps from time stamps.
@@ -17,13 +17,20 @@ pub(crate) enum Tick<T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
     last_us: Option<u64>,
+    /// The step before.
+    step_us: u32,
 }
 
 impl Clock {
-    /// Steps beyond this are missing samples (µs): a tenth of a second spans half a swing.
-    const GAP_US: u64 = 100_000;
+    /// Steps beyond this are missing samples (µs): no stream that is slower shows how a foot turns.
+    const GAP_US: u64 = 60_000;
+    /// … and so are shorter ones (µs) that are so many times as long as the step before: a foot in swing turns by half a radian.
+    const SHORT_GAP_US: u64 = 40_000;
+    const LONGER: u64 = 3;
     /// Longest step that is integrated (µs): the motion of the foot in a longer gap is not known.
     const LONGEST_US: u64 = 200_000;
+    /// A gap is no longer than this (µs): after a minute anything may have happened.
+    const MINUTE_US: u64 = 60_000_000;
 
     /// The step to `time_us`, without taking it.
     pub(crate) fn tick<T: Scalar>(&self, time_us: u64) -> Result<Tick<T>, Error> {
@@ -33,12 +40,27 @@ impl Clock {
             return Ok(Tick::Duplicate);
         }
         let interval = T::from_micro(elapsed.min(Self::LONGEST_US) as i32);
-        Ok(Tick::Elapsed { interval, gap: elapsed > Self::GAP_US })
+        let missing = if elapsed > Self::SHORT_GAP_US { self.missing(elapsed) } else { None };
+        Ok(Tick::Elapsed { interval, missing })
+    }
+
+    /// For how long samples were missing in such a step (µs), if they were (s).
+    #[cold]
+    #[inline(never)]
+    fn missing<T: Scalar>(&self, elapsed: u64) -> Option<T> {
+        let is_gap = elapsed > Self::GAP_US || elapsed > Self::LONGER * u64::from(self.step_us);
+        is_gap.then(|| T::from_micro(elapsed.min(Self::MINUTE_US) as i32))
     }
 
     /// Takes the step.
     pub(crate) fn set(&mut self, time_us: u64) {
+        let last_us = self.last_us.unwrap_or(time_us);
         self.last_us = Some(time_us);
+        // A step of more than an hour is any other.
+        let step_us = (time_us as u32).wrapping_sub(last_us as u32);
+        if step_us != 0 {
+            self.step_us = step_us;
+        }
     }
 }
 
@@ -50,20 +72,39 @@ mod tests {
     fn a_step_is_what_has_elapsed_and_at_most_a_fifth_of_a_second() {
         let mut clock = Clock::default();
         assert_eq!(clock.tick::<f64>(5_000_000), Ok(Tick::First));
+        clock.set(4_980_000);
         clock.set(5_000_000);
         let tick = |elapsed_us: u64| clock.tick::<f64>(5_000_000 + elapsed_us);
         assert_eq!(tick(0), Ok(Tick::Duplicate));
-        for (elapsed_us, interval, gap) in [
-            (1, 1e-6, false),
-            (100_000, 0.1, false),
-            (100_001, 0.100_001, true),
-            (200_001, 0.2, true),
+        for (elapsed_us, interval, missing) in [
+            (1, 1e-6, None),
+            (60_000, 0.06, None),
+            (60_001, 0.060_001, Some(0.060_001)),
+            (250_000, 0.2, Some(0.25)),
+            (1_000_000_000, 0.2, Some(60.0)),
         ] {
-            let Ok(Tick::Elapsed { interval: found, gap: is_gap }) = tick(elapsed_us) else {
+            let Ok(Tick::Elapsed { interval: found, missing: gap }) = tick(elapsed_us) else {
                 panic!("{elapsed_us} µs are a step");
             };
-            assert!((found - interval).abs() < 1e-9 && is_gap == gap, "{elapsed_us}: {found}");
+            assert!((found - interval).abs() < 1e-9 && gap.is_some() == missing.is_some());
+            let difference = gap.unwrap_or_default() - missing.unwrap_or_default();
+            assert!(difference.abs() < 1e-9, "{elapsed_us}: {gap:?}");
         }
         assert_eq!(clock.tick::<f64>(4_999_999), Err(Error::TimeBackwards));
+    }
+
+    #[test]
+    fn of_a_fast_stream_a_shorter_step_is_a_gap() {
+        let mut clock = Clock::default();
+        clock.set(0);
+        clock.set(5_000);
+        // A row that was written twice is no step.
+        clock.set(5_000);
+        for (elapsed_us, is_gap) in [(40_000, false), (40_001, true)] {
+            let Ok(Tick::Elapsed { missing, .. }) = clock.tick::<f64>(5_000 + elapsed_us) else {
+                panic!("{elapsed_us} µs are a step");
+            };
+            assert_eq!(missing.is_some(), is_gap, "{elapsed_us}");
+        }
     }
 }

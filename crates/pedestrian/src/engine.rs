@@ -32,6 +32,8 @@ pub(crate) struct Engine<T: Scalar, N> {
 impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     /// Below this SHOE statistic, (rad/s)², a stance shows where gravity is.
     const CALM: f64 = 0.1;
+    /// Where the tilt was lost, as much as this (s) was not seen.
+    const UNSEEN: f64 = 0.2;
 
     pub(crate) fn new(config: Config<T>) -> Self {
         Self {
@@ -61,8 +63,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             return;
         }
         self.alignment.update(sample);
-        if let Tick::Elapsed { interval, gap } = tick {
-            if gap {
+        if let Tick::Elapsed { interval, missing } = tick {
+            if missing.is_some() {
                 self.clipping.forget();
             }
             if self.clipping.concerns(&sample.angular_rate, size.large_rate) {
@@ -116,13 +118,19 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         }
         let mut stride = None;
         if let Some(navigator) = &mut self.navigator {
-            if let Tick::Elapsed { interval, gap } = tick {
-                if gap {
+            if let Tick::Elapsed { interval, missing } = tick {
+                let mut turn = motion.angular_rate * interval;
+                let mut next = turn;
+                if let Some(missing) = missing {
+                    let before = self.clipping.last() - self.alignment.gyro_bias();
+                    (turn, next) =
+                        (across(&before, &motion.angular_rate, interval), SVector::zeros());
                     self.health.gap();
                     self.clipping.forget();
+                    if !(self.was_stance && stands(&motion.angular_rate, missing)) {
+                        self.strides.miss(missing);
+                    }
                 }
-                let turn = motion.angular_rate * interval;
-                let next = if gap { SVector::zeros() } else { turn };
                 let last = core::mem::replace(&mut self.turn, next);
                 let mut step = Step {
                     interval,
@@ -137,15 +145,25 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 let before = navigator.velocity();
                 navigator.propagate(&step, verdict.stance);
                 if self.clipping.concerns(&sample.angular_rate, size.large_rate) {
-                    let (rate, health) = (&sample.angular_rate, &mut self.health);
-                    bridge(&mut self.clipping, health, navigator, rate, interval, &before);
+                    let told = (&mut self.health, &mut self.strides);
+                    bridge(
+                        &mut self.clipping,
+                        told,
+                        navigator,
+                        &sample.angular_rate,
+                        interval,
+                        &before,
+                    );
                 }
                 self.clipping.remember(&sample.angular_rate);
                 if verdict.stance {
                     let landing = !self.was_stance;
                     if landing {
-                        self.is_tilted |=
-                            self.health.landing(&navigator.velocity(), self.config.sensor);
+                        if self.health.landing(&navigator.velocity(), self.config.sensor) {
+                            self.is_tilted = true;
+                            // Something was not seen in the swing: a stall, an impact, a turn.
+                            self.strides.miss(T::from_f64(Self::UNSEEN));
+                        }
                     }
                     if self.is_tilted && self.config.levels {
                         level(navigator, &sample.specific_force, self.config.sensor);
@@ -207,7 +225,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
 #[inline(never)] // As below.
 fn bridge<T: Scalar, N: Navigator<T>>(
     clipping: &mut Clipping<T>,
-    health: &mut Health<T>,
+    (health, strides): (&mut Health<T>, &mut Strides<T>),
     navigator: &mut N,
     rate: &SVector<T, 3>,
     interval: T,
@@ -218,8 +236,23 @@ fn bridge<T: Scalar, N: Navigator<T>>(
     let turned = Turned { rate, interval, pushed: SVector::from([x, y, z + fall]) };
     clipping.show(&turned, |missed| {
         health.clipped();
+        strides.bridge(&missed.turn);
         navigator.miss(missed);
     });
+}
+
+/// How the body turned where samples are missing (rad): as if its rate had changed evenly.
+#[cold]
+#[inline(never)] // As below.
+fn across<T: Scalar>(before: &SVector<T, 3>, after: &SVector<T, 3>, interval: T) -> SVector<T, 3> {
+    (before + after) * (interval * T::HALF)
+}
+
+/// Whether a foot that stood before so many seconds without samples, and turns like this after them, has stood all the time.
+fn stands<T: Scalar>(rate: &SVector<T, 3>, missing: T) -> bool {
+    // Briefer than a swing, and slower than a foot turns in one (s, rad/s).
+    let (swing, slow) = (T::from_f64(0.4), T::HALF);
+    missing < swing && rate.as_array().iter().all(|rate| rate.abs() < slow)
 }
 
 /// Levels a foot as its stance shows gravity, with the heading that it has.

@@ -24,6 +24,10 @@ pub struct Stride<T: Scalar> {
     /// Turn of its direction from that of the stride before, anticlockwise from above (rad); zero
     /// for the first.
     pub heading_change: T,
+    /// For how long samples were missing on the way (s).
+    pub missing: T,
+    /// By how much the body turned beyond the end of its gyroscope's range on the way, as it was bridged (rad).
+    pub bridged: T,
 }
 
 /// A stance of the foot.
@@ -42,6 +46,8 @@ pub(crate) struct Strides<T: Scalar> {
     last: Option<Footprint<T>>,
     heading: Option<T>,
     path_length: T,
+    missing: T,
+    bridged: T,
 }
 
 impl<T: Scalar> Strides<T> {
@@ -49,12 +55,26 @@ impl<T: Scalar> Strides<T> {
     const SHORTEST: f64 = 0.1;
 
     pub(crate) fn new() -> Self {
-        Self { standing: None, last: None, heading: None, path_length: T::ZERO }
+        let zero = T::ZERO;
+        let (path_length, missing, bridged) = (zero, zero, zero);
+        Self { standing: None, last: None, heading: None, path_length, missing, bridged }
     }
 
     /// The horizontal path from stance to stance so far (m).
     pub(crate) fn path_length(&self) -> T {
         self.path_length
+    }
+
+    /// Samples were missing for so long (s).
+    #[cold]
+    pub(crate) fn miss(&mut self, missing: T) {
+        self.missing += missing;
+    }
+
+    /// The body turned by so much more than its gyroscope saw (rad).
+    pub(crate) fn bridge(&mut self, turn: &SVector<T, 3>) {
+        let [x, y, z] = *turn.as_array();
+        self.bridged += x.hypot(y).hypot(z);
     }
 
     /// Takes the next position; a stride is complete when the stance it led to ends.
@@ -90,12 +110,16 @@ impl<T: Scalar> Strides<T> {
         self.last = Some(footprint);
         self.heading = Some(heading);
         let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
+        let missing = core::mem::replace(&mut self.missing, T::ZERO);
+        let bridged = core::mem::replace(&mut self.bridged, T::ZERO);
         Some(Stride {
             time_us: footprint.time_us,
             position: footprint.position,
             length,
             duration: T::from_micro(micro as i32),
             heading_change,
+            missing,
+            bridged,
         })
     }
 }

@@ -11,8 +11,9 @@ use nalgebra::SVector;
 /// - a scale s of all strides: s times the distance from the start;
 /// - an error of each stride by itself, of the footprint and of the height, and for the height one that is the same in all.
 ///
-/// The heading at the start is the frame's, so it has no error. A fault of the sensor is no part of it: see
-/// [`Warnings`](crate::Warnings).
+/// What a stride says of missing samples and of turns beyond the gyroscope's range is added: a heading that may be another from then
+/// on, and the way that was not seen. The heading at the start is the frame's, so it has no error. Another fault of the sensor is no
+/// part of it: see [`Warnings`](crate::Warnings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -29,6 +30,8 @@ pub struct PathUncertainty<T: Scalar> {
     position: SVector<T, 3>,
     /// Standard deviation of the heading (rad).
     heading: T,
+    /// Standard deviation of what was walked while samples were missing (m, each axis).
+    missed: T,
     /// What a standard deviation of the heading's rate moves the position by (m, earth: x, y).
     turned: SVector<T, 2>,
     /// How many there were: a number, since a conversion would link double precision.
@@ -40,17 +43,31 @@ impl<T: Scalar> PathUncertainty<T> {
     pub const FOOTPRINT: f64 = 0.028;
     /// Standard deviation of the height gained in a stride (m).
     pub const HEIGHT: f64 = 0.047;
+    /// Standard deviation of the speed while samples are missing, each axis (m/s).
+    pub const MISSED_SPEED: f64 = 1.5;
+    /// … and of the rate at which the heading is lost then (rad/s), …
+    pub const MISSED_RATE: f64 = 1.5;
+    /// … and its share of a turn beyond the gyroscope's range, as it was bridged.
+    pub const BRIDGED_SHARE: f64 = 0.02;
+    /// Standard deviation of a heading that may be any (rad).
+    pub const LOST_HEADING: f64 = 1.8;
 
     /// At the start of a walk: nothing is uncertain but where the foot stands exactly.
     pub fn new(sensor: SensorClass) -> Self {
         let (position, turned) = (SVector::zeros(), SVector::zeros());
-        Self { sensor, position, heading: T::ZERO, turned, strides: T::ZERO }
+        let zero = T::ZERO;
+        Self { sensor, position, heading: zero, missed: zero, turned, strides: zero }
     }
 
     /// Takes the next stride.
     pub fn add(&mut self, stride: &Stride<T>) {
         let [dx, dy, _] = *(stride.position - self.position).as_array();
-        self.heading += self.sensor.heading_rate::<T>() * stride.duration;
+        let lost = T::from_f64(Self::LOST_HEADING);
+        let missed = stride.missing * T::from_f64(Self::MISSED_RATE);
+        let bridged = stride.bridged * T::from_f64(Self::BRIDGED_SHARE);
+        let drifted = self.sensor.heading_rate::<T>() * stride.duration;
+        self.heading = (self.heading + drifted + missed + bridged).min(lost);
+        self.missed = self.missed.hypot(stride.missing * T::from_f64(Self::MISSED_SPEED));
         self.turned += SVector::from([-dy * self.heading, dx * self.heading]);
         self.position = stride.position;
         self.strides += T::ONE;
@@ -63,8 +80,9 @@ impl<T: Scalar> PathUncertainty<T> {
         let (own, height) = (T::from_f64(Self::FOOTPRINT), T::from_f64(Self::HEIGHT));
         let scale = self.sensor.stride_scale::<T>();
         let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());
-        let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own * steps);
-        let drifted = self.strides * self.sensor.height_drift::<T>();
+        let own = (own * steps).hypot(self.missed);
+        let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own);
+        let drifted = (self.strides * self.sensor.height_drift::<T>()).hypot(self.missed);
         SVector::from([of_axis(x, along), of_axis(y, across), (height * steps).hypot(drifted)])
     }
 }
@@ -85,6 +103,8 @@ mod tests {
                 length,
                 duration,
                 heading_change: T::ZERO,
+                missing: T::ZERO,
+                bridged: T::ZERO,
             });
         }
         uncertainty.standard_deviation().map(T::to_f64)
@@ -114,6 +134,8 @@ mod tests {
                 length: 0.5,
                 duration: 1.5,
                 heading_change: 0.0,
+                missing: 0.0,
+                bridged: 0.0,
             });
         }
         let found = uncertainty.standard_deviation();
@@ -121,6 +143,32 @@ mod tests {
             let expected = astray[axis].hypot(0.01 * position[axis]).hypot(0.028 * 101_f64.sqrt());
             assert!((found[axis] - expected).abs() < 1e-9, "{found} {expected}");
         }
+    }
+
+    #[test]
+    fn what_was_not_seen_moves_all_that_follows() {
+        let stride = |metres: f64, missing: f64, bridged: f64| Stride {
+            time_us: 0,
+            position: SVector::from([metres, 0.0, 0.0]),
+            length: 1.0,
+            duration: 1.0,
+            heading_change: 0.0,
+            missing,
+            bridged,
+        };
+        let after = |missing: f64, bridged: f64| {
+            let mut uncertainty = PathUncertainty::<f64>::new(SensorClass::Industrial);
+            uncertainty.add(&stride(1.0, missing, bridged));
+            uncertainty.add(&stride(21.0, 0.0, 0.0));
+            uncertainty.standard_deviation()
+        };
+        let [clean, gap, clipped] = [after(0.0, 0.0), after(0.2, 0.0), after(0.0, 3.0)];
+        // 0.3 m each axis, and a heading of 0.3 rad over 20 m (and the metre of the stride itself) to the side.
+        assert!(gap[0] > 0.3 && gap[0] < clean[0] + 0.3 && gap[2] > clean[2] + 0.2, "{gap}");
+        assert!((gap[1] - (0.3_f64).hypot(0.3 * 21.0)).abs() < 0.05, "{gap}");
+        assert!((clipped[1] - 0.06 * 21.0).abs() < 0.05 && clipped[0] == clean[0], "{clipped}");
+        let lost = after(1000.0, 0.0);
+        assert!((lost[1] - (1500.0_f64).hypot(1.8 * 21.0)).abs() < 0.1, "{lost}");
     }
 
     #[test]

@@ -21,6 +21,7 @@ mod gnss_recordings;
 mod gnss_streams;
 mod gnss_systems;
 mod panic_free;
+mod pedestrian_gaps;
 mod pedestrian_on_target;
 mod pedestrian_recordings;
 mod pedestrian_slow;

@@ -11,14 +11,18 @@ struct Put<T: Scalar> {
     velocity: SVector<T, 3>,
     restarts: u32,
     missed: Option<crate::MissedTurn<T>>,
+    /// The turn of the last step.
+    turn: SVector<T, 3>,
 }
 
 impl<T: Scalar> Navigator<T> for Put<T> {
     fn start(_: SensorClass, _: Orientation<T>) -> Self {
         let (position, velocity) = (SVector::zeros(), SVector::zeros());
-        Self { position, velocity, restarts: 0, missed: None }
+        Self { position, velocity, restarts: 0, missed: None, turn: SVector::zeros() }
     }
-    fn propagate(&mut self, _: &Step<T>, _: bool) {}
+    fn propagate(&mut self, step: &Step<T>, _: bool) {
+        self.turn = step.turn;
+    }
     fn miss(&mut self, missed: &crate::MissedTurn<T>) {
         self.missed = Some(*missed);
     }
@@ -40,21 +44,22 @@ impl<T: Scalar> Navigator<T> for Put<T> {
 struct Walk<T: Scalar> {
     engine: Engine<T, Put<T>>,
     time_us: u64,
+    angular_rate: SVector<T, 3>,
 }
 
 impl<T: Scalar> Walk<T> {
     fn new(levels: bool) -> Self {
         let config = Config { levels, ..Config::default() };
-        Self { engine: Engine::new(config), time_us: 0 }
+        Self { engine: Engine::new(config), time_us: 0, angular_rate: SVector::zeros() }
     }
 
     fn sample(&self) -> ImuSample<T> {
         let specific_force = Vector3::new(0.0, 0.0, 9.8).map(T::from_f64);
-        ImuSample { time_us: self.time_us, specific_force, angular_rate: SVector::zeros() }
+        ImuSample { time_us: self.time_us, specific_force, angular_rate: self.angular_rate }
     }
 
-    /// The next sample, in stance with a statistic or not.
-    fn on(&mut self, statistic: Option<f64>) {
+    /// The next sample, in stance with a statistic or not; a stride that it ends.
+    fn on(&mut self, statistic: Option<f64>) -> Option<Stride<T>> {
         self.time_us += 10_000;
         let sample = self.sample();
         let examined = self.engine.examine(&sample).expect("a sample");
@@ -63,7 +68,7 @@ impl<T: Scalar> Walk<T> {
             stance: statistic.is_some(),
             statistic: T::from_f64(statistic.unwrap_or(9.0)),
         };
-        self.engine.advance(&sample, examined, &motion, verdict);
+        self.engine.advance(&sample, examined, &motion, verdict)
     }
 
     fn navigator(&mut self) -> &mut Put<T> {
@@ -133,14 +138,15 @@ fn a_recording_is_learnt_from_and_a_row_written_twice_only_once() {
 #[test]
 fn what_was_pushed_since_a_missed_turn_is_without_gravity() {
     let mut navigator = Put::<f64>::start(SensorClass::Industrial, Orientation::identity());
-    let (mut clipping, mut health) = (Clipping::new(), Health::new());
+    let (mut clipping, mut health, mut strides) = (Clipping::new(), Health::new(), Strides::new());
     let (interval, gained) = (0.005, Vector3::new(0.3, -0.2, 0.1));
     let before = Vector3::new(1.0, 2.0, 3.0);
     navigator.velocity = before + gained;
     for _ in 0..3 {
         for rate in [0.0, 4.0, 8.0, 10.0, 10.0, 10.0, 10.0, 8.0, 4.0, 0.0] {
             let rate = Vector3::new(rate, 0.0, 0.0);
-            bridge(&mut clipping, &mut health, &mut navigator, &rate, interval, &before);
+            let told = (&mut health, &mut strides);
+            bridge(&mut clipping, told, &mut navigator, &rate, interval, &before);
             clipping.remember(&rate);
         }
     }
@@ -149,4 +155,60 @@ fn what_was_pushed_since_a_missed_turn_is_without_gravity() {
     let pushed = (gained + Vector3::new(0.0, 0.0, STANDARD_GRAVITY * interval)) * 4.0;
     let missed = navigator.missed.expect("a plateau");
     assert!((missed.pushed - pushed).norm() < 1e-9, "{missed:?} {pushed}");
+}
+
+/// A stance, a swing in which so many seconds are missing, and a stance a metre on; the stride, and the turn of the gap.
+fn over_a_gap(missing_us: u64) -> (Stride<f64>, Vector3<f64>) {
+    let mut walk = Walk::<f64>::new(true);
+    for _ in 0..20 {
+        walk.on(Some(0.0));
+    }
+    walk.angular_rate = Vector3::new(1.0, 4.0, 0.0);
+    for _ in 0..20 {
+        walk.on(None);
+    }
+    walk.angular_rate = Vector3::new(3.0, -1.0, 2.0);
+    walk.time_us += missing_us - 10_000;
+    walk.on(None);
+    let turn = walk.navigator().turn;
+    walk.angular_rate = Vector3::zeros();
+    walk.navigator().position.x = 1.0;
+    walk.on(Some(0.0));
+    let stride = walk.on(None).expect("a stride");
+    walk.navigator().position.x = 2.0;
+    walk.on(Some(0.0));
+    let next = walk.on(None).expect("a stride");
+    assert_eq!(next.missing, 0.0, "the next stride was seen");
+    (stride, turn)
+}
+
+#[test]
+fn a_body_turns_in_a_gap_as_its_rates_at_both_ends_say() {
+    let (stride, turn) = over_a_gap(150_000);
+    // (The biases are learnt meanwhile.)
+    assert!((turn - Vector3::new(2.0, 1.5, 1.0) * 0.15).norm() < 2e-3, "{turn}");
+    assert!((stride.missing - 0.15).abs() < 1e-9, "{stride:?}");
+    // No gap, and the axis moves: what coning adds is a twelfth of the turn before × this one.
+    let (stride, turn) = over_a_gap(10_000);
+    let rate = Vector3::new(3.0, -1.0, 2.0) * 0.01;
+    let coning = (Vector3::new(1.0, 4.0, 0.0) * 0.01).cross(&rate) / 12.0;
+    assert!((turn - rate - coning).norm() < 2e-4 * coning.norm() + 2e-6, "{turn}");
+    assert_eq!(stride.missing, 0.0);
+}
+
+#[test]
+fn a_foot_that_stands_before_and_after_a_short_gap_has_stood_in_it() {
+    for (missing_us, expected) in [(200_000, 0.0), (500_000, 0.5)] {
+        let mut walk = Walk::<f64>::new(true);
+        for _ in 0..20 {
+            walk.on(Some(0.0));
+        }
+        walk.time_us += missing_us - 10_000;
+        walk.on(Some(0.0));
+        assert!(walk.engine.warnings().gaps);
+        walk.on(None);
+        walk.navigator().position.x = 1.0;
+        walk.on(Some(0.0));
+        assert_eq!(walk.on(None).expect("a stride").missing, expected);
+    }
 }

@@ -3,8 +3,8 @@
 use kestirim_pedestrian::PathUncertainty;
 use nalgebra::{Matrix2, Vector2};
 
-use super::Walk;
 use super::path::{Path, PathErrors};
+use super::{Stride, Walk};
 
 /// Standard deviation of how near the start a walk ends that ends where it began, m.
 const PUT_BACK: f64 = 0.1;
@@ -45,8 +45,13 @@ impl Walk {
         let taken = [0, 1, 2].map(|axis| -taken[axis] * (end[axis] - start[axis]));
         let strides = 1..=self.strides.len();
         self.displace(&strides.map(|count| taken.map(|of| count as f64 * of)).collect::<Vec<_>>());
-        for (stride, sigma_m) in self.strides.iter_mut().zip(path.remaining(&prior, rate, scale)) {
-            stride.sigma_m = sigma_m;
+        // A heading that was lost is no constant rate: its end may be right, and the way is not.
+        if !self.strides.iter().any(Stride::has_missed) {
+            let left = path.remaining(&prior, rate, scale);
+            self.strides
+                .iter_mut()
+                .zip(left)
+                .for_each(|(stride, sigma_m)| stride.sigma_m = sigma_m);
         }
         self.gap_m = Some(gap_m);
         Ok(())

@@ -7,7 +7,7 @@ use nalgebra::Matrix2;
 
 use self::problem::{OWN, Problem, Solved};
 use super::path::PathErrors;
-use super::{Walk, position_at};
+use super::{Stride, Walk, position_at};
 
 /// Meetings without which nothing is said.
 const FEWEST: usize = 8;
@@ -94,6 +94,7 @@ impl Walk {
         let own = errors.stride.powi(2);
         let is_of_one_foot = problem.is_of_one_foot();
         let (mut seen, mut stepped) = (0.0, 0.0);
+        let has_missed = self.strides.iter().any(Stride::has_missed);
         for (index, (stride, (_, slope))) in self.strides.iter_mut().zip(walked).enumerate() {
             let of_both = slope * variances * slope.transpose();
             if !is_of_one_foot && problem.is_seen(stride.time_us) {
@@ -103,9 +104,11 @@ impl Walk {
             let known = problem.correction_variance(&solved.solution, stride.time_us);
             let unseen = (index + 1) as f64 - seen;
             stepped = own * (unseen + 0.5 * seen) + 0.25 * known.min(2.0 * own * seen);
-            let [_, _, z] = stride.sigma_m;
             let of_axis = |axis: usize| (of_both[(axis, axis)] + stepped).sqrt();
-            stride.sigma_m = [of_axis(0), of_axis(1), z];
+            // A heading that was lost is no constant rate.
+            let [x, y] =
+                if has_missed { [0, 1].map(|k| stride.sigma_m[k]) } else { [0, 1].map(of_axis) };
+            stride.sigma_m = [x, y, stride.sigma_m[2]];
         }
         let feet = BothFeet {
             meetings: problem.meetings.len(),

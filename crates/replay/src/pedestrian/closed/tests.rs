@@ -19,6 +19,8 @@ fn round(rate: f64, scale: f64, rise: f64) -> Walk {
             length_m,
             duration_s: 1.0,
             heading_change_rad: std::f64::consts::TAU / 120.0 + rate,
+            missing_s: 0.0,
+            bridged_rad: 0.0,
             sigma_m: [9.0; 3],
         });
     }

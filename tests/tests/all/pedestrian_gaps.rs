@@ -1,0 +1,67 @@
+//! Recorded walks with samples taken out: how far the path goes astray, and whether its standard deviation has it.
+
+use host_sim::metrics::median;
+use host_sim::systems::pedestrian::recording::log;
+use kestirim_replay::pedestrian::{Options, Sample, SensorClass, Walk, walk};
+use kestirim_tests::recordings::{self, GCP, gcp};
+
+/// In how many places of a walk samples are taken out.
+const PLACES: u64 = 6;
+
+/// A causal walk without the samples of a stretch of time, µs.
+fn without(samples: &[Sample], from_us: u64, length_us: u64) -> Walk {
+    let is_kept = |time_us: u64| time_us <= from_us || time_us >= from_us + length_us;
+    let kept: Vec<_> = samples.iter().filter(|it| is_kept(it.time_us)).copied().collect();
+    walk(&kept, &industrial()).expect("a walk")
+}
+
+fn industrial() -> Options {
+    Options { sensor: SensorClass::Industrial, causal: true, ..Options::default() }
+}
+
+/// How far footprints after a time are from those of the whole walk, m, and over their standard deviations; root mean squares.
+fn astray(whole: &Walk, walk: &Walk, after_us: u64) -> Option<[f64; 2]> {
+    let (mut squares, mut ratios, mut count) = (0.0, 0.0, 0.0);
+    for stride in walk.strides.iter().filter(|it| it.time_us > after_us) {
+        let nearest = whole.strides.iter().min_by_key(|it| it.time_us.abs_diff(stride.time_us))?;
+        let by = |axis: usize| stride.position[axis] - nearest.position[axis];
+        let square = by(0).powi(2) + by(1).powi(2);
+        squares += square;
+        ratios += square / (stride.sigma_m[0].powi(2) + stride.sigma_m[1].powi(2));
+        count += 1.0;
+    }
+    (count > 0.0).then(|| [squares, ratios].map(|sum: f64| (sum / count).sqrt()))
+}
+
+#[test]
+fn where_samples_are_missing_standard_deviations_have_what_was_not_seen() {
+    let Some(folder) = recordings::folder() else { return };
+    let walks = gcp(&folder, &GCP).into_iter().map(|(file, _)| {
+        let samples = log::read(&file, &log::Options::default()).expect("a log").samples;
+        (walk(&samples, &industrial()).expect("a walk"), samples)
+    });
+    let walks: Vec<_> = walks.collect();
+    println!("| missing, s | off, m: median | worst | over σ: median | beyond 3 σ |");
+    for length_us in [50_000, 100_000, 200_000, 500_000, 1_000_000] {
+        let mut all = Vec::new();
+        for (whole, samples) in &walks {
+            let [begin, end] = [0, samples.len() - 1].map(|at| samples[at].time_us);
+            for place in 0..PLACES {
+                let from_us = begin + (end - begin) * (3 + place) / (4 + PLACES) + 137_000 * place;
+                let walk = without(samples, from_us, length_us);
+                assert!(!walk.warnings.is_empty(), "{length_us} µs are told");
+                all.extend(astray(whole, &walk, from_us + length_us));
+            }
+        }
+        let [off, ratios] = [0, 1].map(|of| all.iter().map(|it| it[of]).collect::<Vec<_>>());
+        let beyond = ratios.iter().filter(|ratio| **ratio > 3.0).count();
+        let (middle, usual) = (median(&off), median(&ratios));
+        println!(
+            "| {:.2} | {middle:.2} | {:.1} | {usual:.2} | {beyond} of {} |",
+            1e-6 * length_us as f64,
+            off.iter().copied().fold(0.0, f64::max),
+            ratios.len()
+        );
+        assert!(usual < 1.0 && beyond * 12 <= ratios.len(), "{length_us} µs: {usual}, {beyond}");
+    }
+}
