@@ -2,6 +2,7 @@
 
 mod geometry;
 mod in_space;
+mod inertial;
 mod jumps;
 mod moments;
 mod stuck;
@@ -65,6 +66,7 @@ pub fn check<'a>(
         KnownHeight::Unknown | KnownHeight::NotFound => [None, None],
     };
     findings.extend(together::find(&parts));
+    findings.extend(inertial::find(&parts));
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);
     findings.extend(links(&parts, anchors.names.len(), &name));

@@ -10,6 +10,7 @@ mod error;
 mod event;
 mod exchange;
 mod height;
+mod order;
 mod setup;
 mod smoother;
 pub mod survey;

@@ -182,6 +182,9 @@ impl Recording {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
         self.warn_of_left_out(log.unlisted, log.without);
+        if let Some(order) = sensors.put_in_order() {
+            self.warn(order);
+        }
         let ahead = sensors.drop_far_ahead();
         if ahead > 0 {
             self.warn(format!(

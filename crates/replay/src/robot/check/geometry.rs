@@ -19,6 +19,9 @@ const CONTRADICTION_M: f64 = 0.6;
 /// … and one that nothing explains, where walls and people alone may do as much, from here on, m and of the usual range.
 const UNEXPLAINED_M: f64 = 1.5;
 const UNEXPLAINED_SHARE: f64 = 0.02;
+/// One that nothing explains is a doubt from here on, m and of the usual range: sound recordings of four anchors leave up to 0.34 m,
+/// and with an anchor that is misplaced by a metre most of what is farther off than 3 σ leaves more than 0.4 m.
+const DOUBT_M: f64 = 0.35;
 /// Of so many anchors one that stands elsewhere is averaged down, and the others show the clearer that it is the one: from here on, m.
 const MANY: usize = 6;
 const OF_MANY_M: f64 = 0.3;
@@ -37,6 +40,8 @@ const COMMON_BIAS_M: f64 = 0.5;
 const NOTHING_TO_SPARE_M: f64 = 0.2;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
+/// What all ranges may be too long by, beyond what a common bias of half a metre explains, m.
+const EXCESSES: [f64; 7] = [-2.0, -1.5, -1.0, 1.0, 1.5, 2.0, 3.0];
 /// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
 const SCALES: [(f64, &str, &str); 3] = [
     (0.3048, "in feet", ": --units range=ft"),
@@ -123,7 +128,10 @@ pub(super) fn check(
     let found = format!("ranges and anchors disagree by {left:.1} m");
     let consequence = "positions may be wrong by as much";
     if let Some((reason, remedy)) = tried.explanation(left, heard.len(), is_given, &anchors.names) {
-        return Some(Finding::fault("geometry", reason, found, consequence, remedy));
+        return Some(match reason {
+            Some(reason) => Finding::fault("geometry", reason, found, consequence, remedy),
+            None => Finding::note("geometry", format!("{found}; {remedy}")),
+        });
     }
     if is_contradiction_of_few {
         let consequence = "with no range to spare, positions may be wrong by a multiple";
@@ -135,12 +143,16 @@ pub(super) fn check(
         let found = format!("ranges to {needed} anchors contradict each other by {left:.2} m");
         return Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy));
     }
-    if left < CONTRADICTION_M {
+    let ranges: Vec<f64> = moments.iter().flatten().map(|(_, range)| *range).collect();
+    let of_far = UNEXPLAINED_SHARE * median(&ranges);
+    if left < DOUBT_M + of_far {
         return Some(agree());
     }
-    let ranges: Vec<f64> = moments.iter().flatten().map(|(_, range)| *range).collect();
-    if left < UNEXPLAINED_M + UNEXPLAINED_SHARE * median(&ranges) {
-        return Some(Finding::note("geometry", found));
+    if left < UNEXPLAINED_M + of_far {
+        let found = format!("ranges and anchors disagree by {left:.2} m");
+        let remedy =
+            "measure the anchors' places again, calibrate them (--calibration), or add one";
+        return Some(Finding::fault("geometry", Reason::NotObservable, found, consequence, remedy));
     }
     let remedy = "look at the anchors' places and names, at the unit, and at what stands between";
     Some(Finding::fault("geometry", Reason::Geometry, found, consequence, remedy))
@@ -172,14 +184,15 @@ impl Tried<'_> {
         (each.len() >= FEWEST).then(|| median(&each))
     }
 
-    /// The one change with which ranges and as many anchors as are heard agree, if there is one: the reason, and what is to be done.
+    /// The one change with which ranges and as many anchors as are heard agree, if there is one: the reason, if positions suffer, and
+    /// what is to be done.
     fn explanation(
         &self,
         left: f64,
         heard: usize,
         height_is_given: bool,
         names: &[String],
-    ) -> Option<(Reason, String)> {
+    ) -> Option<(Option<Reason>, String)> {
         let is_contradiction = left >= CONTRADICTION_M;
         let is_of_many = heard >= MANY && left >= OF_MANY_M;
         let explains = if is_contradiction || is_of_many { EXPLAINS } else { CLEARLY };
@@ -192,13 +205,13 @@ impl Tried<'_> {
             Some((with, scale))
         });
         if let Some((with, (_, how, what))) = scaled.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            return Some((Reason::Units, format!("{how} {}{what}", agree(with))));
+            return Some((Some(Reason::Units), format!("{how} {}{what}", agree(with))));
         }
         if let Some((with, [a, b])) = self.swapped()
             && let Some(with) = explained(with)
         {
             let remedy = format!("with {} and {} swapped {}", names[a], names[b], agree(with));
-            return Some((Reason::Anchor, remedy));
+            return Some((Some(Reason::Anchor), remedy));
         }
         if let Some((with, by)) = self.shifted().filter(|_| is_clear)
             && let Some(with) = explained(with)
@@ -207,13 +220,26 @@ impl Tried<'_> {
                 "with each anchor {by} places on in the list {}: look from which number both count",
                 agree(with)
             );
-            return Some((Reason::Anchor, remedy));
+            return Some((Some(Reason::Anchor), remedy));
         }
-        if let Some((with, by)) = self.higher().filter(|_| is_contradiction && height_is_given)
+        let higher = self.higher().filter(|_| is_contradiction && height_is_given);
+        if let Some((with, by)) = self.longer().filter(|_| is_contradiction)
+            && higher.is_none_or(|(of_height, _)| with < of_height)
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!(
+                "with all ranges {by:+.1} m too long {}: calibrate the anchors (--calibration)",
+                agree(with)
+            );
+            // Many anchors tell the tracker so; of few, positions may take a part of it.
+            let reason = (heard < MANY).then_some(Reason::NotObservable);
+            return Some((reason, remedy));
+        }
+        if let Some((with, by)) = higher
             && let Some(with) = explained(with)
         {
             let remedy = format!("with the tag {by:+.1} m higher {}: --height", agree(with));
-            return Some((Reason::Height, remedy));
+            return Some((Some(Reason::Height), remedy));
         }
         if let Some((with, anchor)) = self.without_one().filter(|_| is_clear)
             && let Some(with) = explained(with)
@@ -223,7 +249,7 @@ impl Tried<'_> {
                 names[anchor],
                 agree(with).trim_start_matches("they ")
             );
-            return Some((Reason::Anchor, remedy));
+            return Some((Some(Reason::Anchor), remedy));
         }
         None
     }
@@ -231,6 +257,16 @@ impl Tried<'_> {
     fn scaled(&self, by: f64) -> Option<f64> {
         let change = |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
         self.left(change, self.anchors, self.height)
+    }
+
+    /// As if all ranges were too long by the same.
+    fn longer(&self) -> Option<(f64, f64)> {
+        let each = EXCESSES.into_iter().filter_map(|by| {
+            let change =
+                |moment: &Moment| moment.iter().map(|(a, range)| (*a, range - by)).collect();
+            Some((self.left(change, self.anchors, self.height)?, by))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     fn swapped(&self) -> Option<(f64, [usize; 2])> {
@@ -359,6 +395,10 @@ mod tests {
                 assert_eq!(reason(|metres| metres + delay, places), told, "{delay} m");
             }
             assert_eq!(reason(|metres| metres / 0.3048, places), Some(Reason::Units));
+        }
+        for excess in [-1.5, 2.0] {
+            let told = reason(|metres| metres + excess, &corners);
+            assert_eq!(told, Some(Reason::NotObservable), "{excess} m");
         }
         for factor in [0.5, 2.0] {
             assert_eq!(reason(|metres| factor * metres, &corners), Some(Reason::Units), "{factor}");

@@ -69,6 +69,9 @@ pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, F
     Ok((samples, found))
 }
 
+/// No vehicle is wider, m.
+const WIDEST_TRACK_M: f64 = 10.0;
+
 /// Reads wheels: CSV with columns `t,v_left,v_right,track` (s, m/s, m).
 ///
 /// # Errors
@@ -83,8 +86,11 @@ pub fn read_wheels(path: &Path, options: &Options) -> Result<(Vec<Wheels>, Found
             let time_us = row.time_us(t)?;
             let (left, right) = (row.number("v_left", left)?, row.number("v_right", right)?);
             let track = row.number("track", track)?;
-            if track <= 0.0 {
-                return Err(row.line.error("expected a wheel track above zero, in metres"));
+            if track <= 0.0 || track > WIDEST_TRACK_M {
+                let problem = format!(
+                    "expected a wheel track above zero and to {WIDEST_TRACK_M} m, found {track}"
+                );
+                return Err(row.line.error(problem));
             }
             let turn_rate = (right - left) / track;
             samples.push(Wheels { time_us, speed: 0.5 * (left + right), turn_rate });
@@ -119,5 +125,17 @@ mod tests {
         let [x, y, z] = turned([half, 0.0, 0.0, half], [1.0, 0.0, 2.0]).unwrap();
         assert!(x.abs() < 1e-12 && (y - 1.0).abs() < 1e-12 && (z - 2.0).abs() < 1e-12);
         assert_eq!(turned([0.0; 4], [1.0; 3]), None);
+    }
+
+    #[test]
+    fn a_track_that_no_vehicle_has_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("odom.csv");
+        for (track, is_refused) in [(0.0, true), (0.08, false), (9.9, false), (500.0, true)] {
+            let rows: String = (0..3).map(|k| format!("0.{k},1.0,1.1,{track}\n")).collect();
+            std::fs::write(&path, format!("t,v_left,v_right,track\n{rows}")).unwrap();
+            let read = read_wheels(&path, &Options::default());
+            assert_eq!(read.is_err(), is_refused, "{track} m: {read:?}");
+        }
     }
 }
