@@ -243,9 +243,8 @@ impl Header<'_> {
     pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[Column; N], Error> {
         let mut columns = [Column::NONE; N];
         for (column, name) in columns.iter_mut().zip(names) {
-            *column = self.find(name)?.ok_or_else(|| {
-                self.error(format!("expected a header with a column {name}, found none"))
-            })?;
+            let found = self.find(name)?;
+            *column = found.ok_or_else(|| refused(self.path, &self.heading.lacks(name)))?;
         }
         Ok(columns)
     }
@@ -426,7 +425,7 @@ mod tests {
             "a.csv, line 3: expected a finite number in column range, found \"x\""
         );
         for (text, expected) in [
-            (&b"t\n1\n"[..], "a.csv, line 1: expected a header with a column range, found none"),
+            (&b"t\n1\n"[..], "a.csv, line 1: expected a header with a column range, found t"),
             (b"", "a.csv: expected numbers, found an empty file"),
             (b"t,range\n", "a.csv: expected numbers, found only a header"),
             (

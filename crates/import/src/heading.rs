@@ -1,6 +1,6 @@
 //! The columns that a reader wants by name, as people name them.
 
-use crate::error::{Error, quoted};
+use crate::error::{Error, listed, quoted};
 use crate::names::{Named, meaning, named};
 use crate::options::Options;
 use crate::unit::{Quantity, Unit};
@@ -174,7 +174,8 @@ impl<'a> Heading<'a> {
                 ));
             }
             (None, _, Some(said)) => {
-                let problem = format!("expected a column {}, found none", quoted(&said.name));
+                let problem =
+                    format!("expected a column {}, found {}", quoted(&said.name), self.all());
                 return Err(Error::line(self.line, problem));
             }
             (None, _, None) => {}
@@ -209,14 +210,20 @@ impl<'a> Heading<'a> {
     pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[Place; N], Error> {
         let mut places = Vec::with_capacity(N);
         for name in names {
-            places.push(self.find(name)?.ok_or_else(|| {
-                Error::line(
-                    self.line,
-                    format!("expected a header with a column {name}, found none"),
-                )
-            })?);
+            places.push(self.find(name)?.ok_or_else(|| self.lacks(name))?);
         }
         places.try_into().map_err(|_| Error::line(self.line, "expected a header, found none"))
+    }
+
+    /// A complaint that there is no column of this name.
+    pub fn lacks(&self, name: &str) -> Error {
+        let problem = format!("expected a header with a column {name}, found {}", self.all());
+        Error::line(self.line, problem)
+    }
+
+    /// The columns that there are.
+    fn all(&self) -> String {
+        listed(self.names.iter().map(String::as_str))
     }
 }
 

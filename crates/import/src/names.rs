@@ -7,7 +7,7 @@
 //! | | names |
 //! |---|---|
 //! | time | `t`, `time`, `timestamp`, `timestamps`, `ts`, `times`, `elapsed`, `elapsed_time`, `time_elapsed`, `sample_time`, `sensor_time`, `system_time`, `log_time`, `clock`, `datetime`, `date_time`, `utc`, `utc_time`, `rtc_time`, `zaman`, `zeit`, `temps`, `tiempo` |
-//! | time with its unit | `seconds_elapsed`, `seconds`, `secs`, `sec`; `millis`, `milliseconds`, `msec`; `micros`, `microseconds`, `usec`; `nanos`, `nanoseconds`, `nsec` |
+//! | time with its unit | `seconds_elapsed`, `seconds`, `secs`, `sec`; `millis`, `milliseconds`, `msec`, `ms`; `micros`, `microseconds`, `usec`, `us`; `nanos`, `nanoseconds`, `nsec`, `ns` |
 //! | accelerometer | `a`, `ac`, `acc`, `accel`, `accelerometer`, `acceleration`, `f`, `specific_force`, `linear_acceleration`, `total_acceleration` |
 //! | gyroscope | `g`, `gy`, `gyr`, `gyro`, `gyroscope`, `w`, `omega`, `angular_rate`, `angular_velocity`, `ang_vel`, `rotation_rate`, `turn_rate` |
 
@@ -39,7 +39,7 @@ const TIMES: [&str; 23] = [
     "unixtime",
 ];
 /// Names of time that are its unit.
-const TIMES_IN: [(&str, &str); 13] = [
+const TIMES_IN: [(&str, &str); 16] = [
     ("secondselapsed", "s"),
     ("seconds", "s"),
     ("secs", "s"),
@@ -53,6 +53,9 @@ const TIMES_IN: [(&str, &str); 13] = [
     ("nanos", "ns"),
     ("nanoseconds", "ns"),
     ("nsec", "ns"),
+    ("ms", "ms"),
+    ("us", "us"),
+    ("ns", "ns"),
 ];
 const ACCELEROMETERS: [&str; 10] = [
     "a",
@@ -220,6 +223,7 @@ mod tests {
             ("TimeUS", Quantity::Time, 0, Some("µs")),
             ("timestamp [us]", Quantity::Time, 0, Some("µs")),
             ("times", Quantity::Time, 0, None),
+            ("ms", Quantity::Time, 0, Some("ms")),
             ("seconds_elapsed", Quantity::Time, 0, Some("s")),
             ("ax [g]", Quantity::Acceleration, 0, Some("g")),
             ("aY", Quantity::Acceleration, 1, None),

@@ -52,28 +52,30 @@ pub fn command(arguments: &[OsString]) -> Command {
         .arg(run::data())
         .subcommand(run::command())
         .subcommand(replay::command())
-        .subcommand(Sweep::augment_args(
-            Command::new("sweep").about("Try many settings, seeds or recordings, in shards"),
-        ))
-        .subcommand(Together::augment_args(
-            Command::new("merge")
+        .subcommand(
+            Sweep::augment_args(Command::new("sweep"))
+                .about("Try many settings, seeds or recordings, in shards"),
+        )
+        .subcommand(
+            Together::augment_args(Command::new("merge"))
                 .about("Put the shards of a sweep together and print what a single run prints"),
-        ))
+        )
         .subcommand(check::command())
         .subcommand(made_for_it::command(CALIBRATE))
         .subcommand(made_for_it::command(SURVEY))
         .subcommand(made_for_it::command(IDENTIFY))
-        .subcommand(Design::augment_args(Command::new("design").about(
-            "Design observers: gains, discretisations and covariances of a file of cases",
-        )))
-        .subcommand(Serve::augment_args(
-            Command::new("serve")
+        .subcommand(
+            Design::augment_args(Command::new("design"))
+                .about("Design observers: gains, discretisations and covariances of a file of cases"),
+        )
+        .subcommand(
+            Serve::augment_args(Command::new("serve"))
                 .about("Explore recordings in the browser: thresholds and filters with sliders"),
-        ))
+        )
         .subcommand(live::command(arguments))
-        .subcommand(FetchData::augment_args(Command::new("fetch-data").about(
+        .subcommand(FetchData::augment_args(Command::new("fetch-data")).about(
             "Fetch the recordings that may be passed on from those who publish them, by curl or wget",
-        )))
+        ))
         .subcommand(Command::new("list").about("List systems, scenarios and log formats"))
         .subcommand(
             Command::new("completions")
@@ -181,6 +183,20 @@ mod tests {
             let arguments = ["host-sim", "live", "--system", system.name()].map(OsString::from);
             command(&arguments).debug_assert();
         }
+    }
+
+    #[test]
+    fn each_command_says_what_it_does() {
+        fn look(command: &Command) {
+            let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+            assert!(
+                !about.is_empty() && !about.starts_with("Options"),
+                "{}: {about}",
+                command.get_name()
+            );
+            command.get_subcommands().for_each(look);
+        }
+        look(&command(&[]));
     }
 
     #[test]

@@ -22,10 +22,10 @@ pub(super) fn command() -> Command {
 }
 
 fn of(system: &dyn AnySystem) -> Command {
-    let command = RunOptions::augment_args(Command::new(system.name()).about(system.title()));
+    let command = RunOptions::augment_args(Command::new(system.name()));
     let command = command.next_help_heading("One cell instead of all tables");
     let command = command.args(system.cell().iter().flat_map(Setting::arguments));
-    Outputs::augment_args(command).arg(data().requires("report"))
+    Outputs::augment_args(command).arg(data().requires("report")).about(system.title())
 }
 
 /// The option that adds recordings to the report.

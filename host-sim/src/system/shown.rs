@@ -82,7 +82,11 @@ impl Setting {
                 format!("{help} [default: {}]", format!("{default} {unit}").trim_end())
             }
             Kind::Choice { default, .. } => format!("{help} [default: {default}]"),
-            Kind::Switch { default: true } => format!("Without this: {help}"),
+            Kind::Switch { default: true } => {
+                let mut rest = help.chars();
+                let first = rest.next().map(|first| first.to_ascii_lowercase());
+                format!("Do not {}", first.into_iter().chain(rest).collect::<String>())
+            }
             _ => help.to_owned(),
         }
     }

@@ -114,9 +114,8 @@ fn consumer(system: &str, subject: Option<&str>) -> String {
 /// The command, with the options of each system.
 pub(in crate::commands) fn command() -> Command {
     let of = |system: &'static dyn AnySystem| {
-        let command = Command::new(system.name()).about(system.title());
-        let command = Options::augment_args(command).next_help_heading("Estimator");
-        command.args(followed(system))
+        let command = Options::augment_args(Command::new(system.name())).about(system.title());
+        command.next_help_heading("Estimator").args(followed(system))
     };
     Command::new("fleet")
         .about("Follow any number of devices behind a broker, each with an estimator of its own")
