@@ -158,12 +158,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 self.clipping.remember(&sample.angular_rate);
                 if verdict.stance {
                     let landing = !self.was_stance;
-                    if landing {
-                        if self.health.landing(&navigator.velocity(), self.config.sensor) {
-                            self.is_tilted = true;
-                            // Something was not seen in the swing: a stall, an impact, a turn.
-                            self.strides.miss(T::from_f64(Self::UNSEEN));
-                        }
+                    if landing && self.health.landing(&navigator.velocity(), self.config.sensor) {
+                        self.is_tilted = true;
+                        // Something was not seen in the swing: a stall, an impact, a turn.
+                        self.strides.miss(T::from_f64(Self::UNSEEN));
                     }
                     if self.is_tilted && self.config.levels {
                         level(navigator, &sample.specific_force, self.config.sensor);

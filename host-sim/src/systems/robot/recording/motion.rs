@@ -132,7 +132,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("odom.csv");
         for (track, is_refused) in [(0.0, true), (0.08, false), (9.9, false), (500.0, true)] {
-            let rows: String = (0..3).map(|k| format!("0.{k},1.0,1.1,{track}\n")).collect();
+            let rows = format!("0.1,1.0,1.1,{track}\n0.2,1.0,1.1,{track}\n");
             std::fs::write(&path, format!("t,v_left,v_right,track\n{rows}")).unwrap();
             let read = read_wheels(&path, &Options::default());
             assert_eq!(read.is_err(), is_refused, "{track} m: {read:?}");
