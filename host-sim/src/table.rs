@@ -214,6 +214,11 @@ impl Header<'_> {
         Line { path: self.path, number: self.heading.line }.error(problem)
     }
 
+    /// A complaint that there is no column of this name, or of these names.
+    pub fn lacks(&self, names: &str) -> Error {
+        refused(self.path, &self.heading.lacks(names))
+    }
+
     /// The column `name`, if there is one: of exactly this name, or as people name it. Upper and lower case of other names
     /// than those known to the importer differ: `T` may well be a temperature.
     ///
@@ -243,8 +248,7 @@ impl Header<'_> {
     pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[Column; N], Error> {
         let mut columns = [Column::NONE; N];
         for (column, name) in columns.iter_mut().zip(names) {
-            let found = self.find(name)?;
-            *column = found.ok_or_else(|| refused(self.path, &self.heading.lacks(name)))?;
+            *column = self.find(name)?.ok_or_else(|| self.lacks(name))?;
         }
         Ok(columns)
     }

@@ -36,7 +36,7 @@ pub(crate) struct Walk {
 }
 
 layout! {
-    [] for Walk as "c/pedestrian", 1, Number, []
+    [] for Walk as "c/pedestrian", 2, Number, []
 }
 
 impl Handle for Pedestrian {

@@ -162,6 +162,6 @@ mod tests {
         let options = Options::default();
         let error = NamedTable::find(&text, &options, |heading| heading.require(["t", "range"]));
         let error = error.unwrap().map(|_| ()).unwrap_err().to_string();
-        assert_eq!(error, "line 1: expected a header with a column range, found none");
+        assert_eq!(error, "line 1: expected a header with a column range, found t, anchor");
     }
 }

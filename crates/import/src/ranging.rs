@@ -13,17 +13,18 @@
 //! A line may begin with a time: a number, a date, or a time of day (`12:00:00.250 -> AT+RANGE=…`). A range of zero is
 //! none.
 
+mod labels;
 mod lines;
 mod tables;
 mod topics;
 mod wide;
 
-use std::collections::BTreeMap;
-
 use crate::damage::Damage;
-use crate::error::{Error, listed, quoted};
+use crate::error::Error;
 use crate::options::Options;
 use crate::text::Text;
+
+pub use self::labels::Labels;
 
 /// The usual time between two moments of a tag is one of these, s.
 const USUAL_STEP: std::ops::RangeInclusive<f64> = 2e-3..=2.0;
@@ -86,7 +87,7 @@ pub struct Ranging {
 /// Ranges to anchors as the log calls them.
 #[derive(Debug, Default)]
 struct Found {
-    labels: BTreeMap<String, usize>,
+    labels: Labels,
     /// Time in µs, label, m.
     ranges: Vec<(i64, usize, f64)>,
     /// Time in µs, label, stamps, level in dBm.
@@ -100,26 +101,18 @@ impl Found {
         if metres == 0.0 {
             return;
         }
-        let label = self.label(label);
+        let label = self.labels.index(label);
         self.ranges.push((time_us, label, metres));
     }
 
     fn add_exchange(&mut self, time_us: i64, label: &str, stamps: [u64; 6], level: Option<f64>) {
-        let label = self.label(label);
+        let label = self.labels.index(label);
         self.exchanges.push((time_us, label, stamps, level));
     }
 
     fn add_difference(&mut self, time_us: i64, labels: &[String; 2], metres: f64) {
-        let labels = [self.label(&labels[0]), self.label(&labels[1])];
+        let labels = [self.labels.index(&labels[0]), self.labels.index(&labels[1])];
         self.differences.push((time_us, labels, metres));
-    }
-
-    fn label(&mut self, label: &str) -> usize {
-        let next = self.labels.len();
-        match self.labels.get(label) {
-            Some(&known) => known,
-            None => *self.labels.entry(label.to_owned()).or_insert(next),
-        }
     }
 
     /// Times of all, µs.
@@ -146,10 +139,7 @@ pub fn read(bytes: &[u8], anchors: &[String], options: &Options) -> Result<Optio
             "--units t=",
         ));
     }
-    let mut labels: Vec<_> = found.labels.iter().collect();
-    labels.sort_by_key(|(_, index)| **index);
-    let labels: Vec<_> = labels.into_iter().map(|(label, _)| label.as_str()).collect();
-    let places = places(&labels, anchors)?;
+    let places = found.labels.places(anchors)?;
     let all = found.times().count();
     let anchor = |label: usize| places.get(label).copied().flatten();
     let range = |&(time_us, label, metres)| Some(Range { time_us, anchor: anchor(label)?, metres });
@@ -180,89 +170,9 @@ fn of_text(
     }
 }
 
-/// Which anchors of a list the different labels of a log mean: each the one of its name; if none is a name of the list, the one whose name
-/// ends with the same number, if only one does.
-///
-/// # Errors
-/// No label means any, or list and log count from different numbers on.
-pub fn places(labels: &[&str], anchors: &[String]) -> Result<Vec<Option<usize>>, Error> {
-    let named: Vec<_> = labels.iter().map(|label| by_name(label, anchors)).collect();
-    // A log that has names of the list means by them what the list does, and nothing by a number alone.
-    let places = if named.iter().any(Option::is_some) {
-        named
-    } else {
-        labels.iter().map(|label| by_number(label, anchors)).collect()
-    };
-    if !labels.is_empty() && places.iter().all(Option::is_none) {
-        let [known, heard]: [Vec<_>; 2] = [
-            anchors.iter().map(|name| quoted(name)).collect(),
-            labels.iter().map(|label| quoted(label)).collect(),
-        ];
-        let [known, heard] = [known, heard].map(|all| listed(all.iter().map(String::as_str)));
-        return Err(Error::log(format!("expected ranges to anchors {known}, found {heard}")));
-    }
-    if let Some([listed, heard]) = counted_apart(labels, anchors) {
-        let problem = format!(
-            "expected anchors counted from {listed}, as the list has them, found them counted from {heard}: name them in the list as the log does, and none that is not heard"
-        );
-        return Err(Error::log(problem));
-    }
-    Ok(places)
-}
-
-/// The same of a label alone.
-fn place(label: &str, anchors: &[String]) -> Option<usize> {
-    by_name(label, anchors).or_else(|| by_number(label, anchors))
-}
-
-fn by_name(label: &str, anchors: &[String]) -> Option<usize> {
-    let exact = anchors.iter().position(|name| name == label);
-    exact.or_else(|| anchors.iter().position(|name| name.eq_ignore_ascii_case(label)))
-}
-
-fn by_number(label: &str, anchors: &[String]) -> Option<usize> {
-    let number = number(label)?;
-    let mut numbered = (0..anchors.len()).filter(|&i| self::number(&anchors[i]) == Some(number));
-    numbered.next().filter(|_| numbered.next().is_none())
-}
-
-/// Where the list and the log begin to count, if both number as many anchors one after the other, and not from the same number
-/// on: most names are found in the list then, each for another anchor.
-fn counted_apart(labels: &[&str], anchors: &[String]) -> Option<[u32; 2]> {
-    if labels.len() != anchors.len() || anchors.len() < 3 {
-        return None;
-    }
-    let begin = |mut numbers: Vec<u32>| {
-        numbers.sort_unstable();
-        let begin = *numbers.first()?;
-        let follow = numbers.windows(2).all(|pair| pair[0].checked_add(1) == Some(pair[1]));
-        follow.then_some(begin)
-    };
-    let listed = begin(anchors.iter().map(|name| number(name)).collect::<Option<_>>()?)?;
-    let heard = begin(labels.iter().map(|name| number(name)).collect::<Option<_>>()?)?;
-    (listed != heard).then_some([listed, heard])
-}
-
-/// The number at the end of a name, behind letters alone.
-fn number(name: &str) -> Option<u32> {
-    let digits = name.trim_start_matches(|letter: char| !letter.is_ascii_digit());
-    digits.parse().ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_number_alone_means_an_anchor_only_where_no_name_does() {
-        let anchors = ["A0", "A1", "A2"].map(str::to_owned);
-        let found = |labels: &[&str]| places(labels, &anchors).ok();
-        assert_eq!(found(&["A1", "B1", "a0"]), Some(vec![Some(1), None, Some(0)]));
-        assert_eq!(found(&["1", "2"]), Some(vec![Some(1), Some(2)]));
-        assert_eq!(found(&["1", "2", "3"]), None, "counted from another number");
-        assert_eq!(found(&["B7"]), None);
-        assert_eq!(found(&[]), Some(Vec::new()));
-    }
 
     fn ranges(text: &str, anchors: &[&str], options: &Options) -> Result<Ranging, String> {
         let anchors: Vec<_> = anchors.iter().map(|&name| name.to_owned()).collect();

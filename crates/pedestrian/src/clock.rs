@@ -17,14 +17,14 @@ pub(crate) enum Tick<T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
     last_us: Option<u64>,
-    /// The step before.
+    /// The last step that was no gap; zero before the first.
     step_us: u32,
 }
 
 impl Clock {
     /// Steps beyond this are missing samples (µs): no stream that is slower shows how a foot turns.
     const GAP_US: u64 = 60_000;
-    /// … and so are shorter ones (µs) that are so many times as long as the step before: a foot in swing turns by half a radian.
+    /// … and so are shorter ones (µs) that are so many times as long as the step before: in 40 ms a foot in swing may turn by 0.4 rad.
     const SHORT_GAP_US: u64 = 40_000;
     const LONGER: u64 = 3;
     /// Longest step that is integrated (µs): the motion of the foot in a longer gap is not known.
@@ -48,18 +48,17 @@ impl Clock {
     #[cold]
     #[inline(never)]
     fn missing<T: Scalar>(&self, elapsed: u64) -> Option<T> {
-        let is_gap = elapsed > Self::GAP_US || elapsed > Self::LONGER * u64::from(self.step_us);
+        let is_longer = self.step_us != 0 && elapsed > Self::LONGER * u64::from(self.step_us);
+        let is_gap = elapsed > Self::GAP_US || is_longer;
         is_gap.then(|| T::from_micro(elapsed.min(Self::MINUTE_US) as i32))
     }
 
     /// Takes the step.
     pub(crate) fn set(&mut self, time_us: u64) {
-        let last_us = self.last_us.unwrap_or(time_us);
-        self.last_us = Some(time_us);
-        // A step of more than an hour is any other.
-        let step_us = (time_us as u32).wrapping_sub(last_us as u32);
-        if step_us != 0 {
-            self.step_us = step_us;
+        let last_us = self.last_us.replace(time_us).unwrap_or(time_us);
+        let step_us = time_us.saturating_sub(last_us);
+        if (1..=Self::GAP_US).contains(&step_us) {
+            self.step_us = step_us as u32;
         }
     }
 }
@@ -95,16 +94,29 @@ mod tests {
 
     #[test]
     fn of_a_fast_stream_a_shorter_step_is_a_gap() {
-        let mut clock = Clock::default();
-        clock.set(0);
-        clock.set(5_000);
-        // A row that was written twice is no step.
-        clock.set(5_000);
-        for (elapsed_us, is_gap) in [(40_000, false), (40_001, true)] {
-            let Ok(Tick::Elapsed { missing, .. }) = clock.tick::<f64>(5_000 + elapsed_us) else {
+        // The step before, if there is one, and whether one of so many µs is a gap.
+        for (before_us, elapsed_us, is_gap) in [
+            (5_000, 40_000, false),
+            (5_000, 40_001, true),
+            (14_000, 42_000, false),
+            (14_000, 42_001, true),
+            (0, 60_000, false),
+            (0, 60_001, true),
+        ] {
+            let mut clock = Clock::default();
+            clock.set(0);
+            clock.set(before_us);
+            // A row that was written twice is no step.
+            clock.set(before_us);
+            let Ok(Tick::Elapsed { missing, .. }) = clock.tick::<f64>(before_us + elapsed_us)
+            else {
                 panic!("{elapsed_us} µs are a step");
             };
-            assert_eq!(missing.is_some(), is_gap, "{elapsed_us}");
+            assert_eq!(missing.is_some(), is_gap, "{elapsed_us} after {before_us}");
         }
+        // A gap is no step that another is compared with.
+        let mut clock = Clock::default();
+        [0, 5_000, 905_000].into_iter().for_each(|time_us| clock.set(time_us));
+        assert!(matches!(clock.tick::<f64>(950_000), Ok(Tick::Elapsed { missing: Some(_), .. })));
     }
 }

@@ -32,7 +32,7 @@ pub(crate) struct Engine<T: Scalar, N> {
 impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     /// Below this SHOE statistic, (rad/s)², a stance shows where gravity is.
     const CALM: f64 = 0.1;
-    /// Where the tilt was lost, as much as this (s) was not seen.
+    /// A lost tilt counts as so long without samples (s).
     const UNSEEN: f64 = 0.2;
 
     pub(crate) fn new(config: Config<T>) -> Self {
@@ -116,7 +116,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             self.navigator = Orientation::from_specific_force(&sample.specific_force)
                 .map(|orientation| N::start(self.config.sensor, orientation));
         }
-        let mut stride = None;
+        let (mut stride, mut unseen) = (None, None);
         if let Some(navigator) = &mut self.navigator {
             if let Tick::Elapsed { interval, missing } = tick {
                 let mut turn = motion.angular_rate * interval;
@@ -127,9 +127,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         (across(&before, &motion.angular_rate, interval), SVector::zeros());
                     self.health.gap();
                     self.clipping.forget();
-                    if !(self.was_stance && stands(&motion.angular_rate, missing)) {
-                        self.strides.miss(missing);
-                    }
+                    // How the axis moved meanwhile is not known.
+                    self.turn = SVector::zeros();
+                    let stood = self.was_stance && stands(&motion.angular_rate, missing);
+                    unseen = (!stood).then_some(missing);
                 }
                 let last = core::mem::replace(&mut self.turn, next);
                 let mut step = Step {
@@ -161,7 +162,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     if landing && self.health.landing(&navigator.velocity(), self.config.sensor) {
                         self.is_tilted = true;
                         // Something was not seen in the swing: a stall, an impact, a turn.
-                        self.strides.miss(T::from_f64(Self::UNSEEN));
+                        unseen = Some(unseen.unwrap_or(T::ZERO) + T::from_f64(Self::UNSEEN));
                     }
                     if self.is_tilted && self.config.levels {
                         level(navigator, &sample.specific_force, self.config.sensor);
@@ -181,6 +182,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 }
             }
             stride = self.strides.update(sample.time_us, navigator.position(), verdict.stance);
+            // What was not seen leads to the next footprint, if a stance is over.
+            if let Some(seconds) = unseen {
+                self.strides.miss(seconds);
+            }
         }
         self.was_stance = verdict.stance;
         stride

@@ -24,8 +24,9 @@ pub struct Stride<T: Scalar> {
     /// Turn of its direction from that of the stride before, anticlockwise from above (rad); zero
     /// for the first.
     pub heading_change: T,
-    /// For how long samples were missing on the way (s).
-    pub missing: T,
+    /// For how long it is not known how the foot moved on the way (s): where samples are missing while it may have moved, at most
+    /// 60 s each time; and 0.2 s where the tilt was lost.
+    pub unseen: T,
     /// By how much the body turned beyond the end of its gyroscope's range on the way, as it was bridged (rad).
     pub bridged: T,
 }
@@ -46,7 +47,7 @@ pub(crate) struct Strides<T: Scalar> {
     last: Option<Footprint<T>>,
     heading: Option<T>,
     path_length: T,
-    missing: T,
+    unseen: T,
     bridged: T,
 }
 
@@ -56,8 +57,8 @@ impl<T: Scalar> Strides<T> {
 
     pub(crate) fn new() -> Self {
         let zero = T::ZERO;
-        let (path_length, missing, bridged) = (zero, zero, zero);
-        Self { standing: None, last: None, heading: None, path_length, missing, bridged }
+        let (path_length, unseen, bridged) = (zero, zero, zero);
+        Self { standing: None, last: None, heading: None, path_length, unseen, bridged }
     }
 
     /// The horizontal path from stance to stance so far (m).
@@ -65,10 +66,10 @@ impl<T: Scalar> Strides<T> {
         self.path_length
     }
 
-    /// Samples were missing for so long (s).
+    /// It is not known how the foot moved for so long (s).
     #[cold]
-    pub(crate) fn miss(&mut self, missing: T) {
-        self.missing += missing;
+    pub(crate) fn miss(&mut self, seconds: T) {
+        self.unseen += seconds;
     }
 
     /// The body turned by so much more than its gyroscope saw (rad).
@@ -110,7 +111,7 @@ impl<T: Scalar> Strides<T> {
         self.last = Some(footprint);
         self.heading = Some(heading);
         let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
-        let missing = core::mem::replace(&mut self.missing, T::ZERO);
+        let unseen = core::mem::replace(&mut self.unseen, T::ZERO);
         let bridged = core::mem::replace(&mut self.bridged, T::ZERO);
         Some(Stride {
             time_us: footprint.time_us,
@@ -118,7 +119,7 @@ impl<T: Scalar> Strides<T> {
             length,
             duration: T::from_micro(micro as i32),
             heading_change,
-            missing,
+            unseen,
             bridged,
         })
     }

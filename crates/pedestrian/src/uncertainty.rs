@@ -11,8 +11,8 @@ use nalgebra::SVector;
 /// - a scale s of all strides: s times the distance from the start;
 /// - an error of each stride by itself, of the footprint and of the height, and for the height one that is the same in all.
 ///
-/// What a stride says of missing samples and of turns beyond the gyroscope's range is added: a heading that may be another from then
-/// on, and the way that was not seen. The heading at the start is the frame's, so it has no error. Another fault of the sensor is no
+/// What a stride says of a way that was not seen and of turns beyond the gyroscope's range is added: a heading that may be another
+/// from then on, and the way itself. The heading at the start is the frame's, so it has no error. Another fault of the sensor is no
 /// part of it: see [`Warnings`](crate::Warnings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -30,8 +30,8 @@ pub struct PathUncertainty<T: Scalar> {
     position: SVector<T, 3>,
     /// Standard deviation of the heading (rad).
     heading: T,
-    /// Standard deviation of what was walked while samples were missing (m, each axis).
-    missed: T,
+    /// Standard deviation of the way that was not seen (m, each axis).
+    unseen: T,
     /// What a standard deviation of the heading's rate moves the position by (m, earth: x, y).
     turned: SVector<T, 2>,
     /// How many there were: a number, since a conversion would link double precision.
@@ -43,10 +43,10 @@ impl<T: Scalar> PathUncertainty<T> {
     pub const FOOTPRINT: f64 = 0.028;
     /// Standard deviation of the height gained in a stride (m).
     pub const HEIGHT: f64 = 0.047;
-    /// Standard deviation of the speed while samples are missing, each axis (m/s).
-    pub const MISSED_SPEED: f64 = 1.5;
+    /// Standard deviation of the speed while it is not known how the foot moves, each axis (m/s), …
+    pub const UNSEEN_SPEED: f64 = 1.5;
     /// … and of the rate at which the heading is lost then (rad/s), …
-    pub const MISSED_RATE: f64 = 1.5;
+    pub const UNSEEN_RATE: f64 = 1.5;
     /// … and its share of a turn beyond the gyroscope's range, as it was bridged.
     pub const BRIDGED_SHARE: f64 = 0.02;
     /// Standard deviation of a heading that may be any (rad).
@@ -56,18 +56,18 @@ impl<T: Scalar> PathUncertainty<T> {
     pub fn new(sensor: SensorClass) -> Self {
         let (position, turned) = (SVector::zeros(), SVector::zeros());
         let zero = T::ZERO;
-        Self { sensor, position, heading: zero, missed: zero, turned, strides: zero }
+        Self { sensor, position, heading: zero, unseen: zero, turned, strides: zero }
     }
 
     /// Takes the next stride.
     pub fn add(&mut self, stride: &Stride<T>) {
         let [dx, dy, _] = *(stride.position - self.position).as_array();
         let lost = T::from_f64(Self::LOST_HEADING);
-        let missed = stride.missing * T::from_f64(Self::MISSED_RATE);
+        let unseen = stride.unseen * T::from_f64(Self::UNSEEN_RATE);
         let bridged = stride.bridged * T::from_f64(Self::BRIDGED_SHARE);
         let drifted = self.sensor.heading_rate::<T>() * stride.duration;
-        self.heading = (self.heading + drifted + missed + bridged).min(lost);
-        self.missed = self.missed.hypot(stride.missing * T::from_f64(Self::MISSED_SPEED));
+        self.heading = (self.heading + drifted + unseen + bridged).min(lost);
+        self.unseen = self.unseen.hypot(stride.unseen * T::from_f64(Self::UNSEEN_SPEED));
         self.turned += SVector::from([-dy * self.heading, dx * self.heading]);
         self.position = stride.position;
         self.strides += T::ONE;
@@ -80,9 +80,9 @@ impl<T: Scalar> PathUncertainty<T> {
         let (own, height) = (T::from_f64(Self::FOOTPRINT), T::from_f64(Self::HEIGHT));
         let scale = self.sensor.stride_scale::<T>();
         let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());
-        let own = (own * steps).hypot(self.missed);
+        let own = (own * steps).hypot(self.unseen);
         let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own);
-        let drifted = (self.strides * self.sensor.height_drift::<T>()).hypot(self.missed);
+        let drifted = (self.strides * self.sensor.height_drift::<T>()).hypot(self.unseen);
         SVector::from([of_axis(x, along), of_axis(y, across), (height * steps).hypot(drifted)])
     }
 }
@@ -103,7 +103,7 @@ mod tests {
                 length,
                 duration,
                 heading_change: T::ZERO,
-                missing: T::ZERO,
+                unseen: T::ZERO,
                 bridged: T::ZERO,
             });
         }
@@ -134,7 +134,7 @@ mod tests {
                 length: 0.5,
                 duration: 1.5,
                 heading_change: 0.0,
-                missing: 0.0,
+                unseen: 0.0,
                 bridged: 0.0,
             });
         }
@@ -147,18 +147,18 @@ mod tests {
 
     #[test]
     fn what_was_not_seen_moves_all_that_follows() {
-        let stride = |metres: f64, missing: f64, bridged: f64| Stride {
+        let stride = |metres: f64, unseen: f64, bridged: f64| Stride {
             time_us: 0,
             position: SVector::from([metres, 0.0, 0.0]),
             length: 1.0,
             duration: 1.0,
             heading_change: 0.0,
-            missing,
+            unseen,
             bridged,
         };
-        let after = |missing: f64, bridged: f64| {
+        let after = |unseen: f64, bridged: f64| {
             let mut uncertainty = PathUncertainty::<f64>::new(SensorClass::Industrial);
-            uncertainty.add(&stride(1.0, missing, bridged));
+            uncertainty.add(&stride(1.0, unseen, bridged));
             uncertainty.add(&stride(21.0, 0.0, 0.0));
             uncertainty.standard_deviation()
         };

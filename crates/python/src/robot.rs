@@ -98,7 +98,6 @@ fn follow(
     is_height_missing: bool,
     is_smoothed: bool,
 ) -> Result<Followed, Error> {
-    sensors.put_in_order();
     sensors.drop_far_ahead();
     let events = sensors.events();
     let setup = if is_height_missing {

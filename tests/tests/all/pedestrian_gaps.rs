@@ -49,7 +49,8 @@ fn where_samples_are_missing_standard_deviations_have_what_was_not_seen() {
             for place in 0..PLACES {
                 let from_us = begin + (end - begin) * (3 + place) / (4 + PLACES) + 137_000 * place;
                 let walk = without(samples, from_us, length_us);
-                assert!(!walk.warnings.is_empty(), "{length_us} µs are told");
+                let is_told = walk.warnings.iter().any(|it| it.contains("samples are missing"));
+                assert!(is_told, "{length_us} µs: {:?}", walk.warnings);
                 all.extend(astray(whole, &walk, from_us + length_us));
             }
         }
@@ -62,6 +63,6 @@ fn where_samples_are_missing_standard_deviations_have_what_was_not_seen() {
             off.iter().copied().fold(0.0, f64::max),
             ratios.len()
         );
-        assert!(usual < 1.0 && beyond * 12 <= ratios.len(), "{length_us} µs: {usual}, {beyond}");
+        assert!(usual < 1.0 && beyond <= 1, "{length_us} µs: {usual}, {beyond}");
     }
 }

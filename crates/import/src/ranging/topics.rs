@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::{Found, place};
+use super::Found;
+use super::labels::place;
 use crate::containers::{self, Label, RangeTopics};
 use crate::damage::Damage;
 use crate::error::{Error, listed};

@@ -1,6 +1,7 @@
 //! A column an anchor.
 
-use super::{Found, USUAL_STEP, place};
+use super::labels::place;
+use super::{Found, USUAL_STEP};
 use crate::clock::unit_of_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};

@@ -151,6 +151,11 @@ fn what_was_pushed_since_a_missed_turn_is_without_gravity() {
         }
     }
     assert!(health.warnings().gyroscope_saturated);
+    for (time_us, metres, stance) in [(0, 0.0, true), (1, 0.0, false), (2, 1.0, true)] {
+        strides.update(time_us, Vector3::new(metres, 0.0, 0.0), stance);
+    }
+    let bridged = strides.finish().expect("a stride").bridged;
+    assert!(bridged > 0.01 && bridged < 0.2, "{bridged} rad");
     // Half of the plateau's four steps, and the two after it; what gravity took is no push.
     let pushed = (gained + Vector3::new(0.0, 0.0, STANDARD_GRAVITY * interval)) * 4.0;
     let missed = navigator.missed.expect("a plateau");
@@ -178,7 +183,7 @@ fn over_a_gap(missing_us: u64) -> (Stride<f64>, Vector3<f64>) {
     walk.navigator().position.x = 2.0;
     walk.on(Some(0.0));
     let next = walk.on(None).expect("a stride");
-    assert_eq!(next.missing, 0.0, "the next stride was seen");
+    assert_eq!(next.unseen, 0.0, "the next stride was seen");
     (stride, turn)
 }
 
@@ -187,13 +192,45 @@ fn a_body_turns_in_a_gap_as_its_rates_at_both_ends_say() {
     let (stride, turn) = over_a_gap(150_000);
     // (The biases are learnt meanwhile.)
     assert!((turn - Vector3::new(2.0, 1.5, 1.0) * 0.15).norm() < 2e-3, "{turn}");
-    assert!((stride.missing - 0.15).abs() < 1e-9, "{stride:?}");
+    assert!((stride.unseen - 0.15).abs() < 1e-9, "{stride:?}");
     // No gap, and the axis moves: what coning adds is a twelfth of the turn before × this one.
     let (stride, turn) = over_a_gap(10_000);
     let rate = Vector3::new(3.0, -1.0, 2.0) * 0.01;
     let coning = (Vector3::new(1.0, 4.0, 0.0) * 0.01).cross(&rate) / 12.0;
     assert!((turn - rate - coning).norm() < 2e-4 * coning.norm() + 2e-6, "{turn}");
-    assert_eq!(stride.missing, 0.0);
+    assert_eq!(stride.unseen, 0.0);
+}
+
+#[test]
+fn a_gap_after_a_stance_is_on_the_way_to_the_next() {
+    let mut walk = Walk::<f64>::new(true);
+    for metres in [0.0, 1.0] {
+        walk.on(None);
+        walk.on(Some(0.0));
+        walk.navigator().position.x = metres;
+        walk.on(Some(0.0));
+    }
+    walk.time_us += 140_000;
+    walk.angular_rate = Vector3::new(4.0, 0.0, 0.0);
+    assert_eq!(walk.on(None).expect("a stride before the gap").unseen, 0.0);
+    walk.navigator().position.x = 2.0;
+    walk.on(Some(0.0));
+    assert!((walk.on(None).expect("a stride with it").unseen - 0.15).abs() < 1e-9);
+}
+
+#[test]
+fn a_lost_tilt_counts_as_a_fifth_of_a_second() {
+    let mut walk = Walk::<f64>::new(true);
+    for (metres, speed, unseen) in [(1.0, 0.1, 0.0), (2.0, 3.0, 0.2), (3.0, 0.1, 0.0)] {
+        walk.on(Some(0.0));
+        walk.on(None);
+        let navigator = walk.navigator();
+        navigator.velocity = Vector3::new(speed, 0.0, 0.0);
+        navigator.position.x = metres;
+        walk.on(Some(0.0));
+        assert_eq!(walk.on(None).expect("a stride").unseen, unseen, "{speed} m/s");
+        walk.navigator().velocity = Vector3::zeros();
+    }
 }
 
 #[test]
@@ -209,6 +246,6 @@ fn a_foot_that_stands_before_and_after_a_short_gap_has_stood_in_it() {
         walk.on(None);
         walk.navigator().position.x = 1.0;
         walk.on(Some(0.0));
-        assert_eq!(walk.on(None).expect("a stride").missing, expected);
+        assert_eq!(walk.on(None).expect("a stride").unseen, expected);
     }
 }

@@ -45,13 +45,13 @@ impl Walk {
         let taken = [0, 1, 2].map(|axis| -taken[axis] * (end[axis] - start[axis]));
         let strides = 1..=self.strides.len();
         self.displace(&strides.map(|count| taken.map(|of| count as f64 * of)).collect::<Vec<_>>());
-        // A heading that was lost is no constant rate: its end may be right, and the way is not.
-        if !self.strides.iter().any(Stride::has_missed) {
-            let left = path.remaining(&prior, rate, scale);
-            self.strides
-                .iter_mut()
-                .zip(left)
-                .for_each(|(stride, sigma_m)| stride.sigma_m = sigma_m);
+        // A lost heading is no constant rate, so that only the end is known better.
+        let (left, last) = (path.remaining(&prior, rate, scale), self.strides.len() - 1);
+        let is_unseen = self.strides.iter().any(Stride::is_unseen);
+        for (at, (stride, sigma_m)) in self.strides.iter_mut().zip(left).enumerate() {
+            if !is_unseen || at == last {
+                stride.sigma_m = sigma_m;
+            }
         }
         self.gap_m = Some(gap_m);
         Ok(())

@@ -2,8 +2,8 @@
 
 use super::{Moment, Walk};
 
-/// Nothing is known of so long a time between samples, s.
-const GAP: f64 = 0.1;
+/// Nothing is known of so long a time between samples, s, as in `kestirim_pedestrian`.
+const GAP: f64 = 0.06;
 
 /// Takes back from each swing what its end corrected.
 ///

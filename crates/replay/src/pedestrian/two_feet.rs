@@ -94,7 +94,7 @@ impl Walk {
         let own = errors.stride.powi(2);
         let is_of_one_foot = problem.is_of_one_foot();
         let (mut seen, mut stepped) = (0.0, 0.0);
-        let has_missed = self.strides.iter().any(Stride::has_missed);
+        let is_unseen = self.strides.iter().any(Stride::is_unseen);
         for (index, (stride, (_, slope))) in self.strides.iter_mut().zip(walked).enumerate() {
             let of_both = slope * variances * slope.transpose();
             if !is_of_one_foot && problem.is_seen(stride.time_us) {
@@ -105,9 +105,9 @@ impl Walk {
             let unseen = (index + 1) as f64 - seen;
             stepped = own * (unseen + 0.5 * seen) + 0.25 * known.min(2.0 * own * seen);
             let of_axis = |axis: usize| (of_both[(axis, axis)] + stepped).sqrt();
-            // A heading that was lost is no constant rate.
+            // A lost heading is no constant rate, so these errors do not describe it.
             let [x, y] =
-                if has_missed { [0, 1].map(|k| stride.sigma_m[k]) } else { [0, 1].map(of_axis) };
+                if is_unseen { [0, 1].map(|k| stride.sigma_m[k]) } else { [0, 1].map(of_axis) };
             stride.sigma_m = [x, y, stride.sigma_m[2]];
         }
         let feet = BothFeet {

@@ -66,8 +66,8 @@ pub struct Stride {
     pub duration_s: f64,
     /// Turn with respect to the stride before, rad, anticlockwise.
     pub heading_change_rad: f64,
-    /// For how long samples were missing on the way, s.
-    pub missing_s: f64,
+    /// For how long it is not known how the foot moved on the way, s.
+    pub unseen_s: f64,
     /// By how much the body turned beyond the end of its gyroscope's range on the way, rad.
     pub bridged_rad: f64,
     /// Standard deviations of the position, m.
@@ -250,8 +250,8 @@ impl Walk {
         })
     }
 
-    /// Standard deviations of the position at times that ascend, µs: those of the stride before, or, where something was missed on
-    /// the way, of the one that it is, m.
+    /// Standard deviations of the position at times that ascend, µs: those of the stride before, or, where the way was not
+    /// seen as a whole, of the one that it is, m.
     pub fn sigmas_m(&self, times_us: impl Iterator<Item = u64>) -> impl Iterator<Item = [f64; 3]> {
         let before_the_first = PathUncertainty::<f64>::new(self.sensor.into());
         let mut now = before_the_first.standard_deviation().into();
@@ -260,7 +260,7 @@ impl Walk {
             while let Some(stride) = strides.next_if(|stride| stride.time_us <= time_us) {
                 now = stride.sigma_m;
             }
-            strides.peek().filter(|it| it.has_missed()).map_or(now, |stride| stride.sigma_m)
+            strides.peek().filter(|it| it.is_unseen()).map_or(now, |stride| stride.sigma_m)
         })
     }
 
@@ -297,7 +297,7 @@ impl Stride {
             length_m: stride.length.to_f64(),
             duration_s: stride.duration.to_f64(),
             heading_change_rad: stride.heading_change.to_f64(),
-            missing_s: stride.missing.to_f64(),
+            unseen_s: stride.unseen.to_f64(),
             bridged_rad: stride.bridged.to_f64(),
             sigma_m: [0.0; 3],
         }
@@ -310,14 +310,14 @@ impl Stride {
             length: self.length_m,
             duration: self.duration_s,
             heading_change: self.heading_change_rad,
-            missing: self.missing_s,
+            unseen: self.unseen_s,
             bridged: self.bridged_rad,
         }
     }
 
-    /// Whether the way was not seen as a whole.
-    pub(super) fn has_missed(&self) -> bool {
-        self.missing_s > 0.0 || self.bridged_rad > 0.0
+    /// Whether a part of the way was not seen.
+    pub(super) fn is_unseen(&self) -> bool {
+        self.unseen_s > 0.0
     }
 }
 

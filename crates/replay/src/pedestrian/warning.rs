@@ -34,7 +34,7 @@ pub fn sentences(warnings: Warnings) -> Vec<String> {
             "stride by stride too large a velocity is left over: the gyroscope is clipped, late, or its scale or zero is \
              wrong (calibrate pedestrian), or the clock runs wrong",
         ),
-        (warnings.gaps, "samples are missing for more than 0.1 s"),
+        (warnings.gaps, "samples are missing: more than 60 ms at once, or 40 ms and three times the step before"),
         (
             warnings.out_of_range,
             "the path leads beyond the 2048 m of Q12.20, where its numbers stand still: choose --scalar f32",

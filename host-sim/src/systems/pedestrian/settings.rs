@@ -53,7 +53,7 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
         Setting::switch("causal", "Look only backwards, as firmware must", false),
         Setting::switch(
             "magnetometer",
-            "Correct the heading where the foot stands twice in the same magnetic field, if the log has one; not causally",
+            "Correct the heading where the foot stands twice in the same magnetic field, if the log has one, looking back",
             true,
         ),
         Setting::switch(

@@ -114,9 +114,9 @@ fn doubts<T: Scalar>() {
     keep((SensorClass::height_drift::<T>(sensor), SensorClass::drifts_by(sensor, number::<T>())));
     let mut uncertainty = any(PathUncertainty::<T>::new(sensor));
     let (length, duration, heading_change) = (number(), number(), number());
-    let (time_us, position, missing, bridged) = (whole(), matrix(), number(), number());
+    let (time_us, position, unseen, bridged) = (whole(), matrix(), number(), number());
     let stride =
-        any(Stride { time_us, position, length, duration, heading_change, missing, bridged });
+        any(Stride { time_us, position, length, duration, heading_change, unseen, bridged });
     PathUncertainty::add(any(&mut uncertainty), &stride);
     keep(PathUncertainty::standard_deviation(&uncertainty));
 }

@@ -19,7 +19,7 @@ fn round(rate: f64, scale: f64, rise: f64) -> Walk {
             length_m,
             duration_s: 1.0,
             heading_change_rad: std::f64::consts::TAU / 120.0 + rate,
-            missing_s: 0.0,
+            unseen_s: 0.0,
             bridged_rad: 0.0,
             sigma_m: [9.0; 3],
         });
@@ -57,6 +57,22 @@ fn drift_and_rise_of_a_round_are_taken_back() {
     assert!(x <= PUT_BACK && y <= PUT_BACK && z <= PUT_BACK, "{:?}", sigma(119));
     assert!(sigma(60)[0].hypot(sigma(60)[1]) > x.hypot(y), "{:?}", sigma(60));
     assert!(sigma(60)[0] < 0.5, "{:?}", sigma(60));
+}
+
+#[test]
+fn of_a_closed_path_that_was_not_seen_as_a_whole_the_end_alone_is_known_better() {
+    let mut walk = round(0.0, 0.0, 0.0);
+    walk.strides[40].unseen_s = 0.2;
+    walk.close().expect("a closed walk");
+    assert_eq!(walk.strides[60].sigma_m, [9.0; 3]);
+    assert!(walk.strides[119].sigma_m[0] <= PUT_BACK, "{:?}", walk.strides[119]);
+    // Rows of the stride with the gap have the deviations of its end.
+    walk.strides[39].sigma_m = [1.0; 3];
+    let sigmas: Vec<_> = walk.sigmas_m([39_500_000, 40_000_000, 40_500_000].into_iter()).collect();
+    assert_eq!(sigmas, [[9.0; 3]; 3]);
+    walk.strides[40].unseen_s = 0.0;
+    let sigmas: Vec<_> = walk.sigmas_m([40_000_000, 40_500_000, 41_000_000].into_iter()).collect();
+    assert_eq!(sigmas, [[1.0; 3], [1.0; 3], [9.0; 3]]);
 }
 
 #[test]

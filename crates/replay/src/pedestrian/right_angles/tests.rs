@@ -25,7 +25,7 @@ fn walk(legs: &[(u32, f64)], drift: f64) -> Walk {
                 length_m: 1.2,
                 duration_s: 1.0,
                 heading_change_rad: 0.0,
-                missing_s: 0.0,
+                unseen_s: 0.0,
                 bridged_rad: 0.0,
                 sigma_m: [0.0; 3],
             });

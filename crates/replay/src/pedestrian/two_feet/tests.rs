@@ -64,7 +64,7 @@ fn foot(is_left: bool, frame: f64, mut wrong: Wrong) -> Walk {
                 length_m: (place - from).norm(),
                 duration_s: 2.0,
                 heading_change_rad: 0.0,
-                missing_s: 0.0,
+                unseen_s: 0.0,
                 bridged_rad: 0.0,
                 sigma_m: [9.0; 3],
             });

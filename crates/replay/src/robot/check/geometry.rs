@@ -38,9 +38,11 @@ const COMMON_BIAS_M: f64 = 0.5;
 /// Three anchors in the plane, or four in space, leave one range to spare: enough to see a contradiction, too few to find its cause.
 /// Positions are then wrong by a multiple of it, so it is told from here on, m.
 const NOTHING_TO_SPARE_M: f64 = 0.2;
+/// A common excess explains as well as a height if it leaves no more than so much more: radios have one more often, m.
+const AS_WELL_M: f64 = 0.05;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
-/// What all ranges may be too long by, beyond what a common bias of half a metre explains, m.
+/// What all ranges may be too long by (or too short, if below zero), beyond what a common bias of half a metre explains, m.
 const EXCESSES: [f64; 7] = [-2.0, -1.5, -1.0, 1.0, 1.5, 2.0, 3.0];
 /// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
 const SCALES: [(f64, &str, &str); 3] = [
@@ -224,14 +226,16 @@ impl Tried<'_> {
         }
         let higher = self.higher().filter(|_| is_contradiction && height_is_given);
         if let Some((with, by)) = self.longer().filter(|_| is_contradiction)
-            && higher.is_none_or(|(of_height, _)| with < of_height)
+            && higher.is_none_or(|(of_height, _)| with < of_height + AS_WELL_M)
             && let Some(with) = explained(with)
         {
+            let how = if by > 0.0 { "long" } else { "short" };
             let remedy = format!(
-                "with all ranges {by:+.1} m too long {}: calibrate the anchors (--calibration)",
+                "with all ranges {:.1} m too {how} {}: calibrate the anchors (--calibration)",
+                by.abs(),
                 agree(with)
             );
-            // Many anchors tell the tracker so; of few, positions may take a part of it.
+            // From six anchors on the tracker estimates the common excess itself; of fewer, a part of it goes into positions.
             let reason = (heard < MANY).then_some(Reason::NotObservable);
             return Some((reason, remedy));
         }

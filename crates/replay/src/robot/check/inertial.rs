@@ -12,7 +12,7 @@ const FEWEST: usize = 50;
 const IN_G: std::ops::Range<f64> = 0.9..1.1;
 /// … and keep to it so closely, as accelerations without gravity do not.
 const CLOSELY: f64 = 0.1;
-/// No tag is accelerated so much on average, m/s².
+/// No tag is usually accelerated so much, m/s².
 const LARGEST: f64 = 50.0;
 
 /// That they are all the same, or in another unit.
@@ -44,12 +44,15 @@ pub(super) fn find(parts: &[&[Event]]) -> Option<Finding> {
     let from_it: Vec<f64> = sizes.iter().map(|size| (size - usual).abs()).collect();
     let seems_in_g = IN_G.contains(&usual) && median(&from_it) < CLOSELY;
     (seems_in_g || usual > LARGEST).then(|| {
-        let remedy =
-            if seems_in_g { "--units acc=g" } else { "say their unit, such as --units acc=mg" };
+        let (what, remedy) = if seems_in_g {
+            ("they seem to be in g", "--units acc=g")
+        } else {
+            ("they are in another unit", "say which, such as --units acc=mg")
+        };
         Finding::fault(
             "IMU",
             Reason::Units,
-            format!("accelerations are {usual:.3} m/s² large"),
+            format!("accelerations usually have a size of {usual:.3} m/s²: {what}"),
             "whether the tag stands or moves is told wrong",
             remedy,
         )

@@ -110,7 +110,7 @@ mod tests {
             length_m: stretch,
             duration_s: 1.0,
             heading_change_rad: 0.0,
-            missing_s: 0.0,
+            unseen_s: 0.0,
             bridged_rad: 0.0,
             sigma_m: [0.0; 3],
         };

@@ -72,7 +72,7 @@ pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, F
 /// No vehicle is wider, m.
 const WIDEST_TRACK_M: f64 = 10.0;
 
-/// Reads wheels: CSV with columns `t,v_left,v_right,track` (s, m/s, m).
+/// Reads wheels: CSV with columns `t,v_left,v_right,track` (s, m/s, m; the track at most 10 m).
 ///
 /// # Errors
 /// The file, the line, and what was expected there.
@@ -88,7 +88,7 @@ pub fn read_wheels(path: &Path, options: &Options) -> Result<(Vec<Wheels>, Found
             let track = row.number("track", track)?;
             if track <= 0.0 || track > WIDEST_TRACK_M {
                 let problem = format!(
-                    "expected a wheel track above zero and to {WIDEST_TRACK_M} m, found {track}"
+                    "expected a wheel track above 0 and at most {WIDEST_TRACK_M} m, found {track}"
                 );
                 return Err(row.line.error(problem));
             }
@@ -131,7 +131,7 @@ mod tests {
     fn a_track_that_no_vehicle_has_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("odom.csv");
-        for (track, is_refused) in [(0.0, true), (0.08, false), (9.9, false), (500.0, true)] {
+        for (track, is_refused) in [(0.0, true), (0.08, false), (10.0, false), (10.1, true)] {
             let rows = format!("0.1,1.0,1.1,{track}\n0.2,1.0,1.1,{track}\n");
             std::fs::write(&path, format!("t,v_left,v_right,track\n{rows}")).unwrap();
             let read = read_wheels(&path, &Options::default());

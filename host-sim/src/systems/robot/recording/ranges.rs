@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use kestirim_import::{Options, ranging};
+use kestirim_import::Options;
+use kestirim_import::ranging::{self, Labels};
 use kestirim_replay::robot::{Anchors, Difference, Exchange, RangeRow};
 
 use crate::Error;
@@ -17,26 +18,9 @@ const USUAL_STEP_S: [f64; 2] = [2e-3, 2.0];
 /// Beyond any count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
-/// The different names of anchors in a log, with their order.
-#[derive(Debug, Default)]
-struct Names(BTreeMap<String, usize>);
-
-impl Names {
-    fn index(&mut self, name: &str) -> usize {
-        let next = self.0.len();
-        match self.0.get(name) {
-            Some(&known) => known,
-            None => *self.0.entry(name.to_owned()).or_insert(next),
-        }
-    }
-
-    /// Which anchors of the list they mean.
-    fn places(&self, path: &Path, anchors: &Anchors) -> Result<Vec<Option<usize>>, Error> {
-        let mut names: Vec<_> = self.0.iter().collect();
-        names.sort_by_key(|(_, index)| **index);
-        let names: Vec<_> = names.into_iter().map(|(name, _)| name.as_str()).collect();
-        ranging::places(&names, &anchors.names).map_err(|error| table::refused(path, &error))
-    }
+/// Which anchors of the list the labels of a log mean.
+fn places(labels: &Labels, path: &Path, anchors: &Anchors) -> Result<Vec<Option<usize>>, Error> {
+    labels.places(&anchors.names).map_err(|error| table::refused(path, &error))
 }
 
 /// The ranges of a log.
@@ -91,7 +75,7 @@ pub fn read_moving(
     anchors: &Anchors,
     options: &Options,
 ) -> Result<(RangeLog, Found), Error> {
-    let (mut log, mut names) = (RangeLog::default(), Names::default());
+    let (mut log, mut labels) = (RangeLog::default(), Labels::default());
     let bytes = text::bytes(path)?;
     if let Some(found) = of_radio(path, &bytes, anchors, options)? {
         return Ok(found);
@@ -104,11 +88,11 @@ pub fn read_moving(
         |&[t, anchor, range], row| {
             let time_us = row.time_us(t)?;
             let range = optional_range(row, range)?;
-            log.add(time_us, names.index(&row.text(anchor)), range);
+            log.add(time_us, labels.index(&row.text(anchor)), range);
             Ok(())
         },
     )?;
-    log.resolve(&names.places(path, anchors)?);
+    log.resolve(&places(&labels, path, anchors)?);
     Ok((log, found))
 }
 
@@ -154,7 +138,7 @@ pub fn read_static(
     anchors: &Anchors,
     options: &Options,
 ) -> Result<(BTreeMap<String, RangeLog>, Found), Error> {
-    let (mut logs, mut names) = (BTreeMap::<String, RangeLog>::new(), Names::default());
+    let (mut logs, mut labels) = (BTreeMap::<String, RangeLog>::new(), Labels::default());
     let found = table::read_log(
         path,
         &Log { what: "ranges", usual_step_s: None, options },
@@ -167,11 +151,11 @@ pub fn read_static(
             }
             let range = optional_range(row, range)?;
             let log = logs.entry(row.text(point).into_owned()).or_default();
-            log.add(epoch as i64 * EPOCH_US, names.index(&row.text(anchor)), range);
+            log.add(epoch as i64 * EPOCH_US, labels.index(&row.text(anchor)), range);
             Ok(())
         },
     )?;
-    let places = names.places(path, anchors)?;
+    let places = places(&labels, path, anchors)?;
     for log in logs.values_mut() {
         log.resolve(&places);
     }

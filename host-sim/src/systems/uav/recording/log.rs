@@ -81,10 +81,7 @@ fn of_table(
             let inputs = header.require(["t", "delta_e", "delta_t"])?;
             let columns = measured_columns(header, names)?;
             if columns.is_empty() {
-                return Err(header.error(format!(
-                    "expected at least one column of {}, found none",
-                    names.join(", ")
-                )));
+                return Err(header.lacks(&names.join(" or ")));
             }
             Ok((inputs, columns))
         },
@@ -144,7 +141,7 @@ pub fn read_truth(path: &Path) -> Result<Truth, Error> {
             let [t] = header.require(["t"])?;
             let columns = measured_columns(header, &STATE_COLUMNS)?;
             if columns.is_empty() {
-                return Err(header.error("expected a column alpha, q, V or theta, found none"));
+                return Err(header.lacks(&STATE_COLUMNS.join(" or ")));
             }
             Ok((t, columns))
         },
