@@ -116,7 +116,9 @@ mod tests {
         }
         // A gap is no step that another is compared with.
         let mut clock = Clock::default();
-        [0, 5_000, 905_000].into_iter().for_each(|time_us| clock.set(time_us));
+        for time_us in [0, 5_000, 905_000] {
+            clock.set(time_us);
+        }
         assert!(matches!(clock.tick::<f64>(950_000), Ok(Tick::Elapsed { missing: Some(_), .. })));
     }
 }
