@@ -57,7 +57,6 @@ impl<const N: usize, R: Weighting> PppFilter<N, R> {
     }
 
     /// `direction` is 1 or −1.
-    #[inline(never)] // A program that goes both ways has it once.
     fn step(
         &mut self,
         time: GpsTime,

@@ -214,7 +214,6 @@ pub fn follow(
     }
 }
 
-#[inline(never)] // Three of them in one function take the compiler longer than apart.
 fn feed<const N: usize>(
     mut filter: PppFilter<N>,
     recording: &Recording,
