@@ -42,8 +42,8 @@ const NOTHING_TO_SPARE_M: f64 = 0.2;
 const AS_WELL_M: f64 = 0.05;
 /// Heights that are tried against the one that was said, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
-/// What all ranges may be too long by (or too short, if below zero), beyond what a common bias of half a metre explains, m.
-const EXCESSES: [f64; 7] = [-2.0, -1.5, -1.0, 1.0, 1.5, 2.0, 3.0];
+/// What all ranges may be too long by, beyond what a common bias of half a metre explains, m.
+const EXCESSES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
 /// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
 const SCALES: [(f64, &str, &str); 3] = [
     (0.3048, "in feet", ": --units range=ft"),
@@ -229,10 +229,8 @@ impl Tried<'_> {
             && higher.is_none_or(|(of_height, _)| with < of_height + AS_WELL_M)
             && let Some(with) = explained(with)
         {
-            let how = if by > 0.0 { "long" } else { "short" };
             let remedy = format!(
-                "with all ranges {:.1} m too {how} {}: calibrate the anchors (--calibration)",
-                by.abs(),
+                "with all ranges {by:.1} m too long {}: calibrate the anchors (--calibration)",
                 agree(with)
             );
             // From six anchors on the tracker estimates the common excess itself; of fewer, a part of it goes into positions.
@@ -400,7 +398,7 @@ mod tests {
             }
             assert_eq!(reason(|metres| metres / 0.3048, places), Some(Reason::Units));
         }
-        for excess in [-1.5, 2.0] {
+        for excess in [1.0, 2.0] {
             let told = reason(|metres| metres + excess, &corners);
             assert_eq!(told, Some(Reason::NotObservable), "{excess} m");
         }
