@@ -56,9 +56,10 @@ impl Clock {
     /// Takes the step.
     pub(crate) fn set(&mut self, time_us: u64) {
         let last_us = self.last_us.replace(time_us).unwrap_or(time_us);
-        let step_us = time_us.saturating_sub(last_us);
-        if (1..=Self::GAP_US).contains(&step_us) {
-            self.step_us = step_us as u32;
+        // An hour and more may leave any remainder; then one short gap may go untold.
+        let step_us = (time_us as u32).wrapping_sub(last_us as u32);
+        if (1..=Self::GAP_US as u32).contains(&step_us) {
+            self.step_us = step_us;
         }
     }
 }

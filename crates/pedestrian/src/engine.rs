@@ -116,7 +116,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             self.navigator = Orientation::from_specific_force(&sample.specific_force)
                 .map(|orientation| N::start(self.config.sensor, orientation));
         }
-        let (mut stride, mut unseen) = (None, None);
+        let mut stride = None;
         if let Some(navigator) = &mut self.navigator {
             if let Tick::Elapsed { interval, missing } = tick {
                 let mut turn = motion.angular_rate * interval;
@@ -129,8 +129,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     self.clipping.forget();
                     // How the axis moved meanwhile is not known.
                     self.turn = SVector::zeros();
-                    let stood = self.was_stance && stands(&motion.angular_rate, missing);
-                    unseen = (!stood).then_some(missing);
+                    if !(self.was_stance && stands(&motion.angular_rate, missing)) {
+                        self.strides.miss(missing, verdict.stance);
+                    }
                 }
                 let last = core::mem::replace(&mut self.turn, next);
                 let mut step = Step {
@@ -162,7 +163,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     if landing && self.health.landing(&navigator.velocity(), self.config.sensor) {
                         self.is_tilted = true;
                         // Something was not seen in the swing: a stall, an impact, a turn.
-                        unseen = Some(unseen.unwrap_or(T::ZERO) + T::from_f64(Self::UNSEEN));
+                        self.strides.miss(T::from_f64(Self::UNSEEN), true);
                     }
                     if self.is_tilted && self.config.levels {
                         level(navigator, &sample.specific_force, self.config.sensor);
@@ -182,10 +183,6 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 }
             }
             stride = self.strides.update(sample.time_us, navigator.position(), verdict.stance);
-            // What was not seen leads to the next footprint, if a stance is over.
-            if let Some(seconds) = unseen {
-                self.strides.miss(seconds);
-            }
         }
         self.was_stance = verdict.stance;
         stride

@@ -47,7 +47,8 @@ pub(crate) struct Strides<T: Scalar> {
     last: Option<Footprint<T>>,
     heading: Option<T>,
     path_length: T,
-    unseen: T,
+    /// On the way to the next footprint, and to the one after it.
+    unseen: [T; 2],
     bridged: T,
 }
 
@@ -57,7 +58,7 @@ impl<T: Scalar> Strides<T> {
 
     pub(crate) fn new() -> Self {
         let zero = T::ZERO;
-        let (path_length, unseen, bridged) = (zero, zero, zero);
+        let (path_length, unseen, bridged) = (zero, [zero; 2], zero);
         Self { standing: None, last: None, heading: None, path_length, unseen, bridged }
     }
 
@@ -66,10 +67,12 @@ impl<T: Scalar> Strides<T> {
         self.path_length
     }
 
-    /// It is not known how the foot moved for so long (s).
+    /// It is not known how the foot moved for so long (s), after which it stands or not.
     #[cold]
-    pub(crate) fn miss(&mut self, seconds: T) {
-        self.unseen += seconds;
+    pub(crate) fn miss(&mut self, seconds: T, stance: bool) {
+        let [to_next, to_one_after] = &mut self.unseen;
+        let has_left = self.standing.is_some() && !stance;
+        *(if has_left { to_one_after } else { to_next }) += seconds;
     }
 
     /// The body turned by so much more than its gyroscope saw (rad).
@@ -111,7 +114,8 @@ impl<T: Scalar> Strides<T> {
         self.last = Some(footprint);
         self.heading = Some(heading);
         let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
-        let unseen = core::mem::replace(&mut self.unseen, T::ZERO);
+        let [unseen, next] = self.unseen;
+        self.unseen = [next, T::ZERO];
         let bridged = core::mem::replace(&mut self.bridged, T::ZERO);
         Some(Stride {
             time_us: footprint.time_us,
