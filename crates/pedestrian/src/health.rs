@@ -29,7 +29,7 @@ pub struct Warnings {
     /// Stride by stride too large a velocity is left over: the gyroscope is clipped, its scale or zero has changed, it
     /// comes late, or the clock runs wrong.
     pub landings_implausible: bool,
-    /// Samples are missing: 60 ms, or 40 ms of a stream that is three times as fast.
+    /// Samples are missing: more than 60 ms at once, or more than 40 ms and three times the step before.
     pub gaps: bool,
     /// The stream showed no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,

@@ -99,13 +99,17 @@ impl<T: Scalar> Strides<T> {
     /// Ends the stance there is, if any.
     pub(crate) fn finish(&mut self) -> Option<Stride<T>> {
         let footprint = self.standing.take()?;
+        let [unseen, next] = self.unseen;
+        self.unseen = [next, T::ZERO];
         let Some(last) = self.last else {
             self.last = Some(footprint);
+            self.unseen = [unseen + next, T::ZERO];
             return None;
         };
         let [x, y, _] = *(footprint.position - last.position).as_array();
         let length = x.hypot(y);
         if length < T::from_f64(Self::SHORTEST) {
+            self.unseen = [unseen + next, T::ZERO];
             return None;
         }
         let heading = y.atan2(x);
@@ -114,8 +118,6 @@ impl<T: Scalar> Strides<T> {
         self.last = Some(footprint);
         self.heading = Some(heading);
         let micro = footprint.time_us.saturating_sub(last.time_us).min(i32::MAX as u64);
-        let [unseen, next] = self.unseen;
-        self.unseen = [next, T::ZERO];
         let bridged = core::mem::replace(&mut self.bridged, T::ZERO);
         Some(Stride {
             time_us: footprint.time_us,
@@ -177,6 +179,26 @@ mod tests {
         // The shuffle is no stance of its own: what follows it began before.
         assert!((second.length - 1.0).abs() < 1e-9 && (second.duration - 2.0).abs() < 1e-9);
         assert!((second.heading_change - (PI - 0.8_f64.atan2(0.6))).abs() < 1e-9, "{second:?}");
+    }
+
+    #[test]
+    fn what_was_not_seen_is_on_the_way_to_one_footprint() {
+        // After the first stance, before a shuffle, and in the midst of a stance.
+        let stances =
+            [(0.0, None), (1.0, Some(0.25)), (1.05, None), (2.0, Some(0.5)), (3.0, Some(0.125))];
+        let mut strides = Strides::new();
+        for (at, (metres, unseen)) in stances.into_iter().enumerate() {
+            let position = SVector::from([metres, 0.0, 0.0]);
+            assert!(strides.update(0, position, true).is_none());
+            match at {
+                0 => strides.miss(0.25, false),
+                1 => strides.miss(0.5, false),
+                4 => strides.miss(0.125, true),
+                _ => {}
+            }
+            let stride = strides.update(0, position, false);
+            assert_eq!(stride.map(|stride| stride.unseen), unseen, "to {metres} m");
+        }
     }
 
     #[test]
