@@ -6,7 +6,7 @@ use kestirim_scalar::Scalar;
 pub(crate) enum Tick<T> {
     /// The first sample: nothing to integrate yet.
     First,
-    /// The same time again: the recorder wrote a row twice.
+    /// The same time again, as the recorder wrote a row twice; or the same rates, as the sensor was not read anew.
     Duplicate,
     /// The step that is integrated, and for how long samples were missing, if they were (s).
     Elapsed { interval: T, missing: Option<T> },

@@ -32,6 +32,8 @@ pub(crate) struct Engine<T: Scalar, N> {
 impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     /// Below this SHOE statistic, (rad/s)², a stance shows where gravity is.
     const CALM: f64 = 0.1;
+    /// Rates that are repeated are left out for less than this (s): a longer step is not integrated as a whole.
+    const HELD: f64 = 0.15;
     /// A lost tilt counts as so long without samples (s).
     const UNSEEN: f64 = 0.2;
 
@@ -53,15 +55,32 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     /// Whether the sample can be taken, and what its time means. Changes nothing.
     #[inline]
     pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<(Tick<T>, Size), Error> {
-        Ok((self.clock.tick(sample.time_us)?, sample.check()?))
+        let (tick, size) = (self.clock.tick(sample.time_us)?, sample.check()?);
+        let tick = match tick {
+            // What it says next is taken for the time since; one that turns evenly is not kept waiting for long.
+            Tick::Elapsed { interval, .. }
+                if self.is_held(&sample.angular_rate) && interval < T::from_f64(Self::HELD) =>
+            {
+                Tick::Duplicate
+            }
+            tick => tick,
+        };
+        Ok((tick, size))
+    }
+
+    /// Whether a foot turns by exactly the rate of the sample before: its sensor was not read anew.
+    #[inline]
+    fn is_held(&self, rate: &SVector<T, 3>) -> bool {
+        let ([x, y, z], [a, b, c]) = (*rate.as_array(), *self.clipping.last().as_array());
+        x == a && y == b && z == c && turns(rate)
     }
 
     /// Learns of an examined sample what is the same in the whole stream: biases, and ends of ranges.
     pub(crate) fn learn(&mut self, sample: &ImuSample<T>, (tick, size): (Tick<T>, Size)) {
-        self.clock.set(sample.time_us);
         if tick == Tick::Duplicate {
             return;
         }
+        self.clock.set(sample.time_us);
         self.alignment.update(sample);
         if let Tick::Elapsed { interval, missing } = tick {
             if missing.is_some() {
@@ -250,9 +269,14 @@ fn across<T: Scalar>(before: &SVector<T, 3>, after: &SVector<T, 3>, interval: T)
 
 /// Whether a foot that stood before so many seconds without samples, and turns like this after them, has stood all the time.
 fn stands<T: Scalar>(rate: &SVector<T, 3>, missing: T) -> bool {
-    // Briefer than a swing, and slower than a foot turns in one (s, rad/s).
-    let (swing, slow) = (T::from_f64(0.4), T::HALF);
-    missing < swing && rate.as_array().iter().all(|rate| rate.abs() < slow)
+    // Briefer than a swing (s).
+    missing < T::from_f64(0.4) && !turns(rate)
+}
+
+/// Whether a body turns as a foot does that does not stand.
+fn turns<T: Scalar>(rate: &SVector<T, 3>) -> bool {
+    // rad/s
+    rate.as_array().iter().any(|rate| rate.abs() >= T::HALF)
 }
 
 /// Levels a foot as its stance shows gravity, with the heading that it has.

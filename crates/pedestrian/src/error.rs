@@ -10,7 +10,7 @@ pub enum Error {
     NotFinite,
     /// No sensor can have measured this: beyond 1000 g or 10⁵ °/s.
     Implausible,
-    /// The time stamp is before that of the last sample.
+    /// The time stamp is before that of the last sample that was taken.
     TimeBackwards,
     /// The working memory has fewer entries than the recording has samples.
     NoMemory,

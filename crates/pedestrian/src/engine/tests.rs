@@ -219,6 +219,31 @@ fn a_gap_after_a_stance_is_on_the_way_to_the_next() {
 }
 
 #[test]
+fn a_rate_that_is_repeated_to_the_last_bit_is_no_sample() {
+    let mut walk = Walk::<f64>::new(true);
+    walk.on(Some(0.0));
+    walk.on(None);
+    let mut examined = |at_us: u64, rate: [f64; 3]| {
+        walk.time_us = 20_000 + at_us;
+        walk.angular_rate = rate.into();
+        walk.engine.examine(&walk.sample()).expect("a sample").0
+    };
+    assert_eq!(examined(10_000, [0.0; 3]), Tick::Elapsed { interval: 0.01, missing: None });
+    walk.angular_rate = Vector3::new(0.0, 3.0, 0.1);
+    walk.time_us = 20_000;
+    walk.on(None);
+    let tick = |at_us: u64, rate: [f64; 3]| {
+        let sample =
+            ImuSample { time_us: 30_000 + at_us, angular_rate: rate.into(), ..walk.sample() };
+        walk.engine.examine(&sample).expect("a sample").0
+    };
+    assert_eq!(tick(10_000, [0.0, 3.0, 0.1]), Tick::Duplicate);
+    assert_eq!(tick(140_000, [0.0, 3.0, 0.1]), Tick::Duplicate);
+    assert!(matches!(tick(160_000, [0.0, 3.0, 0.1]), Tick::Elapsed { missing: Some(_), .. }));
+    assert!(matches!(tick(10_000, [0.0, 3.0, 0.1001]), Tick::Elapsed { missing: None, .. }));
+}
+
+#[test]
 fn a_lost_tilt_counts_as_a_fifth_of_a_second() {
     let mut walk = Walk::<f64>::new(true);
     for (metres, speed, unseen) in [(1.0, 0.1, 0.0), (2.0, 3.0, 0.2), (3.0, 0.1, 0.0)] {

