@@ -34,6 +34,7 @@ mod evidence;
 mod found;
 mod motion;
 mod order;
+mod packets;
 mod raw;
 mod rest;
 mod rows;
@@ -144,6 +145,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     rows.put_in_order(&periods(&table, &columns), &mut damage)?;
     let doubles = if options.strict { 0 } else { rows.without_doubles(&mut damage) };
     damage.accept(total, options.strict)?;
+    packets::refuse_shared_times(&rows.raw)?;
     let units = units::decide(&rows.raw, &columns.claims, columns.axes_are_said)?;
     let (samples, start) = samples(&mut rows, &columns, &units, &mut damage);
     damage.accept(total, options.strict)?;

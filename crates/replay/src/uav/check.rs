@@ -10,6 +10,12 @@ use crate::metrics::median;
 const SPIKE: f64 = 30.0;
 /// Share of spikes from which on they are told as a fault.
 const MANY: f64 = 0.002;
+/// A jump that stays is a step of the sensor, if it is so large, what comes before and after it for so many samples lies apart by a part
+/// of it, and nothing there jumps as far.
+const AROUND: usize = 10;
+const STAYS: f64 = 0.7;
+/// Accelerations do step, with thrust and elevator.
+const ACCELERATIONS: [&str; 3] = ["ax", "ay", "az"];
 /// So many samples in a row that stay the same to the last digit while others change are stuck.
 const STUCK: usize = 50;
 
@@ -31,7 +37,7 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
         .collect();
     let steers = log.samples.windows(2).any(|pair| pair[0].input != pair[1].input);
     let flies = steers || columns.iter().any(|values| varies(values));
-    for (values, &output) in columns.iter().zip(&log.outputs) {
+    for (column, (values, &output)) in columns.iter().zip(&log.outputs).enumerate() {
         let name = name(output);
         let missing = count - values.len();
         if missing > 0 {
@@ -39,16 +45,14 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
             findings.push(Finding::note("missing", format!("{name}: {share:.1} % of the samples")));
         }
         findings.extend(spikes(name, values));
+        findings.extend(step(name, log, column, SPIKE * usual_change(values)));
         findings.extend(stuck(name, values).filter(|_| flies));
     }
     findings
 }
 
 fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
-    let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    // Without changes of nothing: of a sensor that is stuck for half of the flight the usual change would be none, and any of the
-    // other half a spike.
-    let limit = SPIKE * median(&changes.iter().copied().filter(|it| *it > 0.0).collect::<Vec<_>>());
+    let limit = SPIKE * usual_change(values);
     let is_spike = |three: &&[f64]| {
         let (there, back) = (three[1] - three[0], three[2] - three[1]);
         there * back < 0.0 && there.abs().min(back.abs()) > limit
@@ -61,6 +65,44 @@ fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
             format!("{name} jumps away and back {count} times in {} samples", values.len()),
             "the estimators leave them out, and know less meanwhile",
             "look at the sensor's wiring and at the logger",
+        )
+    })
+}
+
+/// Of those that are any: of a sensor that is stuck for half of the flight the usual change would be none, and any of the other
+/// half a spike.
+fn usual_change(values: &[f64]) -> f64 {
+    let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    median(&changes.filter(|change| *change > 0.0).collect::<Vec<_>>())
+}
+
+/// That an output is another from one sample to the next, and stays so.
+fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
+    if ACCELERATIONS.contains(&name) {
+        return None;
+    }
+    let usual_us = 1.5e6 * log.interval_s;
+    let found = log.samples.windows(2 * AROUND).find_map(|around| {
+        let follow = |pair: &[super::Sample]| ((pair[1].t_us - pair[0].t_us) as f64) < usual_us;
+        let values: Vec<f64> = around.iter().filter_map(|it| *it.measured.get(column)?).collect();
+        if values.len() < around.len() || !around.windows(2).all(follow) {
+            return None;
+        }
+        let (before, after) = values.split_at(AROUND);
+        let by = after[0] - before[AROUND - 1];
+        let others = [before, after].into_iter().flat_map(|part| part.windows(2));
+        let most = others.map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        let stays = (median(after) - median(before)) / by >= STAYS;
+        (limit > 0.0 && by.abs() > limit.max(2.0 * most) && stays)
+            .then_some((around[AROUND].t_us, by))
+    });
+    found.map(|(t_us, by)| {
+        Finding::fault(
+            "steps",
+            Reason::Innovations,
+            format!("{name} steps by {by:.3} at {:.2} s and stays there", t_us as f64 * 1e-6),
+            "no aircraft does: before or after it the sensor is off by as much",
+            "look at the sensor, or leave its fields empty where it is wrong",
         )
     })
 }
@@ -80,4 +122,37 @@ fn stuck(name: &str, values: &[f64]) -> Option<Finding> {
             "leave the fields empty where nothing was measured",
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::uav::Sample;
+
+    /// What is told of an airspeed that swings, with something added from the 100th of 200 samples on, which come at these times.
+    fn told(added: impl Fn(usize) -> f64, time_us: impl Fn(i64) -> i64) -> bool {
+        let sample = |k: usize| Sample {
+            t_us: time_us(k as i64),
+            input: [0.0; 2],
+            measured: vec![Some(25.0 + (0.05 * k as f64).sin() + added(k))],
+        };
+        let log = Log::new(vec![2], (0..200).map(sample).collect()).expect("a log");
+        check(&log, None).iter().any(|finding| finding.about == "steps")
+    }
+
+    #[test]
+    fn a_step_that_stays_is_told_and_a_manoeuvre_or_a_gap_is_not() {
+        let regular = |k| 20_000 * k;
+        let from = |k: usize| k.saturating_sub(99) as f64;
+        assert!(!told(|_| 0.0, regular));
+        assert!(told(|k| 5.0 * from(k).min(1.0), regular));
+        assert!(told(|k| -5.0 * from(k).min(1.0), regular));
+        // Within a fifth of a second, once away and back, and where samples are missing.
+        assert!(!told(|k| 0.5 * from(k).min(10.0), regular));
+        assert!(!told(|k| if k == 100 { 5.0 } else { 0.0 }, regular));
+        assert!(!told(
+            |k| 5.0 * from(k).min(1.0),
+            |k| 20_000 * k + if k >= 100 { 60_000 } else { 0 }
+        ));
+    }
 }
