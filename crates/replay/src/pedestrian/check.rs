@@ -41,6 +41,7 @@ pub fn check(samples: &[Sample]) -> Vec<Finding> {
     findings.extend(repeated::stuck(samples));
     findings.extend(repeated::block(samples));
     findings.extend(repeated::zeros(samples));
+    findings.extend(repeated::silent(samples));
     findings.extend(clipped(samples));
     findings.extend(rest(samples, usual));
     findings.extend(turned(samples));
@@ -72,6 +73,9 @@ fn gaps(steps: &[f64], usual: f64) -> Option<Finding> {
 
 /// Axes that stand at their end.
 fn clipped(samples: &[Sample]) -> Vec<Finding> {
+    // A peak that a sensor repeats is no plateau: at its end one axis stays, and others go on.
+    let mut samples = samples.to_vec();
+    samples.dedup_by(|a, b| repeated::same(a, b));
     let axis = |sensor: usize, axis: usize| {
         let value = move |sample: &Sample| {
             if sensor == 0 { sample.specific_force[axis] } else { sample.angular_rate[axis] }

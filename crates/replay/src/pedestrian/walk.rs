@@ -283,9 +283,25 @@ impl Walk {
             self.closure_m = x.hypot(*y);
         }
         (self.warnings, self.doubts) = (sentences(warnings), warnings.health());
+        self.warnings.extend(self.unseen());
         if self.strides.is_empty() {
             self.warnings.push(NO_STRIDE.to_owned());
         }
+    }
+
+    /// Which strides were not seen as a whole, if any.
+    fn unseen(&self) -> Option<String> {
+        let mut strides = self.strides.iter().filter(|stride| stride.is_unseen());
+        let first = strides.next()?;
+        let start_us = self.track.first().map_or(0, |point| point.time_us);
+        let (count, seconds) = strides.fold((1, first.unseen_s), |(count, seconds), stride| {
+            (count + 1, seconds + stride.unseen_s)
+        });
+        Some(format!(
+            "strides that were not seen as a whole: {count}, for {seconds:.1} s, the first until {:.1} s after the start; from there on the \
+             standard deviation has what the heading may have lost",
+            first.time_us.saturating_sub(start_us) as f64 * 1e-6
+        ))
     }
 }
 

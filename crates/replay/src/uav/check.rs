@@ -83,7 +83,8 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
     }
     let usual_us = 1.5e6 * log.interval_s;
     let found = log.samples.windows(2 * AROUND).find_map(|around| {
-        let follow = |pair: &[super::Sample]| ((pair[1].t_us - pair[0].t_us) as f64) < usual_us;
+        let follow =
+            |pair: &[super::Sample]| (pair[1].t_us.saturating_sub(pair[0].t_us) as f64) < usual_us;
         let values: Vec<f64> = around.iter().filter_map(|it| *it.measured.get(column)?).collect();
         if values.len() < around.len() || !around.windows(2).all(follow) {
             return None;

@@ -1,4 +1,4 @@
-//! Samples that were not measured: those of before again, and rates of exactly zero.
+//! Samples that were not measured: those of before again, and rates of exactly zero, once or for a while.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -18,12 +18,14 @@ const TURNING: f64 = 0.5;
 const ZEROS: usize = 3;
 const ONE_IN: usize = 1000;
 
+/// Whether all that was measured is the same.
+pub(super) fn same(a: &Sample, b: &Sample) -> bool {
+    a.specific_force == b.specific_force && a.angular_rate == b.angular_rate
+}
+
 /// Runs of samples that are the same bit for bit: a bus that stalls, a buffer that is read again.
 pub(super) fn stuck(samples: &[Sample]) -> Option<Finding> {
     let (mut runs, mut longest, mut lost, mut begin) = (0_usize, 0.0_f64, 0.0, 0_usize);
-    let same = |a: &Sample, b: &Sample| {
-        a.specific_force == b.specific_force && a.angular_rate == b.angular_rate
-    };
     for i in 1..=samples.len() {
         if i < samples.len() && same(&samples[i], &samples[begin]) {
             continue;
@@ -110,6 +112,34 @@ pub(super) fn zeros(samples: &[Sample]) -> Option<Finding> {
     })
 }
 
+/// An axis of the gyroscope that says exactly zero for a while in which the foot turns about another, and does not otherwise.
+pub(super) fn silent(samples: &[Sample]) -> Option<Finding> {
+    let of_axis = |axis: usize| {
+        let is_zero = |sample: &Sample| sample.angular_rate[axis] == 0.0;
+        let count = samples.iter().filter(|it| is_zero(it)).count();
+        let turns = |part: &[Sample]| {
+            part.iter().flat_map(|it| it.angular_rate).any(|rate| rate.abs() > TURNING)
+        };
+        let runs = samples.chunk_by(|a, b| is_zero(a) == is_zero(b));
+        let mut runs = runs.filter(|run| run.len() >= REPEATED && is_zero(&run[0]) && turns(run));
+        let run = runs.next().filter(|_| 2 * count < samples.len())?;
+        let (from, to) = (run[0].time_us, run[run.len() - 1].time_us);
+        Some((axis, from, to.saturating_sub(from) as f64 * 1e-6))
+    };
+    let (axis, from, seconds) = (0..3).find_map(of_axis)?;
+    let after = from.saturating_sub(samples[0].time_us) as f64 * 1e-6;
+    Some(Finding::fault(
+        "zeros",
+        Reason::Stuck,
+        format!(
+            "the gyroscope's {} says exactly 0 for {seconds:.1} s from {after:.1} s on, while the foot turns",
+            ["x", "y", "z"][axis]
+        ),
+        "the heading misses what was turned meanwhile",
+        "look at the sensor and its bus: leave out what was not read",
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,6 +173,25 @@ mod tests {
             found.found.contains("30 samples that end at 2.29 s repeat those that end at 1.29 s"),
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn an_axis_that_falls_silent_while_another_turns_is_told() {
+        let silenced = |from: usize, to: usize, turning: f64| {
+            let mut samples = swings(400);
+            for sample in &mut samples {
+                sample.angular_rate[1] = 0.3;
+                sample.angular_rate[0] *= turning;
+            }
+            for sample in &mut samples[from..to] {
+                sample.angular_rate[1] = 0.0;
+            }
+            silent(&samples).is_some()
+        };
+        assert!(silenced(200, 220, 1.0));
+        assert!(!silenced(200, 219, 1.0), "nineteen may be chance");
+        assert!(!silenced(200, 220, 0.1), "a foot that stands");
+        assert!(!silenced(0, 400, 1.0), "a dead axis is another matter");
     }
 
     #[test]
