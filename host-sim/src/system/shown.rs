@@ -82,11 +82,7 @@ impl Setting {
                 format!("{help} [default: {}]", format!("{default} {unit}").trim_end())
             }
             Kind::Choice { default, .. } => format!("{help} [default: {default}]"),
-            Kind::Switch { default: true } => {
-                let mut rest = help.chars();
-                let first = rest.next().map(|first| first.to_ascii_lowercase());
-                format!("Do not {}", first.into_iter().chain(rest).collect::<String>())
-            }
+            Kind::Switch { default: true } => format!("Turn this off: {help}"),
             _ => help.to_owned(),
         }
     }
