@@ -50,7 +50,7 @@ def equal(ours: kestirim.TagTrack, theirs: Any, track: list[dict[str, str]]) -> 
         ("trek_m1l", 1.0, {"scalar": "fixed"}, ["--scalar", "fixed"]),
         ("lias_mid_tag0", 0.5, {"scalar": "f64", "room": (-10, -10, 10, 10)}, ["--scalar", "f64", "--room=-10,-10,10,10"]),
         ("inrol_env1", None, {"dim": 3}, ["--dim", "3"]),
-        ("outdoor_square", None, {}, []),
+        ("plaza1", None, {}, []),
     ],
 )
 def test_equals_replay(
