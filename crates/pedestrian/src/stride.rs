@@ -100,18 +100,18 @@ impl<T: Scalar> Strides<T> {
     pub(crate) fn finish(&mut self) -> Option<Stride<T>> {
         let footprint = self.standing.take()?;
         let [unseen, next] = self.unseen;
-        self.unseen = [next, T::ZERO];
+        // Until a stride tells it, it is on the way to the next one.
+        self.unseen = [unseen + next, T::ZERO];
         let Some(last) = self.last else {
             self.last = Some(footprint);
-            self.unseen = [unseen + next, T::ZERO];
             return None;
         };
         let [x, y, _] = *(footprint.position - last.position).as_array();
         let length = x.hypot(y);
         if length < T::from_f64(Self::SHORTEST) {
-            self.unseen = [unseen + next, T::ZERO];
             return None;
         }
+        self.unseen = [next, T::ZERO];
         let heading = y.atan2(x);
         let heading_change = self.heading.map_or(T::ZERO, |before| wrapped(heading - before));
         self.path_length += length;

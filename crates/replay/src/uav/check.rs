@@ -2,7 +2,7 @@
 
 use kestirim_health::Reason;
 
-use super::{Log, Model, STATE_COLUMNS};
+use super::{Log, Model, STATE_COLUMNS, Sample};
 use crate::Finding;
 use crate::metrics::median;
 
@@ -31,9 +31,7 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
         None => STATE_COLUMNS.get(output).copied().unwrap_or_default(),
     };
     let columns: Vec<Vec<f64>> = (0..log.outputs.len())
-        .map(|column| {
-            log.samples.iter().filter_map(|s| s.measured.get(column).copied().flatten()).collect()
-        })
+        .map(|column| log.samples.iter().filter_map(|sample| measured(sample, column)).collect())
         .collect();
     let steers = log.samples.windows(2).any(|pair| pair[0].input != pair[1].input);
     let flies = steers || columns.iter().any(|values| varies(values));
@@ -44,15 +42,19 @@ pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
             let share = 100.0 * missing as f64 / count as f64;
             findings.push(Finding::note("missing", format!("{name}: {share:.1} % of the samples")));
         }
-        findings.extend(spikes(name, values));
-        findings.extend(step(name, log, column, SPIKE * usual_change(values)));
+        let limit = SPIKE * usual_change(values);
+        findings.extend(spikes(name, values, limit));
+        findings.extend(step(name, log, column, limit));
         findings.extend(stuck(name, values).filter(|_| flies));
     }
     findings
 }
 
-fn spikes(name: &str, values: &[f64]) -> Option<Finding> {
-    let limit = SPIKE * usual_change(values);
+fn measured(sample: &Sample, column: usize) -> Option<f64> {
+    sample.measured.get(column).copied().flatten()
+}
+
+fn spikes(name: &str, values: &[f64], limit: f64) -> Option<Finding> {
     let is_spike = |three: &&[f64]| {
         let (there, back) = (three[1] - three[0], three[2] - three[1]);
         there * back < 0.0 && there.abs().min(back.abs()) > limit
@@ -83,19 +85,22 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
     }
     let usual_us = 1.5e6 * log.interval_s;
     let found = log.samples.windows(2 * AROUND).find_map(|around| {
+        let by = measured(&around[AROUND], column)? - measured(&around[AROUND - 1], column)?;
+        if limit <= 0.0 || by.abs() <= limit {
+            return None;
+        }
         let follow =
-            |pair: &[super::Sample]| (pair[1].t_us.saturating_sub(pair[0].t_us) as f64) < usual_us;
-        let values: Vec<f64> = around.iter().filter_map(|it| *it.measured.get(column)?).collect();
+            |pair: &[Sample]| (pair[1].t_us.saturating_sub(pair[0].t_us) as f64) < usual_us;
+        let values: Vec<f64> =
+            around.iter().filter_map(|sample| measured(sample, column)).collect();
         if values.len() < around.len() || !around.windows(2).all(follow) {
             return None;
         }
         let (before, after) = values.split_at(AROUND);
-        let by = after[0] - before[AROUND - 1];
         let others = [before, after].into_iter().flat_map(|part| part.windows(2));
         let most = others.map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
         let stays = (median(after) - median(before)) / by >= STAYS;
-        (limit > 0.0 && by.abs() > limit.max(2.0 * most) && stays)
-            .then_some((around[AROUND].t_us, by))
+        (by.abs() > 2.0 * most && stays).then_some((around[AROUND].t_us, by))
     });
     found.map(|(t_us, by)| {
         Finding::fault(
@@ -128,7 +133,6 @@ fn stuck(name: &str, values: &[f64]) -> Option<Finding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uav::Sample;
 
     /// What is told of an airspeed that swings, with something added from the 100th of 200 samples on, which come at these times.
     fn told(added: impl Fn(usize) -> f64, time_us: impl Fn(i64) -> i64) -> bool {

@@ -224,8 +224,9 @@ impl Tried<'_> {
             );
             return Some((Some(Reason::Anchor), remedy));
         }
-        let higher = self.higher().filter(|_| is_contradiction && height_is_given);
-        if let Some((with, by)) = self.longer().filter(|_| is_contradiction)
+        let higher = (is_contradiction && height_is_given).then(|| self.higher()).flatten();
+        let longer = is_contradiction.then(|| self.longer()).flatten();
+        if let Some((with, by)) = longer
             && higher.is_none_or(|(of_height, _)| with < of_height + AS_WELL_M)
             && let Some(with) = explained(with)
         {
