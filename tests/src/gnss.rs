@@ -85,9 +85,15 @@ impl Station {
     /// # Panics
     /// A file cannot be read: those beside the repository can.
     pub fn read(&self, folder: &Path) -> Recording {
+        let mut files = self.products(folder);
+        files.add("obs", folder.join(self.observations));
+        recording::read(&files).expect("files that can be read")
+    }
+
+    /// Its files but for the observations.
+    pub fn products(&self, folder: &Path) -> Files {
         let mut files = Files::default();
         for (field, names) in [
-            ("obs", &[self.observations][..]),
             ("sp3", self.orbits),
             ("clk", self.clocks),
             ("antex", self.antennas),
@@ -97,7 +103,7 @@ impl Station {
                 files.add(field, folder.join(name));
             }
         }
-        recording::read(&files).expect("files that can be read")
+        files
     }
 
     /// Follows a receiver that is `away(t)` (ECEF, m) from the marker at second t of the day, and whose other

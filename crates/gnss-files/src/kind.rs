@@ -66,8 +66,8 @@ impl Kind {
         Ok(Self::of(&unpacked))
     }
 
-    /// Of a text.
-    pub(crate) fn of(bytes: &[u8]) -> Option<Self> {
+    /// Of unpacked contents, or their beginning; none if they are of no format that this crate knows.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
         let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
         if named(b"RINEX VERSION / TYPE") {

@@ -1,7 +1,7 @@
 //! Arrays in and out.
 
 use kestirim_health::{Health, State};
-use kestirim_replay::ScalarKind;
+use kestirim_replay::{Finding, ScalarKind};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 use numpy::{Element, IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -111,6 +111,11 @@ pub(crate) const fn code(state: State) -> u8 {
         State::Degraded => 1,
         State::Bad => 2,
     }
+}
+
+/// Sentences about what harms every estimate of a log.
+pub(crate) fn sentences(findings: &[Finding]) -> Vec<String> {
+    findings.iter().filter(|finding| finding.is_fault()).map(Finding::sentence).collect()
 }
 
 /// The words for what speaks against an estimate.

@@ -1,14 +1,15 @@
 //! Where the user of a drone is, from path losses or levels alone.
 
-use kestirim_health::{Health, Reason};
+use kestirim_health::Reason;
+use kestirim_replay::Finding;
 use kestirim_replay::drone::{
-    Area, Doubt, EnvironmentKind, Estimate, MOST_DRAWN, Next, Quantity, Search, Stop, thinned,
-    wavelength_m,
+    Area, Doubt, EnvironmentKind, Estimate, MOST_DRAWN, Next, Quantity, Search, Stop, check,
+    thinned, wavelength_m,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, values};
+use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, sentences, values};
 use crate::error::{KestirimError, refused, unknown};
 
 /// Stack of a thread that estimates: lattices of thousands of points are moved about before they lie on the heap.
@@ -35,6 +36,7 @@ pub(crate) fn drone<'py>(
     window: Option<f64>,
     every: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let name = environment.unwrap_or("open").to_owned();
     let environment = environment.map(self::environment).transpose()?;
     if !(LOWEST_HZ..=HIGHEST_HZ).contains(&frequency) {
         return Err(refused(format!(
@@ -48,7 +50,9 @@ pub(crate) fn drone<'py>(
     let quantity = if levels { Quantity::Level } else { Quantity::PathLoss };
     let heading = heading.as_ref().map(values).transpose()?;
     let places = (rows(&place)?, values(&height)?, heading);
-    let stops = stops(values(&t)?, places, values(&value)?, quantity)?;
+    let measured = values(&value)?;
+    let stops = stops(values(&t)?, places, measured, quantity)?;
+    let findings = check(&stops, quantity, measured.len() - stops.len());
     let area = area.as_ref().map(|area| rows::<2>(area).and_then(polygon)).transpose()?;
     let found = py.detach(|| {
         let search = move || -> PyResult<Found> {
@@ -59,10 +63,12 @@ pub(crate) fn drone<'py>(
             let estimates = search.find(environment, quantity);
             let channel = environment.and_then(|it| it.channel_at(wavelength_m).ok());
             let moved_m = search.moved(environment, quantity);
-            let is_doubted = estimates.last().is_some_and(|last| {
-                Doubt::all(&stops, last, channel.as_ref(), moved_m).next().is_some()
-            });
-            Ok(Found { stops, estimates, is_doubted })
+            let doubts = estimates
+                .last()
+                .into_iter()
+                .flat_map(|last| Doubt::all(&stops, last, channel.as_ref(), moved_m));
+            let doubts = doubts.map(|doubt| doubt.sentence(&name, quantity)).collect();
+            Ok(Found { stops, estimates, doubts, findings })
         };
         let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(search);
         let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
@@ -128,17 +134,19 @@ struct Found {
     /// The measurements that were used.
     stops: Vec<Stop>,
     estimates: Vec<Estimate>,
-    /// Whether anything speaks against the flight.
-    is_doubted: bool,
+    /// What speaks against the flight as it was explained: a sentence each.
+    doubts: Vec<String>,
+    /// What the measurements show before the user is searched.
+    findings: Vec<Finding>,
 }
 
 impl Found {
     fn results(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let Self { stops, estimates, is_doubted } = self;
+        let Self { stops, estimates, doubts: warnings, findings } = self;
         let Some(last) = estimates.last() else {
             return Err(refused("no place explains the measurements"));
         };
-        let doubts = Health::GOOD.with(Reason::Innovations, is_doubted);
+        let doubts = Finding::doubts(&findings).with(Reason::Innovations, !warnings.is_empty());
         let next = last.next.map(|Next { place: [x, y], height, sd_m }| (x, y, height, sd_m));
         let level = |estimate: &Estimate| estimate.level_db.unwrap_or(f64::NAN);
         Ok(Results::new(py)
@@ -149,6 +157,7 @@ impl Found {
             .line("health", vec![code(doubts.state()); estimates.len()])?
             .with("measurements", stops.len())?
             .with("next_waypoint", next)?
+            .words("warnings", warnings.into_iter().chain(sentences(&findings)))?
             .words("reasons", reasons(doubts))?
             .done())
     }

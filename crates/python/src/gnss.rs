@@ -1,4 +1,4 @@
-//! Where a receiver is, from its observations and precise orbits and clocks.
+//! Where a receiver is, from its observations and precise orbits and clocks, or what satellites broadcast.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,8 @@ use kestirim_gnss_ppp::Corrections;
 use kestirim_health::Health;
 use kestirim_ppp_filter::{Config, Health as Quality, Motion};
 use kestirim_replay::gnss::{
-    Ambiguities, FilterKind, Fixing, Followed, Order, Pass, Paths, Recording, Systems, follow,
+    Ambiguities, FilterKind, Fixing, Followed, Method, Order, Pass, Paths, Recording, Systems,
+    follow,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -19,17 +20,19 @@ const STACK_BYTES: usize = 16 << 20;
 
 /// A receiver's positions.
 #[pyfunction]
-#[pyo3(signature = (obs, sp3, antex, clk, bias, blq, erp, process_noise, filter, systems, ambiguities, mask, gradient, until, smooth))]
+#[pyo3(signature = (obs, sp3, antex, nav, clk, bias, blq, erp, process_noise, method, filter, systems, ambiguities, mask, gradient, until, smooth))]
 pub(crate) fn gnss<'py>(
     py: Python<'py>,
     obs: PathBuf,
     sp3: Vec<PathBuf>,
     antex: Vec<PathBuf>,
+    nav: Vec<PathBuf>,
     clk: Vec<PathBuf>,
     bias: Vec<PathBuf>,
     blq: Option<PathBuf>,
     erp: Option<PathBuf>,
     process_noise: Option<f64>,
+    method: &str,
     filter: &str,
     systems: &str,
     ambiguities: &str,
@@ -48,6 +51,7 @@ pub(crate) fn gnss<'py>(
         gradient: gradient.unwrap_or(config.gradient),
         ..config
     };
+    let method = self::method(method)?;
     let systems = self::systems(systems)?;
     let ambiguities = self::ambiguities(ambiguities)?;
     let found = py.detach(|| {
@@ -55,7 +59,7 @@ pub(crate) fn gnss<'py>(
             let paths = Paths {
                 obs: &obs,
                 sp3: &sp3,
-                nav: &[],
+                nav: &nav,
                 antex: &antex,
                 clk: &clk,
                 bias: &bias,
@@ -66,7 +70,7 @@ pub(crate) fn gnss<'py>(
             let epochs = recording.epochs(until);
             let receiver = recording.receiver(Corrections::ALL);
             let run = |order| {
-                let pass = Pass { systems, order, ambiguities, ..Pass::default() };
+                let pass = Pass { systems, order, method, ambiguities, ..Pass::default() };
                 follow(&recording, epochs, &receiver, config, pass, &mut || ())
             };
             let mut followed = run(Order::Forwards);
@@ -94,6 +98,14 @@ fn filter(name: &str) -> PyResult<FilterKind> {
     let known = FilterKind::ALL.into_iter().find(|filter| filter.name() == name);
     let expected = "'default', 'gkf', 'rkf', 'skf', 'ikf' or 'adaptive'";
     known.ok_or_else(|| unknown("filter", name, expected))
+}
+
+fn method(name: &str) -> PyResult<Method> {
+    match name {
+        "filter" => Ok(Method::Filter),
+        "single" => Ok(Method::Single),
+        _ => Err(unknown("method", name, "'filter' or 'single'")),
+    }
 }
 
 fn systems(name: &str) -> PyResult<Systems> {

@@ -5,12 +5,11 @@ use std::str::FromStr;
 
 use kestirim_import::inertial::{Conclusion, read};
 use kestirim_import::{Columns, Format, Options, Units};
-use kestirim_replay::Finding;
 use kestirim_replay::pedestrian::check;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::Results;
+use crate::arrays::{Results, sentences};
 use crate::error::{KestirimError, refused};
 
 /// A log, whatever wrote it.
@@ -32,17 +31,16 @@ pub(crate) fn read_imu<'py>(
         topic,
         strict,
     };
-    let (log, findings) = py.detach(|| {
+    let (log, faults) = py.detach(|| {
         let shown = path.display();
         let unread = |error: &dyn std::fmt::Display| refused(format!("{shown}: {error}"));
         let bytes = std::fs::read(&path).map_err(|error| unread(&error))?;
         let log = read(&bytes, &options).map_err(|error| unread(&error))?;
-        let findings: Vec<_> = check(&log.samples).into_iter().filter(Finding::is_fault).collect();
-        PyResult::Ok((log, findings))
+        let faults = sentences(&check(&log.samples));
+        PyResult::Ok((log, faults))
     })?;
     let mag = log.magnetic_field();
-    let told = log.damage.sentences().into_iter();
-    let warnings = told.chain(findings.iter().map(Finding::sentence));
+    let warnings = log.damage.sentences().into_iter().chain(faults);
     let samples = &log.samples;
     let results = Results::new(py)
         .line("t", samples.iter().map(|sample| sample.time_us as f64 / 1e6).collect())?

@@ -1,12 +1,15 @@
 //! Where a foot walked.
 
+use kestirim_replay::Finding;
 use kestirim_replay::pedestrian::{
-    Error, Options, Sample, SensorClass, Stride, Trace, TrackerKind, trace,
+    Error, Options, Sample, SensorClass, Stride, Trace, TrackerKind, check, trace,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, scalar, values};
+use crate::arrays::{
+    Line, Results, Table, code, microseconds, reasons, rows, scalar, sentences, values,
+};
 use crate::error::{KestirimError, refused_at, unknown};
 
 /// A walk.
@@ -44,14 +47,15 @@ pub(crate) fn pedestrian<'py>(
     let field = mag.as_ref().map(rows::<3>).transpose()?;
     // A heading is corrected afterwards, and that of the other trackers does not drift at a constant rate.
     let field = field.filter(|_| !causal && options.tracker == TrackerKind::Ekf);
-    let found = py.detach(|| -> Result<Trace, Error> {
+    let found = py.detach(|| -> Result<(Trace, Vec<Finding>), Error> {
         let mut found = trace(&samples, &options)?;
         if let Some(field) = &field {
             found.walk.correct_heading(&samples, field, &options);
         }
-        Ok(found)
+        Ok((found, check(&samples)))
     });
-    results(py, &found.map_err(refused)?)
+    let (found, findings) = found.map_err(refused)?;
+    results(py, &found, &findings)
 }
 
 /// Refuses times that are none.
@@ -73,11 +77,17 @@ fn refused(error: Error) -> PyErr {
     }
 }
 
-fn results<'py>(py: Python<'py>, found: &Trace) -> PyResult<Bound<'py, PyDict>> {
+fn results<'py>(
+    py: Python<'py>,
+    found: &Trace,
+    findings: &[Finding],
+) -> PyResult<Bound<'py, PyDict>> {
     let Trace { walk, moments } = found;
     let of = |number: fn(&Stride) -> f64| walk.strides.iter().map(number).collect::<Vec<_>>();
     let times = || walk.track.iter().map(|point| point.time_us);
     let seconds = |time_us: u64| time_us as f64 / 1e6;
+    let of_all = Finding::doubts(findings);
+    let least = of_all.state();
     let strides = Results::new(py)
         .line("t", walk.strides.iter().map(|stride| seconds(stride.time_us)).collect())?
         .table("position", walk.strides.iter().map(|stride| stride.position).collect())?
@@ -93,12 +103,12 @@ fn results<'py>(py: Python<'py>, found: &Trace) -> PyResult<Bound<'py, PyDict>> 
         .table("orientation", moments.iter().map(|moment| moment.orientation).collect())?
         .line("stance", moments.iter().map(|moment| moment.stance).collect())?
         .table("sigma", walk.sigmas_m(times()).collect())?
-        .line("health", walk.healths().map(code).collect())?
+        .line("health", walk.healths().map(|state| code(state.max(least))).collect())?
         .with("strides", strides)?
         .with("path_length", walk.path_length_m)?
         .with("closure", walk.closure_m)?
         .with("heading_rate", walk.heading_rate)?
-        .words("warnings", walk.warnings.iter().cloned())?
-        .words("reasons", reasons(walk.doubts))?
+        .words("warnings", walk.warnings.iter().cloned().chain(sentences(findings)))?
+        .words("reasons", reasons(walk.doubts.and(of_all)))?
         .done())
 }

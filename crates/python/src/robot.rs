@@ -1,14 +1,15 @@
 //! Where a tag is, from ranges to anchors.
 
+use kestirim_replay::Finding;
 use kestirim_replay::robot::{
-    Course, Dimensions, Epoch, Error, FoundHeight, Inertial, MOST, RangeRow, Sensors, Setup,
-    Smoothed, Trace, Tracked, Unsmoothed, Wheels, doubts, smooth, track,
+    Anchors, Course, Dimensions, Epoch, Error, FoundHeight, Inertial, KnownHeight, MOST, RangeRow,
+    Sensors, Setup, Smoothed, Trace, Tracked, Unsmoothed, Wheels, check, doubts, smooth, track,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{
-    Counts, Line, Results, Table, code, microseconds, reasons, rows, scalar, values,
+    Counts, Line, Results, Table, code, microseconds, reasons, rows, scalar, sentences, values,
 };
 use crate::error::{KestirimError, refused_at};
 
@@ -70,7 +71,14 @@ pub(crate) fn robot<'py>(
             return Err(KestirimError::new_err(format!("dim: expected 2 or 3, found {other}")));
         }
     };
-    let is_height_missing = height.is_none() && heights.is_none() && dimensions == Dimensions::Two;
+    let known = match (height, dimensions) {
+        _ if heights.is_some() => KnownHeight::Varying,
+        (_, Dimensions::Three) => KnownHeight::Unknown,
+        (Some(metres), Dimensions::Two) => KnownHeight::Said(metres),
+        (None, Dimensions::Two) => KnownHeight::NotFound,
+    };
+    let names = (0..places.len()).map(|anchor| anchor.to_string()).collect();
+    let anchors = Anchors { names, positions: places.to_vec() };
     // In space the height is estimated, and begun at the anchors' mean.
     let mean = places.iter().map(|[_, _, z]| z).sum::<f64>() / places.len().max(1) as f64;
     let setup = Setup {
@@ -81,7 +89,7 @@ pub(crate) fn robot<'py>(
         has_wheels: !sensors.wheels.is_empty(),
         ..Setup::new(places, height.unwrap_or(mean))
     };
-    let followed = py.detach(|| follow(setup, sensors, is_height_missing, smooth));
+    let followed = py.detach(|| follow(&anchors, setup, sensors, known, smooth));
     results(py, followed.map_err(refused)?, &log)
 }
 
@@ -90,26 +98,40 @@ struct Followed {
     trace: Trace,
     found: Option<FoundHeight>,
     smoothed: Option<Result<Smoothed, Unsmoothed>>,
+    /// What the log shows before it is followed.
+    findings: Vec<Finding>,
+    /// What was changed of the log.
+    changed: Vec<String>,
+    /// Whether ranges were put in the order of their times.
+    is_sorted: bool,
 }
 
 fn follow(
+    anchors: &Anchors,
     setup: Setup,
     mut sensors: Sensors,
-    is_height_missing: bool,
+    known: KnownHeight,
     is_smoothed: bool,
 ) -> Result<Followed, Error> {
-    sensors.drop_far_ahead();
+    let order = sensors.put_in_order();
+    let is_sorted = order.is_some();
+    let dropped = sensors.drop_far_ahead();
+    let changed = order.map(str::to_owned).into_iter().chain(dropped).collect();
     let events = sensors.events();
-    let setup = if is_height_missing {
+    let (setup, known) = if known == KnownHeight::NotFound {
         let found = FoundHeight::of_parts(&setup, [events.as_slice()])?;
-        setup.at(found)
+        let setup = setup.at(found);
+        let known = KnownHeight::Found(setup.height_m);
+        (setup, known)
     } else {
-        setup
+        (setup, known)
     };
+    let (room_is_known, biases) = (setup.room.is_some(), setup.biases.as_deref());
+    let findings = check(anchors, [events.as_slice()], known, room_is_known, biases);
     let trace = track(&setup, &events)?;
     let parts = [Tracked { events: &events, trace: &trace }];
     let smoothed = is_smoothed.then(|| smooth(&setup, &parts, false));
-    Ok(Followed { trace, found: setup.found, smoothed })
+    Ok(Followed { trace, found: setup.found, smoothed, findings, changed, is_sorted })
 }
 
 /// Ranges in the order of their log, of which one that did not come is not a number; refuses what no log can mean.
@@ -142,10 +164,12 @@ fn results<'py>(
     followed: Followed,
     log: &[RangeRow],
 ) -> PyResult<Bound<'py, PyDict>> {
-    let Followed { trace, found, smoothed } = followed;
-    let (taken, nis) = by_row(&trace, log);
+    let Followed { trace, found, smoothed, findings, changed, is_sorted } = followed;
+    let (taken, nis) = by_row(&trace, log, is_sorted);
     let lost = trace.lost_s();
-    let why = doubts(std::slice::from_ref(&trace), false);
+    let of_all = Finding::doubts(&findings);
+    let why = doubts(std::slice::from_ref(&trace), false).and(of_all);
+    let health = |epoch: &Epoch| code(epoch.health.state().max(of_all.state()));
     let epochs = &trace.epochs;
     let of = |epoch: &Epoch| epoch.sigmas_m().map(|sigma| sigma.unwrap_or(f64::NAN));
     let found = found.as_ref();
@@ -155,7 +179,7 @@ fn results<'py>(
         Results::new(py)
             .table("position", epochs.iter().filter_map(|it| it.position).collect())?
             .table("sigma", epochs.iter().map(of).collect())?
-            .line("health", epochs.iter().map(|epoch| code(epoch.health.state())).collect())?
+            .line("health", epochs.iter().map(health).collect())?
             .table("biases", smoothed.biases)?
             .with("common_bias", smoothed.common[0])?
             .with("excess_in_10_m", smoothed.common[1])
@@ -165,8 +189,9 @@ fn results<'py>(
         .line("t", epochs.iter().map(|epoch| epoch.time_us as f64 / 1e6).collect())?
         .table("position", epochs.iter().map(|it| it.position.unwrap_or([f64::NAN; 3])).collect())?
         .table("sigma", epochs.iter().map(of).collect())?
-        .line("health", epochs.iter().map(|epoch| code(epoch.health.state())).collect())?
+        .line("health", epochs.iter().map(health).collect())?
         .with("lost", lost)?
+        .words("warnings", changed.into_iter().chain(sentences(&findings)))?
         .words("reasons", reasons(why))?
         .with("height", found.map(|found| found.metres))?
         .with("height_sigma", found.map(|found| found.sigma_m))?
@@ -177,18 +202,24 @@ fn results<'py>(
         .done())
 }
 
-/// Of each row of the log: whether its range was taken in, and its normalised innovation squared.
-fn by_row(trace: &Trace, log: &[RangeRow]) -> (Vec<bool>, Vec<f64>) {
+/// Of each row of the log, of which ranges were perhaps put in the order of their times: whether its range was taken in, and
+/// its normalised innovation squared.
+fn by_row(trace: &Trace, log: &[RangeRow], is_sorted: bool) -> (Vec<bool>, Vec<f64>) {
+    let mut order: Vec<usize> = (0..log.len()).collect();
+    if is_sorted {
+        order.sort_by_key(|&row| log[row].time_us);
+    }
+    let (mut taken, mut nis) = (vec![false; log.len()], vec![f64::NAN; log.len()]);
     let mut followed = trace.ranges.iter().peekable();
-    let of = |row: &RangeRow| {
-        // In the order of the log; what had no range, or a time far ahead, is not among them.
+    for row in order {
+        // In that order; what had no range, or a time far ahead, is not among them.
         let next = followed.next_if(|(range, _)| {
-            (range.time_us, range.anchor, Some(range.metres))
-                == (row.time_us, row.anchor, row.range)
+            let RangeRow { time_us, anchor, range: metres } = log[row];
+            (range.time_us, range.anchor, Some(range.metres)) == (time_us, anchor, metres)
         });
-        let reception = next.map(|(_, reception)| *reception);
-        let nis = reception.and_then(|reception| reception.nis()).unwrap_or(f64::NAN);
-        (reception.is_some_and(|reception| reception.taken), nis)
-    };
-    log.iter().map(of).unzip()
+        let Some((_, reception)) = next else { continue };
+        taken[row] = reception.taken;
+        nis[row] = reception.nis().unwrap_or(f64::NAN);
+    }
+    (taken, nis)
 }

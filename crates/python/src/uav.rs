@@ -2,8 +2,10 @@
 
 use kestirim_health::{Health, Reason};
 use kestirim_observer_design::{Complex, Discrete};
+use kestirim_replay::Finding;
 use kestirim_replay::uav::{
-    Deviations, Error, EstimatorKind, Followed, Log, MOST_OUTPUTS, Model, Options, Plant, Sample,
+    Deviations, Error, EstimatorKind, Followed, Log, MOST_OUTPUTS, Model, Options, Plant,
+    STATE_COLUMNS, Sample, check,
 };
 use kestirim_uav_estimator::Dynamics;
 use kestirim_uav_longitudinal::StateSpace;
@@ -11,7 +13,9 @@ use nalgebra::SMatrix;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, scalar, values};
+use crate::arrays::{
+    Line, Results, Table, code, microseconds, reasons, rows, scalar, sentences, values,
+};
 use crate::error::{KestirimError, refused, refused_at, unknown};
 
 /// A known aircraft's A, B, and the state and input of its steady flight if that is known.
@@ -72,19 +76,20 @@ pub(crate) fn uav<'py>(
         ratio,
         scalar: self::scalar(scalar)?,
     };
-    let outputs = c.iter().enumerate().map(|(output, row)| (output.to_string(), *row));
+    let outputs = c.iter().enumerate().map(|(output, row)| (name(output, row), *row));
     let dynamics = dynamics(rows(&a)?, rows(&b)?, interval)?;
     let model = Model { dynamics, outputs: outputs.collect(), trim, extended: None };
     let samples = samples(values(&t)?, rows(&inputs)?, values(&measured)?, c.len());
-    let (flight, followed) = py
+    let (flight, followed, findings) = py
         .detach(|| {
             let log = Log::new((0..model.outputs.len()).collect(), samples)?;
+            let findings = check(&log, Some(&model));
             let flight = Deviations::new(model, log, None, trim.is_some())?;
             let followed = flight.follow(&options)?;
-            Ok((flight, followed))
+            Ok((flight, followed, findings))
         })
         .map_err(unfollowed)?;
-    results(py, &flight, &followed)
+    results(py, &flight, &followed, &findings)
 }
 
 fn dynamics(a: &[[f64; 4]], b: &[[f64; 2]], interval: Option<f64>) -> PyResult<Dynamics> {
@@ -99,6 +104,14 @@ fn dynamics(a: &[[f64; 4]], b: &[[f64; 2]], interval: Option<f64>) -> PyResult<D
             "interval: expected one above 0 s, found {interval}"
         ))),
     }
+}
+
+/// A state's name if a row of C is that state, else its number.
+fn name(output: usize, row: &[f64; 4]) -> String {
+    let states = (0..4).zip(STATE_COLUMNS);
+    let is_state = |state: usize| (0..4).all(|i| row[i] == f64::from(u8::from(i == state)));
+    let state = states.into_iter().find(|(state, _)| is_state(*state));
+    state.map_or_else(|| format!("output {output}"), |(_, name)| name.to_owned())
 }
 
 /// What was logged: not a number where nothing was measured.
@@ -124,6 +137,7 @@ fn results<'py>(
     py: Python<'py>,
     flight: &Deviations,
     followed: &Followed,
+    findings: &[Finding],
 ) -> PyResult<Bound<'py, PyDict>> {
     let Followed { estimates, innovations, rejected, .. } = followed;
     let lines: Vec<Health> = followed.lines().collect();
@@ -132,9 +146,22 @@ fn results<'py>(
     let sigmas = estimates.iter().map(|it| it.sigma.map_or([f64::NAN; 4], <[f64; 4]>::from));
     let (count, outputs) = (estimates.len(), innovations.len());
     let all = (0..count).flat_map(|line| innovations.iter().map(move |output| output[line]));
-    let told = [Reason::Innovations, Reason::Rejected, Reason::Time];
-    let seen = |reason: &Reason| lines.iter().any(|health| health.has(*reason));
-    let doubts: Health = told.into_iter().filter(seen).collect();
+    let (mut doubts, mut warnings) = (Finding::doubts(findings), Vec::new());
+    for (reason, sentence) in followed.doubted_lines() {
+        doubts.add(reason);
+        warnings.push(sentence);
+    }
+    for contradiction in followed.contradictions() {
+        doubts.add(Reason::Innovations);
+        warnings.push(contradiction.sentence(flight.names()));
+    }
+    warnings.extend(sentences(findings));
+    warnings.extend(flight.looks_absolute.map(|[airspeed, steady]| {
+        format!(
+            "V is {airspeed} m/s where deviations from {steady} m/s are expected (absolute=True)"
+        )
+    }));
+    let least = Finding::doubts(findings).state();
     Ok(Results::new(py)
         .line("t", seconds.collect())?
         .table("state", states.collect::<Vec<[f64; 4]>>())?
@@ -145,7 +172,8 @@ fn results<'py>(
             [count, outputs],
         )?
         .line("rejected", rejected.iter().map(|count| i64::from(*count)).collect())?
-        .line("health", lines.iter().map(|health| code(health.state())).collect())?
+        .line("health", lines.iter().map(|health| code(health.state().max(least))).collect())?
+        .words("warnings", warnings)?
         .words("reasons", reasons(doubts))?
         .done())
 }

@@ -41,6 +41,7 @@ def test_equals_replay(data: Path, replay: Replay, name: str, options: Any, argu
     assert ours.level[-1] == theirs["level_db"]
     assert ours.measurements == theirs["measurements"]
     assert list(ours.reasons) == theirs["health"]["reasons"]
+    assert set(ours.warnings) <= set(theirs["warnings"]) and bool(ours.warnings) == bool(ours.reasons)
     following = theirs.get("next_waypoint")
     assert ours.next_waypoint == (following and tuple(following[name] for name in ("x", "y", "height_m", "sd_m")))
     if options.get("every", True):

@@ -44,6 +44,18 @@ def test_equals_replay_of_gps(data: Path, replay: Replay) -> None:
     assert smoothed.converged[0] and [STATES[code] for code in smoothed.health] == [row["health"] for row in track]
 
 
+def test_single_positions_equal_those_of_replay(data: Path, replay: Replay) -> None:
+    folder = data / "gnss/esbc2020177"
+    obs, antex, sp3 = folder / "esbc_gps.rnx.gz", folder / "esbc.atx.gz", folder / "grg177_gps.sp3.gz"
+    theirs, track = replay("gnss", "--obs", obs, "--sp3", sp3, "--antex", antex, "--until", 3600, "--method", "single")
+    ours = kestirim.gnss(obs, sp3, antex, until=3600.0, method="single")
+    check(ours, theirs, track)
+    assert not ours.converged.any() and len(ours.t) > 100
+    # Without precise orbits, what satellites broadcast is looked for.
+    with pytest.raises(kestirim.KestirimError, match="broadcast.rnx"):
+        kestirim.gnss(obs, nav=folder / "broadcast.rnx")
+
+
 def test_equals_replay_with_galileo(data: Path, replay: Replay) -> None:
     folder = data / "gnss/esbc2020177_multi"
     obs = folder / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz"
@@ -63,5 +75,9 @@ def test_refusals(tmp_path: Path) -> None:
     wrong.write_text("what\n")
     with pytest.raises(kestirim.KestirimError, match="wrong.rnx"):
         kestirim.gnss(wrong, wrong, wrong)
+    with pytest.raises(kestirim.KestirimError, match="antex: expected"):
+        kestirim.gnss(wrong, wrong)
+    with pytest.raises(kestirim.KestirimError, match="smooth: expected"):
+        kestirim.gnss(wrong, wrong, wrong, method="single", smooth=True)
     with pytest.raises(kestirim.KestirimError, match="filter: expected 'default', .* found \"best\""):
         kestirim.gnss(wrong, wrong, wrong, filter="best")  # type: ignore[arg-type]

@@ -55,6 +55,7 @@ def equal(ours: kestirim.Walk, theirs: Any, track: list[dict[str, str]]) -> None
     assert ours.path_length == theirs["path_length_m"]
     assert ours.closure == theirs["closure_m"]
     assert list(ours.reasons) == [reason.replace("-", " ") for reason in theirs["health"]["reasons"]]
+    assert set(ours.warnings) <= set(theirs["warnings"]) and bool(ours.warnings) == bool(ours.reasons)
     strides = theirs["strides"]
     assert len(ours.strides) == len(strides)
     for column, names in ((ours.strides.position, "x y z"), (ours.strides.sigma, "sx sy sz")):

@@ -41,6 +41,7 @@ def equal(ours: kestirim.TagTrack, theirs: Any, track: list[dict[str, str]]) -> 
     assert ours.taken.sum() == theirs["updates"]
     assert ours.lost == theirs["lost_s"]
     assert list(ours.reasons) == [reason.replace("-", " ") for reason in theirs["health"]["reasons"]]
+    assert set(ours.warnings) <= set(theirs["warnings"])
 
 
 @pytest.mark.parametrize(
@@ -51,6 +52,7 @@ def equal(ours: kestirim.TagTrack, theirs: Any, track: list[dict[str, str]]) -> 
         ("lias_mid_tag0", 0.5, {"scalar": "f64", "room": (-10, -10, 10, 10)}, ["--scalar", "f64", "--room=-10,-10,10,10"]),
         ("inrol_env1", None, {"dim": 3}, ["--dim", "3"]),
         ("plaza1", None, {}, []),
+        ("outdoor_square", None, {}, []),
     ],
 )
 def test_equals_replay(
@@ -102,11 +104,7 @@ def test_smoothed_as_replay_smooths(data: Path, replay: Replay, name: str, heigh
     for axis, column in enumerate("xyz"):
         assert said(ours.smoothed.position[:, axis], 6) == [row[column] for row in track]
         assert said(ours.smoothed.sigma[:, axis], 4) == [row[f"s{column}"] for row in track]
-    if "geometry" in theirs["health"]["reasons"]:
-        # What only a look at the whole log tells, replay tells in each row.
-        assert {row["health"] for row in track} == {"bad"}
-    else:
-        assert [STATES[code] for code in ours.smoothed.health] == [row["health"] for row in track]
+    assert [STATES[code] for code in ours.smoothed.health] == [row["health"] for row in track]
     assert ours.smoothed.biases.tolist() == [[it["bias_m"], it["sigma_m"]] for it in theirs["smoothed"]["anchors"]]
     shared = ours.smoothed.common_bias + ours.smoothed.excess_in_10_m
     names = ("common_bias_m", "common_bias_sigma_m", "excess_in_10_m", "excess_in_10_m_sigma")
@@ -125,6 +123,23 @@ def test_equals_replay_with_wheels_and_heights(data: Path, replay: Replay, tmp_p
     wheels = (odom["t"], 0.5 * (odom["v_left"] + odom["v_right"]), (odom["v_right"] - odom["v_left"]) / odom["track"])
     ours = kestirim.robot(log.anchors, log.t, log.anchor, log.range, heights=heights, wheels=wheels)
     equal(ours, theirs, track)
+
+
+def test_what_only_the_whole_log_shows_is_told(data: Path) -> None:
+    log = Ranges(data / "robot/trek_4vba0")
+    sound = kestirim.robot(log.anchors, log.t, log.anchor, log.range, height=1.2)
+    moved = log.anchors + np.eye(len(log.anchors))[:, :1] * [1.5, 0.0, 0.0]
+    doubted = kestirim.robot(moved, log.t, log.anchor, log.range, height=1.2)
+    assert any("anchor" in warning for warning in doubted.warnings), doubted.warnings
+    assert len(doubted.warnings) > len(sound.warnings) and set(doubted.reasons) - set(sound.reasons)
+    # A log that has anchor after anchor tells the same; each range keeps its place.
+    order = np.argsort(log.anchor, kind="stable")
+    t, anchor, distance = (np.asarray(column)[order] for column in (log.t, log.anchor, log.range))
+    by_anchor = kestirim.robot(log.anchors, t, anchor, distance, height=1.2)
+    assert "anchor after anchor" in by_anchor.warnings[0]
+    assert len(by_anchor.t) == len(sound.t)
+    assert by_anchor.taken.sum() > 0.98 * sound.taken.sum()
+    assert (by_anchor.taken == sound.taken[order]).mean() > 0.98
 
 
 def test_refusals() -> None:

@@ -20,6 +20,7 @@ def check(ours: kestirim.FlightTrack, theirs: Any, track: list[dict[str, str]]) 
     assert ours.state[-1].tolist() == theirs["estimate"]
     assert ours.rejected.tolist() == [output["rejected"] for output in theirs["innovations"]]
     assert list(ours.reasons) == theirs["health"]["reasons"]
+    assert set(ours.warnings) <= set(theirs["warnings"]) and bool(ours.warnings) == bool(ours.reasons)
     assert said(ours.t, 6) == [row["t"] for row in track]
     for column, name in enumerate(NAMES):
         assert said(ours.state[:, column], 9) == [row[name] for row in track]
@@ -80,6 +81,16 @@ def test_equals_replay_with_a_model_of_ones_own_and_absolute_values(
     )
     check(ours, theirs, track)
     assert list(ours.to_dataframe().columns[:5]) == ["t", "state_alpha", "state_q", "state_V", "state_theta"]
+
+
+def test_a_sensor_that_steps_is_told(data: Path) -> None:
+    flight = table(data / "uav/flights/jsbsim_c172p_ident.csv")
+    inputs, outputs = (vectors(flight, *names) for names in (("delta_e", "delta_t"), OUTPUTS))
+    inputs, outputs = inputs - inputs[0], outputs - outputs[0]
+    outputs[len(outputs) // 2 :, 1] += 20.0
+    track = kestirim.uav(flight["t"], inputs, outputs, OUTPUTS, model="P3")
+    assert any(warning.startswith("V ") and "step" in warning for warning in track.warnings), track.warnings
+    assert (track.health == kestirim.Health.BAD).all() and track.reasons
 
 
 def test_refusals() -> None:

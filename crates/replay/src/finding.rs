@@ -1,6 +1,6 @@
 //! What a log shows before any estimator has seen it.
 
-use kestirim_health::Reason;
+use kestirim_health::{Health, Reason};
 
 /// Something that a log shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,6 +46,11 @@ impl Finding {
     /// Whether it harms.
     pub fn is_fault(&self) -> bool {
         self.reason.is_some()
+    }
+
+    /// What findings say against every estimate that is made of a log.
+    pub fn doubts<'a>(findings: impl IntoIterator<Item = &'a Self>) -> Health {
+        findings.into_iter().filter_map(|finding| finding.reason).collect()
     }
 
     /// As a warning.

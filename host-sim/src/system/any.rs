@@ -44,6 +44,8 @@ pub trait AnySystem: Sync {
     fn outputs(&self) -> &'static [OutputField];
     /// [`System::PANELS`].
     fn panels(&self) -> &'static [Panel];
+    /// [`System::HEARS_BYTES`].
+    fn hears_bytes(&self) -> bool;
     /// [`System::RECORDED`].
     fn recorded(&self) -> &'static [Study];
     /// [`System::settings`] of any recording.
@@ -126,6 +128,10 @@ impl<S: System> AnySystem for S {
 
     fn panels(&self) -> &'static [Panel] {
         S::PANELS
+    }
+
+    fn hears_bytes(&self) -> bool {
+        S::HEARS_BYTES
     }
 
     fn recorded(&self) -> &'static [Study] {

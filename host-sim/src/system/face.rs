@@ -58,6 +58,8 @@ pub trait System: Sync + 'static {
     const CHECKED: &'static [&'static str] = &[];
     /// Figures of a stream that is followed while it comes; none if no estimator follows one.
     const PANELS: &'static [Panel] = &[];
+    /// Whether the stream that is followed is the device's own, in place of telemetry: its estimator hears the bytes.
+    const HEARS_BYTES: bool = false;
     /// Recordings that its results are told of, for the report; none if there are none.
     const RECORDED: &'static [Study] = &[];
 

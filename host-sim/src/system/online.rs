@@ -31,6 +31,14 @@ pub trait Online: Debug {
     /// Takes in a measurement.
     fn take(&mut self, message: &Message) -> Outcome;
 
+    /// Takes in bytes of a device's own stream, of a system that [hears them](super::System::HEARS_BYTES).
+    fn hear(&mut self, _bytes: &[u8]) {}
+
+    /// How many epochs or messages it made of all bytes, and how many of them it took in.
+    fn heard(&self) -> [u32; 2] {
+        [0; 2]
+    }
+
     /// Nothing more is there for now: time for what takes long.
     fn settle(&mut self) {}
 
@@ -42,9 +50,14 @@ pub trait Online: Debug {
         Ok(())
     }
 
-    /// The position now, m, z up.
+    /// The position now, m: z up, or of a receiver of satellites ECEF.
     fn position(&self) -> Option<[f64; 3]> {
         None
+    }
+
+    /// Where that is on the map, m.
+    fn place(&self) -> Option<[f64; 2]> {
+        self.position().map(|[x, y, _]| [x, y])
     }
 
     /// Standard deviation of a horizontal component of the position (m), of an estimator that knows it.

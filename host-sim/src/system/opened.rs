@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_health::Reason;
 use kestirim_replay::Finding;
 
 use super::account::{Account, Answer, Table};
@@ -164,8 +163,7 @@ impl<S: System> Opened for Open<S> {
         let detail = if wanted.any() || views { Detail::Every } else { Detail::Result };
         let trace = self.trace(settings, detail)?;
         let (account, findings) = self.account(settings, &trace)?;
-        let faults = findings.iter().filter_map(|finding| finding.reason);
-        let of_all = faults.map(Reason::state).max().unwrap_or_default();
+        let of_all = Finding::doubts(&findings).state();
         for (output, path) in &wanted.tables {
             let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
             let ending = ending.to_ascii_lowercase();

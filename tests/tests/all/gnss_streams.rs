@@ -8,6 +8,9 @@ use std::io::Read as _;
 use std::path::Path;
 
 use flate2::read::GzDecoder;
+use host_sim::system::Settings;
+use host_sim::systems::ALL;
+use host_sim::systems::gnss::settings::Setup;
 use kestirim_gnss_files::{Epoch, Observations};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Corrections, FREQUENCY};
@@ -150,13 +153,12 @@ fn ubx(epochs: &[Epoch]) -> Vec<u8> {
     stream
 }
 
-fn positions(folder: &Path, observations: &[u8]) -> Followed {
+fn positions(folder: &Path, observations: &[u8], config: Config) -> Followed {
     let file = tempfile::NamedTempFile::new().expect("a temporary file");
     std::fs::write(file.path(), observations).expect("a file can be written");
     let path = file.path().display().to_string();
     let recording = ESBC.observed_in(path.leak()).read(folder);
     let receiver = recording.receiver(Corrections::ALL);
-    let config = Config::new(Motion::Static);
     follow(
         &recording,
         recording.epochs(Some(ESBC.until)),
@@ -173,11 +175,12 @@ fn streams_give_what_rinex_gives() {
     let text = rinex(&folder);
     let read = kestirim_gnss_files::Text::unpack("day.rnx", text.clone().into_bytes());
     let observations = read.and_then(|text| Observations::parse(&text)).expect("observations");
-    let told = positions(&folder, text.as_bytes());
+    let config = Config::new(Motion::Static);
+    let told = positions(&folder, text.as_bytes(), config);
     for (format, stream) in
         [("RTCM", rtcm(&observations.epochs)), ("UBX", ubx(&observations.epochs))]
     {
-        let found = positions(&folder, &stream);
+        let found = positions(&folder, &stream, config);
         assert_eq!(found.fixes.len(), told.fixes.len());
         let away = |(a, b): (&kestirim_replay::gnss::Fix, &kestirim_replay::gnss::Fix)| {
             assert_eq!(a.t, b.t);
@@ -188,5 +191,44 @@ fn streams_give_what_rinex_gives() {
         let most = settled.iter().copied().fold(0.0, f64::max);
         println!("{format}: last {:.4} mm, most after an hour {:.4} mm", 1e3 * last, 1e3 * most);
         assert!(*last < 1e-4 && most < 2.5e-4);
+    }
+}
+
+/// Pieces of a stream, bytes, as a line brings them; after so many of them nothing comes for a moment.
+const PIECE: usize = 700;
+const PIECES: usize = 9;
+
+#[test]
+fn a_stream_that_comes_gives_what_it_gives_as_a_recording() {
+    let Some(folder) = folder_of("gnss") else { return };
+    let text = kestirim_gnss_files::Text::unpack("day.rnx", rinex(&folder).into_bytes());
+    let observations = text.and_then(|text| Observations::parse(&text)).expect("observations");
+    // Twice as long as what is kept of a stream.
+    let epochs = &observations.epochs[..720];
+    let gnss = ALL.iter().find(|system| system.name() == "gnss").expect("the system");
+    let settings = Settings::new(gnss.settings());
+    let setup = Setup::of(&settings);
+    for (format, stream) in [("RTCM", rtcm(epochs)), ("UBX", ubx(epochs))] {
+        let told = positions(&folder, &stream, setup.config(setup.main()));
+        let plan = gnss.online(&settings, &ESBC.products(&folder)).expect("a plan");
+        let mut online = plan.expect("a follower").build().expect("an estimator");
+        for (index, piece) in stream.chunks(PIECE).enumerate() {
+            online.hear(piece);
+            if index % PIECES == 0 {
+                online.settle();
+            }
+        }
+        let [heard, solved] = online.heard().map(|count| count as usize);
+        // The last epoch may have another message until it is known that none follows.
+        assert_eq!((heard, solved + 1), (epochs.len() - 1, told.fixes.len()));
+        online.finish().expect("nothing is written");
+        assert_eq!(online.heard()[1] as usize, told.fixes.len());
+        let (found, last) =
+            (online.position().expect("a position"), told.fixes.last().expect("one"));
+        let away = (nalgebra::Vector3::from(found) - last.position).norm();
+        println!("{format}: {:.6} mm from the recording's", 1e3 * away);
+        assert!(away < 1e-6);
+        assert!(online.sigma_m().is_some_and(|sigma| sigma < 0.05));
+        assert!(online.place().is_some_and(|[x, y]| x.hypot(y) < 20.0));
     }
 }

@@ -136,7 +136,7 @@ impl Evidence {
                 if winner != (0, 0) && self.is_better(winner, (0, 0), &all, &times.units) =>
             {
                 let problem = format!(
-                    "expected turns that carry gravity along with the angular rate in {said} ({source}), found them in {}",
+                    "the angular rate in {said} ({source}) does not turn as gravity does in the accelerometer; in {} it does",
                     all[winner.0]
                 );
                 Err(Error::undecided(problem, OPTIONS[1]))
@@ -177,7 +177,7 @@ impl Evidence {
 
 fn hopeless(error: f64) -> Error {
     let problem = format!(
-        "expected turns that carry gravity along, found them {:.0} % of gravity apart in these units",
+        "expected an angular rate that turns as gravity does in the accelerometer, found them {:.0} % of gravity apart in these units",
         100.0 * error
     );
     Error::undecided(problem, "--units acc=…,gyro=…,t=…")

@@ -2,7 +2,7 @@
 
 use crate::sky::{START, marker, observe, spoil};
 use core::slice;
-use kestirim_gnss_ppp::{Carriers, Constellation, FREQUENCY, Receiver, Site, Slip};
+use kestirim_gnss_ppp::{FREQUENCY, Receiver, Site, Slip};
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation,
     SatelliteReport, Slipped, Solution, states,
@@ -11,9 +11,9 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 const N: usize = states(20);
-const SLOW: Motion = Motion::Kinematic { process_noise: 1e-4 };
+pub(crate) const SLOW: Motion = Motion::Kinematic { process_noise: 1e-4 };
 
-fn filter(motion: Motion) -> PppFilter<N> {
+pub(crate) fn filter(motion: Motion) -> PppFilter<N> {
     PppFilter::new(Config::new(motion))
 }
 
@@ -26,7 +26,7 @@ fn step<const N: usize>(
 }
 
 /// Epochs every half minute up to `until`, as `change` makes them.
-fn run<const N: usize>(
+pub(crate) fn run<const N: usize>(
     filter: &mut PppFilter<N>,
     until: f64,
     change: impl Fn(f64, &mut Vec<SatelliteObservation<'static>>),
@@ -49,7 +49,7 @@ fn highest() -> u8 {
     solution.satellites.iter().max_by(by_elevation).unwrap().satellite
 }
 
-fn error<const N: usize>(solution: &Solution<N>) -> f64 {
+pub(crate) fn error<const N: usize>(solution: &Solution<N>) -> f64 {
     (solution.position - marker()).norm()
 }
 
@@ -363,118 +363,6 @@ fn who_moves_is_not_at_rest() {
         };
         let longest = (0..200).map(trusted).collect::<Vec<_>>();
         assert!(longest[10..].iter().all(|trusted| !trusted), "{estimator:?} {longest:?}");
-    }
-}
-
-/// Half of the sky is Galileo's, whose clocks the receiver sees 30 m away.
-#[test]
-fn galileo_beside_gps() {
-    let as_galileo = |observations: &mut Vec<SatelliteObservation<'static>>, all: bool| {
-        for observation in observations.iter_mut().filter(|it| all || it.satellite % 2 == 0) {
-            observation.satellite += 100;
-            observation.carriers = Carriers::E1E5a;
-            for carrier in 0..2 {
-                let [before, after] = [Carriers::L1L2, Carriers::E1E5a].map(Carriers::wavelength);
-                observation.phase[carrier] *= before[carrier] / after[carrier];
-                observation.phase[carrier] += 30.0 / after[carrier];
-                observation.code[carrier] += 30.0;
-            }
-        }
-    };
-    for motion in [Motion::Static, SLOW] {
-        let both =
-            run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, false));
-        assert!(error(both.last().unwrap()) < 3e-3, "{}", error(both.last().unwrap()));
-        let lost = |seconds: f64, observations: &mut Vec<_>| {
-            as_galileo(observations, false);
-            if seconds > 1800.0 {
-                observations.retain(|it: &SatelliteObservation<'_>| it.satellite > 100);
-            }
-        };
-        let few = run(&mut filter(motion), 1830.0, lost);
-        assert!(error(few.last().unwrap()) < 2e-2, "{}", error(few.last().unwrap()));
-        let alone =
-            run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, true));
-        assert!(error(alone.last().unwrap()) < 5e-3, "{}", error(alone.last().unwrap()));
-    }
-}
-
-/// What the receiver would observe if a third of the satellites were of GLONASS and a third of BeiDou, whose clocks it saw
-/// elsewhere, and if each satellite's codes of these were off by metres of their own.
-fn of_three_systems(observations: &mut [SatelliteObservation<'static>]) {
-    for observation in observations {
-        let number = observation.satellite;
-        let (carriers, clock, off) = match number % 3 {
-            0 => continue,
-            1 => (Carriers::G1G2 { channel: number.cast_signed() % 14 - 7 }, -70.0, 1.0),
-            _ => (Carriers::B1B3, 110.0, -1.0),
-        };
-        observation.carriers = carriers;
-        let [before, after] = [Carriers::L1L2, carriers].map(Carriers::wavelength);
-        for carrier in 0..2 {
-            observation.phase[carrier] *= before[carrier] / after[carrier];
-            observation.phase[carrier] += clock / after[carrier];
-            observation.code[carrier] += clock + off * (f64::from(number % 5) - 2.0);
-        }
-    }
-}
-
-#[test]
-fn three_systems_have_clocks_of_their_own() {
-    for motion in [Motion::Static, SLOW] {
-        let all = run(&mut filter(motion), 3600.0, |_, seen| of_three_systems(seen));
-        let last = all.last().unwrap();
-        assert!(error(last) < 2e-2, "{}", error(last));
-        // Without GPS from some time on, and from the beginning.
-        for from in [1800.0, -1.0] {
-            let lost = |seconds: f64, observations: &mut Vec<_>| {
-                of_three_systems(observations);
-                observations.retain(|it: &SatelliteObservation<'_>| {
-                    seconds < from || it.carriers.constellation() != Constellation::Gps
-                });
-            };
-            let few = run(&mut filter(motion), 3600.0, lost);
-            // Five satellites on two clocks do not know it better.
-            let last = few.last().unwrap();
-            let deviation = Vector3::from(last.deviations_enu()).norm();
-            assert!(error(last) < 2.0 * deviation, "{from}: {} {deviation}", error(last));
-        }
-    }
-}
-
-/// A filter that GPS fills but for one state has no room for the first satellite of another system; once it has, that serves as any.
-#[test]
-fn a_system_without_room_begins_when_there_is_some() {
-    const SEEN: usize = 9;
-    let config = Config { gradient: 0.0, ..Config::new(Motion::Static) };
-    let mut full = PppFilter::<{ states(SEEN) }>::new(config);
-    // The last one is of GLONASS, and the first one goes after a while.
-    let solutions = run(&mut full, 1800.0, |seconds, observations| {
-        let is_high = |it: &SatelliteObservation<'_>| {
-            let site = Site::new(&Receiver::default(), &marker(), START.plus(seconds));
-            let expected = site.expect(&it.state, it.carriers, None, None);
-            expected.is_some_and(|it| it.direction.elevation > config.elevation_mask)
-        };
-        observations.retain(is_high);
-        observations.truncate(SEEN);
-        if seconds > 600.0 {
-            observations.remove(0);
-        }
-        let last = observations.last_mut().expect("a satellite");
-        let before = last.carriers.wavelength();
-        last.carriers = Carriers::G1G2 { channel: 2 };
-        for carrier in 0..2 {
-            let after = last.carriers.wavelength()[carrier];
-            last.phase[carrier] = (last.phase[carrier] * before[carrier] - 70.0) / after;
-            last.code[carrier] -= 70.0;
-        }
-    });
-    let used = |at: usize| solutions[at].satellites.len();
-    assert_eq!((used(0), used(solutions.len() - 1)), (SEEN - 1, SEEN - 1));
-    for solution in &solutions {
-        let deviation = Vector3::from(solution.deviations_enu()).norm();
-        assert!(error(solution) < 2.0 * deviation, "{} {deviation}", error(solution));
-        assert!(solution.satellites.iter().all(|it| it.code.weight > 0.0 && it.phase.weight > 0.0));
     }
 }
 

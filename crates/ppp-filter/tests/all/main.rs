@@ -4,3 +4,4 @@ mod filter;
 mod lean;
 mod single_point;
 mod sky;
+mod systems;

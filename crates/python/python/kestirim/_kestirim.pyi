@@ -85,6 +85,7 @@ class _TagTrack(TypedDict):
     height_sigma: Optional[float]
     smoothed: Optional[_SmoothedTag]
     not_smoothed: Optional[str]
+    warnings: tuple[str, ...]
     reasons: tuple[str, ...]
 
 class _UserTrack(TypedDict):
@@ -95,6 +96,7 @@ class _UserTrack(TypedDict):
     health: _Codes
     measurements: int
     next_waypoint: Optional[tuple[float, float, float, float]]
+    warnings: tuple[str, ...]
     reasons: tuple[str, ...]
 
 class _UavModel(TypedDict):
@@ -109,6 +111,7 @@ class _FlightTrack(TypedDict):
     innovations: _Floats
     rejected: _Ints
     health: _Codes
+    warnings: tuple[str, ...]
     reasons: tuple[str, ...]
 
 class _ReceiverTrack(TypedDict):
@@ -283,11 +286,13 @@ def gnss(
     obs: str,
     sp3: list[str],
     antex: list[str],
+    nav: list[str],
     clk: list[str],
     bias: list[str],
     blq: Optional[str],
     erp: Optional[str],
     process_noise: Optional[float],
+    method: str,
     filter: str,
     systems: str,
     ambiguities: str,

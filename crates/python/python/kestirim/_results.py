@@ -103,7 +103,7 @@ class Walk(Frame):
     heading_rate: Optional[float]
     """rad/s: at which the heading drifted, as a magnetometer showed it and as the path was corrected by."""
     warnings: tuple[str, ...]
-    """What is suspicious about the sensor or the walk: a sentence each."""
+    """What the log and the walk show that harms an estimate: a sentence each."""
     reasons: tuple[str, ...]
     """Why the walk is not good, in words; empty if it is."""
 
@@ -166,6 +166,8 @@ class TagTrack(Frame):
     """The same smoothed, if that was asked for and tells more."""
     not_smoothed: Optional[str]
     """Why it is not, in words, if it was asked for and is not."""
+    warnings: tuple[str, ...]
+    """What the log shows that harms a track, and what was changed of it: a sentence each."""
     reasons: tuple[str, ...]
     """Why the track is not good, in words; empty if it is."""
 
@@ -188,6 +190,8 @@ class UserTrack(Frame):
     next_waypoint: Optional[tuple[float, float, float, float]]
     """Where one more measurement is expected to tell most: x, y, height (m), and the sigma (m) that is expected after it; None
     among buildings."""
+    warnings: tuple[str, ...]
+    """What the flight shows that harms an estimate: a sentence each."""
     reasons: tuple[str, ...]
     """Why the last estimate is not good, in words; empty if it is."""
 
@@ -206,6 +210,8 @@ class FlightTrack(Frame):
     """(p,) how many times each output contradicted the estimate and was left out."""
     health: Codes
     """(n,) values of `Health`."""
+    warnings: tuple[str, ...]
+    """What the log shows that harms an estimate, and what contradicts the model: a sentence each."""
     reasons: tuple[str, ...]
     """Why not all of it is good, in words; empty if it is."""
 

@@ -168,6 +168,7 @@ def robot(
         height_sigma=results["height_sigma"],
         smoothed=None if smoothed is None else _smoothed(results["t"], smoothed),
         not_smoothed=results["not_smoothed"],
+        warnings=results["warnings"],
         reasons=results["reasons"],
     )
 
@@ -321,14 +322,16 @@ def _rows(outputs: Union[Sequence[str], npt.ArrayLike]) -> Floats:
 
 def gnss(
     obs: Path,
-    sp3: Union[Path, Sequence[Path]],
-    antex: Union[Path, Sequence[Path]],
+    sp3: Union[Path, Sequence[Path]] = (),
+    antex: Union[Path, Sequence[Path]] = (),
     *,
+    nav: Union[Path, Sequence[Path]] = (),
     clk: Union[Path, Sequence[Path]] = (),
     bias: Union[Path, Sequence[Path]] = (),
     blq: Optional[Path] = None,
     erp: Optional[Path] = None,
     process_noise: Optional[float] = None,
+    method: Literal["filter", "single"] = "filter",
     filter: Literal["default", "gkf", "rkf", "skf", "ikf", "adaptive"] = "default",
     systems: Literal["all", "gps", "galileo", "gps-galileo"] = "all",
     ambiguities: Literal["float", "fixed"] = "float",
@@ -337,30 +340,38 @@ def gnss(
     until: Optional[float] = None,
     smooth: bool = False,
 ) -> ReceiverTrack:
-    """Where a receiver of GPS, Galileo, GLONASS and BeiDou is, to a centimetre, from files; any may be packed with gzip.
+    """Where a receiver of GPS, Galileo, GLONASS and BeiDou is, from files; any may be packed with gzip.
 
-    obs: what the receiver observed, RINEX 2, 3 or 4 or Compact RINEX. sp3: precise orbits. antex: phase centres of
-    antennas. clk: precise clocks, RINEX; else those of the orbit files. bias: biases of codes and phases, Bias-SINEX.
-    blq: ocean loading of the station. erp: the Earth's rotation, for the tide of the pole.
+    To a centimetre: obs: what the receiver observed, RINEX 2, 3 or 4, Compact RINEX, or a stream of UBX or RTCM. sp3: precise
+    orbits. antex: phase centres of antennas. clk: precise clocks, RINEX; else those of the orbit files. To some metres, of GPS
+    and Galileo, without sp3: nav: what the satellites broadcast, RINEX 2, 3 or 4, which a stream holds itself.
+    bias: biases of codes and phases, Bias-SINEX. blq: ocean loading of the station. erp: the Earth's rotation, for the tide of the pole.
 
     process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
-    for one at rest. filter: what is done about observations that do not fit.
-    systems: satellites of which systems serve, "all" those that are observed and known. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo
-    with integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. gradient: m,
+    for one at rest. method: "filter", or "single", each position from the codes of its epoch alone, which one carrier serves.
+    filter: what is done about observations that do not fit. systems: satellites of which systems serve, "all" those that are
+    observed and known. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo with
+    integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. gradient: m,
     standard deviation of the troposphere's gradients (0: none), 0.0005 of the default filter. until: s, the last epoch.
     smooth: put together what is found forwards and backwards, from the first epoch on.
 
     The same as `host-sim replay gnss`, to the bit.
     """
+    if sp3 and not antex:
+        raise KestirimError("antex: expected phase centres of antennas beside precise orbits")
+    if smooth and method == "single":
+        raise KestirimError("smooth: expected method='filter', whose positions depend on each other")
     results = _kestirim.gnss(
         os.fspath(obs),
         _paths(sp3),
         _paths(antex),
+        _paths(nav),
         _paths(clk),
         _paths(bias),
         None if blq is None else os.fspath(blq),
         None if erp is None else os.fspath(erp),
         process_noise,
+        method,
         filter,
         systems,
         ambiguities,

@@ -2,7 +2,7 @@
 
 use kestirim_air_to_ground::Channel;
 
-use super::{Estimate, Misfit, Stop, level_step};
+use super::{Estimate, Misfit, Quantity, Stop, level_step};
 
 /// What speaks against a flight, or what it was taken for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,5 +33,17 @@ impl Doubt {
         let step = level_step(stops, estimate.place).map(|(t, by)| Self::Step { t, by });
         let misfit = channel.and_then(|it| Misfit::find(stops, estimate, it));
         [step, moved_m.map(Self::Moved), misfit.map(Self::Misfit)].into_iter().flatten()
+    }
+    /// In a sentence; the environment has a name.
+    pub fn sentence(&self, environment: &str, quantity: Quantity) -> String {
+        match self {
+            Self::Step { t, by } => format!(
+                "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
+            ),
+            Self::Moved(apart) => format!(
+                "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
+            ),
+            Self::Misfit(misfit) => misfit.sentence(environment, quantity),
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use kestirim_air_to_ground::Channel;
 
-use super::{Estimate, Stop};
+use super::{Estimate, Quantity, Stop};
 use crate::clipped::Clipped;
 use crate::metrics::{distance, rms};
 
@@ -56,5 +56,24 @@ impl Misfit {
             square > NEGLIGIBLE && next > LASTING + CLEARLY_LASTING / (count as f64).sqrt();
         let [found_db, expected_db] = [rms(&deviations), rms(&sigmas)];
         (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large, next })
+    }
+
+    /// In a sentence; the environment has a name.
+    pub fn sentence(&self, environment: &str, quantity: Quantity) -> String {
+        let Self { found_db, expected_db, is_large, next } = self;
+        let off = if *is_large {
+            format!(
+                "the measurements are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB)"
+            )
+        } else {
+            format!(
+                "the measurements are off what {environment} explains in the same way for long (correlation {next:.2})"
+            )
+        };
+        let instead = match quantity {
+            Quantity::PathLoss => "--frequency may be another",
+            Quantity::Level => "--environment open assumes less",
+        };
+        format!("{off}: place and deviation are not to be relied upon, {instead}")
     }
 }

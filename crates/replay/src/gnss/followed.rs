@@ -3,18 +3,16 @@
 use std::collections::BTreeMap;
 
 use super::choices::{Ambiguities, Method, STATES, STATES_OF_ALL, STATES_WITH_GALILEO, Systems};
+use super::feed::Feed;
 use super::fixing::{Fixer, Fixing};
 use super::model::Epoch;
-use super::outage::{Outage, Outages, Unused};
+use super::outage::{Outages, Unused};
 use super::products::Unusable;
 use super::recording::Recording;
-use super::single::{bound, single};
+use super::single::single;
 use kestirim_gnss_files::System;
-use kestirim_gnss_ppp::{Direction, Geodetic, Receiver, Slip};
-use kestirim_ppp_filter::{
-    Config, Contradiction, Health, PppFilter, SatelliteObservation, SatelliteReport, Slipped,
-    Solution,
-};
+use kestirim_gnss_ppp::{Geodetic, Receiver, Slip};
+use kestirim_ppp_filter::{Config, Contradiction, Health, SatelliteReport, Slipped, Solution};
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
 
@@ -199,94 +197,29 @@ pub fn follow(
     let serves = |system: &System| *system != System::Gps && pass.systems.has_system(*system);
     let mut others = recording.systems().filter(serves);
     match (others.next(), others.next()) {
-        (None, _) => {
-            let filter = PppFilter::<STATES>::new(config);
-            feed(filter, recording, epochs, receiver, pass, next)
-        }
+        (None, _) => feed::<STATES>(config, recording, epochs, receiver, pass, next),
         (Some(System::Galileo), None) => {
-            let filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
-            feed(filter, recording, epochs, receiver, pass, next)
+            feed::<STATES_WITH_GALILEO>(config, recording, epochs, receiver, pass, next)
         }
-        _ => {
-            let filter = PppFilter::<STATES_OF_ALL>::new(config);
-            feed(filter, recording, epochs, receiver, pass, next)
-        }
+        _ => feed::<STATES_OF_ALL>(config, recording, epochs, receiver, pass, next),
     }
 }
 
 fn feed<const N: usize>(
-    mut filter: PppFilter<N>,
+    config: Config,
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,
     pass: Pass,
     next: &mut dyn FnMut(),
 ) -> Followed {
-    let Pass { systems, order, with_residuals, .. } = pass;
+    let mut feed = Feed::<N>::new(config, recording, pass);
     let mut fixer = (pass.ambiguities == Ambiguities::Fixed).then(|| Fixer::new(recording));
-    let mask = filter.config().elevation_mask;
     let mut followed = Followed { epochs: epochs.len(), ..Followed::default() };
-    let mut observations: Vec<SatelliteObservation<'_>> = Vec::new();
-    // Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
-    let mut lost = [false; 256];
-    // Tells which satellites stand below the mask, and nothing else.
-    let mut about = recording.approximate_position().map(Vector3::from);
-    let is_backwards = order == Order::Backwards;
+    let is_backwards = pass.order == Order::Backwards;
     for index in 0..epochs.len() {
         let epoch = &epochs[if is_backwards { epochs.len() - 1 - index } else { index }];
-        let t = recording.seconds(epoch);
-        let satellites = || epoch.satellites.iter().filter(|observed| systems.has(observed.prn));
-        let mut unused = Unused { observed: satellites().count(), ..Unused::default() };
-        observations.clear();
-        // A file says what was lost since the epoch before.
-        let note_lost = |lost: &mut [bool; 256]| {
-            if epoch.power_failure {
-                lost.fill(true);
-            }
-            for observed in satellites() {
-                lost[usize::from(observed.prn)] |= observed.loss_of_lock.contains(&true);
-            }
-        };
-        if !is_backwards {
-            note_lost(&mut lost);
-        }
-        for observed in satellites() {
-            let lost = lost[usize::from(observed.prn)];
-            match recording.products().observation(epoch.time, observed) {
-                Ok(observation) => {
-                    observations.push(SatelliteObservation { lock_lost: lost, ..observation });
-                }
-                Err(reason) => followed.miss(observed.prn, reason, &mut unused),
-            }
-        }
-        let solution = match order {
-            Order::Forwards => filter.process(epoch.time, receiver, &observations),
-            Order::Backwards => filter.process_backwards(epoch.time, receiver, &observations),
-        };
-        match solution {
-            Ok(mut solution) => {
-                if recording.products().broadcast().is_some() {
-                    bound(&mut solution, recording, epoch, receiver, filter.config(), systems);
-                }
-                if let Some(fixer) = &mut fixer {
-                    fixer.fix(epoch.time, &filter, &observations, &mut solution);
-                }
-                for report in &solution.satellites {
-                    lost[usize::from(report.satellite)] = false;
-                }
-                about = Some(solution.position);
-                unused.below_mask = observations.len().saturating_sub(solution.satellites.len());
-                followed.take(t, &solution, with_residuals);
-            }
-            Err(error) => {
-                unused.below_mask = about.map_or(0, |place| below(&observations, &place, mask));
-                followed.outages.add(Outage { error, t, unused });
-            }
-        }
-        if is_backwards {
-            note_lost(&mut lost);
-        }
-        followed.unused.add(&unused);
+        feed.take(recording, receiver, epoch, fixer.as_mut(), &mut followed);
         next();
     }
     followed.fixing = fixer.map(Fixer::finish);
@@ -294,16 +227,6 @@ fn feed<const N: usize>(
         followed.turn();
     }
     followed
-}
-
-/// How many satellites stand below the mask.
-fn below(observations: &[SatelliteObservation<'_>], place: &Vector3<f64>, mask: f64) -> usize {
-    let geodetic = Geodetic::from_ecef(place);
-    let is_below = |observation: &&SatelliteObservation<'_>| {
-        let sight = (observation.state.position - place).normalize();
-        Direction::of(&sight, &geodetic).elevation < mask
-    };
-    observations.iter().filter(is_below).count()
 }
 
 impl Followed {

@@ -1,7 +1,7 @@
 //! A receiver of satellite navigation: precise point positioning from files.
 //!
 //! A [`Recording`] is read with all that must be known for a position, [`follow`] makes a [`Followed`] of it. Positions are
-//! ECEF, m; times s since the midnight before the first epoch.
+//! ECEF, m; times s since the midnight before the first epoch. A receiver that is switched on is followed [`Live`].
 
 mod accuracy;
 mod agreement;
@@ -11,8 +11,10 @@ mod check;
 mod choices;
 mod coverage;
 mod doubts;
+mod feed;
 mod fixing;
 mod followed;
+mod live;
 mod model;
 mod orbit_jumps;
 mod outage;
@@ -33,6 +35,7 @@ pub use self::choices::{
 pub use self::coverage::names;
 pub use self::fixing::Fixing;
 pub use self::followed::{Both, Fix, Followed, Last, Order, Pass, Slips, Tally, follow};
+pub use self::live::{Live, Now};
 pub use self::model::{Epoch, epoch};
 pub use self::outage::{Outage, Outages, Unused};
 pub use self::products::{Products, Satellite, Unusable};

@@ -1,9 +1,11 @@
 //! What a receiver recorded, and all that must be known for a position.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use kestirim_gnss_files::{
-    Antenna, Carriers, EarthRotation, Error, Observations, StationLoading, System,
+    Antenna, Biases, Carriers, EarthRotation, Error, Navigation, Observations, StationLoading,
+    System, Text,
 };
 use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
@@ -88,7 +90,31 @@ impl Recording {
             || Observations::read_unbiased(paths.obs, &biases),
             || Told::read(paths, shelf),
         );
-        let (observations, satellites) = (observations?, satellites?);
+        Self::of(paths, shelf, (observations?, satellites?), biases)
+    }
+
+    /// The same of a stream, UBX or RTCM 3, that is held in memory; `obs` only names it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn of_stream(bytes: Vec<u8>, paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
+        let biases = shelf.biases(paths.bias)?;
+        let text = Text::unpack(paths.obs, bytes)?;
+        let observations = Observations::parse_unbiased(&text, &biases)?;
+        let satellites = if paths.sp3.is_empty() && paths.nav.is_empty() {
+            Told::Broadcast(Arc::new(Navigation::parse(&[text])?))
+        } else {
+            Told::read(paths, shelf)?
+        };
+        Self::of(paths, shelf, (observations, satellites), biases)
+    }
+
+    fn of(
+        paths: &Paths<'_>,
+        shelf: &Shelf,
+        (observations, satellites): (Observations, Told),
+        biases: Arc<Biases>,
+    ) -> Result<Self, Error> {
         let antennas = shelf.antennas(paths.antex, &observations.antenna)?;
         let near = observations.approximate_position;
         let read = |path| StationLoading::read(path, &observations.marker, near);

@@ -1,6 +1,8 @@
 //! What the log of a walk shows before it is tracked.
 
 mod repeated;
+mod rest;
+mod spikes;
 
 use kestirim_health::Reason;
 use kestirim_import::inertial::turns;
@@ -43,7 +45,8 @@ pub fn check(samples: &[Sample]) -> Vec<Finding> {
     findings.extend(repeated::zeros(samples));
     findings.extend(repeated::silent(samples));
     findings.extend(clipped(samples));
-    findings.extend(rest(samples, usual));
+    findings.extend(spikes::find(samples));
+    findings.extend(rest::check(samples, usual));
     findings.extend(turned(samples));
     findings
 }
@@ -124,41 +127,6 @@ fn clipped(samples: &[Sample]) -> Vec<Finding> {
         ));
     }
     findings
-}
-
-/// Standstills: what the accelerometer and the gyroscope show there.
-fn rest(samples: &[Sample], usual: f64) -> Vec<Finding> {
-    let length = ((0.5 / usual).round() as usize).max(5);
-    let mut still: Vec<(f64, [f64; 3])> = Vec::new();
-    for part in samples.chunks_exact(length) {
-        let mean = |of: fn(&Sample) -> [f64; 3]| -> [f64; 3] {
-            std::array::from_fn(|i| part.iter().map(|s| of(s)[i]).sum::<f64>() / length as f64)
-        };
-        let (force, rate) = (mean(|s| s.specific_force), mean(|s| s.angular_rate));
-        let off = |sample: &Sample| {
-            let force = (0..3).map(|i| (sample.specific_force[i] - force[i]).abs());
-            let rate = (0..3).map(|i| (sample.angular_rate[i] - rate[i]).abs() * 5.0);
-            force.chain(rate).fold(0.0, f64::max)
-        };
-        if part.iter().all(|sample| off(sample) < 0.6) {
-            still.push((force.iter().map(|x| x * x).sum::<f64>().sqrt(), rate));
-        }
-    }
-    if still.is_empty() {
-        return vec![Finding::note("rest", "no standstill of half a second")];
-    }
-    let norm = median(&still.iter().map(|(norm, _)| *norm).collect::<Vec<_>>());
-    let bias: [f64; 3] = std::array::from_fn(|i| {
-        median(&still.iter().map(|(_, rate)| rate[i].to_degrees()).collect::<Vec<_>>())
-    });
-    let seconds = 0.5 * still.len() as f64;
-    vec![
-        Finding::note("rest", format!("{seconds:.1} s at rest, gravity {norm:.3} m/s² there")),
-        Finding::note(
-            "gyroscope's bias",
-            format!("{:.2}, {:.2}, {:.2} °/s", bias[0], bias[1], bias[2]),
-        ),
-    ]
 }
 
 /// Whether the turns are as large as gravity shows them.

@@ -119,13 +119,16 @@ impl Sensors {
         Self { ranges, ..Self::default() }
     }
 
-    /// Drops samples whose time is more than 10 s ahead of one that follows, and says how many there were: a single
+    /// Drops samples whose time is more than 10 s ahead of one that follows, and warns of them if there were any: a single
     /// wrong time would make everything after it too late.
-    pub fn drop_far_ahead(&mut self) -> usize {
-        far_ahead_dropped(&mut self.ranges, |row| row.time_us)
+    pub fn drop_far_ahead(&mut self) -> Option<String> {
+        let ahead = far_ahead_dropped(&mut self.ranges, |row| row.time_us)
             + far_ahead_dropped(&mut self.differences, |difference| difference.time_us)
             + far_ahead_dropped(&mut self.inertial, |sample| sample.time_us)
-            + far_ahead_dropped(&mut self.wheels, |sample| sample.time_us)
+            + far_ahead_dropped(&mut self.wheels, |sample| sample.time_us);
+        (ahead > 0).then(|| {
+            format!("{ahead} samples are more than 10 s ahead of what follows them: left out")
+        })
     }
 
     /// All in the order of their times. No sensor's own samples are reordered: times that go backwards are the

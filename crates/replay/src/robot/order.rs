@@ -11,19 +11,16 @@ impl Sensors {
     ///
     /// Times that go backwards in any other way are left to the tracker, which refuses them.
     pub fn put_in_order(&mut self) -> Option<&'static str> {
-        if are_reversed(&self.ranges) {
-            self.ranges.reverse();
-            return Some(
-                "the log has its last ranges first: they are taken in the order of their times",
-            );
-        }
-        if are_by_anchor(&self.ranges) {
-            self.ranges.sort_by_key(|row| row.time_us);
-            return Some(
-                "the log has anchor after anchor: ranges are taken in the order of their times",
-            );
-        }
-        None
+        let told = if are_reversed(&self.ranges) {
+            "the log has its last ranges first: they are taken in the order of their times"
+        } else if are_by_anchor(&self.ranges) {
+            "the log has anchor after anchor: ranges are taken in the order of their times"
+        } else {
+            return None;
+        };
+        // Stable, so that whoever has the log can say which of its ranges is where.
+        self.ranges.sort_by_key(|row| row.time_us);
+        Some(told)
     }
 }
 

@@ -19,6 +19,22 @@ const BESIDE: f64 = 2.25;
 /// … from so many on.
 const FEWEST_BESIDE: usize = 3;
 
+/// Why a line is doubted.
+const DOUBTED: [(Reason, &str); 3] = [
+    (
+        Reason::Innovations,
+        "model and measurements disagree by far more than noise explains: another aircraft, a unit, a sign, or a sensor with an offset",
+    ),
+    (
+        Reason::Rejected,
+        "more than a tenth of the measurements contradict the estimate and are left out",
+    ),
+    (
+        Reason::Time,
+        "inputs and measurements do not belong together in time: measurements come late, or inputs do",
+    ),
+];
+
 /// Why model and measurements do not belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contradiction {
@@ -51,6 +67,33 @@ pub enum Contradiction {
     },
 }
 
+impl Contradiction {
+    /// In a sentence; outputs have names.
+    pub fn sentence<'a>(&self, mut names: impl Iterator<Item = &'a str>) -> String {
+        let mut name = |output: usize| names.nth(output).unwrap_or_default();
+        match *self {
+            Self::Large { output, size } => format!(
+                "{} contradicts the model: it differs from what is expected by {size:.1} times what noise explains",
+                name(output)
+            ),
+            Self::Coloured { output, shared } => format!(
+                "{} contradicts the model: it stays above or below what is expected for many lines in a row ({:.0} % of a \
+                 difference is the next line's, too): wind, gusts, a bias, another trim or aircraft",
+                name(output),
+                100.0 * shared
+            ),
+            Self::Beside { size } => format!(
+                "biases, wind and trim are {size:.1} times as far from the model's as it says they would be: a sensor that \
+                 measures something else, or another aircraft"
+            ),
+            Self::Beyond { airspeed, end } => format!(
+                "the airspeed reaches {airspeed:.1} m/s, too far from {end:.1} m/s, where the model was made or its grid ends: \
+                 what is estimated there is as the model has it at that airspeed"
+            ),
+        }
+    }
+}
+
 impl Followed {
     /// What speaks against the model, the worst of each output.
     pub fn contradictions(&self) -> Vec<Contradiction> {
@@ -72,6 +115,20 @@ impl Followed {
     pub fn lines(&self) -> impl Iterator<Item = Health> {
         let is_doubted = !self.contradictions().is_empty();
         self.healths.iter().map(move |it| it.with(Reason::Innovations, is_doubted))
+    }
+
+    /// When and why single lines are to be doubted: a sentence each.
+    pub fn doubted_lines(&self) -> impl Iterator<Item = (Reason, String)> {
+        DOUBTED.into_iter().filter_map(|(reason, sentence)| {
+            let place = self.healths.iter().position(|health| health.has(reason))?;
+            let count = self.healths.iter().filter(|health| health.has(reason)).count();
+            let share = 100.0 * count as f64 / self.healths.len() as f64;
+            let first = self.estimates.get(place)?.t_us as f64 / 1e6;
+            Some((
+                reason,
+                format!("{sentence}; first at {first:.2} s, in {share:.0} % of the lines"),
+            ))
+        })
     }
 }
 

@@ -121,7 +121,7 @@ pub(in crate::commands) fn command() -> Command {
         .about("Follow any number of devices behind a broker, each with an estimator of its own")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands(followers().map(of))
+        .subcommands(followers().filter(|system| !system.hears_bytes()).map(of))
 }
 
 #[cfg(test)]

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_telemetry::{Frame, Origin, Receiver};
+use kestirim_telemetry::{Counts, Frame, Origin, Receiver};
 
 use super::device::Device;
 use super::options::Following;
 use super::state::State;
 use crate::Error;
-use crate::system::{Answer, Plan};
+use crate::system::{Answer, Online, Plan};
 
 /// More devices are not followed: a sender may invent them.
 const MOST: usize = 4096;
@@ -19,6 +19,8 @@ const MOST: usize = 4096;
 #[derive(Debug)]
 pub(super) struct Decoder {
     receiver: Receiver,
+    /// What hears the bytes themselves, of a stream that is no telemetry.
+    hearer: Option<Box<dyn Online>>,
     devices: BTreeMap<Sender, Device>,
     plans: Plans,
     /// Which is shown in detail; the first that is heard, if nobody says it.
@@ -35,12 +37,14 @@ impl Decoder {
         most: Option<u32>,
     ) -> Result<Self, Error> {
         // What will not do is known before anything comes, and what the sender is to do is told.
-        if let Some(estimator) = following.plan.as_deref().map(Plan::build).transpose()? {
+        let estimator = following.plan.as_deref().map(Plan::build).transpose()?;
+        if let Some(estimator) = &estimator {
             let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
             state.show(estimator.as_ref());
         }
         Ok(Self {
             receiver: Receiver::new(),
+            hearer: estimator.filter(|_| following.hears_bytes()),
             devices: BTreeMap::new(),
             plans: Plans {
                 shown: following.plan.clone(),
@@ -59,6 +63,10 @@ impl Decoder {
 
     /// Takes in what was read; whether more is wanted.
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<bool, Error> {
+        if let Some(hearer) = &mut self.hearer {
+            hearer.hear(bytes);
+            return Ok(self.show_heard(bytes.len()));
+        }
         let more = self.decode(bytes)?;
         self.settle();
         self.show(bytes.len());
@@ -67,6 +75,11 @@ impl Decoder {
 
     /// Nothing more will come.
     pub(super) fn finish(&mut self) -> Result<(), Error> {
+        if let Some(hearer) = &mut self.hearer {
+            let finished = hearer.finish();
+            self.show_heard(0);
+            return finished;
+        }
         // A frame that only lacks its end is whole; any other piece of one is torn.
         self.decode(&[0])?;
         self.each(Device::finish)?;
@@ -81,10 +94,26 @@ impl Decoder {
 
     /// Nothing comes for now.
     pub(super) fn pause(&mut self) -> Result<(), Error> {
+        if let Some(hearer) = &mut self.hearer {
+            hearer.settle();
+            self.show_heard(0);
+            return Ok(());
+        }
         self.each(Device::pause)?;
         self.settle();
         self.show(0);
         Ok(())
+    }
+
+    /// Shows what the bytes themselves came to; whether more is wanted.
+    fn show_heard(&self, bytes: usize) -> bool {
+        let Some(hearer) = &self.hearer else { return true };
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let [received, taken] = hearer.heard();
+        state.count(bytes, Counts { received, ..Counts::default() }, 0);
+        state.counts.taken = taken.into();
+        state.show(hearer.as_ref());
+        received < self.most
     }
 
     fn each(

@@ -128,6 +128,11 @@ impl Following {
         })
     }
 
+    /// Whether the estimator hears the bytes of the stream, which is no telemetry then.
+    pub(super) fn hears_bytes(&self) -> bool {
+        self.origin.as_ref().is_some_and(|origin| origin.system.hears_bytes())
+    }
+
     /// What can be set, and what is; with several devices which one is shown, too.
     pub(super) fn settings(&self, has_devices: bool) -> Settings {
         let settings = self.origin.as_ref().map(|origin| origin.settings.clone());

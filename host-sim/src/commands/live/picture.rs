@@ -64,7 +64,7 @@ impl State {
 
     fn map_figure(&self) -> Figure {
         let path = |name: &str, path: &Path| Series::path(name, path.iter());
-        let here = self.position.map(|[x, y, _]| [x, y]);
+        let here = self.place;
         Figure::new("live-path", "Path")
             .axes("x or east, m", "y or north, m")
             .map()

@@ -75,6 +75,9 @@ pub struct Report {
     pub state: Option<[f64; 4]>,
     /// Of a walk: its horizontal length from stance to stance, m.
     pub path_length_m: Option<f64>,
+    /// What else the estimator says, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub facts: BTreeMap<String, String>,
     /// What a user should know.
     pub warnings: Vec<String>,
 }
@@ -106,6 +109,9 @@ impl fmt::Display for Report {
         }
         if let Some(length) = self.path_length_m {
             row("path length", format!("{length:.2} m"));
+        }
+        for (name, value) in &self.facts {
+            row(name, value.clone());
         }
         table.fmt(f)?;
         if self.devices.is_empty() { Ok(()) } else { self.devices(f) }

@@ -46,8 +46,10 @@ pub(super) struct State {
     /// The last time of the sender's clock, µs.
     pub(super) time_us: Option<u64>,
     pub(super) health: Option<Health>,
-    /// Where the estimator is, m.
+    /// Where the estimator is, m, …
     pub(super) position: Option<[f64; 3]>,
+    /// … and where that is on the map, m.
+    pub(super) place: Option<[f64; 2]>,
     pub(super) path_length_m: Option<f64>,
     pub(super) facts: Vec<(String, String)>,
     assumptions: Vec<String>,
@@ -96,6 +98,7 @@ impl State {
             time_us: None,
             health: None,
             position: None,
+            place: None,
             path_length_m: None,
             facts: Vec::new(),
             assumptions: plan.map(Plan::assumptions).unwrap_or_default(),
@@ -136,7 +139,7 @@ impl State {
     pub(super) fn restart(&mut self) {
         let path = Path::new(POINTS);
         self.counts.restarts += 1;
-        self.position = None;
+        (self.position, self.place) = (None, None);
         self.path = path.clone();
         self.senders_path = path.clone();
         self.footprints = path.clone();
@@ -189,19 +192,21 @@ impl State {
             _ => {}
         }
         self.time_us = Some(time_us);
-        self.move_to(estimator.and_then(Online::position));
+        self.move_to(estimator);
     }
 
-    fn move_to(&mut self, position: Option<[f64; 3]>) {
-        if let Some([x, y, _]) = position.filter(|_| !self.is_brief && position != self.position) {
-            self.path.push([x, y]);
+    fn move_to(&mut self, estimator: Option<&dyn Online>) {
+        let position = estimator.and_then(Online::position);
+        let place = estimator.and_then(Online::place);
+        if let Some(place) = place.filter(|_| !self.is_brief && position != self.position) {
+            self.path.push(place);
         }
-        self.position = position;
+        (self.position, self.place) = (position, place);
     }
 
     /// How the estimator is doing.
     pub(super) fn show(&mut self, estimator: &dyn Online) {
-        self.move_to(estimator.position());
+        self.move_to(Some(estimator));
         self.path_length_m = estimator.path_length_m();
         self.facts = estimator.facts();
         self.suspicions = estimator.warnings();
@@ -293,6 +298,7 @@ impl State {
             position: self.position,
             state: self.states.last().copied(),
             path_length_m: self.path_length_m,
+            facts: self.facts.iter().cloned().collect(),
             warnings: self.warnings(),
         }
     }

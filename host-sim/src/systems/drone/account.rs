@@ -2,9 +2,7 @@
 
 mod accuracy;
 
-use kestirim_replay::drone::{
-    Doubt, EnvironmentKind, Estimate, Misfit, Next, Other, Quantity, Track,
-};
+use kestirim_replay::drone::{Doubt, EnvironmentKind, Estimate, Next, Other, Track};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -158,7 +156,8 @@ pub(super) fn account(
     match recording {
         Recording::Flight(recorded) => {
             for doubt in doubts(settings, track, shown) {
-                account.warn(sentence(&doubt, settings, recorded.flight.quantity));
+                let environment = settings.choice("environment");
+                account.warn(doubt.sentence(&environment, recorded.flight.quantity));
                 account.doubt(Reason::Innovations);
             }
             account.about = Some(recorded.log.clone());
@@ -185,25 +184,6 @@ pub(super) fn account(
         }
     }
     Ok(account)
-}
-
-/// What is told of measurements that an environment does not explain.
-pub(super) fn in_words(misfit: &Misfit, environment: &str, quantity: Quantity) -> String {
-    let Misfit { found_db, expected_db, is_large, next } = misfit;
-    let off = if *is_large {
-        format!(
-            "the measurements are {found_db:.1} dB off what {environment} explains ({expected_db:.1} dB)"
-        )
-    } else {
-        format!(
-            "the measurements are off what {environment} explains in the same way for long (correlation {next:.2})"
-        )
-    };
-    let instead = match quantity {
-        Quantity::PathLoss => "--frequency may be another",
-        Quantity::Level => "--environment open assumes less",
-    };
-    format!("{off}: place and deviation are not to be relied upon, {instead}")
 }
 
 /// What is known of a flight whose user and channel are.
@@ -235,19 +215,6 @@ fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, sh
 fn doubts(settings: &Settings, track: &Track, shown: &Estimate) -> Vec<Doubt> {
     let channel = super::settings::channel(settings);
     Doubt::all(&track.stops, shown, channel.as_ref(), track.moved_m).collect()
-}
-
-/// A sentence about it.
-fn sentence(doubt: &Doubt, settings: &Settings, quantity: Quantity) -> String {
-    match doubt {
-        Doubt::Step { t, by } => format!(
-            "the levels step by {by:+.0} dB at {t:.0} s: another gain or antenna, or another transmitter"
-        ),
-        Doubt::Moved(apart) => format!(
-            "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
-        ),
-        Doubt::Misfit(misfit) => in_words(misfit, &settings.choice("environment"), quantity),
-    }
 }
 
 /// Time, place and expected distance after each measurement. What speaks against the whole flight speaks against each.

@@ -4,7 +4,7 @@ use kestirim_replay::drone::{Area, Estimate, MOST, Misfit, Quantity, Search, Sto
 use kestirim_telemetry::{Message, PathLoss};
 use kestirim_user_locator::Thinned;
 
-use super::account::{in_words, next_in_words};
+use super::account::next_in_words;
 use super::recording::area;
 use super::settings::{built, channel, wavelength_m};
 use crate::Error;
@@ -127,6 +127,6 @@ impl Online for Listener {
         let misfit =
             found.and_then(|(it, channel)| Misfit::find(self.stops.as_slice(), it, &channel));
         let name = settings.choice("environment");
-        misfit.iter().map(|misfit| in_words(misfit, &name, Quantity::PathLoss)).collect()
+        misfit.iter().map(|misfit| misfit.sentence(&name, Quantity::PathLoss)).collect()
     }
 }

@@ -6,6 +6,7 @@
 
 pub mod account;
 pub mod figures;
+mod online;
 pub mod paper;
 mod recorded;
 pub mod recording;
@@ -13,6 +14,7 @@ pub mod settings;
 pub mod track;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use kestirim_gnss_files::Kind;
 use kestirim_replay::gnss::{self, Recording};
@@ -27,8 +29,8 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 use crate::system::{
-    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, RunOptions, Setting,
-    Settings, Study, System, Table,
+    Account, Answer, Detail, FileField, Files, Finding, Idle, OutputField, Panel, Plan, RunOptions,
+    Setting, Settings, Study, System, Table,
 };
 
 /// The system.
@@ -50,29 +52,34 @@ impl System for Gnss {
             "sp3",
             "Precise orbits, SP3, one file or more: those of the day before and after help at its ends",
         )
-        .several(),
+        .several()
+        .live(),
         FileField::optional(
             "nav",
             "Where there are no precise orbits: what the satellites broadcast, RINEX navigation 2, 3 or 4, one file or more; positions are good to metres then",
         )
-        .several(),
+        .several()
+        .live(),
         FileField::optional(
             "clk",
             "Precise clocks, RINEX, one file or more [default: the clocks of the orbit files]",
         )
-        .several(),
+        .several()
+        .live(),
         FileField::optional(
             "antex",
             "Phase centres of the satellites' and the receiver's antennas, ANTEX, one file or more: precise orbits need it",
         )
-        .several(),
+        .several()
+        .live(),
         FileField::optional(
             "bias",
             "Biases of the satellites' codes, Bias-SINEX, one file or more [default: not corrected]",
         )
-        .several(),
+        .several()
+        .live(),
         FileField::optional("blq", "Ocean loading of the station, BLQ [default: not corrected]"),
-        FileField::optional("erp", "The Earth's rotation, ERP: for the tide of the pole, some millimetres [default: not corrected]"),
+        FileField::optional("erp", "The Earth's rotation, ERP: for the tide of the pole, some millimetres [default: not corrected]").live(),
         FileField::optional("truth", "a file of which the first line is X,Y,Z"),
     ];
     const SYNTHETIC: &'static [(&'static str, &'static str)] = &[
@@ -92,6 +99,8 @@ impl System for Gnss {
             endings: &["csv"],
         },
     ];
+    const PANELS: &'static [Panel] = &[Panel::Map];
+    const HEARS_BYTES: bool = true;
     const RECORDED: &'static [Study] = recorded::STUDIES;
 
     type Recording = Recording;
@@ -207,6 +216,10 @@ impl System for Gnss {
 
     fn chapter(experiment: &experiment::Report) -> Result<Chapter, Error> {
         paper::chapter::chapter(experiment)
+    }
+
+    fn online(settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
+        Ok(Some(Arc::new(online::Receiving::new(settings, files)?)))
     }
 }
 

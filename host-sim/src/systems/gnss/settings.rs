@@ -33,9 +33,9 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     let [first, last] = recording.map_or([0.0, 1e9], Recording::span);
     let step = ((last - first) / 200.0).max(1.0);
     vec![
-        Setting::one_of("mode", "Whether the receiver moves", &Mode::default()),
-        Setting::one_of("systems", "Satellites of which systems serve", &Systems::default()),
-        Setting::one_of("method", "From what positions are made", &Method::default()),
+        Setting::one_of("mode", "Whether the receiver moves", &Mode::default()).live(),
+        Setting::one_of("systems", "Satellites of which systems serve", &Systems::default()).live(),
+        Setting::one_of("method", "From what positions are made", &Method::default()).live(),
         Setting::one_of("ambiguities", "Whether ambiguities become whole", &Ambiguities::default()),
         Setting::decades(
             "process-noise",
@@ -45,12 +45,14 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
             [1e-12, 1e6],
             PROCESS_NOISE,
         )
-        .undecided(),
+        .undecided()
+        .live(),
         Setting::one_of(
             "filter",
             "What is done about observations that do not fit",
             &Choice::default(),
-        ),
+        )
+        .live(),
         Setting::switch("published", "Take the paper's robust filters as published: worse", false)
             .alias("printed"),
         Setting::number(
@@ -76,7 +78,8 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
             [0.0, HIGHEST_MASK, 1.0],
             8.0,
         )
-        .undecided(),
+        .undecided()
+        .live(),
         Setting::number(
             "gradient",
             "Standard deviation of the troposphere's horizontal gradients; 0: none [default: 0.0005 of the default \

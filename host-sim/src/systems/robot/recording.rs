@@ -185,11 +185,8 @@ impl Recording {
         if let Some(order) = sensors.put_in_order() {
             self.warn(order);
         }
-        let ahead = sensors.drop_far_ahead();
-        if ahead > 0 {
-            self.warn(format!(
-                "{ahead} samples are more than 10 s ahead of what follows them: left out"
-            ));
+        if let Some(dropped) = sensors.drop_far_ahead() {
+            self.warn(dropped);
         }
         let truth = truth.map(Truth::Course);
         self.parts = vec![Part { events: sensors.events(), truth, ..Part::default() }];

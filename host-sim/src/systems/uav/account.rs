@@ -5,7 +5,7 @@ pub mod states;
 
 use std::collections::BTreeMap;
 
-use kestirim_replay::uav::{Contradiction, Estimate, EstimatorKind, Followed, STATE_COLUMNS};
+use kestirim_replay::uav::{Estimate, EstimatorKind, STATE_COLUMNS};
 use serde::Serialize;
 
 use self::accuracy::Accuracy;
@@ -125,70 +125,19 @@ pub(super) fn account(
     };
     let mut account = Account::new(&report, report.warnings.clone())?;
     account.understood(&report.import);
-    for (reason, sentence) in doubted(followed) {
+    for (reason, sentence) in followed.doubted_lines() {
         account.warn(sentence);
         account.doubt(reason);
     }
     if let Recording::Logged(logged) = recording {
         for contradiction in followed.contradictions() {
-            account.warn(contradicted(track, &contradiction));
+            account.warn(contradiction.sentence(flight.names()));
             account.doubt(Reason::Innovations);
         }
         account.about = Some(logged.path.clone());
     }
     report.tell(&mut account);
     Ok(account)
-}
-
-/// What speaks against the model, in a sentence.
-fn contradicted(track: &Track, contradiction: &Contradiction) -> String {
-    let name = |output: usize| track.flight.names().nth(output).unwrap_or_default().to_owned();
-    match *contradiction {
-        Contradiction::Large { output, size } => format!(
-            "{} contradicts the model: what it shows beyond what is expected is {size:.1} times what noise explains",
-            name(output)
-        ),
-        Contradiction::Coloured { output, shared } => format!(
-            "{} contradicts the model: {:.0} % of what it shows beyond what is expected lasts from line to line, where noise \
-             alone would leave nothing (wind, gusts, a bias, another trim or aircraft)",
-            name(output),
-            100.0 * shared
-        ),
-        Contradiction::Beside { size } => format!(
-            "biases, wind and trim are {size:.1} times as far from the model's as it says they would be: a sensor that \
-             measures something else, or another aircraft"
-        ),
-        Contradiction::Beyond { airspeed, end } => format!(
-            "the airspeed reaches {airspeed:.1} m/s, too far from {end:.1} m/s, where the model was made or its grid ends: what is \
-             estimated there is as the model has it at that airspeed"
-        ),
-    }
-}
-
-/// When the estimate is to be doubted, and why: a sentence each.
-fn doubted(followed: &Followed) -> impl Iterator<Item = (Reason, String)> {
-    let healths = &followed.healths;
-    let sentences = [
-        (
-            Reason::Innovations,
-            "model and measurements disagree by far more than noise explains: another aircraft, a unit, a sign, or a sensor with an offset",
-        ),
-        (
-            Reason::Rejected,
-            "more than a tenth of the measurements contradict the estimate and are left out",
-        ),
-        (
-            Reason::Time,
-            "inputs and measurements do not belong together in time: measurements come late, or inputs do",
-        ),
-    ];
-    sentences.into_iter().filter_map(move |(reason, sentence)| {
-        let place = healths.iter().position(|health| health.has(reason))?;
-        let count = healths.iter().filter(|health| health.has(reason)).count();
-        let share = 100.0 * count as f64 / healths.len() as f64;
-        let first = followed.estimates.get(place)?.t_us as f64 / 1e6;
-        Some((reason, format!("{sentence}; first at {first:.2} s, in {share:.0} % of the lines")))
-    })
 }
 
 impl Report {

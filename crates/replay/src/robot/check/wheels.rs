@@ -21,10 +21,36 @@ const OFTEN: f64 = 0.4;
 /// … of which there are so many.
 const FEWEST: usize = 10;
 
+/// What the wheels' clock is tried to be off by: multiples of this, µs, up to so many.
+const SHIFT_US: i64 = 500_000;
+const SHIFTS: i64 = 20;
+/// It is off by the best of them if that leaves no more than this part of the disagreement, of which no distance counts more than this, m;
+/// of so many distances, whose standard deviations are below this, m.
+const LEFT: f64 = 0.6;
+const FAR_OFF_M: f64 = 2.0;
+const FEWEST_TIMED: usize = 20;
+const SHARP_M: f64 = 1.0;
+/// Half a second is what a logger may be late by.
+const LATE: i64 = 2;
+
+/// Two moments between which the ranges tell a distance.
+struct Compared {
+    /// Which of the ways of the wheels.
+    way: usize,
+    from_us: i64,
+    to_us: i64,
+    /// The distance, m, and its standard deviation.
+    ranges: f64,
+    sigma: f64,
+}
+
+/// Times, µs, and places, m.
+type Way = Vec<(i64, [f64; 2])>;
+
 /// The finding that wheels and ranges contradict each other; none if they do not, or do not tell. `known` is what a tracker knows
 /// that has no wheels.
 pub(super) fn find(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
-    let (mut compared, mut apart) = (0, 0);
+    let (mut ways, mut pairs, mut timed) = (Vec::new(), Vec::new(), Vec::new());
     for events in parts {
         let way = way(events);
         if way.is_empty() {
@@ -33,27 +59,33 @@ pub(super) fn find(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
         let is_of_wheels = |event: &&Event| matches!(event, Event::Wheels(_));
         let others: Vec<Event> = events.iter().filter(|it| !is_of_wheels(it)).copied().collect();
         let epochs = track(known, &others).ok()?.epochs;
-        let mut next_us = i64::MIN;
-        for epoch in epochs.iter().filter(|epoch| epoch.health == Health::GOOD) {
-            if epoch.time_us < next_us {
-                continue;
-            }
-            next_us = epoch.time_us.saturating_add(EVERY_US);
-            let then_us = epoch.time_us.saturating_add(APART_US);
-            let after = epochs.partition_point(|it| it.time_us < then_us);
-            let is_then = |it: &&Epoch| {
-                it.health == Health::GOOD && it.time_us.saturating_sub(then_us) <= EVERY_US
-            };
-            let Some(then) = epochs.get(after).filter(is_then) else { continue };
-            let Some((ranges, sigma)) = distance(epoch, then) else { continue };
-            let Some(wheels) = driven(&way, epoch.time_us, then.time_us) else { continue };
-            let limit = (SIGMAS * sigma).max(SHARE * ranges.max(wheels));
-            compared += 1;
-            apart += usize::from((ranges - wheels).abs() > limit);
-        }
+        pairs.extend(compared(ways.len(), &epochs, |it| it.health == Health::GOOD));
+        let is_sharp = |it: &Epoch| it.sigma_m().is_some_and(|sigma| sigma < SHARP_M);
+        timed.extend(compared(ways.len(), &epochs, is_sharp));
+        ways.push(way);
     }
-    let share = apart as f64 / compared.max(1) as f64;
-    (compared >= FEWEST && share > OFTEN).then(|| {
+    if let Some(late_s) = late(&ways, &timed) {
+        let by = if late_s > 0.0 { "late" } else { "early" };
+        return Some(Finding::fault(
+            "wheels",
+            Reason::Time,
+            format!(
+                "the times of the wheels are {:.1} s too {by}, or those of the ranges are not theirs",
+                late_s.abs()
+            ),
+            "positions are moved by what was driven at another time",
+            "give both the times of one clock",
+        ));
+    }
+    let differs = |pair: &Compared| {
+        let wheels = driven(&ways[pair.way], pair.from_us, pair.to_us)?;
+        let limit = (SIGMAS * pair.sigma).max(SHARE * pair.ranges.max(wheels));
+        Some((pair.ranges - wheels).abs() > limit)
+    };
+    let differing: Vec<bool> = pairs.iter().filter_map(differs).collect();
+    let apart = differing.iter().filter(|differs| **differs).count();
+    let share = apart as f64 / differing.len().max(1) as f64;
+    (differing.len() >= FEWEST && share > OFTEN).then(|| {
         Finding::fault(
             "wheels",
             Reason::Innovations,
@@ -67,6 +99,44 @@ pub(super) fn find(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
     })
 }
 
+/// Epochs that serve, and those some seconds after them.
+fn compared(way: usize, epochs: &[Epoch], serves: impl Fn(&Epoch) -> bool) -> Vec<Compared> {
+    let mut pairs = Vec::new();
+    let mut next_us = i64::MIN;
+    for epoch in epochs.iter().filter(|it| serves(it)) {
+        if epoch.time_us < next_us {
+            continue;
+        }
+        next_us = epoch.time_us.saturating_add(EVERY_US);
+        let then_us = epoch.time_us.saturating_add(APART_US);
+        let after = epochs.partition_point(|it| it.time_us < then_us);
+        let is_then = |it: &&Epoch| serves(it) && it.time_us.saturating_sub(then_us) <= EVERY_US;
+        let Some(then) = epochs.get(after).filter(is_then) else { continue };
+        let Some((ranges, sigma)) = distance(epoch, then) else { continue };
+        pairs.push(Compared { way, from_us: epoch.time_us, to_us: then.time_us, ranges, sigma });
+    }
+    pairs
+}
+
+/// By how much the wheels are late, s, if another clock explains them far better.
+fn late(ways: &[Way], pairs: &[Compared]) -> Option<f64> {
+    let left = |shift: i64| {
+        let off = |pair: &Compared| {
+            let [from, to] =
+                [pair.from_us, pair.to_us].map(|it| it.saturating_add(shift * SHIFT_US));
+            let wheels = driven(&ways[pair.way], from, to)?;
+            Some((pair.ranges - wheels).abs().min(FAR_OFF_M))
+        };
+        let all: Vec<f64> = pairs.iter().filter_map(off).collect();
+        (all.len() >= FEWEST_TIMED && 2 * all.len() > pairs.len())
+            .then(|| all.iter().sum::<f64>() / all.len() as f64)
+    };
+    let as_logged = left(0)?;
+    let shifts = (-SHIFTS..=SHIFTS).filter_map(|shift| Some((shift, left(shift)?)));
+    let (shift, least) = shifts.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (shift.abs() >= LATE && least < LEFT * as_logged).then_some((shift * SHIFT_US) as f64 * 1e-6)
+}
+
 /// How far apart the ranges put a tag at two epochs, m, and the standard deviation.
 fn distance(a: &Epoch, b: &Epoch) -> Option<(f64, f64)> {
     let ([x, y, _], [u, v, _]) = (a.position?, b.position?);
@@ -74,7 +144,7 @@ fn distance(a: &Epoch, b: &Epoch) -> Option<(f64, f64)> {
 }
 
 /// The way that the wheels tell: times, µs, and places, m, from where it begins, which is anywhere.
-fn way(events: &[Event]) -> Vec<(i64, [f64; 2])> {
+fn way(events: &[Event]) -> Way {
     let mut way = Vec::new();
     let (mut place, mut heading) = ([0.0; 2], 0.0_f64);
     let mut before: Option<Wheels> = None;
@@ -136,6 +206,40 @@ mod tests {
             place[1] += 0.025 * heading.sin();
         }
         find(&Setup::new(&PLACES, 0.3), &[&events])
+    }
+
+    /// The robot of above stops for two seconds now and then, as its wheels say so long before or after.
+    fn told_late(late_us: i64) -> Option<Finding> {
+        let mut events = Vec::new();
+        let mut place = 0.5_f64;
+        for step in 0..1600_i64 {
+            let (time_us, seconds) = (50_000 * step, 0.05 * step as f64);
+            let speed =
+                if (0.35 * seconds).sin() * (0.83 * seconds).cos() > 0.1 { 0.0 } else { 0.4 };
+            let way = if seconds % 32.0 < 16.0 { speed } else { -speed };
+            let wheels = Wheels { time_us: time_us + late_us, speed: way, turn_rate: 0.0 };
+            events.push(Event::Wheels(wheels));
+            for (anchor, [x, y, z]) in PLACES.iter().enumerate() {
+                let noise = 0.03 * (1.7 * step as f64 + 2.9 * anchor as f64).sin();
+                let metres = (x - place).hypot(y - 3.0).hypot(z - 0.3) + noise;
+                events.push(Event::Range(Range { time_us, anchor, metres }));
+            }
+            events.push(Event::EpochEnd { time_us });
+            place += 0.05 * way;
+        }
+        events.sort_by_key(Event::time_us);
+        find(&Setup::new(&PLACES, 0.3), &[&events])
+    }
+
+    #[test]
+    fn wheels_of_another_clock_are_told() {
+        assert_eq!(told_late(0), None);
+        assert_eq!(told_late(200_000), None);
+        for (late_us, said) in [(3_000_000, "3.0 s too late"), (-2_000_000, "2.0 s too early")] {
+            let told = told_late(late_us).expect("a finding");
+            assert_eq!(told.reason, Some(Reason::Time));
+            assert!(told.found.contains(said), "{}", told.found);
+        }
     }
 
     #[test]

@@ -1,0 +1,237 @@
+//! A receiver's positions from its own stream, while that comes.
+
+use kestirim_gnss_files::{Error, Kind};
+use kestirim_gnss_ppp::{Corrections, GpsTime};
+use kestirim_ppp_filter::{Config, Health};
+
+use super::choices::{Method, STATES_OF_ALL};
+use super::feed::Feed;
+use super::followed::{Fix, Followed, Pass};
+use super::recording::{Paths, Recording};
+use super::shelf::Shelf;
+use super::single::single;
+
+/// So much of the stream is kept, s: satellites send their ephemerides again and again, and those serve for two hours. A stream of which the
+/// newer half cannot be read alone, as it tells its week but once, is kept for twice as long, and so on.
+const KEPT_S: f64 = 10_800.0;
+/// Of a stream that comes without a pause, what has come is looked at when it is this part of what is kept.
+const NEW: usize = 8;
+
+/// The beginning of a stream is looked for in steps of so many bytes, and no message is longer than this.
+const STEP: usize = 2048;
+const LONGEST: usize = 8192;
+/// What is told while nothing else comes.
+const NO_STREAM: &str = "no message of UBX or RTCM 3 has come yet: let the receiver send RXM-RAWX and RXM-SFRBX, or MSM4 or MSM7";
+
+/// A receiver's positions from its own stream, UBX or RTCM 3, while that comes.
+///
+/// What has come is kept and read again, three hours of it at most: what a signal is worth, which week it is and which satellites
+/// are healthy is known as well as in a recording. Each epoch is given to the filter once, when the next one has begun, as an epoch may
+/// come in several messages.
+#[derive(Debug)]
+pub struct Live {
+    config: Config,
+    pass: Pass,
+    corrections: Corrections,
+    kept: Vec<u8>,
+    /// Of it is kept so much, s.
+    kept_s: f64,
+    /// Bytes that were not looked at.
+    fresh: usize,
+    feed: Option<Box<Feed<STATES_OF_ALL>>>,
+    /// The last epoch that was fed.
+    until: Option<GpsTime>,
+    /// How many epochs there were, and how many of them had a solution.
+    counts: [usize; 2],
+    now: Option<Now>,
+    /// What came of the stream when it was looked at last: what speaks against it, or why there is nothing yet.
+    told: Vec<String>,
+}
+
+/// Where a receiver is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Now {
+    /// When, in UTC.
+    pub utc: String,
+    /// Where, since the midnight before the first epoch that is kept.
+    pub fix: Fix,
+    /// Standard deviations to the east, north and up, m.
+    pub sd_enu: [f64; 3],
+    /// How far the position is to be trusted.
+    pub health: Health,
+    /// How many satellites it is from.
+    pub satellites: usize,
+}
+
+impl Live {
+    /// Before anything has come.
+    pub fn new(config: Config, pass: Pass, corrections: Corrections) -> Self {
+        Self {
+            config,
+            pass,
+            corrections,
+            kept: Vec::new(),
+            kept_s: KEPT_S,
+            fresh: 0,
+            feed: None,
+            until: None,
+            counts: [0; 2],
+            now: None,
+            told: Vec::new(),
+        }
+    }
+
+    /// Takes in what came; whether it is so much that it is to be looked at before more is taken in.
+    pub fn hear(&mut self, bytes: &[u8]) -> bool {
+        self.kept.extend_from_slice(bytes);
+        self.fresh += bytes.len();
+        self.fresh > self.kept.len() / NEW
+    }
+
+    /// Looks at what came since the last time. The products are those of `paths`, of which `obs` names the stream; `is_end` says that no
+    /// more will come.
+    pub fn look(&mut self, paths: &Paths<'_>, shelf: &Shelf, is_end: bool) {
+        if self.fresh == 0 && !is_end {
+            return;
+        }
+        self.fresh = 0;
+        if !self.find_beginning() {
+            self.told = vec![NO_STREAM.to_owned()];
+            return;
+        }
+        match Recording::of_stream(self.kept.clone(), paths, shelf) {
+            Ok(recording) => {
+                self.follow(&recording, is_end);
+                let [first, last] = recording.span();
+                if last - first > self.kept_s {
+                    self.forget(paths, shelf);
+                }
+            }
+            // Not enough of it has come, or nothing that can be read.
+            Err(error) => self.told = vec![format!("no position yet: {}", problem(error))],
+        }
+    }
+
+    /// Lets go of what comes before the stream, such as the lines of a receiver that has not been told to send one yet; whether it is
+    /// there.
+    fn find_beginning(&mut self) -> bool {
+        let is_stream = |bytes: &[u8]| matches!(Kind::of(bytes), Some(Kind::Ubx | Kind::Rtcm));
+        let begins = (0..self.kept.len()).step_by(STEP).find(|&at| is_stream(&self.kept[at..]));
+        // A message may have begun in what came last.
+        let last = self.kept.len().saturating_sub(LONGEST);
+        self.kept.drain(..begins.unwrap_or(last));
+        begins.is_some()
+    }
+
+    fn follow(&mut self, recording: &Recording, is_end: bool) {
+        let epochs = recording.epochs(None);
+        let begin = self
+            .until
+            .map_or(0, |until| epochs.partition_point(|epoch| epoch.time.since(until) <= 0.0));
+        let end = if is_end { epochs.len() } else { epochs.len().saturating_sub(1) };
+        let new = epochs.get(begin..end).unwrap_or_default();
+        let receiver = recording.receiver(self.corrections);
+        let config = recording.settled(self.config);
+        let mut followed = Followed::default();
+        if self.pass.method == Method::Single {
+            followed = single(recording, new, &receiver, &config, self.pass, &mut || ());
+        } else {
+            let fresh = || Box::new(Feed::new(config, recording, self.pass));
+            let feed = self.feed.get_or_insert_with(fresh);
+            for epoch in new {
+                feed.take(recording, &receiver, epoch, None, &mut followed);
+            }
+        }
+        self.until = new.last().map(|epoch| epoch.time).or(self.until);
+        self.counts[0] += new.len();
+        self.counts[1] += followed.fixes.len();
+        let last = followed.fixes.last().zip(followed.last).zip(followed.heard.last());
+        if let Some(((fix, last), satellites)) = last {
+            self.now = Some(Now {
+                utc: recording.utc(fix.t),
+                fix: *fix,
+                sd_enu: last.sd_enu,
+                health: last.health,
+                satellites: *satellites,
+            });
+        }
+        self.told = recording.warnings(self.corrections).collect();
+        self.told.extend(followed.outages.first().map(ToString::to_string));
+    }
+
+    /// Lets go of the older half of what is kept.
+    fn forget(&mut self, paths: &Paths<'_>, shelf: &Shelf) {
+        let newer = self.kept.len() / 2;
+        match Recording::of_stream(self.kept[newer..].to_vec(), paths, shelf) {
+            Ok(_) => drop(self.kept.drain(..newer)),
+            Err(_) => self.kept_s *= 2.0,
+        }
+    }
+
+    /// Where the receiver is; none before the first solution.
+    pub const fn now(&self) -> Option<&Now> {
+        self.now.as_ref()
+    }
+
+    /// How many epochs there were, and how many of them had a solution.
+    pub const fn counts(&self) -> [usize; 2] {
+        self.counts
+    }
+
+    /// What speaks against the stream, or why there is no position yet: a sentence each.
+    pub fn warnings(&self) -> &[String] {
+        &self.told
+    }
+}
+
+/// Why a stream cannot be used yet, without the name of a file that it is not.
+fn problem(error: Error) -> String {
+    match error {
+        Error::File { problem, .. } | Error::Line { problem, .. } => problem,
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use kestirim_ppp_filter::Motion;
+
+    use super::*;
+
+    /// What is told when this has come, and how much of it is kept.
+    fn told(bytes: &[u8]) -> (String, usize) {
+        let paths = Paths {
+            obs: Path::new("stream"),
+            sp3: &[],
+            nav: &[],
+            antex: &[],
+            clk: &[],
+            bias: &[],
+            blq: None,
+            erp: None,
+        };
+        let mut live = Live::new(Config::new(Motion::Static), Pass::default(), Corrections::ALL);
+        for piece in bytes.chunks(1000) {
+            live.hear(piece);
+            live.look(&paths, &Shelf::default(), false);
+            assert!(live.now().is_none() && live.counts() == [0; 2]);
+        }
+        (live.warnings().join("; "), live.kept.len())
+    }
+
+    #[test]
+    fn what_is_no_stream_is_told_and_not_kept() {
+        let lines = "$GNGGA,120000.00,,,,,0,00,99.99,,,,,,*71\r\n".repeat(1000);
+        let (said, kept) = told(lines.as_bytes());
+        assert!(said.contains("RXM-RAWX"), "{said}");
+        assert!(kept <= LONGEST);
+        // A message without observations, UBX-ACK-ACK, behind them: the stream has begun.
+        let acknowledged = [0xb5, 0x62, 0x05, 0x01, 0x02, 0x00, 0x06, 0x01, 0x0f, 0x38];
+        let (said, kept) = told(&[lines.as_bytes(), &acknowledged].concat());
+        assert!(said.contains("no position yet"), "{said}");
+        assert!(kept > 0);
+        assert_eq!(told(&[]).1, 0);
+    }
+}

@@ -1,0 +1,150 @@
+//! A receiver that is switched on: its own stream, UBX or RTCM 3, followed while it comes.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use kestirim_gnss_ppp::Geodetic;
+use kestirim_replay::gnss::{Live, Now, Pass, Paths, Shelf};
+use kestirim_telemetry::Message;
+use nalgebra::Vector3;
+
+use super::settings::{Choice, Setup};
+use crate::Error;
+use crate::system::{Files, Online, Outcome, Plan, Settings};
+
+/// What a stream is called where files have a name.
+const STREAM: &str = "stream";
+
+/// On a line that never pauses, what has come is looked at so often.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// How positions are made, and of which products.
+#[derive(Debug, Clone)]
+pub(super) struct Receiving {
+    setup: Setup,
+    files: Files,
+    shelf: Arc<Shelf>,
+}
+
+impl Receiving {
+    /// With the products of files, which are read when the first epochs have come.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if they will not do.
+    pub(super) fn new(settings: &Settings, files: &Files) -> Result<Self, Error> {
+        let setup = Setup::of(settings);
+        if setup.filter == Choice::All {
+            return Err(Error::Usage("a stream is followed by one filter: --filter".to_owned()));
+        }
+        if !files.all("sp3").is_empty() {
+            files.required("antex")?;
+        }
+        Ok(Self { setup, files: files.clone(), shelf: files.shared.of::<Shelf>() })
+    }
+
+    fn paths(&self) -> Paths<'_> {
+        Paths {
+            obs: Path::new(STREAM),
+            sp3: self.files.all("sp3"),
+            nav: self.files.all("nav"),
+            antex: self.files.all("antex"),
+            clk: self.files.all("clk"),
+            bias: self.files.all("bias"),
+            blq: None,
+            erp: self.files.one("erp"),
+        }
+    }
+}
+
+impl Plan for Receiving {
+    fn build(&self) -> Result<Box<dyn Online>, Error> {
+        let Setup { systems, method, corrections, .. } = self.setup;
+        let pass = Pass { systems, method, ..Pass::default() };
+        let live = Live::new(self.setup.config(self.setup.main()), pass, corrections);
+        Ok(Box::new(Receiver { live, plan: self.clone(), origin: None, looked: Instant::now() }))
+    }
+}
+
+/// Follows a receiver.
+#[derive(Debug)]
+struct Receiver {
+    live: Live,
+    plan: Receiving,
+    /// The first position, ECEF, m: the map's middle.
+    origin: Option<Vector3<f64>>,
+    /// When what had come was looked at last.
+    looked: Instant,
+}
+
+impl Receiver {
+    fn look(&mut self, is_end: bool) {
+        self.live.look(&self.plan.paths(), &self.plan.shelf, is_end);
+        self.origin = self.origin.or(self.live.now().map(|now| now.fix.position));
+        self.looked = Instant::now();
+    }
+}
+
+impl Online for Receiver {
+    /// Telemetry has no observations of satellites.
+    fn take(&mut self, _message: &Message) -> Outcome {
+        Outcome::NotMine
+    }
+
+    fn hear(&mut self, bytes: &[u8]) {
+        if self.live.hear(bytes) || self.looked.elapsed() >= EVERY {
+            self.look(false);
+        }
+    }
+
+    fn heard(&self) -> [u32; 2] {
+        self.live.counts().map(|count| u32::try_from(count).unwrap_or(u32::MAX))
+    }
+
+    fn settle(&mut self) {
+        self.look(false);
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.look(true);
+        Ok(())
+    }
+
+    fn position(&self) -> Option<[f64; 3]> {
+        self.live.now().map(|now| now.fix.position.into())
+    }
+
+    fn place(&self) -> Option<[f64; 2]> {
+        let (now, origin) = (self.live.now()?, self.origin?);
+        let turned = Geodetic::from_ecef(&origin).enu_from_ecef() * (now.fix.position - origin);
+        Some([turned.x, turned.y])
+    }
+
+    fn sigma_m(&self) -> Option<f64> {
+        let [east, north, _] = self.live.now()?.sd_enu;
+        Some(east.hypot(north) / std::f64::consts::SQRT_2)
+    }
+
+    fn facts(&self) -> Vec<(String, String)> {
+        self.live.now().map(facts).unwrap_or_default()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.live.warnings().to_vec()
+    }
+}
+
+fn facts(now: &Now) -> Vec<(String, String)> {
+    let Geodetic { latitude, longitude, height } = Geodetic::from_ecef(&now.fix.position);
+    let [latitude, longitude] = [latitude, longitude].map(f64::to_degrees);
+    let [east, north, up] = now.sd_enu;
+    let facts = [
+        ("time", now.utc.clone()),
+        ("latitude, longitude", format!("{latitude:.8}°, {longitude:.8}°")),
+        ("height above the ellipsoid", format!("{height:.2} m")),
+        ("σ east, north, up", format!("{east:.2} m, {north:.2} m, {up:.2} m")),
+        ("satellites", now.satellites.to_string()),
+        ("health", now.health.in_short().to_string()),
+    ];
+    facts.map(|(name, value)| (name.to_owned(), value)).into()
+}
