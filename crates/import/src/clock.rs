@@ -7,8 +7,11 @@ use crate::unit::{Quantity, Unit};
 
 /// Enough to tell the usual step.
 const SAMPLE: usize = 4000;
+/// Steps of no more than this, s, may be seconds still if times have decimals: clocks of milliseconds and less count whole ones.
+const SLOWEST: f64 = 60.0;
 
-/// The unit of times whose usual step is one of these, in s: seconds if they may be, or else the one unit that fits.
+/// The unit of times whose usual step is one of these, in s: seconds if they may be, or else the one unit that fits. Times with
+/// decimals whose steps are longer are seconds, too, up to a minute.
 ///
 /// # Errors
 /// [`Error::Undecided`] if no unit fits, or several that are shorter than a second.
@@ -28,6 +31,9 @@ pub fn unit_of_times(
         return Ok(Unit::new(1.0, "s"));
     }
     let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    if step > *usual.end() && step <= SLOWEST && times.iter().any(|time| time.fract() != 0.0) {
+        return Ok(Unit::new(1.0, "s"));
+    }
     let fitting: Vec<_> =
         units.iter().filter(|unit| usual.contains(&(step * unit.scale))).collect();
     match fitting[..] {
@@ -51,6 +57,9 @@ mod tests {
             assert_eq!(unit_of_times(times(step), 2e-3..=2.0).unwrap().name, unit);
         }
         assert_eq!(unit_of_times(times(100.0), 2e-2..=60.0).unwrap().name, "ms");
+        // Slow ones have decimals if they are seconds, and none if they are milliseconds.
+        assert_eq!(unit_of_times(times(4.58), 2e-3..=2.0).unwrap().name, "s");
+        assert_eq!(unit_of_times(times(5.0), 2e-3..=2.0).unwrap().name, "ms");
         assert_eq!(unit_of_times([1.0], 2e-3..=2.0).unwrap().name, "s");
         // Nothing fits; and a thousand may be a second in ms or a millisecond in µs.
         for (step, shortest) in [(1e-7, 2e-3), (1e3, 5e-4)] {

@@ -19,7 +19,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const NIS_OF_MOTION: f64 = 4.0;
     /// Time for which standstills are doubted then (µs), …
     const DOUBT_US: u64 = 30_000_000;
-    /// … and the velocity is as uncertain as at the start, (m/s)².
+    /// … and after the last time that the ranges then show motion although nothing shakes: this robot moves without shaking.
+    const CALM_US: u64 = 300_000_000;
+    /// The velocity is as uncertain then as at the start, (m/s)².
     const DOUBTED_VARIANCE: f64 = 0.25;
     /// Turn rate above which a robot changes its direction between two ranges, rad/s.
     const TURNING: f64 = 0.3;
@@ -53,7 +55,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.doubt_standing();
         }
         if let Some(mut estimate) = self.estimate().copied() {
-            let still = self.is_still(time_us) && Standstill::agrees::<T, D, N>(&estimate);
+            let agrees = self.is_calm(time_us) && Standstill::agrees::<T, D, N>(&estimate);
+            let is_doubted = time_us < self.doubted_until_us;
+            if is_doubted && !agrees && self.is_calm(time_us) {
+                self.doubted_until_us = time_us.saturating_add(Self::CALM_US);
+            }
+            let still = agrees && !is_doubted;
             let interval = T::from_micro(elapsed.min(LOST_US) as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
             if still {
@@ -101,11 +108,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Whether IMU or wheels show that the tag stands, and are not in doubt.
     #[inline]
     pub(super) fn is_still(&self, time_us: u64) -> bool {
+        time_us >= self.doubted_until_us && self.is_calm(time_us)
+    }
+
+    /// Whether IMU or wheels show that the tag stands.
+    #[inline]
+    fn is_calm(&self, time_us: u64) -> bool {
         let wheels_stand =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
-        time_us >= self.doubted_until_us
-            && (self.stillness.is_still(time_us)
-                || self.fresh_wheels(time_us).is_some_and(wheels_stand))
+        self.stillness.is_still(time_us) || self.fresh_wheels(time_us).is_some_and(wheels_stand)
     }
 
     /// Ranges that fit so badly on average while the tag is said to stand have one that moves: a trolley on a

@@ -51,33 +51,25 @@ const SCALES: [(f64, &str, &str); 3] = [
     (2.0, "doubled", ": they may have been halved twice"),
 ];
 
-/// Anchors that are no farther from a plane than so on average lie in it: places are measured to centimetres, m.
-const FLAT_M: f64 = 0.05;
+/// Anchors that are no farther from a plane, or a line, than so on average tell hardly more of its two sides than what they measure wrong, m.
+const FLAT_M: f64 = 0.2;
 
 /// Whether a tag has the ranges of another: its mirror image, where the anchors of a tag in space lie in one plane, or those of a tag
 /// in the plane stand in one line, unless the room is known.
 pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Option<Finding> {
     let is_in_space = height == KnownHeight::Unknown;
     let fewest = if is_in_space { 1 } else { 3 };
-    if anchors.positions.len() < fewest
-        || !anchors.positions.iter().flatten().all(|it| it.is_finite())
-    {
+    if anchors.positions.len() < fewest {
         return None;
     }
-    let count = anchors.positions.len() as f64;
-    let places = || anchors.positions.iter().map(|place| Vector3::from(*place));
-    let centre = places().sum::<Vector3<f64>>() / count;
-    let spread = places().map(|place| place - centre).map(|it| it * it.transpose() / count);
-    let spread = spread.sum::<Matrix3<f64>>();
+    let [from_line, from_plane] = flatness(&anchors.positions)?;
     let (least, shape, doubtful, remedy) = if is_in_space {
         let remedy = "say the height (--height), or hang an anchor well outside the plane";
-        (spread.symmetric_eigenvalues().min(), "lie in one plane", "height", remedy)
+        (from_plane, "lie in one plane", "height", remedy)
     } else {
-        let in_plane = spread.fixed_view::<2, 2>(0, 0).into_owned();
         let remedy = "say the room (--room), or hang an anchor well beside the line";
-        (in_plane.symmetric_eigenvalues().min(), "stand in one line", "position", remedy)
+        (from_line, "stand in one line", "position", remedy)
     };
-    let least = least.max(0.0).sqrt();
     (least < FLAT_M && (is_in_space || !room)).then(|| {
         Finding::fault(
             "geometry",
@@ -89,6 +81,21 @@ pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Opti
             remedy,
         )
     })
+}
+
+/// How far from a line in the plane, and from a plane in space, places are on average (root mean square), m; none of places that are none.
+pub(super) fn flatness(places: &[[f64; 3]]) -> Option<[f64; 2]> {
+    if places.is_empty() || !places.iter().flatten().all(|it| it.is_finite()) {
+        return None;
+    }
+    let count = places.len() as f64;
+    let places = || places.iter().map(|place| Vector3::from(*place));
+    let centre = places().sum::<Vector3<f64>>() / count;
+    let spread = places().map(|place| place - centre).map(|it| it * it.transpose() / count);
+    let spread = spread.sum::<Matrix3<f64>>();
+    let in_plane = spread.fixed_view::<2, 2>(0, 0).into_owned();
+    let least = [in_plane.symmetric_eigenvalues().min(), spread.symmetric_eigenvalues().min()];
+    Some(least.map(|least| least.max(0.0).sqrt()))
 }
 
 /// What the geometry shows; nothing if there are too few ranges at a time to contradict each other.

@@ -2,6 +2,7 @@
 
 use kestirim_health::{Health, Reason};
 
+use super::geometry;
 use crate::Finding;
 use crate::robot::{Dimensions, Event, Setup, track};
 
@@ -12,13 +13,16 @@ const SPAN_M: f64 = 0.5;
 const SPAN_SIGMAS: f64 = 5.0;
 /// Fewer anchors tell no height, …
 const FEWEST_ANCHORS: usize = 4;
+/// … nor do those that are no farther from a plane than this on average, m: the tag's mirror image is followed at times, …
+const FLAT_M: f64 = 0.3;
 /// … and fewer positions nothing.
 const FEWEST: usize = 50;
 
 /// The finding that the tag's height changes; none if it does not, or the anchors do not tell heights. `known` is what a tracker in
 /// the plane knows.
 pub(super) fn height(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
-    if known.anchors.len() < FEWEST_ANCHORS {
+    let [_, from_plane] = geometry::flatness(&known.anchors)?;
+    if known.anchors.len() < FEWEST_ANCHORS || from_plane < FLAT_M {
         return None;
     }
     let setup = Setup { dimensions: Dimensions::Three, ..known.clone() };
