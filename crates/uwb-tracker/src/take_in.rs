@@ -7,7 +7,8 @@ use kestirim_scalar::Scalar;
 
 /// Takes a range in, or leaves it out. Ranges that are too long again and again are those of an anchor that is blocked
 /// where the others agree, and else of an estimate that is wrong. The anchor's noise is learnt where there are more ranges than unknowns
-/// (`redundant`): a range that the estimate has to follow fits whatever it is worth.
+/// (`redundant`): a range that the estimate has to follow fits whatever it is worth. While the tag is taken to be `still` it is not learnt to be
+/// worth less than to begin with: what ranges leave then tells first of all whether it stands.
 ///
 /// # Errors
 /// [`Error::Estimate`]; estimate and link are as they were.
@@ -17,7 +18,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     link: &mut Link<T>,
     observation: &impl Observation<T, N>,
     config: &Config<T>,
-    redundant: bool,
+    [redundant, still]: [bool; 2],
     others_agree: impl Fn() -> bool,
 ) -> Result<(Outcome, Innovation<T>), Error> {
     let weighed = estimate.weigh_observation(observation, link.noise.variance())?;
@@ -50,7 +51,12 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     };
     link.gate = gate;
     if redundant && let Some(learning) = &config.learning {
+        let before = link.noise;
         link.noise.learn_square(learning, &weighed, square);
+        let most = before.variance().max(config.range_sigma * config.range_sigma);
+        if still && link.noise.variance() > most {
+            link.noise = before;
+        }
     }
     Ok((outcome, seen))
 }
@@ -110,7 +116,8 @@ mod tests {
         let observation =
             LinearObservation { row: SparseRow::new([(0, 1.0)]), measured: 5.0 + excess };
         let (outcome, seen) =
-            take_in(&mut estimate, link, &observation, config, true, || agree).expect("a range");
+            take_in(&mut estimate, link, &observation, config, [true, false], || agree)
+                .expect("a range");
         assert!((seen.innovation - excess).abs() < 1e-9, "{seen:?}");
         assert!((seen.variance - SPREAD - NOISE).abs() < 1e-9, "{seen:?}");
         link.noise = self::link(config).noise;
@@ -191,27 +198,33 @@ mod tests {
     }
 
     /// What a single range makes of the variance of its anchor's.
-    fn learnt(excess: f64, redundant: bool) -> f64 {
+    fn learnt(excess: f64, known: [bool; 2]) -> f64 {
         let config = gated();
         let mut link = link(&config);
         let observation =
             LinearObservation { row: SparseRow::new([(0, 1.0)]), measured: 5.0 + excess };
-        take_in(&mut estimate(), &mut link, &observation, &config, redundant, || true)
+        take_in(&mut estimate(), &mut link, &observation, &config, known, || true)
             .expect("a range");
         link.noise.variance()
     }
 
     #[test]
     fn an_anchors_noise_is_learnt_where_others_tell_the_place() {
-        assert!((learnt(0.9, false) - NOISE).abs() < 1e-12);
+        assert!((learnt(0.9, [false; 2]) - NOISE).abs() < 1e-12);
         // A hundredth of what is left of the innovation, and of what the estimate does not know.
         let share = NOISE / (SPREAD + NOISE);
         let learns =
             |excess: f64| 0.99 * NOISE + 0.01 * ((excess * share).powi(2) + SPREAD * share);
-        assert!((learnt(0.9, true) - learns(0.9)).abs() < 1e-9);
+        assert!((learnt(0.9, [true, false]) - learns(0.9)).abs() < 1e-9);
         // Of what is wild no more than the gate admits.
         for excess in [5.1 * DEVIATION, 100.0] {
-            assert!((learnt(excess, true) - learns(5.0 * DEVIATION)).abs() < 1e-9, "{excess}");
+            assert!(
+                (learnt(excess, [true, false]) - learns(5.0 * DEVIATION)).abs() < 1e-9,
+                "{excess}"
+            );
         }
+        // Of a tag that is taken to stand a range may be worth more than to begin with, but not less.
+        assert!((learnt(0.9, [true; 2]) - NOISE).abs() < 1e-12);
+        assert!((learnt(0.0, [true; 2]) - learns(0.0)).abs() < 1e-9);
     }
 }

@@ -18,8 +18,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         range: T,
         [observes_bias, redundant]: [bool; 2],
     ) -> Result<Report<T>, Error> {
-        // What a tag that is taken to stand leaves of its ranges tells first of all whether it does.
-        let learns = redundant && !self.is_still(self.time_us);
+        let still = self.is_still(self.time_us);
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Place::Known(estimate) = &mut self.place else {
             return Ok(self.collect(sample, range));
@@ -34,7 +33,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         };
         let (blocked, heard) = (link.is_blocked, self.heard);
         let agree = || self.counters.others_agree(blocked, heard, D);
-        let (outcome, seen) = take_in(estimate, link, &observation, &self.config, learns, agree)?;
+        let (outcome, seen) =
+            take_in(estimate, link, &observation, &self.config, [redundant, still], agree)?;
         link.hear(sample.time_us, range);
         self.pace.hear(sample.time_us);
         if outcome == Outcome::Rejected {

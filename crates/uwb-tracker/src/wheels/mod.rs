@@ -244,8 +244,14 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             // What the anchor is worth is learnt from the better course alone.
             let mut other = *link;
             let link = if index == best { &mut learning } else { &mut other };
-            let (outcome, seen) =
-                take_in(&mut course.estimate, link, &observation, &self.config, redundant, agree)?;
+            let (outcome, seen) = take_in(
+                &mut course.estimate,
+                link,
+                &observation,
+                &self.config,
+                [redundant, false],
+                agree,
+            )?;
             course.charge(&seen, link.gate.gamma());
             if index == best {
                 result = Some((outcome, seen));

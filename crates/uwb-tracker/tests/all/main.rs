@@ -1,6 +1,7 @@
 //! Tests of the crate from outside, in one program: less is compiled and linked.
 
 mod anything;
+mod calm;
 mod common;
 mod differences;
 mod height;
