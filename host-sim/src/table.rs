@@ -5,7 +5,8 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use kestirim_import::{
-    Damage, Error as ImportError, Fault, Heading, NamedTable, Options, Text, Unit, unit_of_times,
+    Damage, Error as ImportError, Fault, Heading, NamedTable, Options, Text, Unit,
+    unit_of_range_times, unit_of_times,
 };
 
 use crate::Error;
@@ -167,7 +168,11 @@ fn unit_of_time(
         has_moments |= table.moment(field).is_some();
         table.number(field).filter(|time| time.is_finite())
     });
-    let unit = unit_of_times(times, shortest..=longest);
+    let unit = if places.iter().any(|(wanted, ..)| wanted == "range") {
+        unit_of_range_times(times, shortest..=longest)
+    } else {
+        unit_of_times(times, shortest..=longest)
+    };
     if has_moments { Ok(None) } else { unit.map(Some) }
 }
 

@@ -7,11 +7,8 @@ use crate::unit::{Quantity, Unit};
 
 /// Enough to tell the usual step.
 const SAMPLE: usize = 4000;
-/// Steps of no more than this, s, may be seconds still if times have decimals: clocks of milliseconds and less count whole ones.
-const SLOWEST: f64 = 60.0;
 
-/// The unit of times whose usual step is one of these, in s: seconds if they may be, or else the one unit that fits. Times with
-/// decimals whose steps are longer are seconds, too, up to a minute.
+/// The unit of times whose usual step is one of these, in s: seconds if they may be, or else the one unit that fits.
 ///
 /// # Errors
 /// [`Error::Undecided`] if no unit fits, or several that are shorter than a second.
@@ -31,9 +28,6 @@ pub fn unit_of_times(
         return Ok(Unit::new(1.0, "s"));
     }
     let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    if step > *usual.end() && step <= SLOWEST && times.iter().any(|time| time.fract() != 0.0) {
-        return Ok(Unit::new(1.0, "s"));
-    }
     let fitting: Vec<_> =
         units.iter().filter(|unit| usual.contains(&(step * unit.scale))).collect();
     match fitting[..] {
@@ -44,6 +38,31 @@ pub fn unit_of_times(
             "--units t=",
         )),
     }
+}
+
+/// Ranges may come so slowly, s; and no log of them is as short as this, s.
+const SLOWEST: f64 = 60.0;
+const SHORTEST_LOG: f64 = 10.0;
+
+/// The unit of the times of ranges, as [`unit_of_times`] finds it; but seconds, if the log would be over in no time otherwise, and times
+/// have decimals.
+///
+/// # Errors
+/// As [`unit_of_times`].
+pub fn unit_of_range_times(
+    times: impl IntoIterator<Item = f64>,
+    usual: RangeInclusive<f64>,
+) -> Result<Unit, Error> {
+    let times: Vec<f64> = times.into_iter().filter(|time| time.is_finite()).collect();
+    let unit = unit_of_times(times.iter().copied(), usual)?;
+    let [first, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+    let is_over = (last - first).abs() * unit.scale < SHORTEST_LOG;
+    let is_slow = (last - first).abs() <= SLOWEST * times.len() as f64;
+    let has_decimals = || times.iter().any(|time| time.fract() != 0.0);
+    if unit.scale == 1e-3 && is_over && is_slow && has_decimals() {
+        return Ok(Unit::new(1.0, "s"));
+    }
+    Ok(unit)
 }
 
 #[cfg(test)]
@@ -57,10 +76,16 @@ mod tests {
             assert_eq!(unit_of_times(times(step), 2e-3..=2.0).unwrap().name, unit);
         }
         assert_eq!(unit_of_times(times(100.0), 2e-2..=60.0).unwrap().name, "ms");
-        // Slow ones have decimals if they are seconds, and none if they are milliseconds.
-        assert_eq!(unit_of_times(times(4.58), 2e-3..=2.0).unwrap().name, "s");
-        assert_eq!(unit_of_times(times(5.0), 2e-3..=2.0).unwrap().name, "ms");
         assert_eq!(unit_of_times([1.0], 2e-3..=2.0).unwrap().name, "s");
+        // Slow ranges: 100 of them are no log of half a second, but 4000 are one of 18 s.
+        let slow = |step: f64, count: i32| {
+            let times = (0..count).map(|i| 17.5 + f64::from(i) * step);
+            unit_of_range_times(times, 2e-3..=2.0).unwrap().name
+        };
+        assert_eq!([slow(4.58, 100), slow(4.58, 4000), slow(10.02, 3000)], ["s", "ms", "ms"]);
+        assert_eq!([slow(0.05, 100), slow(50.02, 4000)], ["s", "ms"]);
+        let whole = (0..100).map(|i| f64::from(5 * i));
+        assert_eq!(unit_of_range_times(whole, 2e-3..=2.0).unwrap().name, "ms");
         // Nothing fits; and a thousand may be a second in ms or a millisecond in µs.
         for (step, shortest) in [(1e-7, 2e-3), (1e3, 5e-4)] {
             let error = unit_of_times(times(step), shortest..=2.0).unwrap_err().to_string();

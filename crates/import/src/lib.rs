@@ -23,7 +23,7 @@ mod table;
 mod text;
 mod unit;
 
-pub use clock::unit_of_times;
+pub use clock::{unit_of_range_times, unit_of_times};
 pub use damage::{Damage, Fault, Loss};
 pub use dialect::{Dialect, Separator};
 pub use error::{Complaint, Error};

@@ -5,10 +5,19 @@ use crate::{Config, Error, Outcome};
 use kestirim_kalman::{Gaussian, Innovation, Observation, Verdict, Weighed};
 use kestirim_scalar::Scalar;
 
+/// What is known of a range beside its value.
+#[derive(Clone, Copy)]
+pub(crate) struct Known {
+    /// Whether there are more ranges than unknowns.
+    pub(crate) is_redundant: bool,
+    /// Whether IMU or wheels say that the tag stands.
+    pub(crate) is_still: bool,
+}
+
 /// Takes a range in, or leaves it out. Ranges that are too long again and again are those of an anchor that is blocked
 /// where the others agree, and else of an estimate that is wrong. The anchor's noise is learnt where there are more ranges than unknowns
-/// (`redundant`): a range that the estimate has to follow fits whatever it is worth. While the tag is taken to be `still` it is not learnt to be
-/// worth less than to begin with: what ranges leave then tells first of all whether it stands.
+/// (`is_redundant`): a range that the estimate has to follow fits whatever it is worth. While IMU or wheels say that the tag stands (`is_still`) it is
+/// not learnt to be worse than to begin with: what ranges leave then tells first of all whether it stands.
 ///
 /// # Errors
 /// [`Error::Estimate`]; estimate and link are as they were.
@@ -18,7 +27,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     link: &mut Link<T>,
     observation: &impl Observation<T, N>,
     config: &Config<T>,
-    [redundant, still]: [bool; 2],
+    Known { is_redundant, is_still }: Known,
     others_agree: impl Fn() -> bool,
 ) -> Result<(Outcome, Innovation<T>), Error> {
     let weighed = estimate.weigh_observation(observation, link.noise.variance())?;
@@ -50,11 +59,14 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
         }
     };
     link.gate = gate;
-    if redundant && let Some(learning) = &config.learning {
-        let before = link.noise;
+    let most = config.range_sigma * config.range_sigma;
+    let before = link.noise;
+    if is_redundant
+        && (!is_still || before.variance() <= most)
+        && let Some(learning) = &config.learning
+    {
         link.noise.learn_square(learning, &weighed, square);
-        let most = before.variance().max(config.range_sigma * config.range_sigma);
-        if still && link.noise.variance() > most {
+        if is_still && link.noise.variance() > most {
             link.noise = before;
         }
     }
@@ -87,9 +99,12 @@ fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<
 mod tests {
     use super::*;
     use crate::Anchor;
+    use kestirim_adaptive_kalman::MeasurementNoise;
     use kestirim_kalman::{Covariance, LinearObservation, SparseRow};
     use kestirim_uwb_ranging::Huber;
     use nalgebra::{SVector, vector};
+
+    const MOVING: Known = Known { is_redundant: true, is_still: false };
 
     /// Variance of the position before, and of a range, m².
     const SPREAD: f64 = 0.03;
@@ -116,8 +131,7 @@ mod tests {
         let observation =
             LinearObservation { row: SparseRow::new([(0, 1.0)]), measured: 5.0 + excess };
         let (outcome, seen) =
-            take_in(&mut estimate, link, &observation, config, [true, false], || agree)
-                .expect("a range");
+            take_in(&mut estimate, link, &observation, config, MOVING, || agree).expect("a range");
         assert!((seen.innovation - excess).abs() < 1e-9, "{seen:?}");
         assert!((seen.variance - SPREAD - NOISE).abs() < 1e-9, "{seen:?}");
         link.noise = self::link(config).noise;
@@ -198,7 +212,7 @@ mod tests {
     }
 
     /// What a single range makes of the variance of its anchor's.
-    fn learnt(excess: f64, known: [bool; 2]) -> f64 {
+    fn learnt(excess: f64, known: Known) -> f64 {
         let config = gated();
         let mut link = link(&config);
         let observation =
@@ -210,21 +224,33 @@ mod tests {
 
     #[test]
     fn an_anchors_noise_is_learnt_where_others_tell_the_place() {
-        assert!((learnt(0.9, [false; 2]) - NOISE).abs() < 1e-12);
+        assert!((learnt(0.9, Known { is_redundant: false, ..MOVING }) - NOISE).abs() < 1e-12);
         // A hundredth of what is left of the innovation, and of what the estimate does not know.
         let share = NOISE / (SPREAD + NOISE);
         let learns =
             |excess: f64| 0.99 * NOISE + 0.01 * ((excess * share).powi(2) + SPREAD * share);
-        assert!((learnt(0.9, [true, false]) - learns(0.9)).abs() < 1e-9);
+        assert!((learnt(0.9, MOVING) - learns(0.9)).abs() < 1e-9);
         // Of what is wild no more than the gate admits.
         for excess in [5.1 * DEVIATION, 100.0] {
-            assert!(
-                (learnt(excess, [true, false]) - learns(5.0 * DEVIATION)).abs() < 1e-9,
-                "{excess}"
-            );
+            assert!((learnt(excess, MOVING) - learns(5.0 * DEVIATION)).abs() < 1e-9, "{excess}");
         }
-        // Of a tag that is taken to stand a range may be worth more than to begin with, but not less.
-        assert!((learnt(0.9, [true; 2]) - NOISE).abs() < 1e-12);
-        assert!((learnt(0.0, [true; 2]) - learns(0.0)).abs() < 1e-9);
+        // Of a tag that stands, as it is said, a range may be worth more than to begin with, but not less.
+        let standing = Known { is_still: true, ..MOVING };
+        assert!((learnt(0.9, standing) - NOISE).abs() < 1e-12);
+        assert!((learnt(0.0, standing) - learns(0.0)).abs() < 1e-9);
+        let from = |variance: f64, excess: f64| {
+            let config = gated();
+            let mut link = link(&config);
+            link.noise = MeasurementNoise::new(variance);
+            let observation =
+                LinearObservation { row: SparseRow::new([(0, 1.0)]), measured: 5.0 + excess };
+            let known = standing;
+            take_in(&mut estimate(), &mut link, &observation, &config, known, || true)
+                .expect("a range");
+            link.noise.variance()
+        };
+        assert!(from(0.5 * NOISE, 0.0) < 0.5 * NOISE && from(0.5 * NOISE, 0.9) > 0.5 * NOISE);
+        // What was learnt of a bad anchor is not forgotten by standing.
+        assert!((from(4.0 * NOISE, 0.0) - 4.0 * NOISE).abs() < 1e-12);
     }
 }

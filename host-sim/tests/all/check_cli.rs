@@ -117,6 +117,6 @@ fn anchors_in_one_plane_do_not_tell_a_tag_from_its_mirror_image() {
     let start = ["replay", "robot", "--anchors", &level, "--log", &room.log];
     let report = parsed(&host_sim(&[&start[..], &["--dim", "3", "--json"]].concat()));
     let warnings = report["warnings"].to_string();
-    assert!(warnings.contains("all anchors lie in one plane, within 0 cm"), "{report}");
+    assert!(warnings.contains("all anchors are within 0 cm of one plane"), "{report}");
     assert_eq!(report["health"]["state"], "bad", "{report}");
 }

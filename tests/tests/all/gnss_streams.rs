@@ -18,6 +18,7 @@ use kestirim_ppp_filter::{Config, Motion};
 use kestirim_replay::gnss::{Followed, Pass, follow};
 use kestirim_tests::gnss::ESBC;
 use kestirim_tests::recordings::folder_of;
+use nalgebra::Vector3;
 use rtcm_rs::Message;
 use rtcm_rs::MessageBuilder;
 use rtcm_rs::msg::{GpsSigId, Msg1019T, Msg1077Data, Msg1077Sig, Msg1077T, Msm57Sat};
@@ -216,6 +217,10 @@ fn a_stream_that_comes_gives_what_it_gives_as_a_recording() {
             online.hear(piece);
             if index % PIECES == 0 {
                 online.settle();
+                let solved = online.heard()[1] as usize;
+                let then = solved.checked_sub(1).map(|last| told.fixes[last].position);
+                let apart = online.position().zip(then).map(|(a, b)| (Vector3::from(a) - b).norm());
+                assert!(apart.is_none_or(|apart| apart < 1e-6), "{apart:?}");
             }
         }
         let [heard, solved] = online.heard().map(|count| count as usize);
@@ -225,7 +230,7 @@ fn a_stream_that_comes_gives_what_it_gives_as_a_recording() {
         assert_eq!(online.heard()[1] as usize, told.fixes.len());
         let (found, last) =
             (online.position().expect("a position"), told.fixes.last().expect("one"));
-        let away = (nalgebra::Vector3::from(found) - last.position).norm();
+        let away = (Vector3::from(found) - last.position).norm();
         println!("{format}: {:.6} mm from the recording's", 1e3 * away);
         assert!(away < 1e-6);
         assert!(online.sigma_m().is_some_and(|sigma| sigma < 0.05));

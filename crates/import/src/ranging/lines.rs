@@ -1,7 +1,7 @@
 //! A line of text for the ranges to all anchors at a moment.
 
 use super::{Found, USUAL_STEP};
-use crate::clock::unit_of_times;
+use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
 use crate::moment;
@@ -109,7 +109,7 @@ fn times(
         let values: Vec<_> = said.iter().map(|(value, _)| *value).collect();
         let (unit, from) = match &options.units.time {
             Some(TimeUnit::Clock(unit)) => (unit.clone(), "option"),
-            _ => (unit_of_times(values.iter().copied(), USUAL_STEP)?, "from the data"),
+            _ => (unit_of_range_times(values.iter().copied(), USUAL_STEP)?, "from the data"),
         };
         let times = values.iter().map(|value| microseconds(value * unit.scale)).collect();
         return Ok((times, format!("in {unit}: {from}")));

@@ -2,7 +2,7 @@
 
 use super::labels::place;
 use super::{Found, USUAL_STEP};
-use crate::clock::unit_of_times;
+use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
 use crate::heading::Heading;
@@ -69,7 +69,9 @@ pub(super) fn read(
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),
-        None => (unit_of_times(rows.iter().map(|(time, _)| *time), USUAL_STEP)?, "from the data"),
+        None => {
+            (unit_of_range_times(rows.iter().map(|(time, _)| *time), USUAL_STEP)?, "from the data")
+        }
     };
     let mut found = Found::default();
     for (time, ranges) in &rows {

@@ -1,12 +1,13 @@
 //! A receiver's positions from its own stream, while that comes.
 
-use kestirim_gnss_files::{Error, Kind};
+use kestirim_gnss_files::{Carriers, Error, Kind};
 use kestirim_gnss_ppp::{Corrections, GpsTime};
 use kestirim_ppp_filter::{Config, Health};
 
 use super::choices::{Method, STATES_OF_ALL};
 use super::feed::Feed;
 use super::followed::{Fix, Followed, Pass};
+use super::model::Epoch;
 use super::recording::{Paths, Recording};
 use super::shelf::Shelf;
 use super::single::single;
@@ -14,9 +15,13 @@ use super::single::single;
 /// So much of the stream is kept, s: satellites send their ephemerides again and again, and those serve for two hours. A stream of which the
 /// newer half cannot be read alone, as it tells its week but once, is kept for twice as long, and so on.
 const KEPT_S: f64 = 10_800.0;
+/// More bytes are never kept.
+const MOST: usize = 1 << 25;
 /// Of a stream that comes without a pause, what has come is looked at when it is this part of what is kept.
 const NEW: usize = 8;
 
+/// An epoch is of a wrong time if it is so far ahead of all that came after it, s.
+const AHEAD_S: f64 = 1.0;
 /// The beginning of a stream is looked for in steps of so many bytes, and no message is longer than this.
 const STEP: usize = 2048;
 const LONGEST: usize = 8192;
@@ -38,6 +43,10 @@ pub struct Live {
     kept_s: f64,
     /// Bytes that were not looked at.
     fresh: usize,
+    /// What could not be read is not looked at before it is so much.
+    enough: usize,
+    /// On which carriers the filter has been fed: with others it begins anew.
+    carriers: Vec<Carriers>,
     feed: Option<Box<Feed<STATES_OF_ALL>>>,
     /// The last epoch that was fed.
     until: Option<GpsTime>,
@@ -46,6 +55,8 @@ pub struct Live {
     now: Option<Now>,
     /// What came of the stream when it was looked at last: what speaks against it, or why there is nothing yet.
     told: Vec<String>,
+    /// Why the last epoch has no solution.
+    outage: Option<String>,
 }
 
 /// Where a receiver is.
@@ -73,11 +84,14 @@ impl Live {
             kept: Vec::new(),
             kept_s: KEPT_S,
             fresh: 0,
+            enough: 0,
+            carriers: Vec::new(),
             feed: None,
             until: None,
             counts: [0; 2],
             now: None,
             told: Vec::new(),
+            outage: None,
         }
     }
 
@@ -91,10 +105,11 @@ impl Live {
     /// Looks at what came since the last time. The products are those of `paths`, of which `obs` names the stream; `is_end` says that no
     /// more will come.
     pub fn look(&mut self, paths: &Paths<'_>, shelf: &Shelf, is_end: bool) {
-        if self.fresh == 0 && !is_end {
+        let is_news = self.fresh > 0 && self.kept.len() >= self.enough;
+        if !is_news && !is_end {
             return;
         }
-        self.fresh = 0;
+        (self.fresh, self.enough) = (0, 0);
         if !self.find_beginning() {
             self.told = vec![NO_STREAM.to_owned()];
             return;
@@ -108,7 +123,14 @@ impl Live {
                 }
             }
             // Not enough of it has come, or nothing that can be read.
-            Err(error) => self.told = vec![format!("no position yet: {}", problem(error))],
+            Err(error) => {
+                self.enough = self.kept.len() + self.kept.len() / NEW;
+                self.told = vec![format!("no position yet: {}", problem(error, paths))];
+            }
+        }
+        if self.kept.len() > MOST {
+            self.kept.drain(..self.kept.len() / 2);
+            self.enough = 0;
         }
     }
 
@@ -125,6 +147,17 @@ impl Live {
 
     fn follow(&mut self, recording: &Recording, is_end: bool) {
         let epochs = recording.epochs(None);
+        if recording.carriers() != self.carriers {
+            self.carriers = recording.carriers().to_vec();
+            self.feed = None;
+        }
+        // A time that was ahead would be waited for.
+        let last = epochs.last().map(|epoch| epoch.time);
+        if let (Some(until), Some(last)) = (self.until, last)
+            && until.since(last) > AHEAD_S
+        {
+            (self.until, self.feed) = (Some(last), None);
+        }
         let begin = self
             .until
             .map_or(0, |until| epochs.partition_point(|epoch| epoch.time.since(until) <= 0.0));
@@ -155,8 +188,15 @@ impl Live {
                 satellites: *satellites,
             });
         }
+        let is_solved = |epoch: &Epoch| {
+            followed.fixes.last().is_some_and(|fix| fix.t >= recording.seconds(epoch))
+        };
+        if let Some(epoch) = new.last() {
+            let outage = followed.outages.first().filter(|_| !is_solved(epoch));
+            self.outage = outage.map(|outage| format!("no solution any more: {outage}"));
+        }
         self.told = recording.warnings(self.corrections).collect();
-        self.told.extend(followed.outages.first().map(ToString::to_string));
+        self.told.extend(self.outage.clone());
     }
 
     /// Lets go of the older half of what is kept.
@@ -164,13 +204,19 @@ impl Live {
         let newer = self.kept.len() / 2;
         match Recording::of_stream(self.kept[newer..].to_vec(), paths, shelf) {
             Ok(_) => drop(self.kept.drain(..newer)),
+            // Its only message of the week is in the older half.
             Err(_) => self.kept_s *= 2.0,
         }
     }
 
-    /// Where the receiver is; none before the first solution.
+    /// Where the receiver is, or was when it was last known; none before the first solution.
     pub const fn now(&self) -> Option<&Now> {
         self.now.as_ref()
+    }
+
+    /// Whether the last epoch had a solution.
+    pub const fn is_solved(&self) -> bool {
+        self.now.is_some() && self.outage.is_none()
     }
 
     /// How many epochs there were, and how many of them had a solution.
@@ -184,10 +230,12 @@ impl Live {
     }
 }
 
-/// Why a stream cannot be used yet, without the name of a file that it is not.
-fn problem(error: Error) -> String {
+/// Why there is no position yet, without the name of the stream, which is that of no file.
+fn problem(error: Error, paths: &Paths<'_>) -> String {
     match error {
-        Error::File { problem, .. } | Error::Line { problem, .. } => problem,
+        Error::File { path, problem } | Error::Line { path, problem, .. } if path == paths.obs => {
+            problem
+        }
         other => other.to_string(),
     }
 }

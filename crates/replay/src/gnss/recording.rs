@@ -267,6 +267,11 @@ impl Recording {
         self.carriers.iter().map(|carriers| carriers.system())
     }
 
+    /// On which carriers satellites are observed, one pair of each system.
+    pub(super) fn carriers(&self) -> &[Carriers] {
+        &self.carriers
+    }
+
     /// Whether satellites of other systems than GPS are.
     pub fn has_others(&self) -> bool {
         self.systems().any(|system| system != System::Gps)

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_gnss_files::{Antennas, Biases, Clocks, Error, Navigation, Orbits};
+use kestirim_gnss_files::{Antennas, Biases, Clocks, EarthRotation, Error, Navigation, Orbits};
+
+use super::recording::Paths;
 
 /// Products that were read, for the recordings of other stations that need the same.
 #[derive(Debug, Default)]
@@ -54,6 +56,25 @@ impl<T> Kept<T> {
 }
 
 impl Shelf {
+    /// Reads the products of a receiver whose antenna is not known, so that what is wrong with them is told before they are wanted.
+    ///
+    /// # Errors
+    /// The file, the line, and what was expected there.
+    pub fn fill(&self, paths: &Paths<'_>) -> Result<(), Error> {
+        if paths.sp3.is_empty() && !paths.nav.is_empty() {
+            self.navigation(paths.nav)?;
+        }
+        if !paths.sp3.is_empty() {
+            self.orbits(paths.sp3)?;
+        }
+        if !paths.clk.is_empty() {
+            self.clocks(paths.clk)?;
+        }
+        self.biases(paths.bias)?;
+        self.antennas(paths.antex, "")?;
+        paths.erp.map(EarthRotation::read).transpose().map(drop)
+    }
+
     pub(super) fn orbits(&self, paths: &[PathBuf]) -> Result<Arc<Orbits>, Error> {
         self.orbits.get(paths, "", || Orbits::read(paths))
     }

@@ -18,6 +18,8 @@ pub(crate) struct Standstill {
 impl Standstill {
     /// Standard deviation of the velocity of a standing tag, m/s.
     const SIGMA: f64 = 0.015;
+    /// A velocity that errors of ranges to a standing tag do not make, m/s.
+    const FAST: f64 = 0.3;
 
     /// Takes in that all D components of the velocity are zero.
     #[inline]
@@ -35,11 +37,28 @@ impl Standstill {
     pub(crate) fn agrees<T: Scalar, const D: usize, const N: usize>(
         estimate: &Gaussian<T, N>,
     ) -> bool {
+        Self::is_within::<T, D, N>(estimate, T::ZERO)
+    }
+
+    /// Whether the velocity is surely not zero: a component is beyond 3 σ, and fast.
+    #[inline]
+    pub(crate) fn is_refuted<T: Scalar, const D: usize, const N: usize>(
+        estimate: &Gaussian<T, N>,
+    ) -> bool {
+        !Self::is_within::<T, D, N>(estimate, T::from_f64(Self::FAST * Self::FAST))
+    }
+
+    /// Whether the square of no component is beyond 3 σ and this, (m/s)².
+    #[inline]
+    fn is_within<T: Scalar, const D: usize, const N: usize>(
+        estimate: &Gaussian<T, N>,
+        least: T,
+    ) -> bool {
         let variances = estimate.covariance.variances();
         let pairs = estimate.mean.iter().zip(variances.iter()).skip(D).take(D);
         let mut standing = pairs.map(|(&velocity, &variance)| {
             let spread = variance + T::from_f64(Self::SIGMA * Self::SIGMA);
-            velocity * velocity <= spread * T::from_f64(CONTRADICTION)
+            velocity * velocity <= (spread * T::from_f64(CONTRADICTION)).max(least)
         });
         standing.all(|standing| standing)
     }

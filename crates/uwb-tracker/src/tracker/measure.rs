@@ -3,7 +3,7 @@
 use super::{Place, Tracker};
 use crate::measurement::Range;
 use crate::mirror;
-use crate::take_in::take_in;
+use crate::take_in::{Known, take_in};
 use crate::{Error, Outcome, RangeSample, Report};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
@@ -18,7 +18,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         range: T,
         [observes_bias, redundant]: [bool; 2],
     ) -> Result<Report<T>, Error> {
-        let still = self.is_still(self.time_us);
+        let known = Known { is_redundant: redundant, is_still: self.is_still(self.time_us) };
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Place::Known(estimate) = &mut self.place else {
             return Ok(self.collect(sample, range));
@@ -33,8 +33,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         };
         let (blocked, heard) = (link.is_blocked, self.heard);
         let agree = || self.counters.others_agree(blocked, heard, D);
-        let (outcome, seen) =
-            take_in(estimate, link, &observation, &self.config, [redundant, still], agree)?;
+        let (outcome, seen) = take_in(estimate, link, &observation, &self.config, known, agree)?;
         link.hear(sample.time_us, range);
         self.pace.hear(sample.time_us);
         if outcome == Outcome::Rejected {

@@ -19,7 +19,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const NIS_OF_MOTION: f64 = 4.0;
     /// Time for which standstills are doubted then (µs), …
     const DOUBT_US: u64 = 30_000_000;
-    /// … and after the last time that the ranges then show motion although the IMU shows none: this robot moves without shaking.
+    /// … and after the last time that the ranges then surely show motion, although the IMU shows none: this robot moves without shaking.
     const CALM_US: u64 = 300_000_000;
     /// The velocity is as uncertain then as at the start, (m/s)².
     const DOUBTED_VARIANCE: f64 = 0.25;
@@ -57,7 +57,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if let Some(mut estimate) = self.estimate().copied() {
             let agrees = self.is_calm(time_us) && Standstill::agrees::<T, D, N>(&estimate);
             let is_doubted = time_us < self.doubted_until_us;
-            if is_doubted && !agrees && self.stillness.is_still(time_us) {
+            if is_doubted
+                && self.stillness.is_still(time_us)
+                && Standstill::is_refuted::<T, D, N>(&estimate)
+            {
                 self.doubted_until_us = time_us.saturating_add(Self::CALM_US);
             }
             let still = agrees && !is_doubted;

@@ -12,7 +12,7 @@ use crate::link::Link;
 use crate::measurement::ProportionalRange;
 use crate::pace::Pace;
 use crate::start::Start;
-use crate::take_in::take_in;
+use crate::take_in::{Known, take_in};
 use crate::tracker::{LATE_US, LOST_SIGMA, LOST_US, plausible_wheels};
 use crate::{
     Anchor, Config, Error, Health, OdometrySample, Outcome, RangeSample, Report, wheel_noise,
@@ -234,7 +234,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let place = link.anchor.position;
         let observation =
             ProportionalRange { measured: range, anchor: &place, height: self.config.height };
-        let redundant = self.heard > 2;
+        let known = Known { is_redundant: self.heard > 2, is_still: false };
         let (blocked, heard) = (link.is_blocked, self.heard);
         let agree = || self.counters.others_agree(blocked, heard, 2);
         let (mut courses, mut learning) = (self.courses, *link);
@@ -244,14 +244,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             // What the anchor is worth is learnt from the better course alone.
             let mut other = *link;
             let link = if index == best { &mut learning } else { &mut other };
-            let (outcome, seen) = take_in(
-                &mut course.estimate,
-                link,
-                &observation,
-                &self.config,
-                [redundant, false],
-                agree,
-            )?;
+            let (outcome, seen) =
+                take_in(&mut course.estimate, link, &observation, &self.config, known, agree)?;
             course.charge(&seen, link.gate.gamma());
             if index == best {
                 result = Some((outcome, seen));

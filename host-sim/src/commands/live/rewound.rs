@@ -122,6 +122,9 @@ impl Rewound {
         }
         if is_end {
             self.decoder.finish()?;
+        } else {
+            // What takes long is looked at, too.
+            self.decoder.pause()?;
         }
         Ok(self.decoder.answer())
     }

@@ -9,6 +9,7 @@ use kestirim_replay::gnss::{Live, Now, Pass, Paths, Shelf};
 use kestirim_telemetry::Message;
 use nalgebra::Vector3;
 
+use super::recording::error;
 use super::settings::{Choice, Setup};
 use crate::Error;
 use crate::system::{Files, Online, Outcome, Plan, Settings};
@@ -16,6 +17,8 @@ use crate::system::{Files, Online, Outcome, Plan, Settings};
 /// What a stream is called where files have a name.
 const STREAM: &str = "stream";
 
+/// What is said of a position after which epochs have no solution.
+const STALE: &str = "no solution since then";
 /// On a line that never pauses, what has come is looked at so often.
 const EVERY: Duration = Duration::from_secs(1);
 
@@ -28,10 +31,10 @@ pub(super) struct Receiving {
 }
 
 impl Receiving {
-    /// With the products of files, which are read when the first epochs have come.
+    /// With the products of files.
     ///
     /// # Errors
-    /// [`Error::Usage`] if they will not do.
+    /// Whatever is wrong with them.
     pub(super) fn new(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let setup = Setup::of(settings);
         if setup.filter == Choice::All {
@@ -40,7 +43,9 @@ impl Receiving {
         if !files.all("sp3").is_empty() {
             files.required("antex")?;
         }
-        Ok(Self { setup, files: files.clone(), shelf: files.shared.of::<Shelf>() })
+        let receiving = Self { setup, files: files.clone(), shelf: files.shared.of::<Shelf>() };
+        receiving.shelf.fill(&receiving.paths()).map_err(error)?;
+        Ok(receiving)
     }
 
     fn paths(&self) -> Paths<'_> {
@@ -126,7 +131,7 @@ impl Online for Receiver {
     }
 
     fn facts(&self) -> Vec<(String, String)> {
-        self.live.now().map(facts).unwrap_or_default()
+        self.live.now().map(|now| facts(now, self.live.is_solved())).unwrap_or_default()
     }
 
     fn warnings(&self) -> Vec<String> {
@@ -134,7 +139,7 @@ impl Online for Receiver {
     }
 }
 
-fn facts(now: &Now) -> Vec<(String, String)> {
+fn facts(now: &Now, is_solved: bool) -> Vec<(String, String)> {
     let Geodetic { latitude, longitude, height } = Geodetic::from_ecef(&now.fix.position);
     let [latitude, longitude] = [latitude, longitude].map(f64::to_degrees);
     let [east, north, up] = now.sd_enu;
@@ -144,7 +149,7 @@ fn facts(now: &Now) -> Vec<(String, String)> {
         ("height above the ellipsoid", format!("{height:.2} m")),
         ("σ east, north, up", format!("{east:.2} m, {north:.2} m, {up:.2} m")),
         ("satellites", now.satellites.to_string()),
-        ("health", now.health.in_short().to_string()),
+        ("health", if is_solved { now.health.in_short().to_string() } else { STALE.to_owned() }),
     ];
     facts.map(|(name, value)| (name.to_owned(), value)).into()
 }

@@ -82,7 +82,7 @@ pub fn of_day(day: Day) -> Recording {
 }
 
 /// An error of a reader, in the same words.
-fn error(error: files::Error) -> Error {
+pub(super) fn error(error: files::Error) -> Error {
     match error {
         files::Error::Read { path, source } => Error::Read { path, source },
         files::Error::File { path, problem } => Error::File { path, problem },

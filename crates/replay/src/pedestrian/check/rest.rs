@@ -10,8 +10,9 @@ use crate::metrics::median;
 const PART_S: f64 = 0.5;
 /// Nothing there is farther from its mean than this: m/s², and five times rad/s.
 const STILL: f64 = 0.6;
-/// A standstill of so many parts shows a gyroscope's zero.
+/// A standstill of so many parts shows a gyroscope's zero, if that is no faster than this, °/s: a lift or a bus may turn.
 const PARTS: usize = 3;
+const FASTEST: f64 = 5.0;
 /// A zero has moved if it is farther from another than this and three times what its own parts differ by, °/s.
 const MOVED: f64 = 0.5;
 
@@ -59,6 +60,7 @@ pub(super) fn check(samples: &[Sample], usual: f64) -> Vec<Finding> {
     let zeros: Vec<Zero> = still
         .chunk_by(|a, b| a.index + 1 == b.index)
         .filter(|parts| parts.len() >= PARTS)
+        .filter(|parts| parts.iter().flat_map(|part| part.rate).all(|rate| rate.abs() < FASTEST))
         .map(|parts| {
             let rate = middle(parts, |rate| rate);
             let apart = middle(parts, |it| std::array::from_fn(|i| (it[i] - rate[i]).abs()));

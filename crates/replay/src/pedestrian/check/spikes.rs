@@ -10,15 +10,16 @@ const FAR: [f64; 2] = [0.5, 4.0];
 const BESIDE: usize = 3;
 /// … of which no axis varies by more than this part of it. What a foot does, it does for longer: in 31 recordings none does.
 const CALM: f64 = 0.3;
-/// So many are told: as many again, and more, are where the foot moves.
+/// So many, and of so many samples one, are told: as many again, and more, are where the foot moves.
 const FEWEST: usize = 3;
+const ONE_IN: usize = 5000;
 
 /// Of the sensor that has more of them.
 pub(super) fn find(samples: &[Sample]) -> Option<Finding> {
     let rate = ("gyroscope", alone(samples, FAR[0], |it| it.angular_rate));
     let force = ("accelerometer", alone(samples, FAR[1], |it| it.specific_force));
     let (name, count) = if rate.1 >= force.1 { rate } else { force };
-    (count >= FEWEST).then(|| {
+    (count >= FEWEST && count * ONE_IN >= samples.len()).then(|| {
         Finding::fault(
             "spikes",
             Reason::Innovations,

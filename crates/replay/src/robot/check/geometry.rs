@@ -65,16 +65,16 @@ pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Opti
     let [from_line, from_plane] = flatness(&anchors.positions)?;
     let (least, shape, doubtful, remedy) = if is_in_space {
         let remedy = "say the height (--height), or hang an anchor well outside the plane";
-        (from_plane, "lie in one plane", "height", remedy)
+        (from_plane, "plane", "height", remedy)
     } else {
         let remedy = "say the room (--room), or hang an anchor well beside the line";
-        (from_line, "stand in one line", "position", remedy)
+        (from_line, "line", "position", remedy)
     };
     (least < FLAT_M && (is_in_space || !room)).then(|| {
         Finding::fault(
             "geometry",
             Reason::Geometry,
-            format!("all anchors {shape}, within {:.0} cm", 100.0 * least),
+            format!("all anchors are within {:.0} cm of one {shape}", 100.0 * least),
             format!(
                 "a tag has the same ranges on both sides of it, so the {doubtful} may be the mirror image's"
             ),

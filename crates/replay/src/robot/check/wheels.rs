@@ -21,17 +21,18 @@ const OFTEN: f64 = 0.4;
 /// … of which there are so many.
 const FEWEST: usize = 10;
 
-/// What the wheels' clock is tried to be off by: multiples of this, µs, up to so many.
+/// Steps of the clock that are tried, µs, and how many of them to either side.
 const SHIFT_US: i64 = 500_000;
 const SHIFTS: i64 = 20;
-/// It is off by the best of them if that leaves no more than this part of the disagreement, of which no distance counts more than this, m;
-/// of so many distances, whose standard deviations are below this, m.
+/// Fewer steps are what a logger may be late by.
+const LATE: i64 = 2;
+/// Another clock explains the wheels if it leaves no more than this share of the disagreement, …
 const LEFT: f64 = 0.6;
-const FAR_OFF_M: f64 = 2.0;
+/// … which is this large at least, m, on average. No distance counts more than the second number.
+const DISAGREEMENT_M: [f64; 2] = [0.2, 2.0];
+/// So many distances are compared at least, between places whose standard deviations are below the second number, m.
 const FEWEST_TIMED: usize = 20;
 const SHARP_M: f64 = 1.0;
-/// Half a second is what a logger may be late by.
-const LATE: i64 = 2;
 
 /// Two moments between which the ranges tell a distance.
 struct Compared {
@@ -120,21 +121,23 @@ fn compared(way: usize, epochs: &[Epoch], serves: impl Fn(&Epoch) -> bool) -> Ve
 
 /// By how much the wheels are late, s, if another clock explains them far better.
 fn late(ways: &[Way], pairs: &[Compared]) -> Option<f64> {
-    let left = |shift: i64| {
-        let off = |pair: &Compared| {
-            let [from, to] =
-                [pair.from_us, pair.to_us].map(|it| it.saturating_add(shift * SHIFT_US));
-            let wheels = driven(&ways[pair.way], from, to)?;
-            Some((pair.ranges - wheels).abs().min(FAR_OFF_M))
-        };
-        let all: Vec<f64> = pairs.iter().filter_map(off).collect();
-        (all.len() >= FEWEST_TIMED && 2 * all.len() > pairs.len())
-            .then(|| all.iter().sum::<f64>() / all.len() as f64)
+    let [least, most] = DISAGREEMENT_M;
+    let off = |pair: &Compared, shift: i64| {
+        let [from, to] = [pair.from_us, pair.to_us].map(|it| it.saturating_add(shift * SHIFT_US));
+        let wheels = driven(&ways[pair.way], from, to)?;
+        Some((pair.ranges - wheels).abs().min(most))
     };
-    let as_logged = left(0)?;
+    // Each clock is compared with that of the log where both tell something: at its ends a log may be at its worst.
+    let left = |shift: i64| {
+        let both = |pair| Some([off(pair, 0)?, off(pair, shift)?]);
+        let all: Vec<[f64; 2]> = pairs.iter().filter_map(both).collect();
+        let mean = |which: usize| all.iter().map(|it| it[which]).sum::<f64>() / all.len() as f64;
+        let is_enough = all.len() >= FEWEST_TIMED && 2 * all.len() > pairs.len();
+        (is_enough && mean(0) > least).then(|| mean(1) / mean(0))
+    };
     let shifts = (-SHIFTS..=SHIFTS).filter_map(|shift| Some((shift, left(shift)?)));
-    let (shift, least) = shifts.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (shift.abs() >= LATE && least < LEFT * as_logged).then_some((shift * SHIFT_US) as f64 * 1e-6)
+    let (shift, share) = shifts.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (shift.abs() >= LATE && share < LEFT).then_some((shift * SHIFT_US) as f64 * 1e-6)
 }
 
 /// How far apart the ranges put a tag at two epochs, m, and the standard deviation.
