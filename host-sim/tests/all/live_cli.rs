@@ -142,7 +142,7 @@ fn what_is_wrong_is_one_sentence() {
     let desk = Desk::new();
     let new = desk.named("new.frames");
     let old = desk.file("old.frames", "precious");
-    let wrong: [(&[&str], &str); 10] = [
+    let wrong: [(&[&str], &str); 12] = [
         (&["--udp", "127.0.0.1", "--record", &new], "--udp"),
         (&["--udp", "192.0.2.1:5775", "--record", &new], "--udp"),
         (&["--serial", "/no/such/device", "--record", &new], "/no/such/device"),
@@ -152,7 +152,9 @@ fn what_is_wrong_is_one_sentence() {
         (&["--file", &old, "--udp", "127.0.0.1:0"], "--udp"),
         (&["--record", &old, "--udp", "127.0.0.1:0"], "overwritten"),
         (&["--record", "/no/such/folder/a", "--udp", "127.0.0.1:0"], "/no/such/folder/a"),
-        (&["--system", "gnss"], "gnss"),
+        (&["--system", "gnss", "--filter", "all"], "--filter"),
+        (&["--system", "gnss", "--sp3", "/no/such/orbits"], "--antex"),
+        (&["--system", "gnss", "--nav", "/no/such/messages"], "/no/such/messages"),
     ];
     for (arguments, said) in wrong {
         let sentence = refusal(&[&["live"], arguments].concat());

@@ -75,7 +75,7 @@ pub struct Report {
     pub state: Option<[f64; 4]>,
     /// Of a walk: its horizontal length from stance to stance, m.
     pub path_length_m: Option<f64>,
-    /// What else the estimator says, by name.
+    /// Of a receiver of satellites: what else the estimator says, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub facts: BTreeMap<String, String>,
     /// What a user should know.

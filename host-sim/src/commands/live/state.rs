@@ -31,6 +31,8 @@ pub(super) type Path = Thinned<[f64; 2]>;
 pub(super) struct State {
     pub(super) system: &'static str,
     pub(super) panels: &'static [Panel],
+    /// Whether the stream is no telemetry.
+    hears_bytes: bool,
     pub(super) counts: Counts,
     /// Those that say who they are, by number, and which of them is shown in detail.
     pub(super) devices: BTreeMap<u32, Row>,
@@ -88,6 +90,7 @@ impl State {
         Self {
             system: following.name,
             panels: following.panels,
+            hears_bytes: following.hears_bytes(),
             counts: Counts::default(),
             devices: BTreeMap::new(),
             shown: None,
@@ -298,7 +301,11 @@ impl State {
             position: self.position,
             state: self.states.last().copied(),
             path_length_m: self.path_length_m,
-            facts: self.facts.iter().cloned().collect(),
+            facts: if self.hears_bytes {
+                self.facts.iter().cloned().collect()
+            } else {
+                BTreeMap::new()
+            },
             warnings: self.warnings(),
         }
     }
