@@ -136,7 +136,7 @@ impl Evidence {
                 if winner != (0, 0) && self.is_better(winner, (0, 0), &all, &times.units) =>
             {
                 let problem = format!(
-                    "the angular rate in {said} ({source}) does not turn as gravity does in the accelerometer; in {} it does",
+                    "expected an angular rate in {said} ({source}), found one that turns as gravity does in the accelerometer in {}",
                     all[winner.0]
                 );
                 Err(Error::undecided(problem, OPTIONS[1]))
