@@ -223,6 +223,7 @@ fn a_stream_that_comes_gives_what_it_gives_as_a_recording() {
                 assert!(apart.is_none_or(|apart| apart < 1e-6), "{apart:?}");
             }
         }
+        online.settle();
         let [heard, solved] = online.heard().map(|count| count as usize);
         // The last epoch may have another message until it is known that none follows.
         assert_eq!((heard, solved + 1), (epochs.len() - 1, told.fixes.len()));

@@ -24,7 +24,7 @@ pub(super) fn find(samples: &[Sample]) -> Option<Finding> {
             "spikes",
             Reason::Innovations,
             format!("{count} single samples of the {name} stand alone while the foot is calm"),
-            "each turns or moves the path, and more of them are not seen where the foot moves",
+            "each turns or moves the path, and there are more where the foot moves",
             "look at the bus and the supply of the sensor",
         )
     })
