@@ -154,7 +154,7 @@ fn ubx(epochs: &[Epoch]) -> Vec<u8> {
     stream
 }
 
-fn positions(folder: &Path, observations: &[u8], config: Config) -> Followed {
+fn positions(folder: &Path, observations: &[u8], config: &Config) -> Followed {
     let file = tempfile::NamedTempFile::new().expect("a temporary file");
     std::fs::write(file.path(), observations).expect("a file can be written");
     let path = file.path().display().to_string();
@@ -164,7 +164,7 @@ fn positions(folder: &Path, observations: &[u8], config: Config) -> Followed {
         &recording,
         recording.epochs(Some(ESBC.until)),
         &receiver,
-        config,
+        *config,
         Pass::default(),
         &mut || (),
     )
@@ -177,11 +177,11 @@ fn streams_give_what_rinex_gives() {
     let read = kestirim_gnss_files::Text::unpack("day.rnx", text.clone().into_bytes());
     let observations = read.and_then(|text| Observations::parse(&text)).expect("observations");
     let config = Config::new(Motion::Static);
-    let told = positions(&folder, text.as_bytes(), config);
+    let told = positions(&folder, text.as_bytes(), &config);
     for (format, stream) in
         [("RTCM", rtcm(&observations.epochs)), ("UBX", ubx(&observations.epochs))]
     {
-        let found = positions(&folder, &stream, config);
+        let found = positions(&folder, &stream, &config);
         assert_eq!(found.fixes.len(), told.fixes.len());
         let away = |(a, b): (&kestirim_replay::gnss::Fix, &kestirim_replay::gnss::Fix)| {
             assert_eq!(a.t, b.t);
@@ -210,7 +210,7 @@ fn a_stream_that_comes_gives_what_it_gives_as_a_recording() {
     let settings = Settings::new(gnss.settings());
     let setup = Setup::of(&settings);
     for (format, stream) in [("RTCM", rtcm(epochs)), ("UBX", ubx(epochs))] {
-        let told = positions(&folder, &stream, setup.config(setup.main()));
+        let told = positions(&folder, &stream, &setup.config(setup.main()));
         let plan = gnss.online(&settings, &ESBC.products(&folder)).expect("a plan");
         let mut online = plan.expect("a follower").build().expect("an estimator");
         for (index, piece) in stream.chunks(PIECE).enumerate() {

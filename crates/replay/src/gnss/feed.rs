@@ -28,10 +28,10 @@ pub(super) struct Feed<const N: usize> {
 
 impl<const N: usize> Feed<N> {
     /// With a fresh filter.
-    pub(super) fn new(config: Config, recording: &Recording, pass: Pass) -> Self {
+    pub(super) fn new(config: &Config, recording: &Recording, pass: Pass) -> Self {
         let Pass { systems, order, with_residuals, .. } = pass;
         let about = recording.approximate_position().map(Vector3::from);
-        let filter = PppFilter::new(config);
+        let filter = PppFilter::new(*config);
         Self { filter, order, systems, with_residuals, lost: [false; 256], about }
     }
 

@@ -197,16 +197,16 @@ pub fn follow(
     let serves = |system: &System| *system != System::Gps && pass.systems.has_system(*system);
     let mut others = recording.systems().filter(serves);
     match (others.next(), others.next()) {
-        (None, _) => feed::<STATES>(config, recording, epochs, receiver, pass, next),
+        (None, _) => feed::<STATES>(&config, recording, epochs, receiver, pass, next),
         (Some(System::Galileo), None) => {
-            feed::<STATES_WITH_GALILEO>(config, recording, epochs, receiver, pass, next)
+            feed::<STATES_WITH_GALILEO>(&config, recording, epochs, receiver, pass, next)
         }
-        _ => feed::<STATES_OF_ALL>(config, recording, epochs, receiver, pass, next),
+        _ => feed::<STATES_OF_ALL>(&config, recording, epochs, receiver, pass, next),
     }
 }
 
 fn feed<const N: usize>(
-    config: Config,
+    config: &Config,
     recording: &Recording,
     epochs: &[Epoch],
     receiver: &Receiver<'_>,

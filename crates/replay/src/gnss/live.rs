@@ -169,7 +169,7 @@ impl Live {
         if self.pass.method == Method::Single {
             followed = single(recording, new, &receiver, &config, self.pass, &mut || ());
         } else {
-            let fresh = || Box::new(Feed::new(config, recording, self.pass));
+            let fresh = || Box::new(Feed::new(&config, recording, self.pass));
             let feed = self.feed.get_or_insert_with(fresh);
             for epoch in new {
                 feed.take(recording, &receiver, epoch, None, &mut followed);
